@@ -1,0 +1,21 @@
+# Every outside library, once. The Debian packages they come from: .ci/packages
+
+# xsimd's own package file asks for a link with xtl, which its headers do not need.
+find_path(STRUT_XSIMD_INCLUDE_DIR xsimd/xsimd.hpp REQUIRED)
+add_library(strut_xsimd INTERFACE)
+target_include_directories(strut_xsimd SYSTEM INTERFACE ${STRUT_XSIMD_INCLUDE_DIR})
+add_library(strut::xsimd ALIAS strut_xsimd)
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C)
+find_package(SUNDIALS 6.4 REQUIRED
+  COMPONENTS kinsol cvode ida nvecserial sunmatrixdense sunlinsoldense)
+find_package(tomlplusplus 3.3 REQUIRED)
+find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+if(STRUT_BUILD_TESTS)
+  find_package(Catch2 2.13 REQUIRED)
+endif()
+if(STRUT_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,31 @@
+# strut::options carries what every source of ours is compiled with.
+add_library(strut_options INTERFACE)
+add_library(strut::options ALIAS strut_options)
+target_include_directories(strut_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_features(strut_options INTERFACE cxx_std_20)
+
+# Nobody reads errno after sqrt or exp, and writing it costs a branch and a call on every one. No
+# other floating-point licence is given: -ffast-math would break the guards against NaN.
+target_compile_options(strut_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -fno-math-errno
+  $<$<BOOL:${STRUT_WARNINGS_AS_ERRORS}>:-Werror>)
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False positives on "text" + std::string (GCC bug 105651).
+  target_compile_options(strut_options INTERFACE -Wno-restrict)
+endif()
+
+if(STRUT_SANITIZE)
+  target_compile_options(strut_options INTERFACE
+    -fsanitize=${STRUT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(strut_options INTERFACE -fsanitize=${STRUT_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC's documentation: with -fsanitize this warning has false positives (here in std::regex).
+    target_compile_options(strut_options INTERFACE -Wno-maybe-uninitialized)
+  endif()
+endif()
+
+if(STRUT_COVERAGE)
+  target_compile_options(strut_options INTERFACE --coverage -fprofile-abs-path)
+  target_link_options(strut_options INTERFACE --coverage)
+endif()

@@ -1,0 +1,199 @@
+#include "io/csv.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <ostream>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "io/atomic_file.h"
+#include "io/nearest_name.h"
+
+namespace strut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kUnitsMark = "# units:";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string_view trim(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r");
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+}
+
+std::string_view strip_quotes(std::string_view text) {
+  const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+std::vector<std::string_view> split_cells(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const auto comma = line.find(',');
+    cells.push_back(trim(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+void append_number(std::string& line, double value) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  line.append(buffer.data(), result.ptr);
+}
+
+void check_columns(const std::vector<CsvColumn>& columns) {
+  for (const CsvColumn& column : columns) {
+    if (column.values.size() != columns.front().values.size()) {
+      throw std::logic_error("write_csv: column '" + column.name + "' has another length");
+    }
+  }
+}
+
+void write_heading(std::ostream& stream, const std::vector<CsvColumn>& columns) {
+  std::string names, units;
+  bool any_unit = false;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    names += (c == 0 ? "" : ",") + columns[c].name;
+    units += (c == 0 ? " " : ",") + columns[c].unit;
+    any_unit = any_unit || !columns[c].unit.empty();
+  }
+  stream << names << '\n';
+  if (any_unit) stream << kUnitsMark << units << '\n';
+}
+
+class CsvReader {
+ public:
+  explicit CsvReader(const fs::path& path) { table_.path = path; }
+
+  CsvTable read(std::istream& stream) {
+    std::string line;
+    while (std::getline(stream, line)) {
+      ++line_;
+      take_line(line);
+    }
+    if (table_.columns.empty()) throw error("no line of column names");
+    return std::move(table_);
+  }
+
+ private:
+  InputError error(const std::string& what) const {
+    return InputError(table_.path.string() + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  void take_line(std::string_view line) {
+    if (line_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    line = trim(line);
+    if (line.empty()) return;
+    if (line.starts_with(kUnitsMark)) return take_units(line.substr(kUnitsMark.size()));
+    if (line.front() == '#') return;
+    table_.columns.empty() ? take_names(line) : take_row(line);
+  }
+
+  void take_names(std::string_view line) {
+    std::set<std::string> seen;
+    for (const std::string_view cell : split_cells(line)) {
+      const std::string name(strip_quotes(cell));
+      if (name.empty()) throw error("a column has no name");
+      if (!seen.insert(name).second) throw error("column '" + name + "' stands there twice");
+      double number = 0.0;
+      const auto result = std::from_chars(name.data(), name.data() + name.size(), number);
+      if (result.ec == std::errc() && result.ptr == name.data() + name.size()) {
+        throw error("column name expected, number " + name + " found");
+      }
+      table_.columns.push_back({name, "", {}});
+    }
+  }
+
+  void take_units(std::string_view line) {
+    const auto units = split_cells(line);
+    if (table_.columns.empty() || units.size() != table_.columns.size()) {
+      throw error("the line of units must follow the names and have one unit a column");
+    }
+    for (std::size_t c = 0; c < units.size(); ++c) table_.columns[c].unit = std::string(units[c]);
+  }
+
+  void take_row(std::string_view line) {
+    const auto cells = split_cells(line);
+    if (cells.size() != table_.columns.size()) {
+      throw error(std::to_string(cells.size()) + " cells, but " +
+                  std::to_string(table_.columns.size()) + " columns");
+    }
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      table_.columns[c].values.push_back(parse_cell(cells[c], table_.columns[c].name));
+    }
+    table_.lines.push_back(line_);
+  }
+
+  double parse_cell(std::string_view cell, const std::string& column) const {
+    const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
+    const char* end = digits.data() + digits.size();
+    double value = 0.0;
+    const auto result = std::from_chars(digits.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end && std::isfinite(value)) return value;
+    throw error(column + " = '" + std::string(cell) + "': must be a finite number");
+  }
+
+  CsvTable table_;
+  int line_ = 0;
+};
+
+}  // namespace
+
+bool CsvTable::has(const std::string& name) const {
+  return std::any_of(columns.begin(), columns.end(),
+                     [&](const CsvColumn& column) { return column.name == name; });
+}
+
+const CsvColumn& CsvTable::column(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const CsvColumn& column : columns) {
+    if (column.name == name) return column;
+    names.push_back(column.name);
+  }
+  throw InputError(path.string() + ": no column '" + name + "' among " + join_names(names) +
+                   suggest_name(name, names));
+}
+
+void write_csv(std::ostream& stream, const std::vector<CsvColumn>& columns) {
+  check_columns(columns);
+  write_heading(stream, columns);
+  const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
+  std::string line;
+  for (std::size_t r = 0; r < rows; ++r) {
+    line.clear();
+    for (const CsvColumn& column : columns) {
+      if (!line.empty()) line += ',';
+      append_number(line, column.values[r]);
+    }
+    stream << line << '\n';
+  }
+}
+
+void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
+  AtomicFile file(path);
+  std::ofstream stream(file.temporary(), std::ios::binary);
+  write_csv(stream, columns);
+  stream.close();
+  if (!stream) throw EnvironmentError(path.string() + ": cannot be written: disk full?");
+  file.commit();
+}
+
+CsvTable read_csv(const fs::path& path) {
+  if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
+  if (!fs::is_regular_file(path)) throw InputError(path.string() + ": not a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
+  CsvTable table = CsvReader(path).read(stream);
+  if (stream.bad()) throw EnvironmentError(path.string() + ": cannot be read to its end");
+  return table;
+}
+
+}  // namespace strut

@@ -1,0 +1,50 @@
+// Numeric tables as comma-separated text.
+//
+//     time,body_position_z
+//     # units: s,m
+//     0,0.5373
+//
+// The names stand on the first line, so that every tool finds them; the units follow in a comment
+// line, which is left out where no column has one. pandas: `read_csv(f, comment="#")`; NumPy:
+// `genfromtxt(f, delimiter=",", names=True)`; MATLAB: `readtable(f, "CommentStyle", "#")`; gnuplot
+// needs nothing but its separator.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "io/input_error.h"
+
+namespace strut {
+
+struct CsvColumn {
+  std::string name;
+  std::string unit;  // may be ""
+  std::vector<double> values;
+};
+
+struct CsvTable {
+  std::filesystem::path path;  // where it was read from, for messages
+  std::vector<CsvColumn> columns;
+  std::vector<int> lines;  // line in the file of each row
+
+  std::size_t row_count() const { return lines.size(); }
+  bool has(const std::string& name) const;
+  /// Throws InputError that lists the columns and suggests the nearest name.
+  const CsvColumn& column(const std::string& name) const;
+};
+
+/// Writes columns of equal length; every number reads back as the same double.
+void write_csv(std::ostream& stream, const std::vector<CsvColumn>& columns);
+
+/// The same into a file that appears whole or not at all. Throws EnvironmentError.
+void write_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
+
+/// Reads a file as `write_csv` writes it; also with CR LF line ends, blanks around cells, names in
+/// quotes, comment and empty lines anywhere. Throws InputError with file and line for a missing
+/// file, a row of the wrong length, a cell that is not a finite number, an empty or repeated name.
+CsvTable read_csv(const std::filesystem::path& path);
+
+}  // namespace strut

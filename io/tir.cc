@@ -1,0 +1,172 @@
+#include "io/tir.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace strut {
+namespace {
+
+std::string_view trim(std::string_view text) {
+  const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string to_upper(std::string_view text) {
+  std::string upper(text);
+  for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return upper;
+}
+
+/// The line without its comment; a comment sign inside quotes is text.
+std::string_view strip_comment(std::string_view line) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '\'') quoted = !quoted;
+    if (!quoted && (line[i] == '$' || line[i] == '!')) return trim(line.substr(0, i));
+  }
+  return trim(line);
+}
+
+std::optional<double> to_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+class Parser {
+ public:
+  explicit Parser(const std::filesystem::path& path) { file_.path = path; }
+
+  void parse_line(std::string_view line, int number) {
+    line_ = number;
+    const std::string_view text = strip_comment(line);
+    if (text.empty()) return;
+    if (text.front() == '[') {
+      parse_section(text);
+    } else if (text.front() == '{') {
+      parse_header(text);
+    } else if (text.find('=') != std::string_view::npos) {
+      parse_entry(text);
+    } else {
+      parse_row(text);
+    }
+  }
+
+  TirFile take() { return std::move(file_); }
+
+ private:
+  InputError error(const std::string& what) const {
+    return InputError(file_.path.string() + ":" + std::to_string(line_) + ": " + what);
+  }
+
+  void parse_section(std::string_view text) {
+    if (text.back() != ']' || text.size() < 3) {
+      throw error("'" + std::string(text) + "': a section must read [NAME]");
+    }
+    section_ = to_upper(trim(text.substr(1, text.size() - 2)));
+    in_table_ = false;
+  }
+
+  void parse_header(std::string_view text) {
+    if (text.back() != '}') throw error("'" + std::string(text) + "': must read {column names}");
+    file_.tables.push_back(
+        {section_, std::string(trim(text.substr(1, text.size() - 2))), {}, line_});
+    in_table_ = true;
+  }
+
+  void parse_entry(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    TirEntry entry{section_, to_upper(trim(text.substr(0, equals))),
+                   std::string(trim(text.substr(equals + 1))), false, line_};
+    if (entry.key.empty()) throw error("'" + std::string(text) + "': a name must precede '='");
+    if (entry.text.starts_with('\'')) {
+      if (entry.text.size() < 2 || entry.text.back() != '\'') {
+        throw error(entry.key + " = " + entry.text + ": the closing quote is missing");
+      }
+      entry.text = std::string(trim(std::string_view(entry.text).substr(1, entry.text.size() - 2)));
+      entry.quoted = true;
+    } else if (entry.text.empty()) {
+      throw error(entry.key + ": a value must follow '='");
+    }
+    check_new(entry);
+    file_.entries.push_back(std::move(entry));
+    in_table_ = false;
+  }
+
+  void check_new(const TirEntry& entry) const {
+    for (const TirEntry& other : file_.entries) {
+      if (other.key == entry.key && other.section == entry.section) {
+        throw error(entry.key + " = " + entry.text + ": already given in line " +
+                    std::to_string(other.line));
+      }
+    }
+  }
+
+  void parse_row(std::string_view text) {
+    if (!in_table_) throw error("'" + std::string(text) + "': must be KEY = value or [SECTION]");
+    std::vector<double> row;
+    for (std::string_view rest = text; !rest.empty();) {
+      const std::size_t end = std::min(rest.find_first_of(" \t,"), rest.size());
+      const std::optional<double> value = to_number(rest.substr(0, end));
+      if (!value) throw error("'" + std::string(rest.substr(0, end)) + "': must be a number");
+      row.push_back(*value);
+      rest = trim(rest.substr(std::min(end + 1, rest.size())));
+    }
+    file_.tables.back().rows.push_back(std::move(row));
+  }
+
+  TirFile file_;
+  std::string section_;
+  bool in_table_ = false;
+  int line_ = 0;
+};
+
+}  // namespace
+
+const TirEntry* TirFile::find(std::string_view key) const {
+  const auto it =
+      std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.key == key; });
+  return it == entries.end() ? nullptr : &*it;
+}
+
+TirFile parse_tir(std::string_view content, const std::filesystem::path& path) {
+  Parser parser(path);
+  for (int line = 1; !content.empty(); ++line) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    parser.parse_line(content.substr(0, end), line);
+    content.remove_prefix(std::min(end + 1, content.size()));
+  }
+  return parser.take();
+}
+
+TirFile read_tir(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw InputError(path.string() + ": there is no such file");
+  }
+  std::ifstream stream(path, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
+  return parse_tir(content, path);
+}
+
+double get_number(const TirFile& file, const TirEntry& entry) {
+  const std::optional<double> value = entry.quoted ? std::nullopt : to_number(entry.text);
+  if (!value) throw tir_error(file, entry, "must be a finite number");
+  return *value;
+}
+
+InputError tir_error(const TirFile& file, const TirEntry& entry, const std::string& what) {
+  const std::string value = entry.quoted ? "'" + entry.text + "'" : entry.text;
+  return InputError(file.path.string() + ":" + std::to_string(entry.line) + ": " + entry.key +
+                    " = " + value + ": " + what);
+}
+
+}  // namespace strut

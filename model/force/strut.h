@@ -1,0 +1,102 @@
+// Force elements that act along a line of a corner (spring line, damper line).
+//
+// An element is a plain struct of T fields. Force is positive in compression (it pushes the mounts
+// apart), so its power on the car is force * length_rate. A conservative element states its stored
+// energy; the power of any other is dissipation or input. A new element is a header like this and
+// one entry in `StrutElements`: the dynamics never names an element.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <tuple>
+
+#include "model/math/lanes.h"
+#include "model/multibody/corner.h"
+
+namespace strut {
+
+/// Line length [m] and its rate [m/s].
+template <class T>
+struct LineState {
+  T length, rate;
+};
+
+/// F = k (free_length - length).
+template <class T>
+struct LinearSpring {
+  static constexpr Line kLine = kSpringLine;
+  static constexpr bool kConservative = true;
+  T stiffness;    // N/m
+  T free_length;  // m
+
+  T calc_force(const LineState<T>& line) const { return stiffness * (free_length - line.length); }
+  T calc_energy(const LineState<T>& line) const {
+    return T(0.5) * stiffness * square(free_length - line.length);
+  }
+};
+
+/// F = -c d(length)/dt.
+template <class T>
+struct LinearDamper {
+  static constexpr Line kLine = kDamperLine;
+  static constexpr bool kConservative = false;
+  T damping;  // N s/m
+
+  T calc_force(const LineState<T>& line) const { return -damping * line.rate; }
+  T calc_energy(const LineState<T>&) const { return T(0.0); }
+};
+
+/// The elements of one kind that are switched on, each at its corner. The count is common to a
+/// batch: an effect that is off is not in the list.
+template <class Element, int Capacity = kMaxJoints>
+struct ElementList {
+  std::array<Element, Capacity> element;
+  std::array<int, Capacity> corner{};
+  int count = 0;
+
+  void add(int at_corner, const Element& e) {
+    element[static_cast<std::size_t>(count)] = e;
+    corner[static_cast<std::size_t>(count)] = at_corner;
+    ++count;
+  }
+};
+
+template <class T>
+using StrutElements = std::tuple<ElementList<LinearSpring<T>>, ElementList<LinearDamper<T>>>;
+
+/// Generalized force on q, power that is not change of stored energy, stored energy.
+template <class T>
+struct StrutForce {
+  T spring_force, damper_force;  // N, by line
+  T generalized;                 // N, on q
+  T power;                       // W
+  T energy;                      // J
+};
+
+template <class T, int Corners>
+void add_strut_forces(const StrutElements<T>& elements,
+                      const std::array<CornerMotion<T>, Corners>& motion, const T* q_dot,
+                      std::array<StrutForce<T>, Corners>& out) {
+  for (StrutForce<T>& f : out) f = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
+  const auto add_list = [&](const auto& list) {
+    using Element = typename std::decay_t<decltype(list.element)>::value_type;
+    for (int i = 0; i < list.count; ++i) {
+      const auto corner = static_cast<std::size_t>(list.corner[static_cast<std::size_t>(i)]);
+      const Element& element = list.element[static_cast<std::size_t>(i)];
+      const CornerMotion<T>& m = motion[corner];
+      const LineState<T> line{m.length[Element::kLine], m.length_q[Element::kLine] * q_dot[corner]};
+      const T force = element.calc_force(line);
+      StrutForce<T>& f = out[corner];
+      (Element::kLine == kSpringLine ? f.spring_force : f.damper_force) += force;
+      f.generalized += force * m.length_q[Element::kLine];
+      if constexpr (Element::kConservative) {
+        f.energy += element.calc_energy(line);
+      } else {
+        f.power += force * line.rate;
+      }
+    }
+  };
+  std::apply([&](const auto&... list) { (add_list(list), ...); }, elements);
+}
+
+}  // namespace strut

@@ -1,0 +1,129 @@
+// One tire on the road: contact point, vertical spring-damper that lifts off, slips, PAC2002.
+#pragma once
+
+#include "model/force/pac2002.h"
+#include "model/math/spatial.h"
+#include "model/scenario/road.h"
+
+namespace strut {
+
+/// Slip velocities are divided by no less than this, so a standing wheel has finite slip [m/s].
+inline constexpr double kSlipSpeedFloor = 0.5;
+/// Deflection over which the tire's damper comes in, so that touching down is no force step [m].
+inline constexpr double kDampingRamp = 2e-3;
+
+template <class T>
+struct TireVertical {
+  T radius;     // m, unloaded
+  T stiffness;  // N/m
+  T damping;    // N s/m
+};
+
+/// Wheel as the tire sees it, all vectors in one frame (chassis axes).
+template <class T>
+struct WheelMotion {
+  Vec3<T> center;         // m
+  Vec3<T> velocity;       // m/s, of the center
+  Vec3<T> axis;           // unit, to the left
+  Vec3<T> upright_omega;  // rad/s, of the upright
+  T spin;                 // rad/s, wheel's angular velocity along the axis, in inertial space
+};
+
+/// Where wheel and effective road plane meet.
+template <class T>
+struct TireContact {
+  Vec3<T> normal, forward, lateral;  // unit, contact frame
+  Vec3<T> arm;                       // m, wheel center to contact point
+  T loaded_radius;                   // m, in the wheel plane
+  T deflection;                      // m, > 0 in contact
+  T unclamped_load;                  // N, its sign is the contact event
+  T load;                            // N
+};
+
+/// 6 t^5 - 15 t^4 + 10 t^3 on [0, 1], constant outside.
+template <class T>
+T smoothstep(const T& x) {
+  const T t = min(max(x, T(0.0)), T(1.0));
+  return t * t * t * (t * (t * T(6.0) - T(15.0)) + T(10.0));
+}
+
+/// Contact with the plane of `height` above the wheel center's footing and `normal`.
+/// `clearance`: wheel center height over the effective road [m].
+/// Envelope: the road is where a rigid disc of the free radius would carry the center, so the
+/// deflection is the gap to that path along its normal. Point: the plane itself is the road.
+template <class T>
+TireContact<T> calc_tire_contact(const TireVertical<T>& tire, ContactKind kind,
+                                 const WheelMotion<T>& wheel, const Vec3<T>& normal,
+                                 const T& normal_z, const T& clearance) {
+  TireContact<T> contact;
+  contact.normal = normal;
+  contact.forward = normalized(cross(wheel.axis, normal));
+  contact.lateral = cross(normal, contact.forward);
+  const Vec3<T> up = cross(contact.forward, wheel.axis);  // in the wheel plane
+  const T distance = kind == ContactKind::kEnvelope
+                         ? tire.radius - (tire.radius - clearance) * normal_z
+                         : clearance * normal_z;
+  const T tilt = T(1.0) / dot(up, normal);
+  contact.loaded_radius = distance * tilt;
+  contact.arm = -contact.loaded_radius * up;
+  contact.deflection = tire.radius - contact.loaded_radius;
+  const T rate = -dot(wheel.velocity, normal) * tilt;
+  contact.unclamped_load =
+      tire.stiffness * contact.deflection +
+      tire.damping * smoothstep(contact.deflection * T(1.0 / kDampingRamp)) * rate;
+  contact.load = max(contact.unclamped_load, T(0.0));
+  return contact;
+}
+
+/// Slip velocities of a tire and what follows from them.
+template <class T>
+struct TireSlipState {
+  T speed;           // m/s, >= kSlipSpeedFloor
+  T forward, side;   // m/s: V_x of the center, V_y of the contact point on the upright
+  T rolling_radius;  // m
+  T kappa;           // 1
+  T tan_alpha;       // 1
+};
+
+template <class T>
+TireSlipState<T> calc_tire_slip(const Pac2002<T>& pacejka, const TireVertical<T>& tire,
+                                const WheelMotion<T>& wheel, const TireContact<T>& contact) {
+  TireSlipState<T> slip;
+  slip.forward = dot(wheel.velocity, contact.forward);
+  slip.side = dot(wheel.velocity + cross(wheel.upright_omega, contact.arm), contact.lateral);
+  slip.speed = max(abs(slip.forward), T(kSlipSpeedFloor));
+  slip.rolling_radius =
+      calc_rolling_radius(pacejka, tire.radius, max(contact.deflection, T(0.0)), tire.stiffness);
+  const T inverse = T(1.0) / slip.speed;
+  slip.kappa = (wheel.spin * slip.rolling_radius - slip.forward) * inverse;
+  slip.tan_alpha = slip.side * inverse;
+  return slip;
+}
+
+/// Force and moment at the contact point, in the frame of the wheel's vectors.
+template <class T>
+struct TireWrench {
+  Vec3<T> force;   // N
+  Vec3<T> moment;  // N m
+  T fx, fy;        // N, in the contact frame
+  T spin_damping;  // N m s/rad, -d(moment about the axis)/d(spin) at free rolling
+};
+
+/// `kappa`, `tan_alpha`: the slips that make force, steady or relaxed. `side`: +1 left, -1 right.
+template <class T>
+TireWrench<T> calc_tire_wrench(const Pac2002<T>& pacejka, const WheelMotion<T>& wheel,
+                               const TireContact<T>& contact, const TireSlipState<T>& slip,
+                               const T& kappa, const T& tan_alpha, const T& side) {
+  const TireSlip<T> input{contact.load, kappa, atan(tan_alpha), dot(wheel.axis, contact.normal),
+                          slip.speed};
+  const TireForce<T> f = calc_tire_force(pacejka, input, side);
+  TireWrench<T> wrench;
+  wrench.fx = f.fx;
+  wrench.fy = f.fy;
+  wrench.force = f.fx * contact.forward + f.fy * contact.lateral + contact.load * contact.normal;
+  wrench.moment = f.mx * contact.forward + f.my * contact.lateral + f.mz * contact.normal;
+  wrench.spin_damping = f.slip_stiffness * slip.rolling_radius * contact.loaded_radius / slip.speed;
+  return wrench;
+}
+
+}  // namespace strut

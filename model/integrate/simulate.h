@@ -1,0 +1,378 @@
+// Runs a system from t = 0 to its end in lockstep lanes: steps, contact events, snapshot, samples.
+//
+// Every lane has its own time grid. A lane whose guard changes sign inside a step (a wheel lifts
+// off, touches down or reaches a kink of the road) takes a shorter RK4 step that ends there and
+// restarts its multistep history; its neighbours keep their step and every bit of their result.
+//
+// Besides what steppers.h asks, a system offers, all after calc_derivative at the same state:
+//   int guard_count() const;  void get_guards(T* g) const;
+//   T get_trigger() const;                         its sign change is the snapshot
+//   MaskOf<T> has_failed() const;                  closure or finiteness lost
+//   void observe(const T& t, const T* x, T* out);  channels
+// and at any state
+//   void calc_guards(const T& t, const T* x, T* g);  T calc_trigger(const T& t, const T* x);
+//   bool cross(int guard, MaskOf<T> lanes);        guard passed there; true if f must be renewed
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "model/integrate/steppers.h"
+
+namespace strut {
+
+enum class Stepper { kRk4, kAbm4 };
+
+enum class RunStatus : int {
+  kDone = 0,
+  kDiverged = 1,     // a state is no longer finite
+  kOutOfTravel = 2,  // a corner left the travel its loops were closed over
+  kUnstable = 3,     // the spin or body energy grew beyond anything physical
+};
+
+struct StepOptions {
+  Stepper stepper = Stepper::kRk4;
+  double step = 1e-3;         // s
+  bool locate_events = true;  // end steps at contact events
+};
+
+struct SamplePlan {
+  double duration = 3.0;  // s
+  double interval = 0.0;  // s between history samples from t = 0; 0: no history
+  bool snapshot = true;
+  int channel_count = 0;
+};
+
+/// Results of all lanes; arrays of doubles with the lane as the fastest index.
+struct LaneResults {
+  int lanes = 1;
+  std::vector<int> status;           // RunStatus per lane
+  std::vector<double> failure_time;  // s; duration where done
+  std::vector<double> event_time;    // s; NaN where the trigger never changed sign
+  std::vector<double> snapshot;      // [channel][lane]
+  std::vector<double> history;       // [sample][channel][lane]
+  std::vector<double> final_state;   // [component][lane]
+  int sample_count = 0;
+  long derivative_count = 0;  // right-hand sides evaluated (all lanes at once)
+  long event_count = 0;       // steps shortened by a guard, summed over lanes
+};
+
+template <class T, class System>
+class Simulation {
+ public:
+  static constexpr int N = System::kCapacity;
+  static constexpr int kLanes = kLaneCount<T>;
+  static constexpr int kMaxGuards = 8;
+  using Vector = std::array<T, N>;
+  using Mask = MaskOf<T>;
+
+  Simulation(System& system, const StepOptions& options, const SamplePlan& plan)
+      : system_(system), options_(options), plan_(plan) {}
+
+  /// Integrates from x0; allocates only here, before the first step.
+  LaneResults run(const Vector& x0) {
+    prepare(x0);
+    while (any(time_ < end_)) advance();
+    finish();
+    return std::move(results_);
+  }
+
+ private:
+  void prepare(const Vector& x0) {
+    const auto lanes = static_cast<std::size_t>(kLanes);
+    const auto channels = static_cast<std::size_t>(plan_.channel_count);
+    results_ = {};
+    results_.lanes = kLanes;
+    results_.status.assign(lanes, 0);
+    results_.failure_time.assign(lanes, plan_.duration);
+    results_.event_time.assign(lanes, std::nan(""));
+    results_.snapshot.assign(channels * lanes, std::nan(""));
+    results_.sample_count =
+        plan_.interval > 0.0 ? static_cast<int>(plan_.duration / plan_.interval + 1e-9) + 1 : 0;
+    results_.history.assign(static_cast<std::size_t>(results_.sample_count) * channels * lanes,
+                            std::nan(""));
+    channel_.resize(channels);
+    x_ = x0;
+    time_ = T(0.0);
+    end_ = T(plan_.duration);
+    past_count_ = T(0.0);
+    next_sample_ = T(0.0);
+    triggered_ = T(plan_.snapshot ? 0.0 : 1.0);
+    evaluate(time_, x_.data(), f_.data(), decay_.data());
+    system_.get_guards(guard_.data());
+    for (int g = 0; g < system_.guard_count(); ++g) {
+      side_[g] = select(guard_[g] > T(0.0), T(1.0), T(0.0));
+    }
+    trigger_ = system_.get_trigger();
+    retire_failed();
+    record_samples_at_start();
+  }
+
+  void evaluate(const T& t, const T* x, T* dx, T* decay) {
+    system_.calc_derivative(t, x, dx, decay);
+    ++results_.derivative_count;
+  }
+
+  /// One step of every lane that has not ended.
+  void advance() {
+    const T nominal = T(options_.step);
+    const T left = max(end_ - time_, T(0.0));
+    const Mask last = left < nominal * T(1.0 + 1e-9);
+    h_ = select(last, left, nominal);
+    const Mask full = h_ > nominal * T(1.0 - 1e-9);
+    update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
+    take_step(full);
+    evaluate(time_ + h_, x1_.data(), f1_.data(), decay1_.data());
+    system_.get_guards(guard1_.data());
+    trigger1_ = system_.get_trigger();
+    Mask restarted = time_ < T(-1.0);
+    if (options_.locate_events && system_.guard_count() > 0) restarted = locate_events();
+    retire_failed();
+    if (plan_.snapshot) locate_trigger();
+    if (results_.sample_count > 0) record_samples();
+    commit(restarted, last);
+  }
+
+  /// x1_ from the stepper each lane is ready for.
+  void take_step(Mask full) {
+    const Mask multistep =
+        options_.stepper == Stepper::kAbm4 ? (past_count_ > T(2.5)) & full : past_count_ < T(-1.0);
+    const Mask active = time_ < end_;
+    const bool some_multistep = any(multistep & active);
+    if (some_multistep) {
+      step_abm4<T>(system_, time_, x_.data(), f_.data(), past_, weights_, h_, x1_.data(), scratch_);
+      ++results_.derivative_count;
+    }
+    if (any((!multistep) & active)) {
+      T* target = some_multistep ? other_.data() : x1_.data();
+      step_rk4<T>(system_, time_, x_.data(), f_.data(), weights_, h_, target, scratch_);
+      results_.derivative_count += 3;
+      if (some_multistep) {
+        for (int i = 0; i < system_.size(); ++i) x1_[i] = select(multistep, x1_[i], other_[i]);
+      }
+    }
+  }
+
+  /// Shortens the step of lanes in which a guard changed sides, to end at the first change. Returns
+  /// the lanes that did.
+  Mask locate_events() {
+    const int guards = system_.guard_count();
+    Mask restarted = time_ < T(-1.0);
+    T landed = T(-1.0);  // guard at which the lane's step now ends
+    for (int attempt = 0; attempt < kMaxGuards; ++attempt) {
+      T theta = T(2.0), chosen = T(-1.0);
+      for (int g = 0; g < guards; ++g) {
+        const T side1 = select(guard1_[g] > T(0.0), T(1.0), T(0.0));
+        const Mask changed =
+            (abs(side1 - side_[g]) > T(0.5)) & (abs(landed - T(g)) > T(0.5)) & (time_ < end_);
+        const Mask inside = guard_[g] * guard1_[g] < T(0.0);
+        // Crossed between steps within rounding: nothing to locate, only to note.
+        side_[g] = select(changed & (!inside), side1, side_[g]);
+        const T guess = guard_[g] / (guard_[g] - guard1_[g]);
+        const Mask first = changed & inside & (guess < theta);
+        theta = select(first, guess, theta);
+        chosen = select(first, T(g), chosen);
+      }
+      const Mask crossing = chosen > T(-0.5);
+      if (!any(crossing)) break;
+      shorten_step(crossing, refine_crossing(crossing, chosen));
+      landed = select(crossing, chosen, landed);
+      restarted = restarted | crossing;
+    }
+    if (any(restarted)) pass_guards(restarted, landed);
+    return restarted;
+  }
+
+  /// Root of each lane's chosen guard on the dense output, as a fraction of h_ (Illinois method).
+  T refine_crossing(Mask crossing, const T& chosen) {
+    const int guards = system_.guard_count();
+    T a = T(0.0), b = T(1.0), ga = T(1.0), gb = T(-1.0);
+    for (int g = 0; g < guards; ++g) {
+      const Mask mine = abs(chosen - T(g)) < T(0.5);
+      ga = select(mine, guard_[g], ga);
+      gb = select(mine, guard1_[g], gb);
+    }
+    constexpr int kIterations = 8;
+    T theta = T(1.0);
+    std::array<T, kMaxGuards> g_now;
+    for (int i = 0; i < kIterations; ++i) {
+      theta = select(crossing, (a * gb - b * ga) / (gb - ga), T(1.0));
+      interpolate_state(x_.data(), f_.data(), x1_.data(), f1_.data(), h_, theta, system_.size(),
+                        other_.data());
+      system_.calc_guards(time_ + theta * h_, other_.data(), g_now.data());
+      T value = T(0.0);
+      for (int g = 0; g < guards; ++g) {
+        value = select(abs(chosen - T(g)) < T(0.5), g_now[g], value);
+      }
+      const Mask same_as_b = value * gb > T(0.0);
+      ga = select(same_as_b, T(0.5) * ga, value);
+      a = select(same_as_b, a, theta);
+      gb = select(same_as_b, value, T(0.5) * gb);
+      b = select(same_as_b, theta, b);
+    }
+    return theta;
+  }
+
+  void shorten_step(Mask lanes, const T& theta) {
+    h_ = select(lanes, max(theta, T(1e-9)) * h_, h_);
+    update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
+    step_rk4<T>(system_, time_, x_.data(), f_.data(), weights_, h_, other_.data(), scratch_);
+    results_.derivative_count += 3;
+    for (int i = 0; i < system_.size(); ++i) x1_[i] = select(lanes, other_[i], x1_[i]);
+    evaluate(time_ + h_, x1_.data(), f1_.data(), decay1_.data());
+    system_.get_guards(guard1_.data());
+    trigger1_ = system_.get_trigger();
+  }
+
+  /// Notes the passed guards; where the right-hand side changes with them, renews f1_.
+  void pass_guards(Mask restarted, const T& landed) {
+    bool renew = false;
+    for (int g = 0; g < system_.guard_count(); ++g) {
+      const Mask passed = restarted & (abs(landed - T(g)) < T(0.5));
+      if (!any(passed)) continue;
+      side_[g] = select(passed, T(1.0) - side_[g], side_[g]);
+      renew = system_.cross(g, passed) || renew;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      results_.event_count += get_mask_lane(restarted, lane) ? 1 : 0;
+    }
+    if (!renew) return;
+    evaluate(time_ + h_, x1_.data(), f1_.data(), decay1_.data());
+    T renewed[kMaxGuards];
+    system_.get_guards(renewed);
+    for (int g = 0; g < system_.guard_count(); ++g) {
+      // A kink's guard now measures the distance to the next kink: its side starts anew.
+      const Mask passed = restarted & (abs(landed - T(g)) < T(0.5));
+      const Mask fresh = passed & (abs(renewed[g] - guard1_[g]) > T(1e-6));
+      side_[g] = select(fresh, select(renewed[g] > T(0.0), T(1.0), T(0.0)), side_[g]);
+      guard1_[g] = select(restarted, renewed[g], guard1_[g]);
+    }
+  }
+
+  void retire_failed() {
+    const Mask failed = system_.has_failed() & (time_ < end_);
+    if (!any(failed)) return;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!get_mask_lane(failed, lane)) continue;
+      const auto at = static_cast<std::size_t>(lane);
+      results_.status[at] = static_cast<int>(system_.get_failure(lane));
+      results_.failure_time[at] = get_lane(time_, lane);
+    }
+    // A retired lane stands still at its last good state.
+    end_ = select(failed, time_, end_);
+    h_ = select(failed, T(0.0), h_);
+    for (int i = 0; i < system_.size(); ++i) {
+      x1_[i] = select(failed, x_[i], x1_[i]);
+      f1_[i] = select(failed, T(0.0), f1_[i]);
+    }
+  }
+
+  /// Snapshot of the lanes whose trigger changed sign: two RK4 steps to the root refine the dense
+  /// output's root to the accuracy of the integrator itself.
+  void locate_trigger() {
+    const Mask hit =
+        (trigger_ < T(0.0)) & (trigger1_ >= T(0.0)) & (triggered_ < T(0.5)) & (time_ < end_);
+    if (!any(hit)) return;
+    T theta = trigger_ / (trigger_ - trigger1_);
+    StiffWeights<T> weights;
+    for (int i = 0; i < 3; ++i) {
+      const T h = select(hit, theta, T(0.0)) * h_;
+      update_stiff_weights(decay_.data(), h, system_.stiff_count(), weights);
+      step_rk4<T>(system_, time_, x_.data(), f_.data(), weights, h, other_.data(), scratch_);
+      evaluate(time_ + h, other_.data(), other_f_.data(), scratch_.unused_decay.data());
+      results_.derivative_count += 3;
+      const T error = system_.get_trigger();
+      if (i == 2) break;
+      // The trigger moves with nearly constant speed: its mean slope over the step serves Newton.
+      theta = theta - select(hit, error / (trigger1_ - trigger_), T(0.0));
+    }
+    const T at = time_ + theta * h_;
+    system_.observe(at, other_.data(), channel_.data());
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!get_mask_lane(hit, lane)) continue;
+      results_.event_time[static_cast<std::size_t>(lane)] = get_lane(at, lane);
+      store_channels(results_.snapshot.data(), lane);
+    }
+    triggered_ = select(hit, T(1.0), triggered_);
+  }
+
+  void store_channels(double* row, int lane) const {
+    for (std::size_t c = 0; c < channel_.size(); ++c) {
+      row[c * kLanes + static_cast<std::size_t>(lane)] = get_lane(channel_[c], lane);
+    }
+  }
+
+  void store_sample(Mask lanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if (!get_mask_lane(lanes, lane)) continue;
+      const auto sample = static_cast<std::size_t>(get_lane(next_sample_, lane));
+      store_channels(results_.history.data() + sample * channel_.size() * kLanes, lane);
+    }
+    next_sample_ = select(lanes, next_sample_ + T(1.0), next_sample_);
+  }
+
+  void record_samples_at_start() {
+    if (results_.sample_count == 0) return;
+    system_.observe(time_, x_.data(), channel_.data());
+    store_sample(time_ <= end_);
+  }
+
+  /// Samples that fall into this step, on the dense output.
+  void record_samples() {
+    const T interval = T(plan_.interval);
+    const T slack = T(1e-9 * options_.step);
+    while (true) {
+      const T due = next_sample_ * interval;
+      const Mask pending = (due <= time_ + h_ + slack) & (time_ < end_) &
+                           (next_sample_ < T(results_.sample_count - 0.5));
+      if (!any(pending)) return;
+      const T theta = select(pending, min((due - time_) / max(h_, T(1e-300)), T(1.0)), T(0.0));
+      interpolate_state(x_.data(), f_.data(), x1_.data(), f1_.data(), h_, theta, system_.size(),
+                        other_.data());
+      evaluate(due, other_.data(), other_f_.data(), scratch_.unused_decay.data());
+      system_.observe(due, other_.data(), channel_.data());
+      store_sample(pending);
+    }
+  }
+
+  void commit(Mask restarted, Mask last) {
+    past_.push(f_.data(), x_.data(), system_.size(), system_.stiff_begin(), system_.stiff_count());
+    past_count_ = select(restarted, T(0.0), past_count_ + T(1.0));
+    const Mask arrived = last & (!restarted);
+    time_ = select(arrived, end_, time_ + h_);
+    const Mask moving = h_ > T(0.0);
+    for (int i = 0; i < system_.size(); ++i) {
+      x_[i] = select(moving, x1_[i], x_[i]);
+      f_[i] = select(moving, f1_[i], f_[i]);
+    }
+    for (int i = 0; i < system_.stiff_count(); ++i) decay_[i] = decay1_[i];
+    for (int g = 0; g < system_.guard_count(); ++g) guard_[g] = guard1_[g];
+    trigger_ = trigger1_;
+  }
+
+  void finish() {
+    const auto lanes = static_cast<std::size_t>(kLanes);
+    results_.final_state.resize(static_cast<std::size_t>(system_.size()) * lanes);
+    for (int i = 0; i < system_.size(); ++i) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        results_.final_state[static_cast<std::size_t>(i) * lanes + static_cast<std::size_t>(lane)] =
+            get_lane(x_[i], lane);
+      }
+    }
+  }
+
+  System& system_;
+  StepOptions options_;
+  SamplePlan plan_;
+  LaneResults results_;
+  Vector x_, x1_, f_, f1_, other_, other_f_;
+  std::array<T, kMaxStiff> decay_{}, decay1_{};
+  StiffWeights<T> weights_;
+  AdamsHistory<T, N> past_;
+  StepScratch<T, N> scratch_;
+  std::array<T, kMaxGuards> guard_{}, guard1_{}, side_{};
+  T time_, end_, h_, past_count_, next_sample_, trigger_, trigger1_, triggered_;
+  std::vector<T> channel_;
+};
+
+}  // namespace strut

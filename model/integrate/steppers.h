@@ -1,0 +1,178 @@
+// One step of RK4 and of the Adams-Bashforth-Moulton pair, each lane with its own step length.
+//
+// A few components may be stiff and scalar (the spin of a wheel against its slip stiffness):
+// d(u)/dt = -decay u + N(u, rest). For those both methods are taken in exponential form, with the
+// decay rate frozen at the start of the step: Cox and Matthews' ETDRK4 (J. Comput. Phys. 176, 2002,
+// eqs. 26-29) and exponential Adams formulas (same, eq. 11, and its implicit twin). With decay = 0
+// they are the classical methods; for any decay they keep order four, since what the linear part
+// takes away the nonlinear part N gives back.
+//
+// A system offers
+//   static constexpr int kCapacity;         largest state
+//   int size() const;                       state in use
+//   int stiff_begin() const, stiff_count() const;
+//   void calc_derivative(const T& t, const T* x, T* dx, T* decay);
+#pragma once
+
+#include <array>
+
+#include "model/integrate/exponential.h"
+
+namespace strut {
+
+inline constexpr int kMaxStiff = 4;
+
+/// Weights of the exponential formulas for each stiff component over one step.
+template <class T>
+struct StiffWeights {
+  std::array<T, kMaxStiff> decay;  // 1/s, frozen
+  std::array<PhiFunctions<T>, kMaxStiff> full;
+  std::array<T, kMaxStiff> half_exponential, half_phi1;
+};
+
+template <class T>
+void update_stiff_weights(const T* decay, const T& h, int count, StiffWeights<T>& weights) {
+  for (int i = 0; i < count; ++i) {
+    weights.decay[i] = decay[i];
+    weights.full[i] = calc_phi(-decay[i] * h);
+    const PhiFunctions<T> half = calc_phi(T(-0.5) * decay[i] * h);
+    weights.half_exponential[i] = half.exponential;
+    weights.half_phi1[i] = half.phi1;
+  }
+}
+
+/// Scratch of both steppers.
+template <class T, int N>
+struct StepScratch {
+  std::array<std::array<T, N>, 4> k;
+  std::array<T, N> stage;
+  std::array<T, kMaxStiff> unused_decay;
+};
+
+/// x1 = RK4 step of length h from (t, x) with derivative f there.
+template <class T, class System>
+void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWeights<T>& weights,
+              const T& h, T* x1, StepScratch<T, System::kCapacity>& scratch) {
+  const int n = system.size(), begin = system.stiff_begin(), count = system.stiff_count();
+  const T half = T(0.5) * h;
+  T* stage = scratch.stage.data();
+  T *k2 = scratch.k[1].data(), *k3 = scratch.k[2].data(), *k4 = scratch.k[3].data();
+  std::array<T, kMaxStiff> n1, n2, n3, a;
+  const auto nonlinear = [&](const T* k, const T* u, std::array<T, kMaxStiff>& out) {
+    for (int i = 0; i < count; ++i) out[i] = k[begin + i] + weights.decay[i] * u[begin + i];
+  };
+
+  nonlinear(f, x, n1);
+  for (int i = 0; i < n; ++i) stage[i] = x[i] + half * f[i];
+  for (int i = 0; i < count; ++i) {
+    a[i] = weights.half_exponential[i] * x[begin + i] + half * weights.half_phi1[i] * n1[i];
+    stage[begin + i] = a[i];
+  }
+  system.calc_derivative(t + half, stage, k2, scratch.unused_decay.data());
+  nonlinear(k2, stage, n2);
+
+  for (int i = 0; i < n; ++i) stage[i] = x[i] + half * k2[i];
+  for (int i = 0; i < count; ++i) {
+    stage[begin + i] =
+        weights.half_exponential[i] * x[begin + i] + half * weights.half_phi1[i] * n2[i];
+  }
+  system.calc_derivative(t + half, stage, k3, scratch.unused_decay.data());
+  nonlinear(k3, stage, n3);
+
+  for (int i = 0; i < n; ++i) stage[i] = x[i] + h * k3[i];
+  for (int i = 0; i < count; ++i) {
+    stage[begin + i] =
+        weights.half_exponential[i] * a[i] + half * weights.half_phi1[i] * (T(2.0) * n3[i] - n1[i]);
+  }
+  system.calc_derivative(t + h, stage, k4, scratch.unused_decay.data());
+
+  const T sixth = h * T(1.0 / 6.0);
+  std::array<T, kMaxStiff> n4;
+  nonlinear(k4, stage, n4);
+  for (int i = 0; i < n; ++i) {
+    x1[i] = x[i] + sixth * (f[i] + T(2.0) * (k2[i] + k3[i]) + k4[i]);
+  }
+  for (int i = 0; i < count; ++i) {
+    const PhiFunctions<T>& p = weights.full[i];
+    const T w1 = p.phi1 - T(3.0) * p.phi2 + T(4.0) * p.phi3;
+    const T w2 = T(2.0) * p.phi2 - T(4.0) * p.phi3;
+    const T w3 = T(4.0) * p.phi3 - p.phi2;
+    x1[begin + i] =
+        p.exponential * x[begin + i] + h * (w1 * n1[i] + w2 * (n2[i] + n3[i]) + w3 * n4[i]);
+  }
+}
+
+/// Derivatives at the last three step ends before the current one, newest first.
+template <class T, int N>
+struct AdamsHistory {
+  std::array<std::array<T, N>, 3> f;
+  std::array<std::array<T, kMaxStiff>, 3> stiff;  // the stiff components themselves
+
+  void push(const T* derivative, const T* x, int n, int begin, int count) {
+    f[2] = f[1];
+    f[1] = f[0];
+    stiff[2] = stiff[1];
+    stiff[1] = stiff[0];
+    for (int i = 0; i < n; ++i) f[0][i] = derivative[i];
+    for (int i = 0; i < count; ++i) stiff[0][i] = x[begin + i];
+  }
+};
+
+/// Predict (Adams-Bashforth 4), evaluate, correct (Adams-Moulton 4). The final evaluation is the
+/// caller's, who needs it anyway as the next step's derivative.
+template <class T, class System>
+void step_abm4(System& system, const T& t, const T* x, const T* f,
+               const AdamsHistory<T, System::kCapacity>& past, const StiffWeights<T>& weights,
+               const T& h, T* x1, StepScratch<T, System::kCapacity>& scratch) {
+  const int n = system.size(), begin = system.stiff_begin(), count = system.stiff_count();
+  T* predicted = scratch.stage.data();
+  T* fp = scratch.k[1].data();
+  const T scale = h * T(1.0 / 24.0);
+  for (int i = 0; i < n; ++i) {
+    predicted[i] = x[i] + scale * (T(55.0) * f[i] - T(59.0) * past.f[0][i] +
+                                   T(37.0) * past.f[1][i] - T(9.0) * past.f[2][i]);
+  }
+  std::array<std::array<T, kMaxStiff>, 4> nonlinear;  // newest first
+  for (int i = 0; i < count; ++i) {
+    const PhiFunctions<T>& p = weights.full[i];
+    const T n0 = f[begin + i] + weights.decay[i] * x[begin + i];
+    T nj[3];
+    for (int j = 0; j < 3; ++j) nj[j] = past.f[j][begin + i] + weights.decay[i] * past.stiff[j][i];
+    nonlinear[0][i] = n0;
+    for (int j = 0; j < 3; ++j) nonlinear[j + 1][i] = nj[j];
+    // Newton's backward differences of N over the last four points.
+    const T d1 = n0 - nj[0];
+    const T d2 = d1 - (nj[0] - nj[1]);
+    const T d3 = d2 - (nj[0] - T(2.0) * nj[1] + nj[2]);
+    predicted[begin + i] = p.exponential * x[begin + i] +
+                           h * (p.phi1 * n0 + p.phi2 * d1 + (p.phi3 + T(0.5) * p.phi2) * d2 +
+                                (p.phi4 + p.phi3 + T(1.0 / 3.0) * p.phi2) * d3);
+  }
+  system.calc_derivative(t + h, predicted, fp, scratch.unused_decay.data());
+  for (int i = 0; i < n; ++i) {
+    x1[i] = x[i] + scale * (T(9.0) * fp[i] + T(19.0) * f[i] - T(5.0) * past.f[0][i] + past.f[1][i]);
+  }
+  for (int i = 0; i < count; ++i) {
+    const PhiFunctions<T>& p = weights.full[i];
+    const T n1 = fp[begin + i] + weights.decay[i] * predicted[begin + i];
+    const T d1 = n1 - nonlinear[0][i];
+    const T e1 = nonlinear[0][i] - nonlinear[1][i];
+    const T d2 = d1 - e1;
+    const T d3 = d2 - (e1 - (nonlinear[1][i] - nonlinear[2][i]));
+    x1[begin + i] = p.exponential * x[begin + i] +
+                    h * (p.phi1 * n1 + (p.phi2 - p.phi1) * d1 + (p.phi3 - T(0.5) * p.phi2) * d2 +
+                         (p.phi4 - T(1.0 / 6.0) * p.phi2) * d3);
+  }
+}
+
+/// Cubic Hermite interpolation at the fraction theta of a step of length h.
+template <class T>
+void interpolate_state(const T* x0, const T* f0, const T* x1, const T* f1, const T& h,
+                       const T& theta, int n, T* x) {
+  const T t2 = theta * theta, t3 = t2 * theta;
+  const T b1 = T(3.0) * t2 - T(2.0) * t3;
+  const T c0 = h * (theta - T(2.0) * t2 + t3), c1 = h * (t3 - t2);
+  for (int i = 0; i < n; ++i) x[i] = x0[i] + b1 * (x1[i] - x0[i]) + c0 * f0[i] + c1 * f1[i];
+}
+
+}  // namespace strut

@@ -1,0 +1,78 @@
+#include <utility>
+
+#include "model/kernel/simulation.h"
+
+namespace strut {
+namespace {
+
+/// The parts of a case that shape its mechanism; the rest is neutral.
+Case strip_to_mechanism(const Case& c) {
+  Case key = c;
+  for (SuspensionSpec& suspension : key.vehicle.suspension) suspension.strut.fill(StrutSpec{});
+  key.vehicle.preload = PreloadKind::kFreeLength;
+  const ManeuverSpec neutral;
+  key.maneuver.speed = neutral.speed;
+  key.maneuver.duration = neutral.duration;
+  key.maneuver.drive_torque = neutral.drive_torque;
+  key.maneuver.bump_distance = neutral.bump_distance;
+  key.maneuver.trim = neutral.trim;
+  return key;
+}
+
+std::shared_ptr<const Mechanism> make_mechanism(const Case& c) {
+  auto mechanism = std::make_shared<Mechanism>();
+  const Case key = strip_to_mechanism(c);
+  mechanism->vehicle = key.vehicle;
+  mechanism->maneuver = key.maneuver;
+  mechanism->car = assemble_vehicle(c.vehicle, c.maneuver);
+  mechanism->tables = tabulate_corners(mechanism->car);
+  mechanism->surface = make_surface(c.vehicle, c.maneuver);
+  return mechanism;
+}
+
+Road<double> make_flat_road() { return {}; }
+
+}  // namespace
+
+PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
+  const Case key = strip_to_mechanism(c);
+  if (!mechanism_ || !(mechanism_->vehicle == key.vehicle) ||
+      !(mechanism_->maneuver == key.maneuver)) {
+    mechanism_ = make_mechanism(c);
+  }
+  const AssembledVehicle& car = mechanism_->car;
+  PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, make_flat_road()}, {}, {}};
+  Vehicle<double>& vehicle = prepared.vehicle;
+  set_operating_parameters(c.vehicle, c.maneuver, car, vehicle.numbers);
+  vehicle.struts = make_strut_elements(vehicle.numbers);
+  prepared.bump_center = calc_bump_center(car, c.maneuver);
+  prepared.trigger_x = prepared.bump_center + snapshot_offset;
+  prepared.duration = c.maneuver.duration;
+
+  // Trims stand on flat road.
+  vehicle.layout.on_bump.fill(false);
+  prepared.static_load = solve_rest(vehicle, mechanism_->tables, car.center_height).load;
+  const auto torque = vehicle.numbers.drive_torque;
+  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
+  prepared.start =
+      solve_rolling(vehicle, mechanism_->tables, car.center_height, c.maneuver.speed).state;
+  vehicle.numbers.drive_torque = torque;
+  vehicle.layout.on_bump = car.layout.on_bump;
+  const Surface* surface = &mechanism_->surface;
+  vehicle.road = make_road<double>(&surface, &prepared.bump_center);
+  return prepared;
+}
+
+bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure) {
+  if (a.duration != b.duration) return false;
+  if (a.mechanism == b.mechanism) return true;
+  const VehicleSpec &va = a.mechanism->vehicle, &vb = b.mechanism->vehicle;
+  const bool same_layout = va.tire.contact == vb.tire.contact &&
+                           va.tire.relaxation == vb.tire.relaxation &&
+                           a.vehicle.layout.on_bump == b.vehicle.layout.on_bump &&
+                           va.suspension[kFront].kind == vb.suspension[kFront].kind &&
+                           va.suspension[kRear].kind == vb.suspension[kRear].kind;
+  return same_layout && closure == Closure::kTable;
+}
+
+}  // namespace strut

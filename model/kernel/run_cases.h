@@ -1,0 +1,89 @@
+// One batch through the simulation, for any lane type. Included by the kernels of every
+// instruction set, by nobody else.
+#pragma once
+
+#include <algorithm>
+
+#include "model/kernel/simulation.h"
+
+namespace strut {
+
+inline CornerDegrees calc_larger(const CornerDegrees& a, const CornerDegrees& b) {
+  return {std::max(a.moment, b.moment), std::max(a.inertia, b.inertia), std::max(a.place, b.place),
+          std::max(a.rate, b.rate)};
+}
+
+/// Tables with the coefficients of W different mechanisms.
+template <class T>
+VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
+  VehicleTables<T> packed;
+  packed.half_travel = cases[0]->mechanism->tables.half_travel;
+  std::array<CornerCoefficients<double>, static_cast<std::size_t>(kLaneCount<T>)> lanes;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+      const VehicleTables<double>& tables = cases[lane]->mechanism->tables;
+      lanes[static_cast<std::size_t>(lane)] = tables.corner[corner];
+      packed.degree[corner] = calc_larger(packed.degree[corner], tables.degree[corner]);
+    }
+    packed.corner[corner] = pack_lanes<CornerCoefficients, T>(lanes.data());
+  }
+  return packed;
+}
+
+template <class T>
+Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
+  constexpr auto kWidth = static_cast<std::size_t>(kLaneCount<T>);
+  std::vector<VehicleParameters<double>> numbers(kWidth);
+  std::array<const Surface*, kWidth> surfaces;
+  std::array<double, kWidth> centers;
+  for (std::size_t lane = 0; lane < kWidth; ++lane) {
+    numbers[lane] = cases[lane]->vehicle.numbers;
+    surfaces[lane] = &cases[lane]->mechanism->surface;
+    centers[lane] = cases[lane]->bump_center;
+  }
+  Vehicle<T> vehicle{cases[0]->vehicle.layout,
+                     pack_lanes<VehicleParameters, T>(numbers.data()),
+                     {},
+                     make_road<T>(surfaces.data(), centers.data())};
+  vehicle.struts = make_strut_elements(vehicle.numbers);
+  return vehicle;
+}
+
+template <class T, class Closure>
+LaneResults run_system(const Vehicle<T>& vehicle, const Closure& closure, const T& trigger,
+                       const std::array<T, StateIndex::kCount>& start,
+                       const IntegrateOptions& options, const SamplePlan& plan) {
+  CarSystem<T> system(vehicle, closure, options.spin, trigger);
+  system.start(start.data());
+  return Simulation<T, CarSystem<T>>(system, options.step, plan).run(start);
+}
+
+/// Runs kLaneCount<T> cases.
+template <class T>
+LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& options,
+                      const SamplePlan& plan) {
+  const Vehicle<T> vehicle = pack_vehicle<T>(cases);
+  State<T> start;
+  T trigger(0.0);
+  bool one_mechanism = true;
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+    for (std::size_t i = 0; i < start.size(); ++i) set_lane(start[i], lane, cases[lane]->start[i]);
+    set_lane(trigger, lane, cases[lane]->trigger_x);
+    one_mechanism = one_mechanism && cases[lane]->mechanism == cases[0]->mechanism;
+  }
+  SamplePlan all = plan;
+  all.duration = cases[0]->duration;
+  all.channel_count = CarChannel::kCount;
+  if (options.closure == Closure::kNewton) {
+    return run_system<T>(vehicle, NewtonClosure<T>{&vehicle.layout, &vehicle.numbers}, trigger,
+                         start, options, all);
+  }
+  if (one_mechanism) {
+    return run_system<T>(vehicle, TableClosure<T, double>{&cases[0]->mechanism->tables}, trigger,
+                         start, options, all);
+  }
+  const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
+  return run_system<T>(vehicle, TableClosure<T, T>{tables.get()}, trigger, start, options, all);
+}
+
+}  // namespace strut

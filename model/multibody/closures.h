@@ -1,0 +1,55 @@
+// The two sources of a corner's motion functions: Newton on the loops, or the table. Callables for
+// calc_derivative.
+#pragma once
+
+#include "model/multibody/closure.h"
+#include "model/multibody/corner_table.h"
+#include "model/vehicle/vehicle.h"
+
+namespace strut {
+
+template <class T>
+struct NewtonClosure {
+  const VehicleLayout* layout;
+  const VehicleParameters<T>* numbers;
+
+  T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
+    const CornerTopology& topology = layout->corner[corner];
+    const auto close = topology.kind == SuspensionKind::kMacPherson
+                           ? &close_corner<kMacPhersonTree, T>
+                           : &close_corner<kMultilinkTree, T>;
+    return close(topology, layout->predictor[corner], numbers->geometry[corner],
+                 numbers->inertia[corner], q, motion);
+  }
+  void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
+    (*this)(corner, q, motion);
+  }
+  void add_center_acceleration(int, const T&, CornerMotion<T>&) const {}
+};
+
+/// Tables of one car (C = double, all lanes alike) or of one car a lane (C = T).
+template <class C>
+struct VehicleTables {
+  std::array<CornerCoefficients<C>, kCorners> corner;
+  std::array<CornerDegrees, kCorners> degree{};
+  double half_travel = 0.0;  // m, the fit holds for |q| up to here
+};
+
+template <class T, class C>
+struct TableClosure {
+  const VehicleTables<C>* tables;
+
+  /// Loop error stands for "outside the table" here: 0 inside, the excess [m] outside.
+  T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
+    update_corner_motion(tables->corner[corner], tables->degree[corner], q, motion);
+    return max(abs(q) - T(tables->half_travel), T(0.0));
+  }
+  void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
+    update_wheel_place(tables->corner[corner], tables->degree[corner], q, motion);
+  }
+  void add_center_acceleration(int corner, const T& q, CornerMotion<T>& motion) const {
+    update_center_acceleration(tables->corner[corner], tables->degree[corner], q, motion);
+  }
+};
+
+}  // namespace strut

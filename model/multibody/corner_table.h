@@ -1,0 +1,143 @@
+// A corner's motion functions as polynomials in its one coordinate.
+//
+// With the steering rack held, everything a corner contributes is a function of q alone, analytic
+// over the travel, so one polynomial per function serves every simulation: no gathers, no Newton,
+// no trigonometry. Derivatives are those of the polynomials, so the tabulated car is itself an
+// exactly consistent mechanical system. The Newton closure remains the checker.
+#pragma once
+
+#include "model/multibody/corner.h"
+
+namespace strut {
+
+inline constexpr int kTableTerms = 20;  // capacity; the degrees in use are in CornerDegrees
+/// Chebyshev coefficients below this share of a function's size are dropped.
+inline constexpr long double kTableTolerance = 1e-11L;
+
+/// Tabulated functions, grouped by how many derivatives the equations need.
+inline constexpr int kTwiceFunctions = 3;  // moment
+inline constexpr int kOnceFunctions = 18;  // inertia 6, coupling 3, mass, center 3, axis 3, lines 2
+inline constexpr int kPlainFunctions = 3;  // upright rate
+inline constexpr int kInertiaFunctions = 9;  // of the once group, those evaluated first
+
+/// Degree in use, by group of functions.
+struct CornerDegrees {
+  int moment = 0, inertia = 0, place = 0, rate = 0;
+};
+
+/// Coefficients by power of q [m], lowest first. C is double where all lanes share one geometry and
+/// inertia, else the lane type.
+template <class C>
+struct CornerCoefficients {
+  std::array<std::array<C, kTwiceFunctions>, kTableTerms> twice;
+  std::array<std::array<C, kOnceFunctions>, kTableTerms> once;
+  std::array<std::array<C, kPlainFunctions>, kTableTerms> plain;
+};
+
+/// Horner's scheme for `Count` of the N polynomials from `first` on, with their first `Order`
+/// derivatives. Value and slope of nine functions fit the 32 registers of AVX-512.
+template <int Order, int Count, std::size_t N, class C, class T>
+inline void evaluate_group(const std::array<std::array<C, N>, kTableTerms>& coefficient,
+                           std::size_t first, int degree, const T& x, T* value, T* slope,
+                           T* curvature) {
+  const auto top = static_cast<std::size_t>(degree);
+  for (std::size_t f = 0; f < Count; ++f) {
+    value[f] = T(coefficient[top][first + f]);
+    if constexpr (Order >= 1) slope[f] = T(0.0);
+    if constexpr (Order >= 2) curvature[f] = T(0.0);
+  }
+  for (std::size_t power = top; power-- > 0;) {
+    const std::array<C, N>& row = coefficient[power];
+    for (std::size_t f = 0; f < Count; ++f) {
+      if constexpr (Order >= 2) curvature[f] = curvature[f] * x + slope[f];
+      if constexpr (Order >= 1) slope[f] = slope[f] * x + value[f];
+      value[f] = value[f] * x + T(row[first + f]);
+    }
+  }
+  if constexpr (Order >= 2) {
+    for (std::size_t f = 0; f < Count; ++f) curvature[f] *= T(2.0);
+  }
+}
+
+/// Motion functions at q from the table; center_qq is left to update_center_acceleration.
+template <class T, class C>
+void update_corner_motion(const CornerCoefficients<C>& table, const CornerDegrees& degree,
+                          const T& q, CornerMotion<T>& motion) {
+  T* const none = nullptr;
+  T m[3], m_q[3], m_qq[3];
+  evaluate_group<2, 3>(table.twice, 0, degree.moment, q, m, m_q, m_qq);
+  motion.moment = {m[0], m[1], m[2]};
+  motion.moment_q = {m_q[0], m_q[1], m_q[2]};
+  motion.moment_qq = {m_qq[0], m_qq[1], m_qq[2]};
+
+  T a[9], a_q[9];
+  evaluate_group<1, 9>(table.once, 0, degree.inertia, q, a, a_q, none);
+  motion.inertia = {a[0], a[1], a[2], a[3], a[4], a[5]};
+  motion.inertia_q = {a_q[0], a_q[1], a_q[2], a_q[3], a_q[4], a_q[5]};
+  motion.coupling = {a[6], a[7], a[8]};
+  motion.coupling_q = {a_q[6], a_q[7], a_q[8]};
+  T b[9], b_q[9];
+  evaluate_group<1, 9>(table.once, kInertiaFunctions, degree.place, q, b, b_q, none);
+  motion.mass = b[0];
+  motion.mass_q = b_q[0];
+  motion.center = {b[1], b[2], b[3]};
+  motion.center_q = {b_q[1], b_q[2], b_q[3]};
+  motion.axis = {b[4], b[5], b[6]};
+  motion.axis_q = {b_q[4], b_q[5], b_q[6]};
+  motion.length = {b[7], b[8]};
+  motion.length_q = {b_q[7], b_q[8]};
+  T w[3];
+  evaluate_group<0, 3>(table.plain, 0, degree.rate, q, w, none, none);
+  motion.upright_rate = {w[0], w[1], w[2]};
+}
+
+/// Second derivative of the wheel center, needed for output only.
+template <class T, class C>
+void update_center_acceleration(const CornerCoefficients<C>& table, const CornerDegrees& degree,
+                                const T& q, CornerMotion<T>& motion) {
+  T c[3], c_q[3], c_qq[3];
+  evaluate_group<2, 3>(table.once, kInertiaFunctions + 1, degree.place, q, c, c_q, c_qq);
+  motion.center_qq = {c_qq[0], c_qq[1], c_qq[2]};
+}
+
+/// Wheel center and spin axis alone, for locating contact events.
+template <class T, class C>
+void update_wheel_place(const CornerCoefficients<C>& table, const CornerDegrees& degree, const T& q,
+                        CornerMotion<T>& motion) {
+  T* const none = nullptr;
+  T b[6], b_q[6];
+  evaluate_group<1, 6>(table.once, kInertiaFunctions + 1, degree.place, q, b, b_q, none);
+  motion.center = {b[0], b[1], b[2]};
+  motion.center_q = {b_q[0], b_q[1], b_q[2]};
+  motion.axis = {b[3], b[4], b[5]};
+}
+
+/// The tabulated functions of a motion, in table order.
+template <class T>
+void collect_functions(const CornerMotion<T>& motion, std::array<T, kTwiceFunctions>& twice,
+                       std::array<T, kOnceFunctions>& once, std::array<T, kPlainFunctions>& plain) {
+  const Sym3<T>& j = motion.inertia;
+  const Vec3<T>&b = motion.coupling, &c = motion.center, &u = motion.axis;
+  twice = {motion.moment.x, motion.moment.y, motion.moment.z};
+  once = {j.xx,
+          j.yy,
+          j.zz,
+          j.xy,
+          j.xz,
+          j.yz,
+          b.x,
+          b.y,
+          b.z,
+          motion.mass,
+          c.x,
+          c.y,
+          c.z,
+          u.x,
+          u.y,
+          u.z,
+          motion.length[0],
+          motion.length[1]};
+  plain = {motion.upright_rate.x, motion.upright_rate.y, motion.upright_rate.z};
+}
+
+}  // namespace strut

@@ -1,0 +1,24 @@
+// What the car is asked to do: speed, drive torque, road. Plain data in SI units.
+#pragma once
+
+#include "model/scenario/road.h"
+
+namespace strut {
+
+enum class TrimKind {
+  kSteady,  // the car starts in the steady state with the torque on: only the bump excites it
+  kStatic,  // the car starts in the steady state without torque, which is switched on at t = 0
+};
+
+struct ManeuverSpec {
+  double speed = 20.0;           // m/s, initial forward speed
+  double duration = 3.0;         // s
+  double drive_torque = 500.0;   // N m in all, reacted by the chassis
+  double bump_distance = 10.0;   // m, bump center ahead of the front wheel centers at t = 0
+  TrimKind trim = TrimKind::kSteady;
+  double gravity = 9.81;         // m/s^2
+  RoadSpec road;
+  bool operator==(const ManeuverSpec&) const = default;
+};
+
+}  // namespace strut

@@ -1,0 +1,432 @@
+#include "model/vehicle/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "model/math/chebyshev.h"
+#include "model/multibody/dynamics.h"
+
+namespace strut {
+namespace {
+
+Vec3<double> mirrored(const Vec3<double>& r) { return {r.x, -r.y, r.z}; }
+
+Sym3<double> mirrored(const Sym3<double>& j) { return {j.xx, j.yy, j.zz, -j.xy, j.xz, -j.yz}; }
+
+/// Places a left-corner point of an axle in chassis axes, mirrored for the right corner.
+struct Placement {
+  Vec3<double> origin;
+  bool right = false;
+
+  Vec3<double> point(const Vec3<double>& r) const { return origin + direction(r); }
+  Vec3<double> direction(const Vec3<double>& d) const { return right ? mirrored(d) : d; }
+  RigidBody<double> body(const BodySpec& b) const {
+    return {b.mass, point(b.center_of_mass), right ? mirrored(b.inertia) : b.inertia};
+  }
+};
+
+/// Spin axis of a wheel, to the left; toe-in and camber turn the left and right wheel oppositely.
+Vec3<double> calc_spin_axis(const SuspensionSpec& spec, bool right) {
+  const double toe = spec.static_toe, camber = spec.static_camber;
+  const Vec3<double> left{std::sin(toe) * std::cos(camber), std::cos(toe) * std::cos(camber),
+                          -std::sin(camber)};
+  return right ? Vec3<double>{-left.x, left.y, -left.z} : left;
+}
+
+/// The three revolutes of a ball joint at `point`, from joint `first` on.
+void set_ball(int first, const Vec3<double>& point, CornerGeometry<double>& geometry) {
+  const Vec3<double> axes[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  for (int i = 0; i < 3; ++i) {
+    geometry.point[first + i] = point;
+    geometry.axis[first + i] = axes[i];
+  }
+}
+
+void add_body(CornerTopology& topology, CornerInertia<double>& inertia, int part,
+              const RigidBody<double>& body) {
+  if (body.mass == 0.0) return;
+  topology.body_part[topology.body_count] = part;
+  inertia.body[topology.body_count++] = body;
+}
+
+struct CornerParts {
+  CornerTopology topology;
+  CornerGeometry<double> geometry{};
+  CornerInertia<double> inertia{};
+};
+
+/// Joints of kMacPhersonTree.
+void build_macpherson(const SuspensionSpec& spec, const Placement& place, CornerParts& parts) {
+  constexpr int kArm = 0, kStrutBall = 1, kStrutRod = 3, kSlide = 4;
+  CornerGeometry<double>& geometry = parts.geometry;
+  const Vec3<double> top = place.point(spec.strut_top);
+  geometry.point[kArm] = place.point(spec.arm_front);
+  geometry.axis[kArm] = normalized(place.point(spec.arm_rear) - geometry.point[kArm]);
+  set_ball(kStrutBall, top, geometry);
+  geometry.point[kSlide] = top;
+  geometry.axis[kSlide] = normalized(top - place.point(spec.strut_bottom));
+  geometry.ball = place.point(spec.ball_joint);
+  add_body(parts.topology, parts.inertia, kArm, place.body(spec.lower_arm));
+  add_body(parts.topology, parts.inertia, kStrutRod, place.body(spec.strut_rod));
+}
+
+/// Joints of kMultilinkTree.
+void build_multilink(const Vec3<double>& center, CornerParts& parts) {
+  set_ball(0, center, parts.geometry);  // the prismatic joints run along the same three axes
+  set_ball(3, center, parts.geometry);
+}
+
+/// Rigid rod of mass m, center at fraction a from the chassis end, central transverse inertia J.
+RodInertia<double> calc_rod_inertia(const RodSpec& rod) {
+  const Vec3<double> d = rod.upright - rod.chassis;
+  const double a = rod.center_fraction, m = rod.mass;
+  const double per_length2 =
+      rod.transverse_inertia < 0.0 ? m / 12.0 : rod.transverse_inertia / dot(d, d);
+  return {m * square(1.0 - a) + per_length2, m * a * (1.0 - a) - per_length2,
+          m * square(a) + per_length2};
+}
+
+void add_rods(const SuspensionSpec& spec, const Placement& place, double rack, CornerParts& parts) {
+  CornerGeometry<double>& geometry = parts.geometry;
+  const int expected = get_tree(spec.kind).rod_count;
+  if (static_cast<int>(spec.rods.size()) != expected) {
+    std::ostringstream message;
+    message << "suspension: " << spec.rods.size() << " rods; allowed: " << expected
+            << (expected == 1 ? " (the tie rod of a MacPherson strut)" : " (a multilink)");
+    throw ModelError(message.str());
+  }
+  for (int i = 0; i < expected; ++i) {
+    const RodSpec& rod = spec.rods[static_cast<std::size_t>(i)];
+    geometry.rod_chassis[i] = place.point(rod.chassis);
+    geometry.rod_upright[i] = place.point(rod.upright);
+    geometry.rod_length[i] = norm(geometry.rod_upright[i] - geometry.rod_chassis[i]);
+    parts.inertia.rod[i] = calc_rod_inertia(rod);
+  }
+  if (spec.kind == SuspensionKind::kMacPherson) geometry.rod_chassis[spec.tie_rod].y += rack;
+}
+
+Attachment find_attachment(const MountSpec& mount, const CornerParts& parts) {
+  switch (mount.body) {
+    case MountBody::kChassis:
+      return {kChassisPart, -1};
+    case MountBody::kUpright:
+      return {get_tree(parts.topology.kind).upright, -1};
+    case MountBody::kLowerArm:
+      if (parts.topology.kind != SuspensionKind::kMacPherson) {
+        throw ModelError("mount: lower_arm is a part of MacPherson suspensions only");
+      }
+
+      return {kMacPhersonTree.ball_part, -1};
+    case MountBody::kRod:
+      return {kChassisPart, mount.rod};
+  }
+  throw ModelError("mount: unknown body");
+}
+
+void add_lines(const SuspensionSpec& spec, const Placement& place, CornerParts& parts) {
+  const MountSpec* mounts[kLines][2] = {{&spec.spring_upper, &spec.spring_lower},
+                                        {&spec.damper_upper, &spec.damper_lower}};
+  CornerGeometry<double>& geometry = parts.geometry;
+  for (int line = 0; line < kLines; ++line) {
+    for (int end = 0; end < 2; ++end) {
+      const MountSpec& mount = *mounts[line][end];
+      parts.topology.line[line][end] = find_attachment(mount, parts);
+      geometry.line_point[line][end] = place.point(mount.position);
+      geometry.rod_fraction[line][end] = 0.0;
+      if (mount.body == MountBody::kRod) {
+        const Vec3<double> a = geometry.rod_chassis[mount.rod];
+        const Vec3<double> d = geometry.rod_upright[mount.rod] - a;
+        geometry.rod_fraction[line][end] = dot(place.point(mount.position) - a, d) / dot(d, d);
+      }
+    }
+  }
+}
+
+/// Upright, hub and wheel as one carrier; the wheel's inertia about its axis is left out.
+RigidBody<double> combine_upright_and_wheel(const SuspensionSpec& spec, const Placement& place,
+                                            const Vec3<double>& center, const Vec3<double>& axis) {
+  const RigidBody<double> upright = place.body(spec.upright);
+  const double mass = upright.mass + spec.wheel_mass;
+  const Vec3<double> com =
+      (1.0 / mass) * (upright.mass * upright.center + spec.wheel_mass * center);
+  const auto offset = [&](double m, const Vec3<double>& r) {
+    return (0.5 * m) * inertia_form(r - com, r - com);
+  };
+  const Sym3<double> disc =
+      spec.wheel_transverse_inertia * (isotropic(1.0) - 0.5 * symmetric_outer(axis, axis));
+  return {mass, com,
+          upright.inertia + disc + offset(upright.mass, upright.center) +
+              offset(spec.wheel_mass, center)};
+}
+
+CornerParts build_corner(const VehicleSpec& spec, int corner, const Vec3<double>& axle_reference) {
+  const SuspensionSpec& suspension = spec.suspension[axle_of(corner)];
+  const Placement place{axle_reference, is_right(corner)};
+  CornerParts parts;
+  parts.topology.kind = suspension.kind;
+  const Vec3<double> center = place.point({0.0, suspension.wheel_center_y, 0.0});
+  if (suspension.kind == SuspensionKind::kMacPherson) {
+    build_macpherson(suspension, place, parts);
+  } else {
+    build_multilink(center, parts);
+  }
+  add_rods(suspension, place, axle_of(corner) == kFront ? spec.rack_position : 0.0, parts);
+  parts.geometry.wheel_center = center;
+  parts.geometry.spin_axis = calc_spin_axis(suspension, place.right);
+  add_lines(suspension, place, parts);
+  parts.inertia.spin_inertia = suspension.wheel_spin_inertia;
+  add_body(parts.topology, parts.inertia, get_tree(suspension.kind).upright,
+           combine_upright_and_wheel(suspension, place, center, parts.geometry.spin_axis));
+  return parts;
+}
+
+/// Elimination order of Phi_d by complete pivoting at nominal trim.
+template <CornerTree kTree>
+void choose_pivots(const CornerGeometry<double>& geometry, CornerTopology& topology) {
+  constexpr int n = kTree.dependent_count();
+  static_assert(n == kTree.constraint_count());
+  CornerPose<double> pose;
+  update_pose<kTree>(geometry, {}, pose);
+  LoopMatrix<double> a{};
+  for (int j = 0; j < n; ++j) {
+    const LoopVector<double> column = calc_loop_column<kTree>(geometry, pose, kTree.dependent(j));
+    for (int i = 0; i < n; ++i) a[i][j] = column[i];
+    topology.pivot_row[j] = topology.pivot_column[j] = j;
+  }
+  for (int k = 0; k < n; ++k) {
+    int row = k, column = k;
+    for (int i = k; i < n; ++i) {
+      for (int j = k; j < n; ++j) {
+        if (std::abs(a[i][j]) > std::abs(a[row][column])) row = i, column = j;
+      }
+    }
+    if (std::abs(a[row][column]) < 1e-4) {
+      throw ModelError("hardpoints: the loop equations are singular at nominal trim");
+    }
+    std::swap(a[k], a[row]);
+    std::swap(topology.pivot_row[k], topology.pivot_row[row]);
+    for (int i = 0; i < n; ++i) std::swap(a[i][k], a[i][column]);
+    std::swap(topology.pivot_column[k], topology.pivot_column[column]);
+    for (int i = k + 1; i < n; ++i) {
+      const double factor = a[i][k] / a[k][k];
+      for (int j = k; j < n; ++j) a[i][j] -= factor * a[k][j];
+    }
+  }
+}
+
+using JointSamples = std::vector<std::array<double, kMaxJoints>>;
+
+/// Joint coordinates at every node, each continued from its neighbour nearer to nominal trim.
+template <CornerTree kTree>
+JointSamples close_over_travel(const CornerTopology& topology,
+                               const CornerGeometry<double>& geometry, const char* where) {
+  constexpr int kManyIterations = 12;
+  JointSamples joints(kChebyshevNodes);
+  for (int side = 0; side < 2; ++side) {
+    std::array<double, kMaxJoints> z{};
+    for (int k = kChebyshevNodes / 2; k < kChebyshevNodes; ++k) {
+      const int node = side == 0 ? k : kChebyshevNodes - 1 - k;
+      z[kTree.independent] = kHalfTravel * calc_chebyshev_node(node);
+      CornerPose<double> pose;
+      LoopFactor<double> factor;
+      const double error = close_loops<kTree>(topology, geometry, kManyIterations, z, pose, factor);
+      const bool wild = std::any_of(z.begin(), z.end(), [](double a) { return std::abs(a) > 1.2; });
+      if (!(error < 1e-12) || wild) {
+        std::ostringstream message;
+        message << where << ": hardpoints cannot close the loop at " << 1e3 * z[kTree.independent]
+                << " mm of travel (loop error " << error << " m); allowed: closed over +-"
+                << 1e3 * kHalfTravel << " mm";
+        throw ModelError(message.str());
+      }
+      joints[static_cast<std::size_t>(node)] = z;
+    }
+  }
+  return joints;
+}
+
+template <CornerTree kTree>
+ClosurePredictor fit_predictor(const JointSamples& joints) {
+  ClosurePredictor predictor;
+  predictor.half_travel = kHalfTravel;
+  for (int d = 0; d < kTree.dependent_count(); ++d) {
+    std::vector<double> values;
+    for (const auto& z : joints) values.push_back(z[kTree.dependent(d)]);
+    const auto power = convert_to_powers(calc_chebyshev_series(values), kPredictorTerms - 1);
+    for (std::size_t i = 0; i < power.size(); ++i) {
+      predictor.coefficient[i][d] = static_cast<double>(power[i]);
+    }
+  }
+  return predictor;
+}
+
+/// Pivots and predictor of a corner.
+template <CornerTree kTree>
+void prepare_closure(const CornerGeometry<double>& geometry, const char* where,
+                     CornerTopology& topology, ClosurePredictor& predictor) {
+  choose_pivots<kTree>(geometry, topology);
+  predictor = fit_predictor<kTree>(close_over_travel<kTree>(topology, geometry, where));
+}
+
+const char* axle_name(int axle) { return axle == kFront ? "front_suspension" : "rear_suspension"; }
+
+/// Height of a wheel center over flat ground under a load, its axis tilted by the camber.
+double calc_center_height(const VehicleSpec& spec, const Vec3<double>& axis, double load) {
+  const double loaded_radius = spec.tire.unloaded_radius - load / spec.tire.stiffness;
+  return loaded_radius * std::sqrt(1.0 - square(axis.z));
+}
+
+void build_corners(const VehicleSpec& spec, double gravity, AssembledVehicle& car) {
+  const WholeCarSpec& whole = spec.whole;
+  const double wheelbase = whole.centroid_to_front + whole.centroid_to_rear;
+  for (int c = 0; c < kCorners; ++c) {
+    const int axle = axle_of(c);
+    const double lever = axle == kFront ? whole.centroid_to_rear : whole.centroid_to_front;
+    car.nominal_load[c] = 0.5 * whole.mass * gravity * lever / wheelbase;
+    const Vec3<double> axis = calc_spin_axis(spec.suspension[axle], is_right(c));
+    const Vec3<double> reference{
+        axle == kFront ? whole.centroid_to_front : -whole.centroid_to_rear, 0.0,
+        calc_center_height(spec, axis, car.nominal_load[c]) - whole.centroid_height};
+    CornerParts parts = build_corner(spec, c, reference);
+    const auto prepare = parts.topology.kind == SuspensionKind::kMacPherson
+                             ? &prepare_closure<kMacPhersonTree>
+                             : &prepare_closure<kMultilinkTree>;
+    prepare(parts.geometry, axle_name(axle), parts.topology, car.layout.predictor[c]);
+    car.layout.corner[c] = parts.topology;
+    car.numbers.geometry[c] = parts.geometry;
+    car.numbers.inertia[c] = parts.inertia;
+  }
+}
+
+double calc_corner_mass(const CornerTopology& topology, const CornerInertia<double>& inertia) {
+  const int rods = get_tree(topology.kind).rod_count;
+  double mass = 0.0;
+  for (int i = 0; i < topology.body_count; ++i) mass += inertia.body[i].mass;
+  for (int i = 0; i < rods; ++i) {
+    mass += inertia.rod[i].aa + 2.0 * inertia.rod[i].ab + inertia.rod[i].bb;
+  }
+  return mass;
+}
+
+/// Sylvester's criterion and, for a real body, the triangle inequality of principal moments.
+void check_chassis_inertia(const Sym3<double>& j) {
+  const double minor = j.xx * j.yy - j.xy * j.xy;
+  const double det = j.xx * (j.yy * j.zz - j.yz * j.yz) - j.xy * (j.xy * j.zz - j.yz * j.xz) +
+                     j.xz * (j.xy * j.yz - j.yy * j.xz);
+  if (j.xx > 0.0 && minor > 0.0 && det > 0.0) return;
+  std::ostringstream message;
+  message << "whole_car.inertia: what is left for the chassis is not positive definite (" << j.xx
+          << ", " << j.yy << ", " << j.zz
+          << " kg m^2); allowed: more than wheels and suspension have";
+  throw ModelError(message.str());
+}
+
+/// Chassis mass, center and inertia such that the whole car meets its specification.
+void fit_chassis(const VehicleSpec& spec, AssembledVehicle& car) {
+  VehicleParameters<double>& numbers = car.numbers;
+  const NewtonClosure<double> closure{&car.layout, &numbers};
+  numbers.mass = spec.whole.mass;
+  double mass = spec.whole.mass;
+  Vec3<double> moment{0.0, 0.0, 0.0};
+  Sym3<double> inertia = spec.whole.inertia;
+  for (int c = 0; c < kCorners; ++c) {
+    CornerMotion<double> motion;
+    closure(c, 0.0, motion);
+    mass -= calc_corner_mass(car.layout.corner[c], numbers.inertia[c]);
+    moment -= motion.moment;
+    inertia = inertia - motion.inertia -
+              (0.5 * numbers.inertia[c].spin_inertia) * symmetric_outer(motion.axis, motion.axis);
+    for (int line = 0; line < kLines; ++line) {
+      numbers.nominal_length[c * kLines + line] = motion.length[line];
+    }
+  }
+  if (!(mass > 0.0)) {
+    std::ostringstream message;
+    message << "whole_car.mass: " << spec.whole.mass << " kg leaves " << mass
+            << " kg for the chassis; allowed: more than wheels and suspension weigh";
+    throw ModelError(message.str());
+  }
+  const Vec3<double> center = (1.0 / mass) * moment;
+  inertia = inertia - (0.5 * mass) * inertia_form(center, center);
+  check_chassis_inertia(inertia);
+  numbers.chassis = {mass, center, inertia};
+}
+
+State<double> make_rest_state(double center_height) {
+  State<double> x{};
+  x[StateIndex::kPosition + 2] = center_height;
+  x[StateIndex::kQuaternion] = 1.0;
+  return x;
+}
+
+/// Spring force at nominal trim from the corner's own equation of equilibrium.
+void fit_preload(AssembledVehicle& car) {
+  Vehicle<double> bare{car.layout, car.numbers, {}, {}};
+  bare.layout.on_bump.fill(false);
+  Workspace<double> ws{};
+  State<double> x = make_rest_state(car.center_height), dx{};
+  calc_derivative(bare, NewtonClosure<double>{&bare.layout, &bare.numbers}, TireMode::kFrictionless,
+                  x.data(), dx.data(), ws);
+  GeneralizedForce<double> rhs;
+  calc_forces(bare, x.data(), ws, rhs);
+  for (int c = 0; c < kCorners; ++c) {
+    const double ratio = ws.motion[c].length_q[kSpringLine];
+    if (std::abs(ratio) < 0.05) {
+      throw ModelError(std::string(axle_name(axle_of(c))) +
+                       ".spring: its mounts do not move towards each other with wheel travel");
+    }
+    car.preload[c] = -rhs.corner[c] / ratio;
+  }
+}
+
+std::array<bool, kCorners> find_wheels_on_bump(const RoadSpec& road) {
+  const bool some = road.shape != BumpShape::kNone;
+  const bool left = some && road.side != BumpSide::kRight;
+  const bool right = some && road.side != BumpSide::kLeft;
+  return {left, right, left, right};
+}
+
+}  // namespace
+
+AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
+  AssembledVehicle car{};
+  car.numbers.tire = {spec.tire.unloaded_radius, spec.tire.stiffness, spec.tire.damping};
+  car.numbers.pacejka = spec.pacejka;
+  car.numbers.gravity = maneuver.gravity;
+  car.numbers.imu = spec.imu_position;
+  car.center_height = spec.whole.centroid_height;
+  car.layout.contact = spec.tire.contact;
+  car.layout.relaxation = spec.tire.relaxation;
+  car.layout.on_bump = find_wheels_on_bump(maneuver.road);
+  build_corners(spec, maneuver.gravity, car);
+  fit_chassis(spec, car);
+  fit_preload(car);
+  set_operating_parameters(spec, maneuver, car, car.numbers);
+  return car;
+}
+
+void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneuver,
+                              const AssembledVehicle& car, VehicleParameters<double>& numbers) {
+  for (int c = 0; c < kCorners; ++c) {
+    const SuspensionSpec& suspension = spec.suspension[axle_of(c)];
+    const StrutSpec& strut = suspension.strut[is_right(c) ? 1 : 0];
+    const bool worn_spring_sags =
+        spec.preload == PreloadKind::kFreeLength && strut.nominal_stiffness > 0.0;
+    const double rate = worn_spring_sags ? strut.nominal_stiffness : strut.stiffness;
+    const double length = numbers.nominal_length[c * kLines + kSpringLine];
+    numbers.spring[c] = {strut.stiffness, length + car.preload[c] / rate};
+    numbers.damper[c] = {strut.damping};
+    numbers.drive_torque[c] = 0.5 * suspension.drive_share * maneuver.drive_torque;
+  }
+}
+
+Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
+  return make_surface(maneuver.road, ContactGeometry{spec.tire.contact, spec.tire.unloaded_radius,
+                                                     spec.tire.footprint});
+}
+
+double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver) {
+  return car.numbers.geometry[kFrontLeft].wheel_center.x + maneuver.bump_distance;
+}
+
+}  // namespace strut

@@ -1,0 +1,14 @@
+// One car in one maneuver: what a single simulation is about.
+#pragma once
+
+#include "model/scenario/maneuver.h"
+#include "model/vehicle/spec.h"
+
+namespace strut {
+
+struct Case {
+  VehicleSpec vehicle;
+  ManeuverSpec maneuver;
+};
+
+}  // namespace strut

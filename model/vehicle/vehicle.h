@@ -1,0 +1,46 @@
+// The car as the equations read it: topology common to a batch, numbers one per simulation.
+#pragma once
+
+#include "model/force/strut.h"
+#include "model/force/tire_contact.h"
+#include "model/multibody/closure.h"
+#include "model/multibody/corner.h"
+#include "model/vehicle/spec.h"
+
+namespace strut {
+
+/// Numbers of one car and maneuver: fields of T only, so that W of them pack into lanes.
+template <class T>
+struct VehicleParameters {
+  T mass;                // kg, whole car
+  RigidBody<T> chassis;  // about the chassis origin's axes
+  std::array<CornerGeometry<T>, kCorners> geometry;
+  std::array<CornerInertia<T>, kCorners> inertia;
+  std::array<LinearSpring<T>, kCorners> spring;
+  std::array<LinearDamper<T>, kCorners> damper;
+  std::array<T, kCorners> drive_torque;             // N m, on each wheel
+  std::array<T, kLines * kCorners> nominal_length;  // m, lines at nominal trim
+  TireVertical<T> tire;
+  Pac2002<T> pacejka;
+  Vec3<T> imu;  // m, chassis axes
+  T gravity;    // m/s^2
+};
+
+/// What is common to all simulations of a batch.
+struct VehicleLayout {
+  std::array<CornerTopology, kCorners> corner;
+  std::array<ClosurePredictor, kCorners> predictor;
+  ContactKind contact = ContactKind::kEnvelope;
+  bool relaxation = false;
+  std::array<bool, kCorners> on_bump{true, true, true, true};  // wheels that see the bump
+};
+
+template <class T>
+struct Vehicle {
+  VehicleLayout layout;
+  VehicleParameters<T> numbers;
+  StrutElements<T> struts;
+  Road<T> road;
+};
+
+}  // namespace strut
