@@ -42,8 +42,14 @@ Hdf5Handle checked(hid_t id, Hdf5Handle::Close close, const fs::path& path,
   return {id, close};
 }
 
-// Errors become exceptions; the library must not print them as well.
-void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// Before the first call of the library. Errors become exceptions, so it must not print them as
+// well; and it must not clean up at exit: every handle is closed here, and a file that could not be
+// flushed to a full disk crashes 1.10.8 there.
+void prepare_library() {
+  static const bool no_cleanup = H5dont_atexit() >= 0;
+  static_cast<void>(no_cleanup);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 Hdf5Handle make_string_type(const fs::path& path) {
   Hdf5Handle type = checked<EnvironmentError>(H5Tcopy(H5T_C_S1), H5Tclose, path, "", "string type");
@@ -125,7 +131,7 @@ bool Hdf5Handle::reset() {
 }
 
 Hdf5Writer::Hdf5Writer(const fs::path& path) : target_(path) {
-  silence_library();
+  prepare_library();
   file_ = checked<EnvironmentError>(
       H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
       path, "", "cannot be written");
@@ -187,7 +193,7 @@ void Hdf5Writer::commit() {
 }
 
 Hdf5Reader::Hdf5Reader(const fs::path& path) : path_(path) {
-  silence_library();
+  prepare_library();
   if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
   check<InputError>(H5Fis_hdf5(path.c_str()) > 0, path, "", "not an HDF5 file");
   file_ = checked<InputError>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, path,

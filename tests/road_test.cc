@@ -108,14 +108,22 @@ double calc_patch_average(const Function& f, double kink, double x) {
   return static_cast<double>(sum);
 }
 
-/// max over s of z(x + s) + sqrt(R^2 - s^2) - R on a grid of `step`.
-double calc_envelope_by_search(const RoadSpec& spec, double x, double step) {
-  double highest = 0.0 < std::fabs(x) - 0.2 ? 0.0 : -1.0;
-  for (double u = -0.2; u <= 0.2; u += step) {
-    const double s = u - x;
+/// Profile heights on a grid of `step` from -0.2 m.
+std::vector<double> sample_profile(const RoadSpec& spec, double step) {
+  std::vector<double> heights;
+  for (double u = -0.2; u <= 0.2; u = -0.2 + step * static_cast<double>(heights.size())) {
+    heights.push_back(calc_profile_height(spec, u));
+  }
+  return heights;
+}
+
+/// max over s of z(x + s) + sqrt(R^2 - s^2) - R on that grid, the road outside of it flat.
+double calc_envelope_by_search(const std::vector<double>& heights, double step, double x) {
+  double highest = std::fabs(x) > 0.2 ? 0.0 : -1.0;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double s = -0.2 + step * static_cast<double>(i) - x;
     if (std::fabs(s) >= kRadius) continue;
-    highest = std::max(
-        highest, calc_profile_height(spec, u) + std::sqrt(kRadius * kRadius - s * s) - kRadius);
+    highest = std::max(highest, heights[i] + std::sqrt(kRadius * kRadius - s * s) - kRadius);
   }
   return highest;
 }
@@ -137,7 +145,7 @@ TEST_CASE("The arc is a circle through its ends and its crown", "[unit][road]") 
     const double radius = (0.04 + height * height) / (2.0 * height);
     for (double x = -0.199; x < 0.2; x += 0.01) {
       const double z = calc_profile_height(spec, x) + radius - height;
-      CHECK(std::hypot(x, z) == Approx(radius).epsilon(4e-16));  // 2 eps: hypot and the sum
+      CHECK(std::fabs(std::hypot(x, z) - radius) < 4e-16 * radius);  // 2 eps: hypot and the sum
     }
     CHECK(calc_profile_height(spec, 0.0) == height);
     CHECK(calc_profile_height(spec, 0.2) == 0.0);
@@ -154,10 +162,9 @@ TEST_CASE("Sines and trapezoid follow their formulas", "[unit][road]") {
     const double cosine = 0.025 * (1.0 + std::cos(2.0 * pi * x / 0.4));
     const double flank = std::min({1.0, (x + 0.2) / 0.08, (0.2 - x) / 0.08});
     // A few roundings of numbers below 0.05, and of pi x / w.
-    CHECK(calc_profile_height(make_spec(BumpShape::kHalfSine), x) ==
-          Approx(half_sine).margin(1e-16));
-    CHECK(calc_profile_height(make_spec(BumpShape::kCosine), x) == Approx(cosine).margin(1e-16));
-    CHECK(calc_profile_height(trapezoid, x) == Approx(0.05 * flank).margin(1e-16));
+    CHECK(std::fabs(calc_profile_height(make_spec(BumpShape::kHalfSine), x) - (half_sine)) < 1e-16);
+    CHECK(std::fabs(calc_profile_height(make_spec(BumpShape::kCosine), x) - (cosine)) < 1e-16);
+    CHECK(std::fabs(calc_profile_height(trapezoid, x) - (0.05 * flank)) < 1e-16);
   }
 }
 
@@ -172,7 +179,7 @@ TEST_CASE("A tabulated half sine converges with order four", "[unit][road]") {
       table.table_z.push_back(calc_profile_height(sine, table.table_x.back()));
     }
     for (std::size_t i = 0; i < table.table_x.size(); ++i) {
-      CHECK(calc_profile_height(table, table.table_x[i]) == Approx(table.table_z[i]).margin(1e-16));
+      CHECK(std::fabs(calc_profile_height(table, table.table_x[i]) - (table.table_z[i])) < 1e-16);
     }
     for (double x = -0.1999; x < 0.2; x += 0.0011) {
       const double miss = calc_profile_height(table, x) - calc_profile_height(sine, x);
@@ -180,7 +187,7 @@ TEST_CASE("A tabulated half sine converges with order four", "[unit][road]") {
     }
   }
   // Natural ends are right for a half sine, so the order is that of the spline; 0.1 for h^6.
-  CHECK(std::log2(error[0] / error[1]) == Approx(4.0).margin(0.1));
+  CHECK(std::fabs(std::log2(error[0] / error[1]) - (4.0)) < 0.1);
 }
 
 // --- disc envelope --------------------------------------------------------------------------
@@ -192,8 +199,8 @@ TEST_CASE("A disc on an arc moves on a circle", "[reference][road]") {
         make_scalar_road(make_surface(make_spec(BumpShape::kArc, height), kDisc));
     REQUIRE(road.segment_count == 3);
     // The crossing of two curves that meet at a slope: eps * height / slope.
-    CHECK(calc_segment_end(road, 0.0) == Approx(-truth.kink).margin(1e-14));
-    CHECK(calc_segment_end(road, 1.0) == Approx(truth.kink).margin(1e-14));
+    CHECK(std::fabs(calc_segment_end(road, 0.0) - (-truth.kink)) < 1e-14);
+    CHECK(std::fabs(calc_segment_end(road, 1.0) - (truth.kink)) < 1e-14);
     for (double x = -0.6; x < 0.6; x += 0.00137) {
       const RoadPoint<double> point = calc_point(road, x);
       CHECK(std::fabs(point.height - truth.calc_height(x)) < 2e-12);  // tabulated to 1e-12
@@ -216,8 +223,8 @@ TEST_CASE("A disc turns about the edge of a trapezoid", "[reference][road]") {
   }
   CHECK(calc_point(road, 0.03).height == 0.05);
   // The flank's parallel R higher meets the flat road's where R tan(angle / 2) before the foot.
-  CHECK(calc_segment_end(road, 0.0) ==
-        Approx(-0.2 - kRadius * std::tan(0.5 * flank_angle)).margin(1e-14));
+  CHECK(std::fabs(calc_segment_end(road, 0.0) - (-0.2 - kRadius * std::tan(0.5 * flank_angle))) <
+        1e-14);
 }
 
 TEST_CASE("A disc bridges a pothole on its two edges", "[reference][road]") {
@@ -233,17 +240,19 @@ TEST_CASE("A disc bridges a pothole on its two edges", "[reference][road]") {
 }
 
 TEST_CASE("The disc envelope is the highest of all contacts", "[reference][road]") {
-  constexpr double kStep = 5e-6;
   for (const RoadSpec& spec : make_all_specs()) {
+    const bool table = spec.shape == BumpShape::kTable;  // slow to sample
+    const double step = table ? 2e-5 : 5e-6;
+    const std::vector<double> heights = sample_profile(spec, step);
     const Road<double> road = make_scalar_road(make_surface(spec, kDisc));
     for (double x = -0.35; x < 0.35; x += 0.0237) {
-      const double found = calc_envelope_by_search(spec, x, kStep);
+      const double found = calc_envelope_by_search(heights, step, x);
       const double height = calc_point(road, x).height;
       // Between grid points the search misses at most slope jump * step (a corner off the grid).
       CHECK(height > found - 2e-12);
-      CHECK(height < found + kStep);
+      CHECK(height < found + step);
       // At a smooth contact it misses curvature * step^2 / 8, curvature below 30 / m.
-      if (spec.shape != BumpShape::kTrapezoid) CHECK(height < found + 1e-10);
+      if (spec.shape != BumpShape::kTrapezoid) CHECK(height < found + 4.0 * step * step + 2e-12);
     }
   }
 }
@@ -364,7 +373,7 @@ TEST_CASE("A segment goes on beyond its kink", "[unit][road]") {
   const double circle = std::sqrt(truth.center_radius * truth.center_radius - (x - 10) * (x - 10)) -
                         truth.depth - kRadius;
   // Two thirds of a cell beyond the end the quintic's error has grown some hundredfold.
-  CHECK(calc_road_point(road, x, 1.0).height == Approx(circle).margin(1e-9));
+  CHECK(std::fabs(calc_road_point(road, x, 1.0).height - (circle)) < 1e-9);
   CHECK(calc_road_point(road, x, 2.0).height == 0.0);
   CHECK(calc_road_point(road, kink - 0.01, 2.0).height == 0.0);
   CHECK(calc_road_point(road, kink - 0.01, 0.0).height == 0.0);

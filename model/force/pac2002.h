@@ -101,8 +101,8 @@ struct PureSlip {
   T force;             // F0 / Fz
 };
 
-template <class T>
-LoadPoint<T> calc_load_point(const Pac2002<T>& p, const T& load) {
+template <class C, class T>
+LoadPoint<T> calc_load_point(const Pac2002<C>& p, const T& load) {
   const T ratio = min(max(load, p.FZMIN), p.FZMAX) / (p.LFZO * p.FNOMIN);
   return {ratio, ratio - 1.0};
 }
@@ -125,8 +125,8 @@ T calc_phase(const T& u, const T& curvature) {
 }
 
 /// F_x0 of (4.E9) to (4.E18).
-template <class T>
-PureSlip<T> calc_pure_longitudinal(const Pac2002<T>& p, const T& dfz, const T& kappa,
+template <class C, class T>
+PureSlip<T> calc_pure_longitudinal(const Pac2002<C>& p, const T& dfz, const T& kappa,
                                    const T& camber) {
   PureSlip<T> x;
   const T gamma = camber * p.LGAX;
@@ -146,8 +146,8 @@ PureSlip<T> calc_pure_longitudinal(const Pac2002<T>& p, const T& dfz, const T& k
 }
 
 /// F_y0 of (4.E19) to (4.E30); sin(2 arctan x) = 2 x/(1 + x^2) in the cornering stiffness.
-template <class T>
-PureSlip<T> calc_pure_lateral(const Pac2002<T>& p, const LoadPoint<T>& at, const T& alpha,
+template <class C, class T>
+PureSlip<T> calc_pure_lateral(const Pac2002<C>& p, const LoadPoint<T>& at, const T& alpha,
                               const T& camber) {
   PureSlip<T> y;
   const T& dfz = at.increment;
@@ -180,25 +180,25 @@ T calc_weight(const T& slope, const T& shape, const T& curvature, const T& slip,
 }
 
 /// G_xalpha of (4.E50) to (4.E56); cos(arctan x) = 1/sqrt(1 + x^2).
-template <class T>
-T calc_longitudinal_weight(const Pac2002<T>& p, const T& dfz, const T& kappa, const T& alpha,
+template <class C, class T>
+T calc_longitudinal_weight(const Pac2002<C>& p, const T& dfz, const T& kappa, const T& alpha,
                            bool small_shift) {
   const T slope = p.RBX1 * p.LXAL / sqrt(1.0 + square(p.RBX2 * kappa));
-  return calc_weight(slope, p.RCX1, p.REX1 + p.REX2 * dfz, alpha, p.RHX1, small_shift);
+  return calc_weight<T>(slope, p.RCX1, p.REX1 + p.REX2 * dfz, alpha, p.RHX1, small_shift);
 }
 
 /// G_ykappa of (4.E58) to (4.E65).
-template <class T>
-T calc_lateral_weight(const Pac2002<T>& p, const T& dfz, const T& kappa, const T& alpha,
+template <class C, class T>
+T calc_lateral_weight(const Pac2002<C>& p, const T& dfz, const T& kappa, const T& alpha,
                       bool small_shift) {
   const T slope = p.RBY1 * p.LYKA / sqrt(1.0 + square(p.RBY2 * (alpha - p.RBY3)));
   const T shift = p.RHY1 + p.RHY2 * dfz;
-  return calc_weight(slope, p.RCY1, p.REY1 + p.REY2 * dfz, kappa, shift, small_shift);
+  return calc_weight<T>(slope, p.RCY1, p.REY1 + p.REY2 * dfz, kappa, shift, small_shift);
 }
 
 /// S_Vykappa / Fz of (4.E66), (4.E67): side force induced by longitudinal slip (plysteer).
-template <class T>
-T calc_induced_side_force(const Pac2002<T>& p, const T& dfz, const T& friction,
+template <class C, class T>
+T calc_induced_side_force(const Pac2002<C>& p, const T& dfz, const T& friction,
                           const TireSlip<T>& s) {
   const T peak =
       friction * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.camber) / sqrt(1.0 + square(p.RVY4 * s.alpha));
@@ -213,8 +213,8 @@ struct CombinedSlip {
   PureSlip<T> x, y;
 };
 
-template <class T>
-CombinedSlip<T> calc_combined_slip(const Pac2002<T>& p, const LoadPoint<T>& at,
+template <class C, class T>
+CombinedSlip<T> calc_combined_slip(const Pac2002<C>& p, const LoadPoint<T>& at,
                                    const TireSlip<T>& s, const Pac2002Parts& parts) {
   CombinedSlip<T> c;
   c.x = calc_pure_longitudinal(p, at.increment, s.kappa, s.camber);
@@ -239,8 +239,8 @@ T calc_equivalent_slip(const T& alpha, const T& ratio_squared) {
 }
 
 /// Pneumatic trail t / (Fz R0), (4.E33) to (4.E35), (4.E40) to (4.E44), without cos alpha.
-template <class T>
-T calc_trail(const Pac2002<T>& p, const LoadPoint<T>& at, const T& alpha, const T& gamma,
+template <class C, class T>
+T calc_trail(const Pac2002<C>& p, const LoadPoint<T>& at, const T& alpha, const T& gamma,
              const T& ratio_squared) {
   const T& dfz = at.increment;
   const T shift = p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma;
@@ -257,8 +257,8 @@ T calc_trail(const Pac2002<T>& p, const LoadPoint<T>& at, const T& alpha, const 
 }
 
 /// Residual torque M_zr / (Fz R0), (4.E36) to (4.E38), (4.E45) to (4.E47), without cos alpha.
-template <class T>
-T calc_residual_torque(const Pac2002<T>& p, const LoadPoint<T>& at, const PureSlip<T>& y,
+template <class C, class T>
+T calc_residual_torque(const Pac2002<C>& p, const LoadPoint<T>& at, const PureSlip<T>& y,
                        const T& alpha, const T& gamma, const T& ratio_squared) {
   const T& dfz = at.increment;
   const T shift = y.horizontal_shift + y.vertical_shift / y.stiffness;
@@ -269,8 +269,8 @@ T calc_residual_torque(const Pac2002<T>& p, const LoadPoint<T>& at, const PureSl
 }
 
 /// M_z = -t (F_y - S_Vykappa) + M_zr + s F_x of (4.E71) to (4.E78) [N m].
-template <class T>
-T calc_aligning_torque(const Pac2002<T>& p, const LoadPoint<T>& at, const TireSlip<T>& s,
+template <class C, class T>
+T calc_aligning_torque(const Pac2002<C>& p, const LoadPoint<T>& at, const TireSlip<T>& s,
                        const CombinedSlip<T>& c) {
   const T gamma = s.camber * p.LGAZ;
   const T ratio_squared = square(c.x.stiffness / c.y.stiffness * s.kappa);
@@ -284,16 +284,16 @@ T calc_aligning_torque(const Pac2002<T>& p, const LoadPoint<T>& at, const TireSl
 }
 
 /// M_x of (4.E69) [N m].
-template <class T>
-T calc_overturning_couple(const Pac2002<T>& p, const TireSlip<T>& s, const T& fy) {
+template <class C, class T>
+T calc_overturning_couple(const Pac2002<C>& p, const TireSlip<T>& s, const T& fy) {
   return s.load * p.UNLOADED_RADIUS * p.LMX *
          (p.QSX1 * p.LVMX - p.QSX2 * s.camber + p.QSX3 * fy / p.FNOMIN);
 }
 
 /// Rolling resistance M_y [ADAMS] [N m], negative (against the wheel's spin) when rolling forward;
 /// it fades below 0.1 m/s, where its direction would jump.
-template <class T>
-T calc_rolling_resistance(const Pac2002<T>& p, const TireSlip<T>& s, const T& fx) {
+template <class C, class T>
+T calc_rolling_resistance(const Pac2002<C>& p, const TireSlip<T>& s, const T& fx) {
   constexpr double kFullSpeed = 0.1;  // m/s
   const T direction = max(min(s.speed / kFullSpeed, T(1.0)), T(-1.0));
   const T speed = abs(s.speed) / p.LONGVL;
@@ -310,8 +310,8 @@ T calc_rolling_resistance(const Pac2002<T>& p, const TireSlip<T>& s, const T& fx
 /// @param side +1 left tire, the side of the coefficients; -1 right tire, its mirror image: camber
 ///   and alpha are given in the same W axes on both sides, f(alpha, camber) becomes f(-alpha,
 ///   -camber) with the sign of fy, mx and mz changed.
-template <class T>
-TireForce<T> calc_tire_force(const Pac2002<T>& p, const TireSlip<T>& slip, const T& side,
+template <class C, class T>
+TireForce<T> calc_tire_force(const Pac2002<C>& p, const TireSlip<T>& slip, const T& side,
                              const Pac2002Parts& parts = {}) {
   const TireSlip<T> s{slip.load, slip.kappa, side * slip.alpha, side * slip.camber, slip.speed};
   const pac2002::LoadPoint<T> at = pac2002::calc_load_point(p, s.load);
@@ -333,8 +333,8 @@ TireForce<T> calc_tire_force(const Pac2002<T>& p, const TireSlip<T>& slip, const
 ///   sigma_alpha = PTY1 sin(2 arctan(Fz/(PTY2 LFZO Fz0))) (1 - PKY3 |camber|) R0 LFZO LSGAL [MF52]
 /// Both are zero at zero load. The sign of PTX3 follows [MF52], where a carcass of constant
 /// stiffness means PTX3 = -PKX3.
-template <class T>
-RelaxationLength<T> calc_relaxation_length(const Pac2002<T>& p, const T& load, const T& camber) {
+template <class C, class T>
+RelaxationLength<T> calc_relaxation_length(const Pac2002<C>& p, const T& load, const T& camber) {
   const pac2002::LoadPoint<T> at = pac2002::calc_load_point(p, load);
   const T x = load / (p.PTY2 * p.LFZO * p.FNOMIN);
   const T gamma = camber * p.LGAY;
@@ -351,15 +351,15 @@ RelaxationLength<T> calc_relaxation_length(const Pac2002<T>& p, const T& load, c
 ///
 /// @param deflection rho [m]; a tire off the road (rho < 0) has R_e = R0.
 /// @param vertical_stiffness C_z [N/m], > 0.
-template <class T>
-T calc_rolling_radius(const Pac2002<T>& p, const T& unloaded_radius, const T& deflection,
-                      const T& vertical_stiffness) {
-  const T rho0 = p.FNOMIN / vertical_stiffness;
+template <class C, class T>
+T calc_rolling_radius(const Pac2002<C>& p, const C& unloaded_radius, const T& deflection,
+                      const C& vertical_stiffness) {
+  const C rho0 = p.FNOMIN / vertical_stiffness;
   const T rho = max(deflection, T(0.0));
   const T x = rho / rho0;
   const T fitted = rho0 * (p.DREFF * atan_any(p.BREFF * x) + p.FREFF * x);
-  const auto given = abs(p.BREFF) + abs(p.DREFF) + abs(p.FREFF) > T(0.0);
-  return unloaded_radius - select(given, fitted, rho / 3.0);
+  const T given = abs(p.BREFF) + abs(p.DREFF) + abs(p.FREFF);
+  return unloaded_radius - select(given > T(0.0), fitted, rho / 3.0);
 }
 
 }  // namespace strut

@@ -51,8 +51,8 @@ T smoothstep(const T& x) {
 /// `clearance`: wheel center height over the effective road [m].
 /// Envelope: the road is where a rigid disc of the free radius would carry the center, so the
 /// deflection is the gap to that path along its normal. Point: the plane itself is the road.
-template <class T>
-TireContact<T> calc_tire_contact(const TireVertical<T>& tire, ContactKind kind,
+template <class C, class T>
+TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind,
                                  const WheelMotion<T>& wheel, const Vec3<T>& normal,
                                  const T& normal_z, const T& clearance) {
   TireContact<T> contact;
@@ -85,15 +85,15 @@ struct TireSlipState {
   T tan_alpha;       // 1
 };
 
-template <class T>
-TireSlipState<T> calc_tire_slip(const Pac2002<T>& pacejka, const TireVertical<T>& tire,
+template <class C, class T>
+TireSlipState<T> calc_tire_slip(const Pac2002<C>& pacejka, const TireVertical<C>& tire,
                                 const WheelMotion<T>& wheel, const TireContact<T>& contact) {
   TireSlipState<T> slip;
   slip.forward = dot(wheel.velocity, contact.forward);
   slip.side = dot(wheel.velocity + cross(wheel.upright_omega, contact.arm), contact.lateral);
   slip.speed = max(abs(slip.forward), T(kSlipSpeedFloor));
   slip.rolling_radius =
-      calc_rolling_radius(pacejka, tire.radius, max(contact.deflection, T(0.0)), tire.stiffness);
+      calc_rolling_radius(pacejka, tire.radius, contact.deflection, tire.stiffness);
   const T inverse = T(1.0) / slip.speed;
   slip.kappa = (wheel.spin * slip.rolling_radius - slip.forward) * inverse;
   slip.tan_alpha = slip.side * inverse;
@@ -110,13 +110,14 @@ struct TireWrench {
 };
 
 /// `kappa`, `tan_alpha`: the slips that make force, steady or relaxed. `side`: +1 left, -1 right.
-template <class T>
-TireWrench<T> calc_tire_wrench(const Pac2002<T>& pacejka, const WheelMotion<T>& wheel,
-                               const TireContact<T>& contact, const TireSlipState<T>& slip,
-                               const T& kappa, const T& tan_alpha, const T& side) {
-  const TireSlip<T> input{contact.load, kappa, atan(tan_alpha), dot(wheel.axis, contact.normal),
+template <class C, class T>
+TireWrench<T> calc_tire_wrench(const Pac2002<C>& pacejka, const Pac2002Parts& parts,
+                               const WheelMotion<T>& wheel, const TireContact<T>& contact,
+                               const TireSlipState<T>& slip, const T& kappa, const T& tan_alpha,
+                               const T& side) {
+  const TireSlip<T> input{contact.load, kappa, atan_any(tan_alpha), dot(wheel.axis, contact.normal),
                           slip.speed};
-  const TireForce<T> f = calc_tire_force(pacejka, input, side);
+  const TireForce<T> f = calc_tire_force(pacejka, input, side, parts);
   TireWrench<T> wrench;
   wrench.fx = f.fx;
   wrench.fy = f.fy;

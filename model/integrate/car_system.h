@@ -79,9 +79,9 @@ class CarSystem {
     workspace_.rotation = rotation_of(get_quaternion(x));
     for (int c = 0; c < kCorners; ++c) {
       place_wheel_(*this, c, x[StateIndex::kCorner + c]);
-      update_wheel_motion(vehicle_, x, c, workspace_);
       if (has_kinks_) kink_x_[c] = calc_wheel_x(x, c);
     }
+    for (int axle = 0; axle < kAxles; ++axle) update_contacts(vehicle_, x, axle, workspace_);
     update_trigger(x);
     get_guards(g);
   }

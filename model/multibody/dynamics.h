@@ -22,6 +22,7 @@
 #pragma once
 
 #include "model/math/linalg.h"
+#include "model/math/pair.h"
 #include "model/multibody/state.h"
 #include "model/vehicle/vehicle.h"
 
@@ -55,47 +56,85 @@ struct Workspace {
 /// Which forces act; statics have no rolling and hence no in-plane tire forces.
 enum class TireMode { kRolling, kFrictionless };
 
+/// Height and slope of the road under a wheel center at world x.
 template <class T>
-void update_wheel_motion(const Vehicle<T>& vehicle, const T* x, int corner, Workspace<T>& ws) {
+RoadPoint<T> find_road(const Vehicle<T>& vehicle, const T& world_x, int corner,
+                       const Workspace<T>& ws) {
+  if (!vehicle.layout.on_bump[corner]) return {T(0.0), T(0.0)};
+  return calc_road_point(vehicle.road, world_x, ws.segment[corner]);
+}
+
+/// A wheel's motion, in chassis axes.
+template <class T>
+WheelMotion<T> calc_wheel_motion(const T* x, int corner, const CornerMotion<T>& motion) {
   using I = StateIndex;
-  const CornerMotion<T>& motion = ws.motion[corner];
   const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
   const T& rate = x[I::kCornerRate + corner];
-  ws.wheel[corner] = {motion.center, v + cross(w, motion.center) + rate * motion.center_q,
-                      motion.axis, w + rate * motion.upright_rate, x[I::kSpin + corner]};
-
-  const Vec3<T> position = get_vec3(x, I::kPosition);
-  const Vec3<T> world = position + ws.rotation * motion.center;
-  RoadPoint<T> road{T(0.0), T(0.0)};
-  if (vehicle.layout.on_bump[corner]) {
-    road = calc_road_point(vehicle.road, world.x, ws.segment[corner]);
-  }
-  const T normal_z = T(1.0) / sqrt(T(1.0) + road.slope * road.slope);
-  const Vec3<T> normal =
-      transpose_times(ws.rotation, Vec3<T>{-road.slope * normal_z, T(0.0), normal_z});
-  ws.contact[corner] = calc_tire_contact(vehicle.numbers.tire, vehicle.layout.contact,
-                                         ws.wheel[corner], normal, normal_z, world.z - road.height);
+  return {motion.center, v + cross(w, motion.center) + rate * motion.center_q, motion.axis,
+          w + rate * motion.upright_rate, x[I::kSpin + corner]};
 }
 
+/// Motion of both wheels of an axle and their contact with the road.
 template <class T>
-void update_tire(const Vehicle<T>& vehicle, const T* x, TireMode mode, int corner,
-                 Workspace<T>& ws) {
-  using I = StateIndex;
-  const TireContact<T>& contact = ws.contact[corner];
+TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int axle,
+                                     Workspace<T>& ws) {
+  const int left = 2 * axle, right = left + 1;
+  const Vec3<T> position = get_vec3(x, StateIndex::kPosition);
+  RoadPoint<T> road[2];
+  Vec3<T> center[2];
+  for (int c = left; c <= right; ++c) {
+    ws.wheel[c] = calc_wheel_motion(x, c, ws.motion[c]);
+    center[c - left] = position + ws.rotation * ws.motion[c].center;
+    road[c - left] = find_road(vehicle, center[c - left].x, c, ws);
+  }
+  const Pair<T> slope(road[0].slope, road[1].slope);
+  const Pair<T> clearance(center[0].z - road[0].height, center[1].z - road[1].height);
+  const Pair<T> normal_z = Pair<T>(1.0) / sqrt(Pair<T>(1.0) + slope * slope);
+  // The road's normal (-slope, 0, 1) in chassis axes.
+  const Vec3<T> forward{ws.rotation.x.x, ws.rotation.y.x, ws.rotation.z.x};
+  const Vec3<T> up{ws.rotation.x.z, ws.rotation.y.z, ws.rotation.z.z};
+  const Vec3<Pair<T>> normal{normal_z * (up.x - slope * forward.x),
+                             normal_z * (up.y - slope * forward.y),
+                             normal_z * (up.z - slope * forward.z)};
+  const TireContact<Pair<T>> contact =
+      calc_tire_contact(vehicle.numbers.tire, vehicle.layout.contact,
+                        join_pair(ws.wheel[left], ws.wheel[right]), normal, normal_z, clearance);
+  split_pair(contact, ws.contact[left], ws.contact[right]);
+  return contact;
+}
+
+/// Forces on both tires of an axle.
+template <class T>
+void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle,
+                  const TireContact<Pair<T>>& contact, Workspace<T>& ws) {
+  const int left = 2 * axle, right = left + 1;
   if (mode == TireMode::kFrictionless) {
-    ws.wrench[corner] = {
-        contact.load * contact.normal, {T(0.0), T(0.0), T(0.0)}, T(0.0), T(0.0), T(0.0)};
+    for (int c = left; c <= right; ++c) {
+      ws.wrench[c] = {ws.contact[c].load * ws.contact[c].normal,
+                      {T(0.0), T(0.0), T(0.0)},
+                      T(0.0),
+                      T(0.0),
+                      T(0.0)};
+    }
     return;
   }
-  ws.slip[corner] =
-      calc_tire_slip(vehicle.numbers.pacejka, vehicle.numbers.tire, ws.wheel[corner], contact);
-  const bool relaxed = vehicle.layout.relaxation;
-  const T& kappa = relaxed ? x[I::kKappa + corner] : ws.slip[corner].kappa;
-  const T& tan_alpha = relaxed ? x[I::kTanAlpha + corner] : ws.slip[corner].tan_alpha;
-  ws.wrench[corner] =
-      calc_tire_wrench(vehicle.numbers.pacejka, ws.wheel[corner], contact, ws.slip[corner], kappa,
-                       tan_alpha, T(is_right(corner) ? -1.0 : 1.0));
+  const VehicleParameters<T>& numbers = vehicle.numbers;
+  const WheelMotion<Pair<T>> wheel = join_pair(ws.wheel[left], ws.wheel[right]);
+  const TireSlipState<Pair<T>> slip = calc_tire_slip(numbers.pacejka, numbers.tire, wheel, contact);
+  Pair<T> kappa = slip.kappa, tan_alpha = slip.tan_alpha;
+  if (vehicle.layout.relaxation) {
+    kappa = {x[StateIndex::kKappa + left], x[StateIndex::kKappa + right]};
+    tan_alpha = {x[StateIndex::kTanAlpha + left], x[StateIndex::kTanAlpha + right]};
+  }
+  const Pair<T> side(T(1.0), T(-1.0));
+  split_pair(calc_tire_wrench(numbers.pacejka, vehicle.layout.tire_parts, wheel, contact, slip,
+                              kappa, tan_alpha, side),
+             ws.wrench[left], ws.wrench[right]);
+  split_pair(slip, ws.slip[left], ws.slip[right]);
 }
+
+/// Relaxation lengths vanish with the load; a tire off the road forgets its slip over this [m].
+inline constexpr double kShortestRelaxation = 0.05;
 
 /// First-order slip: length * d(slip)/dt = speed * (steady slip - slip).
 template <class T>
@@ -105,8 +144,10 @@ void add_relaxation(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& w
     const TireSlipState<T>& slip = ws.slip[c];
     const RelaxationLength<T> length = calc_relaxation_length(
         vehicle.numbers.pacejka, ws.contact[c].load, dot(ws.wheel[c].axis, ws.contact[c].normal));
-    dx[I::kKappa + c] = slip.speed * (slip.kappa - x[I::kKappa + c]) / length.longitudinal;
-    dx[I::kTanAlpha + c] = slip.speed * (slip.tan_alpha - x[I::kTanAlpha + c]) / length.lateral;
+    dx[I::kKappa + c] = slip.speed * (slip.kappa - x[I::kKappa + c]) /
+                        max(length.longitudinal, T(kShortestRelaxation));
+    dx[I::kTanAlpha + c] = slip.speed * (slip.tan_alpha - x[I::kTanAlpha + c]) /
+                           max(length.lateral, T(kShortestRelaxation));
   }
 }
 
@@ -160,11 +201,12 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const Vec3<T> contact_point = m.center + ws.contact[c].arm;
     const Vec3<T> arm_moment = cross(ws.contact[c].arm, tire.force) + tire.moment;
     const T tire_spin_moment = dot(arm_moment, m.axis);
+    // The drive torque turns the wheel and is reacted by the chassis; the upright feels none of it.
     const T& drive = vehicle.numbers.drive_torque[c];
     ws.spin_moment[c] = tire_spin_moment + drive;
 
     force += tire.force - rate2 * m.moment_qq;
-    moment += cross(contact_point, tire.force) + tire.moment - tire_spin_moment * m.axis -
+    moment += cross(contact_point, tire.force) + tire.moment - ws.spin_moment[c] * m.axis -
               rate * inertia_w - rate2 * m.coupling_q - (momentum * rate) * m.axis_q;
     const T upright_spin = dot(m.axis, m.upright_rate);
     const T tire_on_corner = dot(tire.force, m.center_q) + dot(arm_moment, m.upright_rate);
@@ -241,8 +283,9 @@ void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode
   ws.closure_error = T(0.0);
   for (int c = 0; c < kCorners; ++c) {
     ws.closure_error = max(ws.closure_error, closure(c, x[I::kCorner + c], ws.motion[c]));
-    update_wheel_motion(vehicle, x, c, ws);
-    update_tire(vehicle, x, mode, c, ws);
+  }
+  for (int axle = 0; axle < kAxles; ++axle) {
+    update_tires(vehicle, x, mode, axle, update_contacts(vehicle, x, axle, ws), ws);
   }
   add_strut_forces<T, kCorners>(vehicle.struts, ws.motion, x + I::kCornerRate, ws.strut);
   update_composite(vehicle, x, ws);

@@ -397,6 +397,7 @@ AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& m
   car.center_height = spec.whole.centroid_height;
   car.layout.contact = spec.tire.contact;
   car.layout.relaxation = spec.tire.relaxation;
+  car.layout.tire_parts = find_parts(spec.pacejka);
   car.layout.on_bump = find_wheels_on_bump(maneuver.road);
   build_corners(spec, maneuver.gravity, car);
   fit_chassis(spec, car);

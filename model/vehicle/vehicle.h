@@ -32,6 +32,7 @@ struct VehicleLayout {
   std::array<ClosurePredictor, kCorners> predictor;
   ContactKind contact = ContactKind::kEnvelope;
   bool relaxation = false;
+  Pac2002Parts tire_parts;
   std::array<bool, kCorners> on_bump{true, true, true, true};  // wheels that see the bump
 };
 

@@ -7,8 +7,8 @@
 namespace strut::reference {
 namespace {
 
-constexpr double kSpeedFloor = 0.5;       // m/s, slips at walking pace
-constexpr double kDampingOnset = 0.002;   // m, over which the tire damper comes in
+constexpr double kSpeedFloor = 0.5;      // m/s, slips at walking pace
+constexpr double kDampingOnset = 0.002;  // m, over which the tire damper comes in
 
 const BodyState& at(const std::vector<BodyState>& state, int body) {
   return state[static_cast<std::size_t>(body)];

@@ -21,10 +21,10 @@ struct WheelContact {
 
 /// Spring or damper between two mounts.
 struct LineElement {
-  double length = 0.0;                          // m
-  double rate = 0.0;                            // m/s
-  Vector3d direction = Vector3d::Zero();        // unit vector, upper -> lower mount
-  double force = 0.0;                           // N, pushes the ends apart
+  double length = 0.0;                    // m
+  double rate = 0.0;                      // m/s
+  Vector3d direction = Vector3d::Zero();  // unit vector, upper -> lower mount
+  double force = 0.0;                     // N, pushes the ends apart
 };
 
 /// Spring, damper and free length of one corner.
@@ -38,9 +38,9 @@ struct CarForces {
   std::array<CornerStrut, kCorners> strut;
   TireContactSpec tire;
   ReferenceLaws laws;
-  double gravity = 9.81;       // m/s^2
-  double drive_torque = 0.0;   // N m in all
-  bool frictionless = false;   // no forces and moments in the plane of the road
+  double gravity = 9.81;      // m/s^2
+  double drive_torque = 0.0;  // N m in all
+  bool frictionless = false;  // no forces and moments in the plane of the road
 };
 
 WheelContact calc_contact(const CarForces& forces, const CarLayout& layout, int corner,

@@ -130,9 +130,8 @@ class CornerBuilder {
     corner_.spin_axis = make_spin_axis();
     const Vector3d& u = corner_.spin_axis;
     const double transverse = suspension_.wheel_transverse_inertia;
-    const Matrix3d inertia =
-        transverse * Matrix3d::Identity() +
-        (suspension_.wheel_spin_inertia - transverse) * u * u.transpose();
+    const Matrix3d inertia = transverse * Matrix3d::Identity() +
+                             (suspension_.wheel_spin_inertia - transverse) * u * u.transpose();
     corner_.wheel = add_body(suspension_.wheel_mass, corner_.wheel_center, inertia);
     join_axis(corner_.upright, corner_.wheel, corner_.wheel_center, u);
   }
@@ -190,7 +189,8 @@ class CornerBuilder {
       case MountBody::kUpright:
         return {corner_.upright, from_center(corner_.upright, p)};
       case MountBody::kLowerArm:
-        if (arm_ < 0) throw std::invalid_argument("full-coordinate model: no lower arm to mount on");
+        if (arm_ < 0)
+          throw std::invalid_argument("full-coordinate model: no lower arm to mount on");
         return {arm_, from_center(arm_, p)};
       case MountBody::kRod:
         break;

@@ -1,8 +1,8 @@
 // From a vehicle's description to free bodies and the joints between them.
 //
 // Every moving part is a body: chassis; front lower arm, strut rod (if it has mass), upright, wheel
-// and tie rod; rear upright, wheel and five links. Body axes equal the chassis axes at nominal trim,
-// so a vector of the specification is a vector in body axes.
+// and tie rod; rear upright, wheel and five links. Body axes equal the chassis axes at nominal
+// trim, so a vector of the specification is a vector in body axes.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct CornerLayout {
   std::vector<Joint> joints;
   Joint coordinate;        // projection equal to q: strut shortening or rise of the wheel center
   int steered_joint = -1;  // joint whose chassis point moves with the rack, -1: none
-  Vector3d spin_axis = Vector3d::UnitY();     // in body axes of upright and wheel, to the left
+  Vector3d spin_axis = Vector3d::UnitY();    // in body axes of upright and wheel, to the left
   Vector3d wheel_center = Vector3d::Zero();  // m, chassis axes at nominal trim
   MountPoint spring_upper, spring_lower, damper_upper, damper_lower;
   double drive_share = 0.0;  // of the whole torque

@@ -109,8 +109,8 @@ ReducedState FullCoordinateCar::make_nominal() const {
   return reduced;
 }
 
-/// Spring forces for which the car at rest at nominal trim, carried by its static loads alone, has
-/// no acceleration: the accelerations are linear in the four forces.
+/// Spring forces that balance the static loads: with the chassis held, no corner accelerates. The
+/// corner's acceleration is linear in its spring force.
 void FullCoordinateCar::trim_springs() {
   const ReferenceState state = assemble(make_nominal());
   CarForces carried = forces_;
@@ -118,32 +118,29 @@ void FullCoordinateCar::trim_springs() {
   carried.frictionless = true;
   carried.drive_torque = 0.0;
   for (CornerStrut& strut : carried.strut) strut = {};
-  const std::vector<ConstraintRow> rows = calc_constraints(state);
-  const auto solve = [&](const std::vector<Wrench>& wrenches) {
-    VectorXd all(6 * static_cast<Index>(wrenches.size()));
-    const auto parts = solve_accelerations(layout_.bodies, state.bodies, rows, wrenches);
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      all.segment<6>(6 * static_cast<Index>(k)) = parts[k];
-    }
-    return all;
-  };
-  const VectorXd without = solve(calc_wrenches(carried, layout_, state.bodies));
-  MatrixXd per_newton(without.size(), kCorners);
+  const std::vector<Wrench> loads = calc_wrenches(carried, layout_, state.bodies);
+  std::vector<ConstraintRow> rows = calc_constraints(state);
+  for (int i = 0; i < 6; ++i) {
+    ConstraintRow hold;
+    hold.ja[i] = 1.0;
+    rows.push_back(hold);
+  }
   for (int corner = 0; corner < kCorners; ++corner) {
     const CornerLayout& c = layout_.corners[index_of(corner)];
+    std::vector<ConstraintRow> coordinate;
+    add_rows(c.coordinate, state.bodies, &coordinate);
+    const auto solve = [&](const std::vector<Wrench>& wrenches) {
+      return calc_row_acceleration(
+          coordinate[0], solve_accelerations(layout_.bodies, state.bodies, rows, wrenches));
+    };
+    const LineElement spring = calc_spring(state, corner);
     std::vector<Wrench> unit(layout_.bodies.size());
-    add_line_force(calc_spring(state, corner), 1.0, c.spring_upper, c.spring_lower, state.bodies,
-                   &unit);
-    per_newton.col(corner) = solve(unit);
-  }
-  const VectorXd forces = per_newton.colPivHouseholderQr().solve(-without);
-  for (int corner = 0; corner < kCorners; ++corner) {
-    const auto i = index_of(corner);
-    spring_force_[i] = forces[corner];
-    forces_.strut[i].free_length = calc_spring(state, corner).length;
-    if (forces_.strut[i].stiffness > 0.0) {
-      forces_.strut[i].free_length += spring_force_[i] / forces_.strut[i].stiffness;
-    }
+    add_line_force(spring, 1.0, c.spring_upper, c.spring_lower, state.bodies, &unit);
+    const double force = -solve(loads) / solve(unit);
+    spring_force_[index_of(corner)] = force;
+    CornerStrut& strut = forces_.strut[index_of(corner)];
+    strut.free_length = spring.length;
+    if (strut.stiffness > 0.0) strut.free_length += force / strut.stiffness;
   }
 }
 
@@ -256,8 +253,8 @@ ReducedAcceleration FullCoordinateCar::calc_accelerations(const ReferenceState& 
   const Vector3d to_origin = -layout_.centers[0];
   ReducedAcceleration result;
   result.angular = to_chassis * a[0].tail<3>();
-  const Vector3d origin = to_chassis * a[0].head<3>() + result.angular.cross(to_origin) +
-                          w.cross(w.cross(to_origin));
+  const Vector3d origin =
+      to_chassis * a[0].head<3>() + result.angular.cross(to_origin) + w.cross(w.cross(to_origin));
   result.linear = origin - w.cross(state.reduced.velocity);
   for (int corner = 0; corner < kCorners; ++corner) {
     const CornerLayout& c = layout_.corners[index_of(corner)];

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "model/scenario/maneuver.h"
@@ -17,10 +18,10 @@ namespace strut::reference {
 
 /// What determines the car's motion. The chassis point is the whole car's centroid at nominal trim.
 struct ReducedState {
-  Vector3d position = Vector3d::Zero();                      // m, world
-  Eigen::Vector4d quaternion = Eigen::Vector4d::Unit(0);    // w x y z, chassis -> world
-  Vector3d velocity = Vector3d::Zero();                      // m/s, chassis axes
-  Vector3d angular_velocity = Vector3d::Zero();              // rad/s, chassis axes
+  Vector3d position = Vector3d::Zero();                   // m, world
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Unit(0);  // w x y z, chassis -> world
+  Vector3d velocity = Vector3d::Zero();                   // m/s, chassis axes
+  Vector3d angular_velocity = Vector3d::Zero();           // rad/s, chassis axes
   /// Front: strut shortening; rear: rise of the wheel center along chassis z [m].
   std::array<double, kCorners> q{};
   std::array<double, kCorners> q_dot{};  // m/s
@@ -29,17 +30,17 @@ struct ReducedState {
 
 /// Rates of the velocities of `ReducedState`.
 struct ReducedAcceleration {
-  Vector3d linear = Vector3d::Zero();   // m/s^2, rate of the chassis-axes components of velocity
-  Vector3d angular = Vector3d::Zero();  // rad/s^2, chassis axes
-  std::array<double, kCorners> q_ddot{};    // m/s^2
+  Vector3d linear = Vector3d::Zero();     // m/s^2, rate of the chassis-axes components of velocity
+  Vector3d angular = Vector3d::Zero();    // rad/s^2, chassis axes
+  std::array<double, kCorners> q_ddot{};  // m/s^2
   std::array<double, kCorners> spin_dot{};  // rad/s^2
 };
 
 /// A state of all bodies that satisfies the constraints and their rates.
 struct ReferenceState {
   ReducedState reduced;
-  std::vector<BodyState> bodies;        // world axes
-  std::vector<BodyState> in_chassis;    // positions relative to the chassis origin, chassis axes
+  std::vector<BodyState> bodies;      // world axes
+  std::vector<BodyState> in_chassis;  // positions relative to the chassis origin, chassis axes
 };
 
 struct CarEnergy {
@@ -82,6 +83,10 @@ class FullCoordinateCar {
   /// Changes one corner's spring and damper, as a grid does. The free length stays (the corner
   /// sags) or, if the specification says kTrimmed, is found anew.
   void set_strut(int corner, const StrutSpec& strut);
+  /// Overrides the free length found at nominal trim [m].
+  void set_free_length(int corner, double length) {
+    forces_.strut[static_cast<std::size_t>(corner)].free_length = length;
+  }
   void set_frictionless(bool frictionless) { forces_.frictionless = frictionless; }
   void set_drive_torque(double torque) { forces_.drive_torque = torque; }
 

@@ -31,8 +31,8 @@ void add_coincident(const Joint& joint, const BodyState& a, const BodyState& b,
   const Vector3d drift = centripetal(a.angular_velocity, sa) - centripetal(b.angular_velocity, sb);
   for (int i = 0; i < 3; ++i) {
     const Vector3d e = Vector3d::Unit(i);
-    rows->push_back({joint.a, joint.b, stack(e, sa.cross(e)), stack(-e, -sb.cross(e)), gap[i],
-                     -drift[i]});
+    rows->push_back(
+        {joint.a, joint.b, stack(e, sa.cross(e)), stack(-e, -sb.cross(e)), gap[i], -drift[i]});
   }
 }
 

@@ -18,17 +18,17 @@ using Twist6 = Eigen::Matrix<double, 6, 1>;  // [velocity of the center of mass 
 
 /// Constant properties; the body axes have their origin at the center of mass.
 struct RigidBody {
-  double mass = 0.0;                       // kg, > 0
-  Matrix3d inertia = Matrix3d::Zero();     // kg m^2, body axes, about the center of mass
-  Vector3d rod_axis = Vector3d::Zero();    // unit vector of a rod that spins idly, else zero
+  double mass = 0.0;                     // kg, > 0
+  Matrix3d inertia = Matrix3d::Zero();   // kg m^2, body axes, about the center of mass
+  Vector3d rod_axis = Vector3d::Zero();  // unit vector of a rod that spins idly, else zero
 };
 
 /// Motion of one body, all vectors in the common (inertial) axes.
 struct BodyState {
-  Vector3d position = Vector3d::Zero();                              // m, center of mass
+  Vector3d position = Vector3d::Zero();                             // m, center of mass
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  // body axes -> inertial axes
-  Vector3d velocity = Vector3d::Zero();                              // m/s
-  Vector3d angular_velocity = Vector3d::Zero();                      // rad/s
+  Vector3d velocity = Vector3d::Zero();                             // m/s
+  Vector3d angular_velocity = Vector3d::Zero();                     // rad/s
 
   Vector3d rotate(const Vector3d& in_body_axes) const { return orientation * in_body_axes; }
   Vector3d point(const Vector3d& s) const { return position + rotate(s); }

@@ -3,9 +3,7 @@
 namespace strut::reference {
 namespace {
 
-Sym3<double> make_diagonal(double xx, double yy, double zz) {
-  return {xx, yy, zz, 0.0, 0.0, 0.0};
-}
+Sym3<double> make_diagonal(double xx, double yy, double zz) { return {xx, yy, zz, 0.0, 0.0, 0.0}; }
 
 RodSpec make_rod(const Vec3<double>& chassis, const Vec3<double>& upright, double mass) {
   RodSpec rod;
@@ -29,7 +27,8 @@ void set_wheel(SuspensionSpec* axle) {
   axle->wheel_transverse_inertia = 0.8;
 }
 
-/// Hardpoints: public MacPherson model (vehicledynamics, Suspensions.mo), moved to its wheel center.
+/// Hardpoints: public MacPherson model (vehicledynamics, Suspensions.mo), moved to its wheel
+/// center.
 SuspensionSpec make_front() {
   SuspensionSpec front;
   front.kind = SuspensionKind::kMacPherson;

@@ -1,0 +1,124 @@
+#include "io/hdf5.h"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <numeric>
+
+#include "tests/limited_file_size.h"
+#include "tests/temporary_folder.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::TemporaryFolder;
+
+const std::vector<double> kValues = {1.0, 1.0 / 3.0, -0.0, 1e-300, 5.0, 6.0};
+const Hdf5Label kLabel = {"N/m", "rate of the springs", {"front", "rear \xC3\xA9"}};
+
+void write_example(const std::filesystem::path& path) {
+  Hdf5Writer file(path);
+  file.write("/history/time", kValues, {"s", "time", {}});
+  file.write("/parameters", kValues, 2, kLabel);
+  file.write("/empty", {}, {"", "", {}});
+  file.write_attribute("/", "strut_version", "0.1.0");
+  file.write_attribute("/history", "empty", "");
+  file.commit();
+}
+
+TEST_CASE("What is written to HDF5 reads back bit for bit", "[io][property]") {
+  const TemporaryFolder folder;
+  write_example(folder / "run.h5");
+  const Hdf5Reader file(folder / "run.h5");
+  const Hdf5Dataset time = file.read("/history/time");
+  CHECK(time.shape == std::vector<std::size_t>{6});
+  CHECK(time.values == kValues);
+  CHECK(time.label.unit == "s");
+  CHECK(time.label.names.empty());
+  const Hdf5Dataset parameters = file.read("/parameters");
+  CHECK(parameters.shape == std::vector<std::size_t>{3, 2});
+  CHECK(parameters.values == kValues);
+  CHECK(parameters.label.unit == kLabel.unit);
+  CHECK(parameters.label.description == kLabel.description);
+  CHECK(parameters.label.names == kLabel.names);
+  CHECK(file.read("/empty").values.empty());
+  CHECK(file.read_attribute("/", "strut_version") == "0.1.0");
+  CHECK(file.read_attribute("/history", "empty").empty());
+  CHECK(file.list("/") == std::vector<std::string>{"empty", "history", "parameters"});
+  CHECK(file.has("/history/time"));
+  CHECK_FALSE(file.has("/history/place"));
+  CHECK_FALSE(file.has("/no/place"));
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("A file that is not committed never appears", "[io]") {
+  const TemporaryFolder folder;
+  {
+    Hdf5Writer file(folder / "run.h5");
+    file.write("/time", kValues, {"s", "", {}});
+  }
+  CHECK(folder.file_count() == 0);
+}
+
+TEST_CASE("A dataset that does not fit its columns is refused", "[io]") {
+  const TemporaryFolder folder;
+  Hdf5Writer file(folder / "run.h5");
+  CHECK_THROWS_AS(file.write("/a", kValues, 4, {}), std::logic_error);
+  CHECK_THROWS_AS(file.write("/a", kValues, 0, {}), std::logic_error);
+  CHECK_THROWS_AS(file.write("/a", kValues, 3, kLabel), std::logic_error);
+}
+
+TEST_CASE("A failing HDF5 call names file and dataset", "[io]") {
+  const TemporaryFolder folder;
+  Hdf5Writer writer(folder / "run.h5");
+  writer.write("/time", kValues, {});
+  CHECK_THROWS_WITH(writer.write("/time", kValues, {}),
+                    Contains("run.h5: /time: dataset cannot be written") && Contains("exists"));
+  CHECK_THROWS_AS(writer.write_attribute("/no", "a", "b"), EnvironmentError);
+  writer.commit();
+  const Hdf5Reader reader(folder / "run.h5");
+  CHECK_THROWS_WITH(reader.read("/no/time"), Contains("run.h5: /no/time: no such dataset"));
+  CHECK_THROWS_WITH(reader.read("/"), Contains("run.h5: /"));
+  CHECK_THROWS_WITH(reader.read_attribute("/time", "color"), Contains("/time@color"));
+  CHECK_THROWS_AS(reader.list("/no"), InputError);
+}
+
+TEST_CASE("A file that is missing, foreign or damaged is an input error", "[io]") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(Hdf5Reader(folder / "no.h5"), Contains("no.h5: file not found"));
+  CHECK_THROWS_WITH(Hdf5Reader(folder.write("text.h5", "time,z\n0,1\n")),
+                    Contains("text.h5: not an HDF5 file"));
+  write_example(folder / "run.h5");
+  const auto size = std::filesystem::file_size(folder / "run.h5");
+  std::filesystem::resize_file(folder / "run.h5", size / 2);
+  CHECK_THROWS_WITH(Hdf5Reader(folder / "run.h5"), Contains("run.h5: damaged"));
+}
+
+TEST_CASE("A target that cannot hold HDF5 is the environment's failure", "[io]") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_AS(Hdf5Writer(folder / "no_folder/run.h5"), EnvironmentError);
+  CHECK_THROWS_AS(Hdf5Writer("/dev/null"), EnvironmentError);
+  CHECK(folder.file_count() == 0);
+}
+
+TEST_CASE("A disk that fills up leaves the old HDF5 file and nothing else", "[io]") {
+  const TemporaryFolder folder;
+  write_example(folder / "run.h5");
+  const std::vector<double> many(100000, 1.5);
+  const auto write_many = [&] {
+    Hdf5Writer file(folder / "run.h5");
+    file.write("/many", many, {"m", "", {}});
+    file.commit();
+  };
+  {
+    const test::LimitedFileSize limit(20000);
+    CHECK_THROWS_AS(write_many(), EnvironmentError);
+  }
+  CHECK(Hdf5Reader(folder / "run.h5").has("/parameters"));
+  CHECK(folder.file_count() == 1);
+  CHECK_NOTHROW(write_many());
+  CHECK(Hdf5Reader(folder / "run.h5").read("/many").values == many);
+}
+
+}  // namespace
+}  // namespace strut
