@@ -160,7 +160,8 @@ RigidBody<double> combine_upright_and_wheel(const SuspensionSpec& spec, const Pl
               offset(spec.wheel_mass, center)};
 }
 
-CornerParts build_corner(const VehicleSpec& spec, int corner, const Vec3<double>& axle_reference) {
+CornerParts build_corner(const VehicleSpec& spec, int corner, const Vec3<double>& axle_reference,
+                         double rack) {
   const SuspensionSpec& suspension = spec.suspension[axle_of(corner)];
   const Placement place{axle_reference, is_right(corner)};
   CornerParts parts;
@@ -171,7 +172,7 @@ CornerParts build_corner(const VehicleSpec& spec, int corner, const Vec3<double>
   } else {
     build_multilink(center, parts);
   }
-  add_rods(suspension, place, axle_of(corner) == kFront ? spec.rack_position : 0.0, parts);
+  add_rods(suspension, place, axle_of(corner) == kFront ? rack : 0.0, parts);
   parts.geometry.wheel_center = center;
   parts.geometry.spin_axis = calc_spin_axis(suspension, place.right);
   add_lines(suspension, place, parts);
@@ -276,7 +277,7 @@ double calc_center_height(const VehicleSpec& spec, const Vec3<double>& axis, dou
   return loaded_radius * std::sqrt(1.0 - square(axis.z));
 }
 
-void build_corners(const VehicleSpec& spec, double gravity, AssembledVehicle& car) {
+void build_corners(const VehicleSpec& spec, double gravity, double rack, AssembledVehicle& car) {
   const WholeCarSpec& whole = spec.whole;
   const double wheelbase = whole.centroid_to_front + whole.centroid_to_rear;
   for (int c = 0; c < kCorners; ++c) {
@@ -287,7 +288,7 @@ void build_corners(const VehicleSpec& spec, double gravity, AssembledVehicle& ca
     const Vec3<double> reference{
         axle == kFront ? whole.centroid_to_front : -whole.centroid_to_rear, 0.0,
         calc_center_height(spec, axis, car.nominal_load[c]) - whole.centroid_height};
-    CornerParts parts = build_corner(spec, c, reference);
+    CornerParts parts = build_corner(spec, c, reference, rack);
     const auto prepare = parts.topology.kind == SuspensionKind::kMacPherson
                              ? &prepare_closure<kMacPhersonTree>
                              : &prepare_closure<kMultilinkTree>;
@@ -399,9 +400,11 @@ AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& m
   car.layout.relaxation = spec.tire.relaxation;
   car.layout.tire_parts = find_parts(spec.pacejka);
   car.layout.on_bump = find_wheels_on_bump(maneuver.road);
-  build_corners(spec, maneuver.gravity, car);
+  // Nominal trim is straight ahead; the rack moves afterwards.
+  build_corners(spec, maneuver.gravity, 0.0, car);
   fit_chassis(spec, car);
   fit_preload(car);
+  if (spec.rack_position != 0.0) build_corners(spec, maneuver.gravity, spec.rack_position, car);
   set_operating_parameters(spec, maneuver, car, car.numbers);
   return car;
 }
