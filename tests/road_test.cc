@@ -162,9 +162,9 @@ TEST_CASE("Sines and trapezoid follow their formulas", "[unit][road]") {
     const double cosine = 0.025 * (1.0 + std::cos(2.0 * pi * x / 0.4));
     const double flank = std::min({1.0, (x + 0.2) / 0.08, (0.2 - x) / 0.08});
     // A few roundings of numbers below 0.05, and of pi x / w.
-    CHECK(std::fabs(calc_profile_height(make_spec(BumpShape::kHalfSine), x) - (half_sine)) < 1e-16);
-    CHECK(std::fabs(calc_profile_height(make_spec(BumpShape::kCosine), x) - (cosine)) < 1e-16);
-    CHECK(std::fabs(calc_profile_height(trapezoid, x) - (0.05 * flank)) < 1e-16);
+    CHECK(std::fabs(calc_profile_height(make_spec(BumpShape::kHalfSine), x) - half_sine) < 1e-16);
+    CHECK(std::fabs(calc_profile_height(make_spec(BumpShape::kCosine), x) - cosine) < 1e-16);
+    CHECK(std::fabs(calc_profile_height(trapezoid, x) - 0.05 * flank) < 1e-16);
   }
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("A tabulated half sine converges with order four", "[unit][road]") {
       table.table_z.push_back(calc_profile_height(sine, table.table_x.back()));
     }
     for (std::size_t i = 0; i < table.table_x.size(); ++i) {
-      CHECK(std::fabs(calc_profile_height(table, table.table_x[i]) - (table.table_z[i])) < 1e-16);
+      CHECK(std::fabs(calc_profile_height(table, table.table_x[i]) - table.table_z[i]) < 1e-16);
     }
     for (double x = -0.1999; x < 0.2; x += 0.0011) {
       const double miss = calc_profile_height(table, x) - calc_profile_height(sine, x);
@@ -187,7 +187,7 @@ TEST_CASE("A tabulated half sine converges with order four", "[unit][road]") {
     }
   }
   // Natural ends are right for a half sine, so the order is that of the spline; 0.1 for h^6.
-  CHECK(std::fabs(std::log2(error[0] / error[1]) - (4.0)) < 0.1);
+  CHECK(std::fabs(std::log2(error[0] / error[1]) - 4.0) < 0.1);
 }
 
 // --- disc envelope --------------------------------------------------------------------------
@@ -199,8 +199,8 @@ TEST_CASE("A disc on an arc moves on a circle", "[reference][road]") {
         make_scalar_road(make_surface(make_spec(BumpShape::kArc, height), kDisc));
     REQUIRE(road.segment_count == 3);
     // The crossing of two curves that meet at a slope: eps * height / slope.
-    CHECK(std::fabs(calc_segment_end(road, 0.0) - (-truth.kink)) < 1e-14);
-    CHECK(std::fabs(calc_segment_end(road, 1.0) - (truth.kink)) < 1e-14);
+    CHECK(std::fabs(calc_segment_end(road, 0.0) + truth.kink) < 1e-14);
+    CHECK(std::fabs(calc_segment_end(road, 1.0) - truth.kink) < 1e-14);
     for (double x = -0.6; x < 0.6; x += 0.00137) {
       const RoadPoint<double> point = calc_point(road, x);
       CHECK(std::fabs(point.height - truth.calc_height(x)) < 2e-12);  // tabulated to 1e-12
@@ -373,7 +373,7 @@ TEST_CASE("A segment goes on beyond its kink", "[unit][road]") {
   const double circle = std::sqrt(truth.center_radius * truth.center_radius - (x - 10) * (x - 10)) -
                         truth.depth - kRadius;
   // Two thirds of a cell beyond the end the quintic's error has grown some hundredfold.
-  CHECK(std::fabs(calc_road_point(road, x, 1.0).height - (circle)) < 1e-9);
+  CHECK(std::fabs(calc_road_point(road, x, 1.0).height - circle) < 1e-9);
   CHECK(calc_road_point(road, x, 2.0).height == 0.0);
   CHECK(calc_road_point(road, kink - 0.01, 2.0).height == 0.0);
   CHECK(calc_road_point(road, kink - 0.01, 0.0).height == 0.0);

@@ -47,6 +47,14 @@ T smoothstep(const T& x) {
   return t * t * t * (t * (t * T(6.0) - T(15.0)) + T(10.0));
 }
 
+/// k d + c r s(d / kDampingRamp): load [N] of a tire deflected by d [m] at the rate r [m/s], before
+/// it is cut off at zero. Its sign is the contact event.
+template <class C, class T>
+T calc_unclamped_load(const TireVertical<C>& tire, const T& deflection, const T& rate) {
+  return tire.stiffness * deflection +
+         tire.damping * smoothstep(deflection * T(1.0 / kDampingRamp)) * rate;
+}
+
 /// Contact with the plane of `height` above the wheel center's footing and `normal`.
 /// `clearance`: wheel center height over the effective road [m].
 /// Envelope: the road is where a rigid disc of the free radius would carry the center, so the
@@ -68,9 +76,7 @@ TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind,
   contact.arm = -contact.loaded_radius * up;
   contact.deflection = tire.radius - contact.loaded_radius;
   const T rate = -dot(wheel.velocity, normal) * tilt;
-  contact.unclamped_load =
-      tire.stiffness * contact.deflection +
-      tire.damping * smoothstep(contact.deflection * T(1.0 / kDampingRamp)) * rate;
+  contact.unclamped_load = calc_unclamped_load(tire, contact.deflection, rate);
   contact.load = max(contact.unclamped_load, T(0.0));
   return contact;
 }

@@ -65,6 +65,7 @@ class CarSystem {
               (workspace_.closure_error > T(kClosureTolerance)) |
               (abs(x[StateIndex::kVelocity]) > T(kAbsurdSpeed)) |
               (abs(x[StateIndex::kVelocity + 2]) > T(kAbsurdSpeed));
+    largest_loop_error_ = max(largest_loop_error_, workspace_.closure_error);
     update_trigger(x);
     for (int c = 0; has_kinks_ && c < kCorners; ++c) kink_x_[c] = calc_wheel_x(x, c);
   }
@@ -113,6 +114,9 @@ class CarSystem {
                      out + CarChannel::kCornerBegin + c * CarChannel::kCornerChannels);
     }
   }
+
+  /// Largest loop error of any right-hand side so far [m]; zero with tables.
+  T get_largest_loop_error() const { return largest_loop_error_; }
 
   const Workspace<T>& workspace() const { return workspace_; }
   const Vehicle<T>& vehicle() const { return vehicle_; }
@@ -163,6 +167,7 @@ class CarSystem {
   T trigger_x_;
   Workspace<T> workspace_{};
   Mask failed_{};
+  T largest_loop_error_{0.0};
   T wheel_x_{};
   std::array<T, kCorners> kink_x_{};
 };

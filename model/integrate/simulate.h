@@ -52,6 +52,7 @@ struct LaneResults {
   std::vector<double> snapshot;      // [channel][lane]
   std::vector<double> history;       // [sample][channel][lane]
   std::vector<double> final_state;   // [component][lane]
+  std::vector<double> loop_error;    // m per lane, largest over the run (systems with loops)
   int sample_count = 0;
   long derivative_count = 0;  // right-hand sides evaluated (all lanes at once)
   long event_count = 0;       // steps shortened by a guard, summed over lanes
@@ -353,6 +354,11 @@ class Simulation {
   void finish() {
     const auto lanes = static_cast<std::size_t>(kLanes);
     results_.final_state.resize(static_cast<std::size_t>(system_.size()) * lanes);
+    if constexpr (requires { system_.get_largest_loop_error(); }) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        results_.loop_error.push_back(get_lane(system_.get_largest_loop_error(), lane));
+      }
+    }
     for (int i = 0; i < system_.size(); ++i) {
       for (int lane = 0; lane < kLanes; ++lane) {
         results_.final_state[static_cast<std::size_t>(i) * lanes + static_cast<std::size_t>(lane)] =

@@ -60,10 +60,10 @@ KinematicsPoint describe(const CornerGeometry<double>& geometry, bool right, dou
   const Mat3<double>& turn = corner.pose.part[kTree.upright].rotation;
   KinematicsPoint point;
   point.travel = travel;
-  point.camber = -outward * std::asin(axis.z);
+  point.camber = 0.0 - outward * std::asin(axis.z);  // 0 - x: no negative zero in files
   point.toe = outward * std::atan2(axis.x, axis.y);
   point.displacement = corner.motion.center - geometry.wheel_center;
-  point.caster_change = std::atan2(-turn.z.x, turn.z.z);
+  point.caster_change = 0.0 - std::atan2(turn.z.x, turn.z.z);
   point.spring_length = corner.motion.length[kSpringLine];
   point.damper_length = corner.motion.length[kDamperLine];
   point.track = 2.0 * outward * corner.motion.center.y;
@@ -73,30 +73,29 @@ KinematicsPoint describe(const CornerGeometry<double>& geometry, bool right, dou
 template <CornerTree kTree>
 std::vector<KinematicsPoint> sweep_corner(const CornerTopology& topology,
                                           const CornerGeometry<double>& geometry, bool right,
-                                          int half_count, double increment) {
-  std::vector<KinematicsPoint> points(static_cast<std::size_t>(2 * half_count + 1));
-  for (const int sign : {-1, 1}) {
-    ClosedCorner corner;
-    for (int i = 0; i <= half_count; ++i) {
-      const double travel = sign * i * increment;
-      move_to_travel<kTree>(topology, geometry, travel, corner);
-      points[static_cast<std::size_t>(half_count + sign * i)] =
-          describe<kTree>(geometry, right, travel, corner);
-    }
-  }
+                                          const std::vector<double>& travels) {
+  std::vector<KinematicsPoint> points(travels.size());
+  const auto move_through = [&](std::size_t i, ClosedCorner& corner) {
+    move_to_travel<kTree>(topology, geometry, travels[i], corner);
+    points[i] = describe<kTree>(geometry, right, travels[i], corner);
+  };
+  const auto middle = static_cast<std::size_t>(
+      std::lower_bound(travels.begin(), travels.end(), 0.0) - travels.begin());
+  ClosedCorner upwards, downwards;
+  for (std::size_t i = middle; i < travels.size(); ++i) move_through(i, upwards);
+  for (std::size_t i = middle; i-- > 0;) move_through(i, downwards);
   return points;
 }
 
 }  // namespace
 
-std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int corner, double limit,
-                                             double increment) {
+std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int corner,
+                                             const std::vector<double>& travels) {
   const CornerTopology& topology = car.layout.corner[corner];
   const auto sweep = topology.kind == SuspensionKind::kMacPherson ? &sweep_corner<kMacPhersonTree>
                                                                   : &sweep_corner<kMultilinkTree>;
-  const int half_count = static_cast<int>(std::lround(limit / increment));
   try {
-    return sweep(topology, car.numbers.geometry[corner], is_right(corner), half_count, increment);
+    return sweep(topology, car.numbers.geometry[corner], is_right(corner), travels);
   } catch (const ModelError& e) {
     throw ModelError((axle_of(corner) == kFront ? "front_suspension: " : "rear_suspension: ") +
                      std::string(e.what()));

@@ -13,16 +13,16 @@ struct KinematicsPoint {
   double camber = 0.0;          // rad, + top outwards
   double toe = 0.0;             // rad, + toe-in
   Vec3<double> displacement{};  // m, of the wheel center from nominal trim
-  double caster_change = 0.0;   // rad, side-view turn of the kingpin or upright, + top rearwards
+  double caster_change = 0.0;   // rad, side-view turn of the upright's z axis, + top rearwards
   double spring_length = 0.0;   // m, between its mounts
   double damper_length = 0.0;   // m
   double track = 0.0;           // m, of the axle when both wheels travel alike
 };
 
-/// A corner of `car` at travels -limit, ..., 0, ..., +limit [m] in steps of `increment` [m], each
-/// solved by Newton from its neighbor nearer to nominal trim, to 1e-13 m. `limit` may exceed
+/// A corner of `car` at wheel travels [m] in ascending order, each solved by Newton from its neighbor
+/// nearer to nominal trim, to 1e-13 m; neighbors should lie within some 5 mm. Travels may exceed
 /// kHalfTravel a little. Throws ModelError, naming axle and travel, where the loops do not close.
-std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int corner, double limit,
-                                             double increment);
+std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int corner,
+                                             const std::vector<double>& travels);
 
 }  // namespace strut

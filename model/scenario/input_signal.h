@@ -1,0 +1,83 @@
+// A measured or made input over time that drives a rig: road displacement, force, temperature.
+//
+// Samples at their own times become a piecewise cubic. Signals hold no state, so that all lanes and
+// threads share one. Before the first and after the last sample the end value holds, at rate zero.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/math/lanes.h"
+
+namespace strut {
+
+enum class Interpolation {
+  kSpline,  // cubic, twice continuously differentiable, not-a-knot ends: O(interval^4)
+  kLinear,  // no overshoot at steps; the rate jumps at the samples
+};
+
+/// value = c0 + c1 s + c2 s^2 + c3 s^3, s = t - begin. Nothing but doubles, so that lanes gather.
+struct SignalCell {
+  double begin;  // s
+  double c0, c1, c2, c3;
+};
+static_assert(sizeof(SignalCell) == 5 * sizeof(double));
+
+struct InputSignal {
+  std::string channel;            // input it drives, a name of list_rig_inputs
+  double begin = 0.0, end = 0.0;  // s, first and last sample
+  std::vector<SignalCell> cells;  // one an interval, then a sentinel
+  // Equal bins of time lead to the cells: the cell of t is at most `search_steps` after its bin's.
+  std::vector<double> bins;
+  double inverse_bin = 0.0;  // 1/s
+  int search_steps = 0;
+};
+
+/// Interpolates samples. Throws std::invalid_argument that names the channel: fewer than two
+/// samples, times and values not of one length, not finite, times that do not increase.
+InputSignal make_signal(const std::string& channel, const std::vector<double>& times,
+                        const std::vector<double>& values, Interpolation interpolation);
+
+/// Cubic Hermite interpolation of values and rates [1/s]; errors as above.
+InputSignal make_signal(const std::string& channel, const std::vector<double>& times,
+                        const std::vector<double>& values, const std::vector<double>& rates);
+
+/// amplitude * sin(phase), the frequency [Hz] running linearly from `begin_frequency` at t = 0 to
+/// `end_frequency` at `duration` [s]; to 5e-8 of the amplitude.
+InputSignal make_chirp(const std::string& channel, double amplitude, double begin_frequency,
+                       double end_frequency, double duration);
+
+/// 0 until `begin` [s], then linearly within `rise` [s] > 0 to `height`.
+InputSignal make_step(const std::string& channel, double height, double begin, double rise);
+
+/// height (1 - cos(2 pi (t - begin) / width)) / 2 over `width` [s], 0 before and after.
+InputSignal make_bump(const std::string& channel, double height, double begin, double width);
+
+template <class T>
+struct SignalPoint {
+  T value, rate, second_rate;  // [u], [u/s], [u/s^2] in the signal's unit u
+};
+
+/// The signal at t [s]; at a sample the interval after it counts.
+template <class T>
+SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
+  constexpr double kStride = 5.0;
+  const double last_bin = static_cast<double>(signal.bins.size()) - 1.0;
+  // Comparisons, not min and max: a NaN must end in bin 0, not outside the table.
+  T bin = floor((t - T(signal.begin)) * T(signal.inverse_bin));
+  bin = select(bin > T(0.0), bin, T(0.0));
+  bin = select(bin < T(last_bin), bin, T(last_bin));
+  const auto* table = reinterpret_cast<const double*>(signal.cells.data());
+  T at = T(kStride) * gather(signal.bins.data(), bin);
+  for (int i = 0; i < signal.search_steps; ++i) {
+    at += select(gather(table, at + T(kStride)) <= t, T(kStride), T(0.0));
+  }
+  const auto inside = (t >= T(signal.begin)) & (t <= T(signal.end));
+  const T s = min(max(t, T(signal.begin)), T(signal.end)) - gather(table, at);
+  const T c1 = gather(table + 2, at), c2 = gather(table + 3, at), c3 = gather(table + 4, at);
+  const T rate = c1 + s * (T(2.0) * c2 + s * (T(3.0) * c3));
+  return {gather(table + 1, at) + s * (c1 + s * (c2 + s * c3)), select(inside, rate, T(0.0)),
+          select(inside, T(2.0) * c2 + T(6.0) * c3 * s, T(0.0))};
+}
+
+}  // namespace strut

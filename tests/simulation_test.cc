@@ -1,0 +1,342 @@
+// Whole simulations: order, energy, agreement with CVODE, lanes, instruction sets, allocation.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <vector>
+
+#include "model/integrate/car_system.h"
+#include "tests/test_car.h"
+
+namespace {
+// One thread allocates here; the runs under test are single threaded.
+long allocation_count = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocation_count;
+  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocation_count;
+  const auto unit = static_cast<std::size_t>(alignment);
+  if (void* p = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace strut {
+namespace {
+
+using C = CarChannel;
+using test::tolerance;
+
+IntegrateOptions make_options(Stepper stepper, double step, Closure closure = Closure::kNewton) {
+  IntegrateOptions options;
+  options.step.stepper = stepper;
+  options.step.step = step;
+  options.closure = closure;
+  return options;
+}
+
+SamplePlan make_plan(double interval) {
+  SamplePlan plan;
+  plan.interval = interval;
+  return plan;
+}
+
+const Kernel& widest() { return list_kernels().front(); }
+
+LaneResults run_lanes(const Kernel& kernel, const std::vector<PreparedCase>& cases,
+                      const IntegrateOptions& options, const SamplePlan& plan) {
+  std::vector<const PreparedCase*> pointers;
+  for (const PreparedCase& c : cases) pointers.push_back(&c);
+  return kernel.run_lanes(pointers.data(), static_cast<int>(pointers.size()), options, plan);
+}
+
+double get_history(const LaneResults& r, int sample, int channel, int lane = 0) {
+  return r.history[static_cast<std::size_t>((sample * C::kCount + channel) * r.lanes + lane)];
+}
+
+double calc_rms_difference(const LaneResults& a, const LaneResults& b, int channel,
+                           int lane_a = 0) {
+  double sum = 0.0;
+  for (int i = 0; i < a.sample_count; ++i) {
+    sum += square(get_history(a, i, channel, lane_a) - get_history(b, i, channel));
+  }
+  return std::sqrt(sum / a.sample_count);
+}
+
+double calc_largest_difference(const LaneResults& a, const LaneResults& b, int channel,
+                               int lane_a = 0) {
+  double largest = 0.0;
+  for (int i = 0; i < a.sample_count; ++i) {
+    largest = std::max(largest,
+                       std::abs(get_history(a, i, channel, lane_a) - get_history(b, i, channel)));
+  }
+  return largest;
+}
+
+/// Cases over the corners of the paper's grid.
+std::vector<PreparedCase> make_grid_cases(int count, const Case& base) {
+  CasePreparer preparer;
+  std::vector<PreparedCase> cases;
+  for (int i = 0; i < count; ++i) {
+    Case c = base;
+    for (int axle = 0; axle < kAxles; ++axle) {
+      for (StrutSpec& strut : c.vehicle.suspension[axle].strut) {
+        strut.nominal_stiffness = strut.stiffness;
+        strut.stiffness -= ((i >> axle) & 1) * 4500.0 + 100.0 * i;
+        strut.damping -= ((i >> (axle + 1)) & 1) * 180.0 + 3.0 * i;
+      }
+    }
+    cases.push_back(preparer.prepare(c));
+  }
+  return cases;
+}
+
+void check_order(Stepper stepper, bool lanes) {
+  Case c = test::make_paper_case();
+  c.maneuver = test::make_gentle_maneuver();
+  const PreparedCase prepared = test::prepare(c);
+  const SamplePlan plan = make_plan(0.01);
+  const LaneResults truth = run_cvode(prepared, {}, plan);
+  const std::vector<PreparedCase> batch(static_cast<std::size_t>(widest().lanes), prepared);
+  const double steps[3] = {1e-3, 5e-4, 2.5e-4};
+  double error[3];
+  for (int i = 0; i < 3; ++i) {
+    const IntegrateOptions options = make_options(stepper, steps[i], Closure::kTable);
+    const LaneResults run = lanes ? run_lanes(widest(), batch, options, plan)
+                                  : widest().run_scalar(prepared, options, plan);
+    CHECK(run.event_count == 0);
+    error[i] = calc_rms_difference(run, truth, C::kPitchAngle);
+  }
+  const double order = std::log2(error[0] / error[2]) / 2.0;
+  INFO("errors " << std::scientific << error[0] << " " << error[1] << " " << error[2] << ", order "
+                 << order);
+  CHECK(std::abs(order - 4.0) < tolerance(0.2));
+}
+
+TEST_CASE("RK4 has order four on the full car", "[unit][property]") {
+  check_order(Stepper::kRk4, false);
+}
+TEST_CASE("RK4 has order four on the full car in lanes", "[unit][property]") {
+  check_order(Stepper::kRk4, true);
+}
+TEST_CASE("ABM4 has order four on the full car", "[unit][property]") {
+  check_order(Stepper::kAbm4, false);
+}
+TEST_CASE("ABM4 has order four on the full car in lanes", "[unit][property]") {
+  check_order(Stepper::kAbm4, true);
+}
+
+/// Energy minus work of non-conservative forces, at a state of `c`.
+double calc_balance(const PreparedCase& c, const double* x) {
+  Workspace<double> ws{};
+  State<double> dx{};
+  const NewtonClosure<double> closure{&c.vehicle.layout, &c.vehicle.numbers};
+  calc_derivative(c.vehicle, closure, TireMode::kRolling, x, dx.data(), ws);
+  return calc_energy(c.vehicle, x, ws) - x[StateIndex::kWork];
+}
+
+double calc_energy_error(const PreparedCase& c, Stepper stepper, double step) {
+  const LaneResults run = widest().run_scalar(c, make_options(stepper, step), {});
+  std::vector<double> x(run.final_state);
+  x.resize(StateIndex::kCount);
+  const double start = calc_balance(c, c.start.data());
+  return std::abs(calc_balance(c, x.data()) - start) / std::abs(start);
+}
+
+TEST_CASE("Energy balance closes and its error falls with order four", "[unit][property]") {
+  Case c = test::make_paper_case();
+  c.maneuver = test::make_gentle_maneuver();
+  const PreparedCase prepared = test::prepare(c);
+  const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
+  const double coarse = calc_energy_error(prepared, stepper, 2e-3);
+  const double fine = calc_energy_error(prepared, stepper, 2.5e-4);
+  INFO("relative energy error " << std::scientific << coarse << " at 2 ms, " << fine
+                                << " at 0.25 ms");
+  CHECK(fine < tolerance(1e-8));
+  // Three halvings: 16^3 = 4096; 1e-14 is the rounding of an energy summed over 4000 steps.
+  CHECK(fine < tolerance(coarse / 2000.0 + 1e-14));
+}
+
+TEST_CASE("Loops stay closed over the paper's run", "[unit][property]") {
+  const PreparedCase c = test::prepare(test::make_paper_case());
+  const LaneResults run = widest().run_scalar(c, make_options(Stepper::kRk4, 1e-3), {});
+  CHECK(run.status[0] == 0);
+  INFO("largest loop error " << std::scientific << run.loop_error[0] << " m");
+  CHECK(run.loop_error[0] < tolerance(1e-10));
+}
+
+void check_against_cvode(Stepper stepper) {
+  const PreparedCase c = test::prepare(test::make_paper_case());
+  const SamplePlan plan = make_plan(1e-3);
+  const LaneResults truth = run_cvode(c, {}, plan);
+  for (const double step : {1e-3, 2.5e-4}) {
+    const LaneResults run =
+        widest().run_scalar(c, make_options(stepper, step, Closure::kTable), plan);
+    const double z = calc_largest_difference(run, truth, C::kBodyPositionZ);
+    const double pitch = calc_largest_difference(run, truth, C::kPitchAngle);
+    const double event = std::abs(run.event_time[0] - truth.event_time[0]);
+    const double acceleration = calc_rms_difference(run, truth, C::kBodyAccelerationZ);
+    INFO("step " << step << " s: height " << std::scientific << z << " m, pitch " << pitch
+                 << " rad, event " << event << " s, body acceleration rms " << acceleration
+                 << " m/s^2");
+    // 1 ms is only reported, with a bound that a lost order would break.
+    CHECK(z < tolerance(step < 5e-4 ? 1e-6 : 2e-5));
+    CHECK(pitch < tolerance(step < 5e-4 ? 1e-6 : 2e-5));
+    for (int corner = 0; corner < kCorners; ++corner) {
+      const int wheel = C::kCornerBegin + corner * C::kCornerChannels + C::kWheelPositionZ;
+      CHECK(calc_largest_difference(run, truth, wheel) < tolerance(step < 5e-4 ? 1e-6 : 5e-5));
+    }
+  }
+}
+
+TEST_CASE("RK4 over the bump follows CVODE to a micrometer at 0.25 ms", "[unit][reference]") {
+  check_against_cvode(Stepper::kRk4);
+}
+TEST_CASE("ABM4 over the bump follows CVODE to a micrometer at 0.25 ms", "[unit][reference]") {
+  check_against_cvode(Stepper::kAbm4);
+}
+
+TEST_CASE("A crossing at 3 m/s is as accurate as one at 20", "[unit][reference]") {
+  // Spin against slip is seven times stiffer here: 1 ms is far beyond the explicit limit.
+  Case c = test::make_paper_case();
+  c.maneuver.speed = 3.0;
+  c.maneuver.bump_distance = 1.5;
+  c.maneuver.duration = 2.0;
+  const PreparedCase prepared = test::prepare(c);
+  const SamplePlan plan = make_plan(1e-3);
+  const LaneResults truth = run_cvode(prepared, {}, plan);
+  const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
+  const LaneResults run =
+      widest().run_scalar(prepared, make_options(stepper, 1e-3, Closure::kTable), plan);
+  CHECK(run.status[0] == 0);
+  const double z = calc_largest_difference(run, truth, C::kBodyPositionZ);
+  INFO("height " << std::scientific << z << " m");
+  CHECK(z < tolerance(2e-5));
+}
+
+TEST_CASE("Tabulated corners give the same run as Newton closure", "[unit][property]") {
+  const PreparedCase c = test::prepare(test::make_paper_case());
+  const SamplePlan plan = make_plan(0.01);
+  const LaneResults newton = widest().run_scalar(c, make_options(Stepper::kRk4, 1e-3), plan);
+  const LaneResults table =
+      widest().run_scalar(c, make_options(Stepper::kRk4, 1e-3, Closure::kTable), plan);
+  // The tables' 1e-11 grows by the sensitivity of contact events.
+  CHECK(calc_largest_difference(newton, table, C::kBodyPositionZ) < tolerance(1e-9));
+  CHECK(calc_largest_difference(newton, table, C::kPitchAngle) < tolerance(1e-9));
+  for (int channel = 0; channel < C::kCount; ++channel) {
+    double scale = 1.0;
+    for (int i = 0; i < table.sample_count; ++i) {
+      scale = std::max(scale, std::abs(get_history(table, i, channel)));
+    }
+    CAPTURE(list_car_channels()[static_cast<std::size_t>(channel)].name);
+    CHECK(calc_largest_difference(newton, table, channel) < tolerance(1e-8 * scale));
+  }
+}
+
+TEST_CASE("Lanes equal double in every instruction set", "[unit][property]") {
+  const SamplePlan plan = make_plan(0.01);
+  const Closure closure = GENERATE(Closure::kNewton, Closure::kTable);
+  const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
+  Case c = test::make_paper_case();
+  c.maneuver.duration = 1.0;
+  const IntegrateOptions options = make_options(stepper, 1e-3, closure);
+  const std::vector<PreparedCase> cases = make_grid_cases(8, c);
+  const Kernel& scalar = list_kernels().back();
+  for (const Kernel& kernel : list_kernels()) {
+    const std::vector<PreparedCase> batch(cases.begin(), cases.begin() + kernel.lanes);
+    const LaneResults lanes = run_lanes(kernel, batch, options, plan);
+    for (int lane = 0; lane < kernel.lanes; ++lane) {
+      const auto at = static_cast<std::size_t>(lane);
+      const LaneResults alone = scalar.run_scalar(cases[at], options, plan);
+      CAPTURE(kernel.isa, lane);
+      CHECK(calc_largest_difference(lanes, alone, C::kBodyPositionZ, lane) < tolerance(1e-9));
+      CHECK(calc_largest_difference(lanes, alone, C::kPitchAngle, lane) < tolerance(1e-9));
+      CHECK(std::abs(lanes.event_time[at] - alone.event_time[0]) < tolerance(1e-9));
+    }
+  }
+}
+
+TEST_CASE("A case's bits do not depend on its lane or its neighbours", "[unit][property]") {
+  const SamplePlan plan = make_plan(0.01);
+  const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
+  const IntegrateOptions options = make_options(stepper, 1e-3, Closure::kTable);
+  std::vector<PreparedCase> cases = make_grid_cases(widest().lanes, test::make_paper_case());
+  const LaneResults first = run_lanes(widest(), cases, options, plan);
+  std::vector<PreparedCase> turned(cases.rbegin(), cases.rend());
+  // One neighbour diverges at once.
+  turned[0].vehicle.numbers.damper[0].damping = std::nan("");
+  turned[0].start[StateIndex::kVelocity] = std::numeric_limits<double>::infinity();
+  const LaneResults second = run_lanes(widest(), turned, options, plan);
+  const int last = widest().lanes - 1;
+  CHECK(second.status[0] == static_cast<int>(RunStatus::kDiverged));
+  CHECK(second.failure_time[0] == 0.0);
+  for (int lane = 0; lane < last; ++lane) {
+    const int other = last - lane;
+    CAPTURE(lane);
+    CHECK(first.status[static_cast<std::size_t>(lane)] == 0);
+    CHECK(second.status[static_cast<std::size_t>(other)] == 0);
+    bool same = true;
+    for (int i = 0; i < first.sample_count; ++i) {
+      for (int channel = 0; channel < C::kCount; ++channel) {
+        same =
+            same && get_history(first, i, channel, lane) == get_history(second, i, channel, other);
+      }
+    }
+    CHECK(same);
+    CHECK(first.event_time[static_cast<std::size_t>(lane)] ==
+          second.event_time[static_cast<std::size_t>(other)]);
+  }
+}
+
+TEST_CASE("Different mechanisms share lanes with tables of their own", "[unit][property]") {
+  std::vector<PreparedCase> cases;
+  for (int i = 0; i < widest().lanes; ++i) {
+    Case c = test::make_paper_case();
+    c.maneuver.duration = 0.8;
+    c.vehicle.suspension[kRear].wheel_mass += 0.5 * i;
+    c.maneuver.road.height -= 0.002 * i;
+    cases.push_back(test::prepare(c));
+  }
+  const SamplePlan plan = make_plan(0.01);
+  const IntegrateOptions options = make_options(Stepper::kRk4, 1e-3, Closure::kTable);
+  const LaneResults lanes = run_lanes(widest(), cases, options, plan);
+  for (int lane = 0; lane < widest().lanes; ++lane) {
+    const LaneResults alone =
+        widest().run_scalar(cases[static_cast<std::size_t>(lane)], options, plan);
+    CHECK(calc_largest_difference(lanes, alone, C::kBodyPositionZ, lane) < tolerance(1e-9));
+  }
+}
+
+TEST_CASE("A step allocates nothing", "[unit][property]") {
+  Case c = test::make_paper_case();
+  const Closure closure = GENERATE(Closure::kNewton, Closure::kTable);
+  const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
+  const IntegrateOptions options = make_options(stepper, 1e-3, closure);
+  long counts[2];
+  for (int i = 0; i < 2; ++i) {
+    c.maneuver.duration =
+        i == 0 ? 0.7 : 1.4;  // both contain the snapshot, the second twice the steps
+    const std::vector<PreparedCase> cases = make_grid_cases(widest().lanes, c);
+    std::vector<const PreparedCase*> pointers;
+    for (const PreparedCase& p : cases) pointers.push_back(&p);
+    const long before = allocation_count;
+    widest().run_lanes(pointers.data(), widest().lanes, options, {});
+    counts[i] = allocation_count - before;
+  }
+  CHECK(counts[0] > 0);
+  CHECK(counts[1] == counts[0]);
+}
+
+}  // namespace
+}  // namespace strut
