@@ -15,6 +15,7 @@
 #include "model/force/pac2002_coefficients.h"
 #include "model/math/bounded_trig.h"
 #include "model/math/lanes.h"
+#include "model/math/pair.h"
 
 namespace strut {
 
@@ -86,11 +87,13 @@ namespace pac2002 {
 /// value at the limit: the polynomials in load are fits and turn friction negative far outside.
 template <class T>
 struct LoadPoint {
-  T ratio;      // load / (LFZO FNOMIN), limited
-  T increment;  // df_z = ratio - 1 (4.E2)
+  T ratio;       // load / (LFZO FNOMIN), limited
+  T increment;   // df_z = ratio - 1 (4.E2)
+  T per_newton;  // 1 / (LFZO FNOMIN)
 };
 
-/// One direction of pure slip, all forces per newton of load: nothing is 0/0 at zero load.
+/// One direction of pure slip, F0 / Fz = mu sin(angle) + S_V / Fz. All forces are per newton of
+/// load: nothing is 0/0 at zero load.
 template <class T>
 struct PureSlip {
   T friction;          // mu
@@ -98,13 +101,13 @@ struct PureSlip {
   T slope;             // B C = K / (mu Fz)
   T horizontal_shift;  // S_H
   T vertical_shift;    // S_V / Fz
-  T force;             // F0 / Fz
 };
 
 template <class C, class T>
 LoadPoint<T> calc_load_point(const Pac2002<C>& p, const T& load) {
-  const T ratio = min(max(load, p.FZMIN), p.FZMAX) / (p.LFZO * p.FNOMIN);
-  return {ratio, ratio - 1.0};
+  const T per_newton = C(1.0) / (p.LFZO * p.FNOMIN);
+  const T ratio = min(max(load, p.FZMIN), p.FZMAX) * per_newton;
+  return {ratio, ratio - 1.0, per_newton};
 }
 
 template <class T>
@@ -118,16 +121,31 @@ T limit_curvature(const T& curvature) {
   return min(curvature, T(1.0));
 }
 
-/// arctan(u - E (u - arctan u)).
+/// The argument of a sine or cosine of the Magic Formula: C arctan(u - E (u - arctan u)), u = B s.
+/// Joining two of them (`join_pair`) evaluates them in step, which hides the latency of the
+/// arctangents.
 template <class T>
-T calc_phase(const T& u, const T& curvature) {
-  return atan_any(u - curvature * (u - atan_any(u)));
-}
+struct MagicAngle {
+  T slope;      // B
+  T shape;      // C
+  T curvature;  // E, limited
+  T slip;       // s
 
-/// F_x0 of (4.E9) to (4.E18).
+  [[gnu::always_inline]] T calc() const {
+    const T u = slope * slip;
+    return shape * atan_any(u - curvature * (u - atan_any(u)));
+  }
+  /// The same for |B s| <= 0.1 and |E| <= 50.
+  [[gnu::always_inline]] T calc_small() const {
+    const T u = slope * slip;
+    return shape * atan_small(u - curvature * (u - atan_small(u)));
+  }
+};
+
+/// F_x0 of (4.E9) to (4.E18), its sine's argument in `angle`.
 template <class C, class T>
 PureSlip<T> calc_pure_longitudinal(const Pac2002<C>& p, const T& dfz, const T& kappa,
-                                   const T& camber) {
+                                   const T& camber, MagicAngle<T>& angle) {
   PureSlip<T> x;
   const T gamma = camber * p.LGAX;
   x.horizontal_shift = (p.PHX1 + p.PHX2 * dfz) * p.LHX;
@@ -140,15 +158,15 @@ PureSlip<T> calc_pure_longitudinal(const Pac2002<C>& p, const T& dfz, const T& k
   const T shape = p.PCX1 * p.LCX;
   const T slope = x.stiffness / (shape * x.friction);
   x.slope = slope * shape;
-  x.force = x.friction * sin_bounded(shape * calc_phase(slope * slip, limit_curvature(curvature))) +
-            x.vertical_shift;
+  angle = {slope, shape, limit_curvature(curvature), slip};
   return x;
 }
 
-/// F_y0 of (4.E19) to (4.E30); sin(2 arctan x) = 2 x/(1 + x^2) in the cornering stiffness.
+/// F_y0 of (4.E19) to (4.E30), its sine's argument in `angle`; sin(2 arctan x) = 2 x/(1 + x^2) in
+/// the cornering stiffness.
 template <class C, class T>
 PureSlip<T> calc_pure_lateral(const Pac2002<C>& p, const LoadPoint<T>& at, const T& alpha,
-                              const T& camber) {
+                              const T& camber, MagicAngle<T>& angle) {
   PureSlip<T> y;
   const T& dfz = at.increment;
   const T gamma = camber * p.LGAY;
@@ -163,37 +181,40 @@ PureSlip<T> calc_pure_lateral(const Pac2002<C>& p, const LoadPoint<T>& at, const
   const T shape = p.PCY1 * p.LCY;
   const T slope = y.stiffness / (shape * y.friction);
   y.slope = slope * shape;
-  y.force = y.friction * sin_bounded(shape * calc_phase(slope * slip, limit_curvature(curvature))) +
-            y.vertical_shift;
+  angle = {slope, shape, limit_curvature(curvature), slip};
   return y;
 }
 
-/// Weight G = cos(C phase(B (s + S)))/cos(C phase(B S)) of combined slip (4.E50), (4.E58).
+/// Weight G of combined slip (4.E50), (4.E58): cos(angle at the slip)/cos(angle at the shift).
 template <class T>
-T calc_weight(const T& slope, const T& shape, const T& curvature, const T& slip, const T& shift,
-              bool small_shift) {
-  const T limited = limit_curvature(curvature);
-  const T weight = cos_bounded(shape * calc_phase(slope * (slip + shift), limited));
-  const T u = slope * shift;
-  if (!small_shift) return weight / cos_bounded(shape * calc_phase(u, limited));
-  return weight / cos_small(shape * atan_small(u - limited * (u - atan_small(u))));
-}
+struct Weight {
+  MagicAngle<T> moved;  // at slip + shift
+  T shift;
+
+  T calc(bool small_shift) const {
+    MagicAngle<T> still = moved;
+    still.slip = shift;
+    const T cosine = small_shift ? cos_small(still.calc_small()) : cos_bounded(still.calc());
+    return cos_bounded(moved.calc()) / cosine;
+  }
+};
 
 /// G_xalpha of (4.E50) to (4.E56); cos(arctan x) = 1/sqrt(1 + x^2).
 template <class C, class T>
-T calc_longitudinal_weight(const Pac2002<C>& p, const T& dfz, const T& kappa, const T& alpha,
-                           bool small_shift) {
+Weight<T> make_longitudinal_weight(const Pac2002<C>& p, const T& dfz, const T& kappa,
+                                   const T& alpha) {
   const T slope = p.RBX1 * p.LXAL / sqrt(1.0 + square(p.RBX2 * kappa));
-  return calc_weight<T>(slope, p.RCX1, p.REX1 + p.REX2 * dfz, alpha, p.RHX1, small_shift);
+  const T curvature = limit_curvature<T>(p.REX1 + p.REX2 * dfz);
+  return {{slope, p.RCX1, curvature, alpha + p.RHX1}, p.RHX1};
 }
 
 /// G_ykappa of (4.E58) to (4.E65).
 template <class C, class T>
-T calc_lateral_weight(const Pac2002<C>& p, const T& dfz, const T& kappa, const T& alpha,
-                      bool small_shift) {
+Weight<T> make_lateral_weight(const Pac2002<C>& p, const T& dfz, const T& kappa, const T& alpha) {
   const T slope = p.RBY1 * p.LYKA / sqrt(1.0 + square(p.RBY2 * (alpha - p.RBY3)));
   const T shift = p.RHY1 + p.RHY2 * dfz;
-  return calc_weight<T>(slope, p.RCY1, p.REY1 + p.REY2 * dfz, kappa, shift, small_shift);
+  const T curvature = limit_curvature<T>(p.REY1 + p.REY2 * dfz);
+  return {{slope, p.RCY1, curvature, kappa + shift}, shift};
 }
 
 /// S_Vykappa / Fz of (4.E66), (4.E67): side force induced by longitudinal slip (plysteer).
@@ -217,16 +238,20 @@ template <class C, class T>
 CombinedSlip<T> calc_combined_slip(const Pac2002<C>& p, const LoadPoint<T>& at,
                                    const TireSlip<T>& s, const Pac2002Parts& parts) {
   CombinedSlip<T> c;
-  c.x = calc_pure_longitudinal(p, at.increment, s.kappa, s.camber);
-  c.y = calc_pure_lateral(p, at, s.alpha, s.camber);
-  c.fx = c.x.force;
-  c.fy = c.y.force;
+  MagicAngle<T> x, y;
+  c.x = calc_pure_longitudinal(p, at.increment, s.kappa, s.camber, x);
+  c.y = calc_pure_lateral(p, at, s.alpha, s.camber, y);
+  const Pair<T> sine = sin_bounded(join_pair(x, y).calc());
+  c.fx = c.x.friction * sine.a + c.x.vertical_shift;
+  c.fy = c.y.friction * sine.b + c.y.vertical_shift;
   c.induced_side = T(0.0);
   if (!parts.combined) return c;
+  const Pair<T> weight = join_pair(make_longitudinal_weight(p, at.increment, s.kappa, s.alpha),
+                                   make_lateral_weight(p, at.increment, s.kappa, s.alpha))
+                             .calc(parts.small_shift);
   c.induced_side = calc_induced_side_force(p, at.increment, c.y.friction, s);
-  c.fx = c.fx * calc_longitudinal_weight(p, at.increment, s.kappa, s.alpha, parts.small_shift);
-  c.fy = c.fy * calc_lateral_weight(p, at.increment, s.kappa, s.alpha, parts.small_shift) +
-         c.induced_side;
+  c.fx = c.fx * weight.a;
+  c.fy = c.fy * weight.b + c.induced_side;
   return c;
 }
 
@@ -238,32 +263,31 @@ T calc_equivalent_slip(const T& alpha, const T& ratio_squared) {
   return sign(alpha) * atan_quadrant(sqrt(s * s + ratio_squared * c * c), abs(c));
 }
 
-/// Pneumatic trail t / (Fz R0), (4.E33) to (4.E35), (4.E40) to (4.E44), without cos alpha.
+/// Pneumatic trail t / R0, (4.E33) to (4.E35), (4.E40) to (4.E44), without cos alpha.
+/// `slip`: equivalent slip angle; `stiffness`: LKY/LMUY.
 template <class C, class T>
-T calc_trail(const Pac2002<C>& p, const LoadPoint<T>& at, const T& alpha, const T& gamma,
-             const T& ratio_squared) {
+T calc_trail(const Pac2002<C>& p, const LoadPoint<T>& at, const T& gamma, const T& slip,
+             const C& stiffness) {
   const T& dfz = at.increment;
-  const T shift = p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma;
-  const T slip = calc_equivalent_slip(alpha + shift, ratio_squared);
   const T slope = (p.QBZ1 + dfz * (p.QBZ2 + dfz * p.QBZ3)) *
-                  (1.0 + p.QBZ4 * gamma + p.QBZ5 * abs(gamma)) * p.LKY / p.LMUY;
-  const T peak = (p.QDZ1 + p.QDZ2 * dfz) * (1.0 + gamma * (p.QDZ3 + gamma * p.QDZ4)) * p.LTR /
-                 (p.LFZO * p.FNOMIN);
+                  (1.0 + p.QBZ4 * gamma + p.QBZ5 * abs(gamma)) * stiffness;
+  const T peak =
+      (p.QDZ1 + p.QDZ2 * dfz) * (1.0 + gamma * (p.QDZ3 + gamma * p.QDZ4)) * p.LTR * at.per_newton;
   constexpr double kTwoOverPi = 0.63661977236758134308;
   const T curvature =
       (p.QEZ1 + dfz * (p.QEZ2 + dfz * p.QEZ3)) *
       (1.0 + (p.QEZ4 + p.QEZ5 * gamma) * (kTwoOverPi * atan_any(slope * p.QCZ1 * slip)));
-  return peak * cos_bounded(p.QCZ1 * calc_phase(slope * slip, limit_curvature(curvature)));
+  const MagicAngle<T> angle{slope, p.QCZ1, limit_curvature(curvature), slip};
+  return peak * cos_bounded(angle.calc());
 }
 
 /// Residual torque M_zr / (Fz R0), (4.E36) to (4.E38), (4.E45) to (4.E47), without cos alpha.
+/// `slip`: equivalent slip angle; `stiffness`: LKY/LMUY.
 template <class C, class T>
 T calc_residual_torque(const Pac2002<C>& p, const LoadPoint<T>& at, const PureSlip<T>& y,
-                       const T& alpha, const T& gamma, const T& ratio_squared) {
+                       const T& gamma, const T& slip, const C& stiffness) {
   const T& dfz = at.increment;
-  const T shift = y.horizontal_shift + y.vertical_shift / y.stiffness;
-  const T slip = calc_equivalent_slip(alpha + shift, ratio_squared);
-  const T slope = p.QBZ9 * p.LKY / p.LMUY + p.QBZ10 * y.slope;
+  const T slope = p.QBZ9 * stiffness + p.QBZ10 * y.slope;
   const T peak = ((p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma) * p.LMUY;
   return peak / sqrt(1.0 + square(slope * slip));
 }
@@ -272,33 +296,43 @@ T calc_residual_torque(const Pac2002<C>& p, const LoadPoint<T>& at, const PureSl
 template <class C, class T>
 T calc_aligning_torque(const Pac2002<C>& p, const LoadPoint<T>& at, const TireSlip<T>& s,
                        const CombinedSlip<T>& c) {
+  const T& dfz = at.increment;
   const T gamma = s.camber * p.LGAZ;
-  const T ratio_squared = square(c.x.stiffness / c.y.stiffness * s.kappa);
-  const T trail = s.load * calc_trail(p, at, s.alpha, gamma, ratio_squared);
-  const T residual = calc_residual_torque(p, at, c.y, s.alpha, gamma, ratio_squared);
-  const T arm = (p.SSZ1 + p.SSZ2 * (s.load / (p.LFZO * p.FNOMIN)) * c.fy +
-                 (p.SSZ3 + p.SSZ4 * at.increment) * s.camber) *
-                p.LS;
+  const C stiffness = p.LKY / p.LMUY;
+  const T compliance = 1.0 / c.y.stiffness;
+  const T trail_shift = p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma;
+  const T residual_shift = c.y.horizontal_shift + c.y.vertical_shift * compliance;
+  const T ratio_squared = square(c.x.stiffness * compliance * s.kappa);
+  const Pair<T> slip = calc_equivalent_slip(
+      Pair<T>(s.alpha + trail_shift, s.alpha + residual_shift), Pair<T>(ratio_squared));
+  const T trail = s.load * calc_trail(p, at, gamma, slip.a, stiffness);
+  const T residual = calc_residual_torque(p, at, c.y, gamma, slip.b, stiffness);
+  const T arm =
+      (p.SSZ1 + p.SSZ2 * (s.load * at.per_newton) * c.fy + (p.SSZ3 + p.SSZ4 * dfz) * s.camber) *
+      p.LS;
   return s.load * p.UNLOADED_RADIUS *
          ((residual - trail * (c.fy - c.induced_side)) * cos_bounded(s.alpha) + arm * c.fx);
 }
 
 /// M_x of (4.E69) [N m].
 template <class C, class T>
-T calc_overturning_couple(const Pac2002<C>& p, const TireSlip<T>& s, const T& fy) {
+T calc_overturning_couple(const Pac2002<C>& p, const LoadPoint<T>& at, const TireSlip<T>& s,
+                          const T& fy) {
   return s.load * p.UNLOADED_RADIUS * p.LMX *
-         (p.QSX1 * p.LVMX - p.QSX2 * s.camber + p.QSX3 * fy / p.FNOMIN);
+         (p.QSX1 * p.LVMX - p.QSX2 * s.camber + p.QSX3 * p.LFZO * at.per_newton * fy);
 }
 
 /// Rolling resistance M_y [ADAMS] [N m], negative (against the wheel's spin) when rolling forward;
 /// it fades below 0.1 m/s, where its direction would jump.
 template <class C, class T>
-T calc_rolling_resistance(const Pac2002<C>& p, const TireSlip<T>& s, const T& fx) {
+T calc_rolling_resistance(const Pac2002<C>& p, const LoadPoint<T>& at, const TireSlip<T>& s,
+                          const T& fx) {
   constexpr double kFullSpeed = 0.1;  // m/s
-  const T direction = max(min(s.speed / kFullSpeed, T(1.0)), T(-1.0));
-  const T speed = abs(s.speed) / p.LONGVL;
-  const T coefficient =
-      p.QSY1 + p.QSY2 * fx / p.FNOMIN + speed * (p.QSY3 + p.QSY4 * speed * speed * speed);
+  const T direction = max(min(s.speed * (1.0 / kFullSpeed), T(1.0)), T(-1.0));
+  const C inverse_speed = C(1.0) / p.LONGVL;
+  const T speed = abs(s.speed) * inverse_speed;
+  const T coefficient = p.QSY1 + p.QSY2 * p.LFZO * at.per_newton * fx +
+                        speed * (p.QSY3 + p.QSY4 * speed * speed * speed);
   return -direction * s.load * p.UNLOADED_RADIUS * p.LMY * coefficient;
 }
 
@@ -321,8 +355,8 @@ TireForce<T> calc_tire_force(const Pac2002<C>& p, const TireSlip<T>& slip, const
   const T fy = s.load * c.fy;
   f.fy = side * fy;
   f.mx = f.mz = T(0.0);
-  if (parts.overturning) f.mx = side * pac2002::calc_overturning_couple(p, s, fy);
-  f.my = pac2002::calc_rolling_resistance(p, s, f.fx);
+  if (parts.overturning) f.mx = side * pac2002::calc_overturning_couple(p, at, s, fy);
+  f.my = pac2002::calc_rolling_resistance(p, at, s, f.fx);
   if (parts.aligning) f.mz = side * pac2002::calc_aligning_torque(p, at, s, c);
   f.slip_stiffness = s.load * c.x.stiffness;
   return f;
@@ -354,12 +388,12 @@ RelaxationLength<T> calc_relaxation_length(const Pac2002<C>& p, const T& load, c
 template <class C, class T>
 T calc_rolling_radius(const Pac2002<C>& p, const C& unloaded_radius, const T& deflection,
                       const C& vertical_stiffness) {
-  const C rho0 = p.FNOMIN / vertical_stiffness;
+  const C rho0 = p.FNOMIN / vertical_stiffness, inverse = vertical_stiffness / p.FNOMIN;
   const T rho = max(deflection, T(0.0));
-  const T x = rho / rho0;
+  const T x = rho * inverse;
   const T fitted = rho0 * (p.DREFF * atan_any(p.BREFF * x) + p.FREFF * x);
   const T given = abs(p.BREFF) + abs(p.DREFF) + abs(p.FREFF);
-  return unloaded_radius - select(given > T(0.0), fitted, rho / 3.0);
+  return unloaded_radius - select(given > T(0.0), fitted, rho * (1.0 / 3.0));
 }
 
 }  // namespace strut

@@ -65,13 +65,15 @@ TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind,
                                  const T& normal_z, const T& clearance) {
   TireContact<T> contact;
   contact.normal = normal;
-  contact.forward = normalized(cross(wheel.axis, normal));
+  const Vec3<T> sideways = cross(wheel.axis, normal);
+  // Also 1/(up . normal), because up . normal = (forward x axis) . normal = forward . sideways.
+  const T tilt = T(1.0) / norm(sideways);
+  contact.forward = tilt * sideways;
   contact.lateral = cross(normal, contact.forward);
   const Vec3<T> up = cross(contact.forward, wheel.axis);  // in the wheel plane
   const T distance = kind == ContactKind::kEnvelope
                          ? tire.radius - (tire.radius - clearance) * normal_z
                          : clearance * normal_z;
-  const T tilt = T(1.0) / dot(up, normal);
   contact.loaded_radius = distance * tilt;
   contact.arm = -contact.loaded_radius * up;
   contact.deflection = tire.radius - contact.loaded_radius;

@@ -2,8 +2,9 @@
 //
 // A few components may be stiff and scalar (the spin of a wheel against its slip stiffness):
 // d(u)/dt = -decay u + N(u, rest). For those both methods are taken in exponential form, with the
-// decay rate frozen at the start of the step: Cox and Matthews' ETDRK4 (J. Comput. Phys. 176, 2002,
-// eqs. 26-29) and exponential Adams formulas (same, eq. 11, and its implicit twin). With decay = 0
+// decay rate frozen at the start of the step: Krogstad's ETDRK4-B (J. Comput. Phys. 203, 2005, eq.
+// 51) and the exponential Adams formulas of Cox and Matthews (J. Comput. Phys. 176, 2002, eq. 11)
+// with their implicit twin. With decay = 0
 // they are the classical methods; for any decay they keep order four, since what the linear part
 // takes away the nonlinear part N gives back.
 //
@@ -27,7 +28,7 @@ template <class T>
 struct StiffWeights {
   std::array<T, kMaxStiff> decay;  // 1/s, frozen
   std::array<PhiFunctions<T>, kMaxStiff> full;
-  std::array<T, kMaxStiff> half_exponential, half_phi1;
+  std::array<PhiFunctions<T>, kMaxStiff> half;
 };
 
 template <class T>
@@ -35,9 +36,7 @@ void update_stiff_weights(const T* decay, const T& h, int count, StiffWeights<T>
   for (int i = 0; i < count; ++i) {
     weights.decay[i] = decay[i];
     weights.full[i] = calc_phi(-decay[i] * h);
-    const PhiFunctions<T> half = calc_phi(T(-0.5) * decay[i] * h);
-    weights.half_exponential[i] = half.exponential;
-    weights.half_phi1[i] = half.phi1;
+    weights.half[i] = calc_phi(T(-0.5) * decay[i] * h);
   }
 }
 
@@ -57,7 +56,7 @@ void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWei
   const T half = T(0.5) * h;
   T* stage = scratch.stage.data();
   T *k2 = scratch.k[1].data(), *k3 = scratch.k[2].data(), *k4 = scratch.k[3].data();
-  std::array<T, kMaxStiff> n1, n2, n3, a;
+  std::array<T, kMaxStiff> n1, n2, n3;
   const auto nonlinear = [&](const T* k, const T* u, std::array<T, kMaxStiff>& out) {
     for (int i = 0; i < count; ++i) out[i] = k[begin + i] + weights.decay[i] * u[begin + i];
   };
@@ -65,24 +64,26 @@ void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWei
   nonlinear(f, x, n1);
   for (int i = 0; i < n; ++i) stage[i] = x[i] + half * f[i];
   for (int i = 0; i < count; ++i) {
-    a[i] = weights.half_exponential[i] * x[begin + i] + half * weights.half_phi1[i] * n1[i];
-    stage[begin + i] = a[i];
+    const PhiFunctions<T>& p = weights.half[i];
+    stage[begin + i] = p.exponential * x[begin + i] + half * p.phi1 * n1[i];
   }
   system.calc_derivative(t + half, stage, k2, scratch.unused_decay.data());
   nonlinear(k2, stage, n2);
 
   for (int i = 0; i < n; ++i) stage[i] = x[i] + half * k2[i];
   for (int i = 0; i < count; ++i) {
+    const PhiFunctions<T>& p = weights.half[i];
     stage[begin + i] =
-        weights.half_exponential[i] * x[begin + i] + half * weights.half_phi1[i] * n2[i];
+        p.exponential * x[begin + i] + half * (p.phi1 * n1[i] + T(2.0) * p.phi2 * (n2[i] - n1[i]));
   }
   system.calc_derivative(t + half, stage, k3, scratch.unused_decay.data());
   nonlinear(k3, stage, n3);
 
   for (int i = 0; i < n; ++i) stage[i] = x[i] + h * k3[i];
   for (int i = 0; i < count; ++i) {
+    const PhiFunctions<T>& p = weights.full[i];
     stage[begin + i] =
-        weights.half_exponential[i] * a[i] + half * weights.half_phi1[i] * (T(2.0) * n3[i] - n1[i]);
+        p.exponential * x[begin + i] + h * (p.phi1 * n1[i] + T(2.0) * p.phi2 * (n3[i] - n1[i]));
   }
   system.calc_derivative(t + h, stage, k4, scratch.unused_decay.data());
 

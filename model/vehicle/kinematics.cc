@@ -25,8 +25,8 @@ void close_at(const CornerTopology& topology, const CornerGeometry<double>& geom
               ClosedCorner& corner) {
   LoopFactor<double> factor;
   corner.joints[kTree.independent] = q;
-  corner.loop_error = close_loops<kTree>(topology, geometry, kLoopIterations, corner.joints,
-                                         corner.pose, factor);
+  corner.loop_error =
+      close_loops<kTree>(topology, geometry, kLoopIterations, corner.joints, corner.pose, factor);
   PartMotion<double> parts;
   update_part_motion<kTree>(topology, geometry, corner.pose, factor, parts);
   update_wheel_and_lines<kTree>(topology, geometry, corner.pose, parts, corner.motion);

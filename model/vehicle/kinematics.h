@@ -19,9 +19,10 @@ struct KinematicsPoint {
   double track = 0.0;           // m, of the axle when both wheels travel alike
 };
 
-/// A corner of `car` at wheel travels [m] in ascending order, each solved by Newton from its neighbor
-/// nearer to nominal trim, to 1e-13 m; neighbors should lie within some 5 mm. Travels may exceed
-/// kHalfTravel a little. Throws ModelError, naming axle and travel, where the loops do not close.
+/// A corner of `car` at wheel travels [m] in ascending order, each solved by Newton from its
+/// neighbor nearer to nominal trim, to 1e-13 m; neighbors should lie within some 5 mm. Travels may
+/// exceed kHalfTravel a little. Throws ModelError, naming axle and travel, where the loops do not
+/// close.
 std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int corner,
                                              const std::vector<double>& travels);
 
