@@ -93,13 +93,14 @@ class Simulation {
     results_.history.assign(static_cast<std::size_t>(results_.sample_count) * channels * lanes,
                             std::nan(""));
     channel_.resize(channels);
-    x_ = x0;
+    x_ring_[0] = x0;
+    head_ = 0;
     time_ = T(0.0);
     end_ = T(plan_.duration);
     past_count_ = T(0.0);
     next_sample_ = T(0.0);
     triggered_ = T(plan_.snapshot ? 0.0 : 1.0);
-    evaluate(time_, x_.data(), f_.data(), decay_.data());
+    evaluate(time_, x(), f(), decay_.data());
     system_.get_guards(guard_.data());
     for (int g = 0; g < system_.guard_count(); ++g) {
       side_[g] = select(guard_[g] > T(0.0), T(1.0), T(0.0));
@@ -123,7 +124,7 @@ class Simulation {
     const Mask full = h_ > nominal * T(1.0 - 1e-9);
     update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
     take_step(full);
-    evaluate(time_ + h_, x1_.data(), f1_.data(), decay1_.data());
+    evaluate(time_ + h_, x1(), f1(), decay1_.data());
     system_.get_guards(guard1_.data());
     trigger1_ = system_.get_trigger();
     Mask restarted = time_ < T(-1.0);
@@ -141,15 +142,15 @@ class Simulation {
     const Mask active = time_ < end_;
     const bool some_multistep = any(multistep & active);
     if (some_multistep) {
-      step_abm4<T>(system_, time_, x_.data(), f_.data(), past_, weights_, h_, x1_.data(), scratch_);
+      step_abm4<T>(system_, time_, x(), f(), get_past(), weights_, h_, x1(), scratch_);
       ++results_.derivative_count;
     }
     if (any((!multistep) & active)) {
-      T* target = some_multistep ? other_.data() : x1_.data();
-      step_rk4<T>(system_, time_, x_.data(), f_.data(), weights_, h_, target, scratch_);
+      T* target = some_multistep ? other_.data() : x1();
+      step_rk4<T>(system_, time_, x(), f(), weights_, h_, target, scratch_);
       results_.derivative_count += 3;
       if (some_multistep) {
-        for (int i = 0; i < system_.size(); ++i) x1_[i] = select(multistep, x1_[i], other_[i]);
+        for (int i = 0; i < system_.size(); ++i) x1()[i] = select(multistep, x1()[i], other_[i]);
       }
     }
   }
@@ -198,8 +199,7 @@ class Simulation {
     std::array<T, kMaxGuards> g_now;
     for (int i = 0; i < kIterations; ++i) {
       theta = select(crossing, (a * gb - b * ga) / (gb - ga), T(1.0));
-      interpolate_state(x_.data(), f_.data(), x1_.data(), f1_.data(), h_, theta, system_.size(),
-                        other_.data());
+      interpolate_state(x(), f(), x1(), f1(), h_, theta, system_.size(), other_.data());
       system_.calc_guards(time_ + theta * h_, other_.data(), g_now.data());
       T value = T(0.0);
       for (int g = 0; g < guards; ++g) {
@@ -217,10 +217,10 @@ class Simulation {
   void shorten_step(Mask lanes, const T& theta) {
     h_ = select(lanes, max(theta, T(1e-9)) * h_, h_);
     update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
-    step_rk4<T>(system_, time_, x_.data(), f_.data(), weights_, h_, other_.data(), scratch_);
+    step_rk4<T>(system_, time_, x(), f(), weights_, h_, other_.data(), scratch_);
     results_.derivative_count += 3;
-    for (int i = 0; i < system_.size(); ++i) x1_[i] = select(lanes, other_[i], x1_[i]);
-    evaluate(time_ + h_, x1_.data(), f1_.data(), decay1_.data());
+    for (int i = 0; i < system_.size(); ++i) x1()[i] = select(lanes, other_[i], x1()[i]);
+    evaluate(time_ + h_, x1(), f1(), decay1_.data());
     system_.get_guards(guard1_.data());
     trigger1_ = system_.get_trigger();
   }
@@ -238,7 +238,7 @@ class Simulation {
       results_.event_count += get_mask_lane(restarted, lane) ? 1 : 0;
     }
     if (!renew) return;
-    evaluate(time_ + h_, x1_.data(), f1_.data(), decay1_.data());
+    evaluate(time_ + h_, x1(), f1(), decay1_.data());
     T renewed[kMaxGuards];
     system_.get_guards(renewed);
     for (int g = 0; g < system_.guard_count(); ++g) {
@@ -263,8 +263,8 @@ class Simulation {
     end_ = select(failed, time_, end_);
     h_ = select(failed, T(0.0), h_);
     for (int i = 0; i < system_.size(); ++i) {
-      x1_[i] = select(failed, x_[i], x1_[i]);
-      f1_[i] = select(failed, T(0.0), f1_[i]);
+      x1()[i] = select(failed, x()[i], x1()[i]);
+      f1()[i] = select(failed, T(0.0), f1()[i]);
     }
   }
 
@@ -279,7 +279,7 @@ class Simulation {
     for (int i = 0; i < 3; ++i) {
       const T h = select(hit, theta, T(0.0)) * h_;
       update_stiff_weights(decay_.data(), h, system_.stiff_count(), weights);
-      step_rk4<T>(system_, time_, x_.data(), f_.data(), weights, h, other_.data(), scratch_);
+      step_rk4<T>(system_, time_, x(), f(), weights, h, other_.data(), scratch_);
       evaluate(time_ + h, other_.data(), other_f_.data(), scratch_.unused_decay.data());
       results_.derivative_count += 3;
       const T error = system_.get_trigger();
@@ -314,7 +314,7 @@ class Simulation {
 
   void record_samples_at_start() {
     if (results_.sample_count == 0) return;
-    system_.observe(time_, x_.data(), channel_.data());
+    system_.observe(time_, x(), channel_.data());
     store_sample(time_ <= end_);
   }
 
@@ -328,8 +328,7 @@ class Simulation {
                            (next_sample_ < T(results_.sample_count - 0.5));
       if (!any(pending)) return;
       const T theta = select(pending, min((due - time_) / max(h_, T(1e-300)), T(1.0)), T(0.0));
-      interpolate_state(x_.data(), f_.data(), x1_.data(), f1_.data(), h_, theta, system_.size(),
-                        other_.data());
+      interpolate_state(x(), f(), x1(), f1(), h_, theta, system_.size(), other_.data());
       evaluate(due, other_.data(), other_f_.data(), scratch_.unused_decay.data());
       system_.observe(due, other_.data(), channel_.data());
       store_sample(pending);
@@ -337,15 +336,17 @@ class Simulation {
   }
 
   void commit(Mask restarted, Mask last) {
-    past_.push(f_.data(), x_.data(), system_.size(), system_.stiff_begin(), system_.stiff_count());
     past_count_ = select(restarted, T(0.0), past_count_ + T(1.0));
     const Mask arrived = last & (!restarted);
     time_ = select(arrived, end_, time_ + h_);
     const Mask moving = h_ > T(0.0);
-    for (int i = 0; i < system_.size(); ++i) {
-      x_[i] = select(moving, x1_[i], x_[i]);
-      f_[i] = select(moving, f1_[i], f_[i]);
+    if (!all(moving)) {
+      for (int i = 0; i < system_.size(); ++i) {
+        x1()[i] = select(moving, x1()[i], x()[i]);
+        f1()[i] = select(moving, f1()[i], f()[i]);
+      }
     }
+    head_ = (head_ + 1) % kRing;
     for (int i = 0; i < system_.stiff_count(); ++i) decay_[i] = decay1_[i];
     for (int g = 0; g < system_.guard_count(); ++g) guard_[g] = guard1_[g];
     trigger_ = trigger1_;
@@ -362,19 +363,36 @@ class Simulation {
     for (int i = 0; i < system_.size(); ++i) {
       for (int lane = 0; lane < kLanes; ++lane) {
         results_.final_state[static_cast<std::size_t>(i) * lanes + static_cast<std::size_t>(lane)] =
-            get_lane(x_[i], lane);
+            get_lane(x()[i], lane);
       }
     }
+  }
+
+  T* x() { return x_ring_[static_cast<std::size_t>(head_)].data(); }
+  T* f() { return f_ring_[static_cast<std::size_t>(head_)].data(); }
+  T* x1() { return x_ring_[static_cast<std::size_t>((head_ + 1) % kRing)].data(); }
+  T* f1() { return f_ring_[static_cast<std::size_t>((head_ + 1) % kRing)].data(); }
+  AdamsHistory<T> get_past() const {
+    AdamsHistory<T> past;
+    for (int j = 0; j < 3; ++j) {
+      const auto at = static_cast<std::size_t>((head_ + kRing - 1 - j) % kRing);
+      past.x[static_cast<std::size_t>(j)] = x_ring_[at].data();
+      past.f[static_cast<std::size_t>(j)] = f_ring_[at].data();
+    }
+    return past;
   }
 
   System& system_;
   StepOptions options_;
   SamplePlan plan_;
   LaneResults results_;
-  Vector x_, x1_, f_, f1_, other_, other_f_;
+  // The last step ends in a ring: current at head_, the next one after it, the past before it.
+  static constexpr int kRing = 5;
+  std::array<Vector, kRing> x_ring_{}, f_ring_{};
+  int head_ = 0;
+  Vector other_, other_f_;
   std::array<T, kMaxStiff> decay_{}, decay1_{};
   StiffWeights<T> weights_;
-  AdamsHistory<T, N> past_;
   StepScratch<T, N> scratch_;
   std::array<T, kMaxGuards> guard_{}, guard1_{}, side_{};
   T time_, end_, h_, past_count_, next_sample_, trigger_, trigger1_, triggered_;

@@ -103,28 +103,18 @@ void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWei
   }
 }
 
-/// Derivatives at the last three step ends before the current one, newest first.
-template <class T, int N>
+/// States and derivatives at the last three step ends before the current one, newest first.
+template <class T>
 struct AdamsHistory {
-  std::array<std::array<T, N>, 3> f;
-  std::array<std::array<T, kMaxStiff>, 3> stiff;  // the stiff components themselves
-
-  void push(const T* derivative, const T* x, int n, int begin, int count) {
-    f[2] = f[1];
-    f[1] = f[0];
-    stiff[2] = stiff[1];
-    stiff[1] = stiff[0];
-    for (int i = 0; i < n; ++i) f[0][i] = derivative[i];
-    for (int i = 0; i < count; ++i) stiff[0][i] = x[begin + i];
-  }
+  std::array<const T*, 3> x, f;
 };
 
 /// Predict (Adams-Bashforth 4), evaluate, correct (Adams-Moulton 4). The final evaluation is the
 /// caller's, who needs it anyway as the next step's derivative.
 template <class T, class System>
-void step_abm4(System& system, const T& t, const T* x, const T* f,
-               const AdamsHistory<T, System::kCapacity>& past, const StiffWeights<T>& weights,
-               const T& h, T* x1, StepScratch<T, System::kCapacity>& scratch) {
+void step_abm4(System& system, const T& t, const T* x, const T* f, const AdamsHistory<T>& past,
+               const StiffWeights<T>& weights, const T& h, T* x1,
+               StepScratch<T, System::kCapacity>& scratch) {
   const int n = system.size(), begin = system.stiff_begin(), count = system.stiff_count();
   T* predicted = scratch.stage.data();
   T* fp = scratch.k[1].data();
@@ -138,7 +128,9 @@ void step_abm4(System& system, const T& t, const T* x, const T* f,
     const PhiFunctions<T>& p = weights.full[i];
     const T n0 = f[begin + i] + weights.decay[i] * x[begin + i];
     T nj[3];
-    for (int j = 0; j < 3; ++j) nj[j] = past.f[j][begin + i] + weights.decay[i] * past.stiff[j][i];
+    for (int j = 0; j < 3; ++j) {
+      nj[j] = past.f[j][begin + i] + weights.decay[i] * past.x[j][begin + i];
+    }
     nonlinear[0][i] = n0;
     for (int j = 0; j < 3; ++j) nonlinear[j + 1][i] = nj[j];
     // Newton's backward differences of N over the last four points.

@@ -1,0 +1,25 @@
+// What a command of the program is, and the exit codes all of them share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace strut {
+
+/// What the program's caller learns from its exit code; 128 + the signal where one stopped it.
+enum ExitCode : int {
+  kExitDone = 0,
+  kExitNo = 1,           // it ran, and the answer is no
+  kExitInput = 2,        // the user's input is wrong
+  kExitEnvironment = 3,  // disk full, file unreadable, ...
+};
+
+struct Command {
+  const char* name;
+  const char* purpose;  // one line
+  /// Takes the arguments after the command's name, returns an exit code. Throws InputError,
+  /// EnvironmentError.
+  int (*run)(const std::vector<std::string>& arguments);
+};
+
+}  // namespace strut

@@ -1,0 +1,14 @@
+// `strut simulate --kinematics`: suspension curves with the chassis held.
+#pragma once
+
+#include <filesystem>
+
+#include "jobs/load_case.h"
+
+namespace strut {
+
+/// Writes the curves of the front-left and rear-left corner, -100 to +100 mm in 2.5 mm, as CSV.
+/// Throws InputError, EnvironmentError.
+void write_kinematics(const CaseSource& source, const std::filesystem::path& output);
+
+}  // namespace strut

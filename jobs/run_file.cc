@@ -1,0 +1,76 @@
+#include "jobs/run_file.h"
+
+#include <cmath>
+
+#include "io/csv.h"
+#include "io/hdf5.h"
+#include "io/nearest_name.h"
+#include "jobs/interrupt.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+void write_run_csv(const std::filesystem::path& path, const RunRecord& run) {
+  std::vector<CsvColumn> columns;
+  const auto& channels = list_car_channels();
+  for (int c = 0; c < CarChannel::kCount; ++c) {
+    const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
+    columns.push_back({channel.name, channel.unit, get_history(run.results, c)});
+  }
+  write_csv(path, columns);
+}
+
+void write_one(Hdf5Writer& file, const std::string& name, double value, const std::string& unit,
+               const std::string& description) {
+  file.write(name, std::vector<double>{value}, {unit, description, {}});
+}
+
+void write_run_hdf5(const std::filesystem::path& path, const RunRecord& run) {
+  Hdf5Writer file(path);
+  const auto& channels = list_car_channels();
+  for (int c = 0; c < CarChannel::kCount; ++c) {
+    const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
+    file.write("/history/" + channel.name, get_history(run.results, c),
+               {channel.unit, channel.description, {}});
+  }
+  if (has_snapshot(run.results)) {
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      write_one(file, "/snapshot/" + channels[c].name, run.results.snapshot[c], channels[c].unit,
+                channels[c].description);
+    }
+    write_one(file, "/snapshot/event_time", run.results.event_time[0], "s",
+              "time at which the rear wheel centers are over the bump's center");
+  }
+  for (const ParameterInfo& p : list_parameters()) {
+    write_one(file, "/parameters/" + p.name, p.get(run.input), p.unit, p.description);
+  }
+  for (const auto& [name, text] : run.provenance) file.write_attribute("/", name, text);
+  file.commit();
+}
+
+}  // namespace
+
+RunFormat find_run_format(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  if (extension == ".csv") return RunFormat::kCsv;
+  if (extension == ".h5" || extension == ".hdf5") return RunFormat::kHdf5;
+  throw InputError("--output = " + path.string() + ": the name must end in .csv, .h5 or .hdf5");
+}
+
+bool has_snapshot(const LaneResults& results) { return std::isfinite(results.event_time[0]); }
+
+std::vector<double> get_history(const LaneResults& results, int channel) {
+  std::vector<double> values(static_cast<std::size_t>(results.sample_count));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = results.history[i * CarChannel::kCount + static_cast<std::size_t>(channel)];
+  }
+  return values;
+}
+
+void write_run(const std::filesystem::path& path, RunFormat format, const RunRecord& run) {
+  const InterruptGuard guard;
+  format == RunFormat::kCsv ? write_run_csv(path, run) : write_run_hdf5(path, run);
+}
+
+}  // namespace strut

@@ -1,0 +1,283 @@
+#include "jobs/simulate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "jobs/arguments.h"
+#include "jobs/build_info.h"
+#include "jobs/command.h"
+#include "jobs/json.h"
+#include "jobs/kinematics.h"
+#include "jobs/run_file.h"
+#include "model/kernel/stability.h"
+
+namespace strut {
+namespace {
+
+const std::vector<std::string> kIntegrators = {"rk4", "abm4", "cvode"};
+const std::vector<std::string> kClosures = {"newton", "table"};       // Closure
+const std::vector<std::string> kSpins = {"exponential", "explicit"};  // SpinTreatment
+constexpr int kCvode = 2;
+constexpr double kMaxStep = 0.02;    // s, a wheel hop has 80 ms
+constexpr double kMaxSamples = 2e6;  // one gigabyte of history
+constexpr double kRetryFraction = 0.125;
+
+/// The network inputs of the paper.
+constexpr std::array<int, 5> kInputs = {CarChannel::kBodyPositionZ, CarChannel::kBodyVelocityZ,
+                                        CarChannel::kBodyAccelerationZ, CarChannel::kPitchAngle,
+                                        CarChannel::kPitchRate};
+
+struct SimulateOptions {
+  CaseSource source;
+  std::filesystem::path output;
+  int integrator = 0;  // of kIntegrators
+  IntegrateOptions integrate;
+  double rate = 1000.0;  // Hz
+  bool kinematics = false, json = false;
+};
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut simulate VEHICLE MANEUVER -o FILE [OPTIONS]\n"
+      "       strut simulate --kinematics VEHICLE -o FILE.csv",
+      "Runs a car through a maneuver. Writes all channels over time with their units to FILE "
+      "(.csv\n"
+      "or .h5) and prints the snapshot: the body's motion when the rear wheels are on the bump.\n"
+      "With --kinematics: wheel travel -100 to +100 mm against camber, toe, wheel center, caster,\n"
+      "spring, damper and track of the left corners.",
+      "  strut simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml \\\n"
+      "      --set front_stiffness=38000 -o run.h5\n"
+      "  strut simulate --kinematics examples/vehicles/paper_sedan.toml -o curves.csv");
+  arguments.add_option("output,o", "FILE", "file to write: .csv, .h5 or .hdf5");
+  arguments.add_option("integrator", "NAME",
+                       "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, 1e-12");
+  arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
+  arguments.add_option("closure", "NAME",
+                       "newton (default): loops closed in every step; table: corner kinematics "
+                       "tabulated over their coordinate");
+  arguments.add_option("spin", "NAME",
+                       "wheel spin: exponential (default), stable at any speed; or explicit");
+  arguments.add_switch("no-events", "do not end steps where a wheel lifts off or meets a kink");
+  arguments.add_option("rate", "HZ", "samples a second in FILE (default 1000)");
+  arguments.add_list("set", "NAME=VALUE",
+                     "change a parameter, e.g. front_stiffness=38000; may be "
+                     "repeated");
+  arguments.add_switch("json", "print the snapshot as JSON");
+  arguments.add_switch("kinematics", "write the suspension's kinematics instead of a run");
+  return arguments;
+}
+
+void read_integration(const Arguments& arguments, SimulateOptions& options) {
+  options.integrator = arguments.choice_or("integrator", 0, kIntegrators);
+  const Range step{.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"};
+  IntegrateOptions& integrate = options.integrate;
+  integrate.step.step = arguments.number_or("step", integrate.step.step, step);
+  integrate.step.stepper = options.integrator == 1 ? Stepper::kAbm4 : Stepper::kRk4;
+  integrate.step.locate_events = !arguments.is_on("no-events");
+  integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0, kClosures));
+  integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0, kSpins));
+  options.rate = arguments.number_or("rate", options.rate, between(1.0, 1e6, "Hz"));
+  for (const char* name : {"step", "spin"}) {
+    if (options.integrator != kCvode || !arguments.has(name)) continue;
+    throw InputError(std::string("--") + name + ": cvode chooses its own; allowed with rk4, abm4");
+  }
+}
+
+SimulateOptions read_options(const Arguments& arguments) {
+  SimulateOptions options;
+  const auto& files = arguments.positional();
+  options.kinematics = arguments.is_on("kinematics");
+  options.json = arguments.is_on("json");
+  const std::size_t expected = options.kinematics ? 1 : 2;
+  if (files.size() != expected) {
+    throw arguments.usage_error(std::to_string(files.size()) + " files; expected " +
+                                (options.kinematics ? "VEHICLE" : "VEHICLE and MANEUVER"));
+  }
+  options.source.vehicle = files[0];
+  if (!options.kinematics) options.source.maneuver = files[1];
+  options.source.settings = arguments.list("set");
+  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  options.output = arguments.text("output");
+  read_integration(arguments, options);
+  return options;
+}
+
+LaneResults integrate(const PreparedCase& c, const SimulateOptions& options, double step) {
+  SamplePlan plan;
+  plan.interval = 1.0 / options.rate;
+  if (options.integrator == kCvode) {
+    ReferenceOptions reference;
+    reference.closure = options.integrate.closure;
+    return run_cvode(c, reference, plan);
+  }
+  IntegrateOptions integrate = options.integrate;
+  integrate.step.step = step;
+  return list_kernels().front().run_scalar(c, integrate, plan);
+}
+
+InputError unstable_step(const SimulateOptions& options, const std::string& how,
+                         const std::string& allowed) {
+  const IntegrateOptions& integrate = options.integrate;
+  const bool is_explicit = integrate.spin == SpinTreatment::kExplicit;
+  return InputError("--step = " + format_number(integrate.step.step) + " s: unstable (" + how +
+                    ") with --integrator " +
+                    kIntegrators[static_cast<std::size_t>(options.integrator)] + " --spin " +
+                    kSpins[static_cast<std::size_t>(integrate.spin)] + " on " +
+                    options.source.vehicle.string() + " in " + options.source.maneuver.string() +
+                    "; " + allowed + (is_explicit ? ", or --spin exponential" : ""));
+}
+
+/// A step whose map amplifies disturbances is refused before anything runs.
+void check_step(const PreparedCase& c, const SimulateOptions& options) {
+  if (options.integrator == kCvode) return;
+  const double amplification = calc_amplification(c, options.integrate);
+  if (amplification <= kMaxAmplification) return;
+  char how[64], allowed[64];
+  std::snprintf(how, sizeof how, "each step multiplies a disturbance by %.3g", amplification);
+  std::snprintf(allowed, sizeof allowed, "must lie in (0, %.2g] s here",
+                find_stable_step(c, options.integrate));
+  throw unstable_step(options, how, allowed);
+}
+
+/// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.
+int explain_failure(const PreparedCase& c, const SimulateOptions& options,
+                    const LaneResults& results) {
+  const std::string at = format_number(results.failure_time[0]) + " s";
+  const bool out = results.status[0] == static_cast<int>(RunStatus::kOutOfTravel);
+  if (options.integrator != kCvode) {
+    const double shorter = kRetryFraction * options.integrate.step.step;
+    if (integrate(c, options, shorter).status[0] == 0) {
+      throw unstable_step(options, "failed at t = " + at,
+                          "a step of " + format_number(shorter) + " s runs through");
+    }
+  }
+  std::cerr << "strut simulate: the run failed at t = " << at << ": "
+            << (out ? "a wheel left the +-100 mm over which its suspension is modeled; a lower "
+                      "bump, a lower speed or a stiffer spring keeps it inside"
+                    : "the motion is no longer finite; a shorter --step does not help")
+            << "; nothing was written\n";
+  return kExitNo;
+}
+
+std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOptions& options,
+                                                              const LaneResults& results) {
+  const BuildInfo& build = get_build_info();
+  const IntegrateOptions& integrate = options.integrate;
+  const bool cvode = options.integrator == kCvode;
+  std::string settings;
+  for (const std::string& s : options.source.settings)
+    settings += (settings.empty() ? "" : " ") + s;
+  return {{"strut_version", build.version},
+          {"commit", build.commit},
+          {"compiler", build.compiler},
+          {"instruction_set", list_kernels().front().isa},
+          {"vehicle", options.source.vehicle.string()},
+          {"maneuver", options.source.maneuver.string()},
+          {"settings", settings},
+          {"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
+          {"step", cvode ? "adaptive, tolerance 1e-12" : format_number(integrate.step.step) + " s"},
+          {"closure", kClosures[static_cast<std::size_t>(integrate.closure)]},
+          {"spin", cvode ? "explicit" : kSpins[static_cast<std::size_t>(integrate.spin)]},
+          {"events", cvode || integrate.step.locate_events ? "located" : "not located"},
+          {"event_count", std::to_string(results.event_count)}};
+}
+
+void print_snapshot(const LaneResults& results) {
+  if (!has_snapshot(results)) {
+    std::cout << "snapshot: the rear wheels do not reach the bump\n";
+    return;
+  }
+  char line[96];
+  std::snprintf(line, sizeof line, "%-22s %20s  %s\n", "snapshot", "value", "unit");
+  std::cout << line;
+  std::snprintf(line, sizeof line, "%-22s %20.13g  s\n", "event_time", results.event_time[0]);
+  std::cout << line;
+  for (const int channel : kInputs) {
+    const auto at = static_cast<std::size_t>(channel);
+    const ChannelInfo& info = list_car_channels()[at];
+    std::snprintf(line, sizeof line, "%-22s %20.13g  %s\n", info.name.c_str(), results.snapshot[at],
+                  info.unit.c_str());
+    std::cout << line;
+  }
+}
+
+void print_json(const LaneResults& results, double duration, double seconds) {
+  Json snapshot = Json::object();
+  for (const int channel : kInputs) {
+    const auto at = static_cast<std::size_t>(channel);
+    snapshot.set(list_car_channels()[at].name, results.snapshot[at]);
+  }
+  const Json json = Json::object()
+                        .set("event_time", results.event_time[0])
+                        .set("snapshot", has_snapshot(results) ? snapshot : Json())
+                        .set("events", results.event_count)
+                        .set("seconds", seconds)
+                        .set("real_time_factor", duration / seconds);
+  std::cout << json.dump() << "\n";
+}
+
+void print_summary(const SimulateOptions& options, const LaneResults& results, double duration,
+                   double seconds) {
+  double travel = 0.0;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const int channel = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
+                        CarChannel::kSuspensionDeflection;
+    for (const double d : get_history(results, channel)) travel = std::max(travel, std::fabs(d));
+  }
+  char line[256];
+  std::snprintf(line, sizeof line,
+                ": %d samples, %ld contact events, suspension deflection up to %.1f mm; %.4g s "
+                "simulated in %.3g s (%.4g x real time)\n",
+                results.sample_count, results.event_count, 1e3 * travel, duration, seconds,
+                duration / seconds);
+  std::cerr << options.output.string() << line;
+}
+
+int run_case(const SimulateOptions& options) {
+  const RunFormat format = find_run_format(options.output);
+  RunRecord run;
+  run.input = load_case(options.source);
+  const double duration = run.input.maneuver.duration;
+  if (duration * options.rate > kMaxSamples) {
+    throw InputError("--rate = " + format_number(options.rate) + " Hz: must be at most " +
+                     format_number(std::floor(kMaxSamples / duration)) + " Hz for " +
+                     format_number(duration) + " s");
+  }
+  const PreparedCase prepared = prepare_case(options.source, run.input);
+  check_step(prepared, options);
+
+  const auto start = std::chrono::steady_clock::now();
+  run.results = integrate(prepared, options, options.integrate.step.step);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (run.results.status[0] != 0) return explain_failure(prepared, options, run.results);
+
+  run.provenance = describe_run(options, run.results);
+  write_run(options.output, format, run);
+  options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
+  print_summary(options, run.results, duration, seconds);
+  return kExitDone;
+}
+
+int run_kinematics(const SimulateOptions& options) {
+  if (options.output.extension() != ".csv") {
+    throw InputError("--output = " + options.output.string() + ": the name must end in .csv");
+  }
+  write_kinematics(options.source, options.output);
+  std::cerr << options.output.string() << ": front and rear left corner, -100 to +100 mm\n";
+  return kExitDone;
+}
+
+}  // namespace
+
+int run_simulate(const std::vector<std::string>& arguments) {
+  Arguments parsed = make_arguments();
+  if (!parsed.parse(arguments)) return kExitDone;
+  const SimulateOptions options = read_options(parsed);
+  return options.kinematics ? run_kinematics(options) : run_case(options);
+}
+
+}  // namespace strut

@@ -1,0 +1,203 @@
+#include "model/vehicle/rigs.h"
+
+#include <sstream>
+
+#include "model/vehicle/assemble.h"
+
+namespace strut {
+
+namespace {
+
+constexpr double kEarthGravity = 9.81;  // m/s^2, as for the car
+
+RigParameterInfo make_positive(const std::string& name, const std::string& unit, double high,
+                               const std::string& description, double RigSpec::*field) {
+  return {name, unit, description, 0.0, high, true, std::nullopt, field};
+}
+
+RigParameterInfo make_optional(const std::string& name, const std::string& unit, double high,
+                               const std::string& description, double fallback,
+                               double RigSpec::*field) {
+  return {name, unit, description, 0.0, high, false, fallback, field};
+}
+
+RigParameterInfo make_gravity(double fallback) {
+  return make_optional("gravity", "m/s^2", 100.0, "gravity along the guide", fallback,
+                       &RigSpec::gravity);
+}
+
+std::vector<RigParameterInfo> make_quarter_car_parameters() {
+  using S = RigSpec;
+  return {
+      make_positive("sprung_mass", "kg", 1e5, "mass on the strut", &S::sprung_mass),
+      make_positive("unsprung_mass", "kg", 1e5, "mass between strut and tire", &S::unsprung_mass),
+      make_positive("stiffness", "N/m", 1e8, "rate of the strut's spring", &S::stiffness),
+      make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
+      make_positive("tire_stiffness", "N/m", 1e8, "vertical rate of the tire", &S::tire_stiffness),
+      make_optional("tire_damping", "N s/m", 1e6, "vertical damping of the tire", 0.0,
+                    &S::tire_damping),
+      make_gravity(kEarthGravity)};
+}
+
+std::vector<RigParameterInfo> make_strut_rig_parameters() {
+  using S = RigSpec;
+  return {make_optional("stiffness", "N/m", 1e8, "rate of the strut's spring", 0.0, &S::stiffness),
+          make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
+          make_optional("temperature", "K", 1000.0, "temperature where no input gives it", 293.15,
+                        &S::temperature)};
+}
+
+std::vector<RigParameterInfo> make_single_mass_parameters() {
+  using S = RigSpec;
+  return {
+      make_positive("mass", "kg", 1e5, "the mass on the guide", &S::sprung_mass),
+      make_optional("stiffness", "N/m", 1e8, "rate of the spring to ground", 0.0, &S::stiffness),
+      make_optional("damping", "N s/m", 1e6, "rate of the damper to ground", 0.0, &S::damping),
+      make_gravity(0.0)};
+}
+
+std::vector<ChannelInfo> make_quarter_car_channels() {
+  return {{"time", "s", "time since the start"},
+          {"road_position", "m", "height of the road under the tire"},
+          {"unsprung_position", "m", "unsprung mass, from rest"},
+          {"sprung_position", "m", "sprung mass, from rest"},
+          {"road_velocity", "m/s", "rate of road_position"},
+          {"unsprung_velocity", "m/s", "unsprung mass"},
+          {"sprung_velocity", "m/s", "sprung mass"},
+          {"road_acceleration", "m/s^2", "rate of road_velocity"},
+          {"unsprung_acceleration", "m/s^2", "unsprung mass, gravity not included"},
+          {"sprung_acceleration", "m/s^2", "sprung mass, gravity not included"},
+          {"actuator_force", "N", "between the masses, pushes them apart"},
+          {"spring_force", "N", "strut's spring, positive in compression"},
+          {"damper_force", "N", "strut's damper, positive in compression"},
+          {"tire_force", "N", "of the road on the tire, upwards, static load included"}};
+}
+
+std::vector<ChannelInfo> make_strut_rig_channels() {
+  return {{"time", "s", "time since the start"},
+          {"displacement", "m", "compression of the strut"},
+          {"velocity", "m/s", "rate of displacement"},
+          {"force", "N", "of the whole strut, positive in compression"},
+          {"spring_force", "N", "strut's spring, positive in compression"},
+          {"damper_force", "N", "strut's damper, positive in compression"},
+          {"temperature", "K", "of the damper, as given"}};
+}
+
+std::vector<ChannelInfo> make_single_mass_channels() {
+  return {{"time", "s", "time since the start"},
+          {"position", "m", "from rest"},
+          {"velocity", "m/s", "rate of position"},
+          {"acceleration", "m/s^2", "rate of velocity"},
+          {"force", "N", "applied to the mass, as given"},
+          {"spring_force", "N", "spring to ground, positive in compression"},
+          {"damper_force", "N", "damper to ground, positive in compression"}};
+}
+
+template <class Info>
+const Info& select_kind(RigKind kind, const std::array<Info, 3>& of_kinds) {
+  return of_kinds[static_cast<std::size_t>(kind)];
+}
+
+int find_input(RigKind kind, const std::string& name) {
+  const std::vector<RigInputInfo>& known = list_rig_inputs(kind);
+  std::string names;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (known[i].name == name) return static_cast<int>(i);
+    names += (i > 0 ? ", " : "") + known[i].name;
+  }
+  throw ModelError("input " + name + ": a " + list_rig_kinds()[static_cast<std::size_t>(kind)] +
+                   " is driven by " + names);
+}
+
+}  // namespace
+
+const std::vector<std::string>& list_rig_kinds() {
+  static const std::vector<std::string> kinds = {"quarter_car", "strut_rig", "single_mass"};
+  return kinds;
+}
+
+const std::vector<RigParameterInfo>& list_rig_parameters(RigKind kind) {
+  static const std::array<std::vector<RigParameterInfo>, 3> lists = {
+      make_quarter_car_parameters(), make_strut_rig_parameters(), make_single_mass_parameters()};
+  return select_kind(kind, lists);
+}
+
+const std::vector<ChannelInfo>& list_rig_channels(RigKind kind) {
+  static const std::array<std::vector<ChannelInfo>, 3> lists = {
+      make_quarter_car_channels(), make_strut_rig_channels(), make_single_mass_channels()};
+  return select_kind(kind, lists);
+}
+
+const std::vector<RigInputInfo>& list_rig_inputs(RigKind kind) {
+  static const std::array<std::vector<RigInputInfo>, 3> lists = {
+      std::vector<RigInputInfo>{{"road_position", "m", "height of the road", false},
+                                {"actuator_force", "N", "pushes the masses apart", false}},
+      std::vector<RigInputInfo>{{"displacement", "m", "compression of the strut", true},
+                                {"temperature", "K", "of the damper", false}},
+      std::vector<RigInputInfo>{{"force", "N", "on the mass, along its position", false}}};
+  return select_kind(kind, lists);
+}
+
+void validate(const RigSpec& spec) {
+  for (const RigParameterInfo& info : list_rig_parameters(spec.kind)) {
+    const double value = spec.*info.field;
+    const bool above_low = info.open_low ? value > info.low : value >= info.low;
+    if (above_low && value <= info.high) continue;
+    std::ostringstream message;
+    message.precision(17);
+    message << info.name << " = " << value << ": must lie in " << (info.open_low ? "(" : "[")
+            << info.low << ", " << info.high << "] " << info.unit;
+    throw ModelError(message.str());
+  }
+}
+
+std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
+    RigKind kind, const std::vector<InputSignal>& inputs) {
+  std::array<const InputSignal*, kMaxRigInputs> assigned{};
+  for (const InputSignal& signal : inputs) {
+    const auto at = static_cast<std::size_t>(find_input(kind, signal.channel));
+    if (assigned[at]) throw ModelError("input " + signal.channel + ": is given twice");
+    assigned[at] = &signal;
+  }
+  const std::vector<RigInputInfo>& known = list_rig_inputs(kind);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (!known[i].required || assigned[i]) continue;
+    throw ModelError("input " + known[i].name + ": is missing, nothing else moves the rig");
+  }
+  return assigned;
+}
+
+RigParameters<double> make_rig_parameters(const RigSpec& spec) {
+  validate(spec);
+  RigParameters<double> p{};
+  const bool quarter_car = spec.kind == RigKind::kQuarterCar;
+  p.mass = {spec.unsprung_mass, spec.sprung_mass};
+  if (spec.kind == RigKind::kSingleMass) p.mass = {spec.sprung_mass, 0.0};
+  p.initial_position = spec.initial_position;
+  p.initial_velocity = spec.initial_velocity;
+  // At rest the line has length zero and the spring carries what stands on it.
+  const double weight = spec.kind == RigKind::kStrutRig ? 0.0 : spec.sprung_mass * spec.gravity;
+  p.spring = {spec.stiffness, spec.stiffness > 0.0 ? weight / spec.stiffness : 0.0};
+  p.damper = {spec.damping};
+  p.tire = {0.0, spec.tire_stiffness, spec.tire_damping};
+  if (quarter_car) {
+    p.static_deflection =
+        (spec.sprung_mass + spec.unsprung_mass) * spec.gravity / spec.tire_stiffness;
+  }
+  p.gravity = spec.gravity;
+  p.temperature = spec.temperature;
+  return p;
+}
+
+RigLayout make_rig_layout(const RigSpec* const specs[], int count) {
+  const RigLayout layout{specs[0]->kind, specs[0]->unilateral_tire};
+  for (int i = 1; i < count; ++i) {
+    if (specs[i]->kind == layout.kind && specs[i]->unilateral_tire == layout.unilateral_tire) {
+      continue;
+    }
+    throw ModelError("rigs of one batch: type and tire contact must be the same");
+  }
+  return layout;
+}
+
+}  // namespace strut
