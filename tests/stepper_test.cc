@@ -159,8 +159,9 @@ TEST_CASE("Without a linear rate the exponential formulas are the classical ones
 }
 
 TEST_CASE("A rate far beyond explicit stability leaves the slow motion accurate", "[unit]") {
-  // lambda h = 20; explicit RK4 is stable up to 2.8. The slow manifold is u = sin t cos t up to the
-  // stiff order reduction of about h^4 u'''' / (lambda h) = 16 * 6e-6 / 20 = 5e-6.
+  // lambda h = 20; explicit RK4 is stable up to 2.8. With the true rate the slow manifold u = a b
+  // is met up to stiff order reduction, h^4 times the fourth derivative / (lambda h) = 5e-6; a rate
+  // wrong by a tenth leaves a tenth of h u' = 0.05 in a stage, of which the step keeps a tenth.
   constexpr double kStep = 0.05, kLambda = 20.0 / kStep;
   constexpr int kSteps = 40;
   const Values exact = calc_exact(kLambda, kStep * kSteps, 0.0);
@@ -170,7 +171,7 @@ TEST_CASE("A rate far beyond explicit stability leaves the slow motion accurate"
       const double error = std::abs(x[4] - exact[4]);
       INFO((method == Method::kRk4 ? "rk4" : "abm4")
            << ", factor " << factor << ", error " << error);
-      CHECK(error < tolerance(2e-5));
+      CHECK(error < tolerance(factor == 1.0 ? 2e-5 : 5e-4));
     }
     const Values wild = integrate<double>({kLambda, 0.0}, method, kStep, kSteps, 0.0);
     CHECK_FALSE(std::abs(wild[4] - exact[4]) < 1e6);
@@ -180,7 +181,7 @@ TEST_CASE("A rate far beyond explicit stability leaves the slow motion accurate"
 TEST_CASE("A lane equals its scalar twin at its own step length", "[unit]") {
   constexpr int kLanes = kLaneCount<NativeLanes>;
   constexpr int kSteps = 50;
-  NativeLanes h, lambda, factor;
+  NativeLanes h(0.0), lambda(0.0), factor(0.0);
   const auto step_of = [](int lane) { return 0.01 * (1 + lane); };
   const auto rate_of = [](int lane) { return 2.0 + 40.0 * lane; };
   const auto factor_of = [](int lane) { return 1.0 - 0.1 * lane; };

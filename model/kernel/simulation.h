@@ -59,6 +59,9 @@ struct Kernel {
   /// Runs one case in plain double.
   LaneResults (*run_scalar)(const PreparedCase& c, const IntegrateOptions& options,
                             const SamplePlan& plan);
+  /// Nothing but independent fused multiply-adds in registers: `rounds` times over, for timing the
+  /// processor's peak. Returns the number of floating-point operations; `sink` keeps their result.
+  double (*run_peak_loop)(long rounds, double& sink);
 };
 
 /// Kernels this processor can run, widest first; never empty.

@@ -2,7 +2,7 @@
 // calc_derivative.
 #pragma once
 
-#include "model/multibody/closure.h"
+#include "model/multibody/corner_motion.h"
 #include "model/multibody/corner_table.h"
 #include "model/vehicle/vehicle.h"
 

@@ -1,23 +1,14 @@
 // From a vehicle and a maneuver as a person writes them to the numbers the equations read.
 #pragma once
 
-#include <stdexcept>
-
 #include "model/multibody/closures.h"
 #include "model/scenario/maneuver.h"
+#include "model/vehicle/build_corner.h"
+#include "model/vehicle/model_error.h"
 #include "model/vehicle/spec.h"
 #include "model/vehicle/vehicle.h"
 
 namespace strut {
-
-/// A vehicle that cannot be: the message names the field, its value and what is allowed.
-class ModelError : public std::invalid_argument {
- public:
-  using std::invalid_argument::invalid_argument;
-};
-
-/// Travel of q over which every corner must close [m]; tables and predictors are fitted to it.
-inline constexpr double kHalfTravel = 0.10;
 
 /// One car in one maneuver, scalar.
 struct AssembledVehicle {

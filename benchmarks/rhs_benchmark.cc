@@ -1,0 +1,139 @@
+// Which lane type? The car's right-hand side with each candidate, and the largest difference of
+// each from `double`. One program per instruction set; the results: docs/design/0002-lanes.md.
+//
+//   rhs_benchmark_avx512 --benchmark_enable_random_interleaving=true --benchmark_repetitions=15
+//
+// "spin" is a fixed chain of dependent operations: on a noisy machine judge by ratios to it.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "benchmarks/lane_backends/stdx_backend.h"
+#include "benchmarks/lane_backends/vector_backend.h"
+#include "model/kernel/run_cases.h"
+#include "model/math/xsimd_backend.h"
+#include "tests/reference/sample_specs.h"
+#ifdef STRUT_HAS_HIGHWAY
+#include "benchmarks/lane_backends/highway_backend.h"
+#endif
+
+namespace strut {
+namespace {
+
+using Rates = std::array<double, StateIndex::kCount>;
+
+const PreparedCase& get_case() {
+  static const PreparedCase prepared =
+      CasePreparer().prepare({reference::make_paper_sedan_spec(), ManeuverSpec{}});
+  return prepared;
+}
+
+/// A state off the trimmed start, another one in each lane.
+double calc_entry(std::size_t entry, int lane) {
+  return get_case().start[entry] + 0.01 * std::sin(7.0 * static_cast<double>(entry) + 3.0 * lane);
+}
+
+/// The right-hand side of W cars with `Closure`, ready to be called.
+template <class T, template <class> class Closure>
+struct RightHandSide {
+  Vehicle<T> vehicle;
+  Workspace<T> workspace{};
+  State<T> x, dx;
+
+  explicit RightHandSide(int first_lane = 0) : vehicle(make_vehicle()) {
+    workspace.segment.fill(T(0.0));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+        set_lane(x[i], lane, calc_entry(i, first_lane + lane));
+      }
+    }
+  }
+  static Vehicle<T> make_vehicle() {
+    const std::vector<const PreparedCase*> cases(kLaneCount<T>, &get_case());
+    return pack_vehicle<T>(cases.data());
+  }
+  void calc() {
+    calc_derivative(vehicle, Closure<T>::make(vehicle), TireMode::kRolling, x.data(), dx.data(),
+                    workspace);
+  }
+};
+
+template <class T>
+struct Newton {
+  static NewtonClosure<T> make(const Vehicle<T>& v) { return {&v.layout, &v.numbers}; }
+};
+
+template <class T>
+struct Table {
+  static TableClosure<T, double> make(const Vehicle<T>&) { return {&get_case().mechanism->tables}; }
+};
+
+template <class T, template <class> class Closure>
+void run_right_hand_side(benchmark::State& state) {
+  const auto rhs = std::make_unique<RightHandSide<T, Closure>>();
+  for (auto _ : state) {
+    rhs->calc();
+    benchmark::ClobberMemory();
+  }
+  state.counters["W"] = kLaneCount<T>;
+}
+
+/// 1000 times a dependent multiplication and addition.
+void spin(benchmark::State& state) {
+  for (auto _ : state) {
+    double x = 1.0;
+    for (int i = 0; i < 1000; ++i) {
+      x = x * 1.0000001 + 1e-9;
+      benchmark::DoNotOptimize(x);
+    }
+  }
+}
+
+/// Largest difference between lanes and double over all rates, relative to the rate, or to 1 where
+/// it is smaller.
+template <class T, template <class> class Closure>
+double find_difference() {
+  const auto rhs = std::make_unique<RightHandSide<T, Closure>>();
+  rhs->calc();
+  double largest = 0.0;
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+    const auto one = std::make_unique<RightHandSide<double, Closure>>(lane);
+    one->calc();
+    for (std::size_t i = 0; i < one->dx.size(); ++i) {
+      const double difference = std::abs(get_lane(rhs->dx[i], lane) - one->dx[i]);
+      largest = std::max(largest, difference / std::max(1.0, std::abs(one->dx[i])));
+    }
+  }
+  return largest;
+}
+
+template <class T>
+void add_candidate(const char* name) {
+  std::printf("%-8s W = %d, difference from double: table %.1e, newton %.1e\n", name, kLaneCount<T>,
+              find_difference<T, Table>(), find_difference<T, Newton>());
+  const std::string prefix = std::string(name) + "/";
+  benchmark::RegisterBenchmark((prefix + "table").c_str(), &run_right_hand_side<T, Table>);
+  benchmark::RegisterBenchmark((prefix + "newton").c_str(), &run_right_hand_side<T, Newton>);
+}
+
+}  // namespace
+}  // namespace strut
+
+int main(int argc, char** argv) {
+  using namespace strut;
+  benchmark::Initialize(&argc, argv);
+  benchmark::RegisterBenchmark("spin", &spin);
+  add_candidate<double>("double");
+  add_candidate<NativeLanes>("xsimd");
+  add_candidate<Lanes<StdxBackend>>("stdx");
+#ifdef STRUT_HAS_HIGHWAY
+  add_candidate<Lanes<HighwayBackend>>("highway");
+#endif
+  add_candidate<Lanes<VectorBackend>>("vector");
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,117 @@
+#include "jobs/bench_cases.h"
+
+#include <cmath>
+#include <limits>
+
+#include "jobs/machine.h"
+#include "jobs/run_file.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+/// The paper's grid, from new to most degraded.
+struct Axis {
+  const char* name;
+  double from, to;
+};
+constexpr Axis kAxes[] = {{"front_stiffness", 40000.0, 35500.0},
+                          {"front_damping", 1980.0, 1800.0},
+                          {"rear_stiffness", 35000.0, 30500.0},
+                          {"rear_damping", 1980.0, 1800.0}};
+/// Additive recurrence with irrational steps: every case differs in every parameter.
+constexpr double kSteps[] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
+                             0.5385972572236101};
+
+SamplePlan make_reference_plan() {
+  SamplePlan plan;
+  plan.interval = 1.0 / kBenchRate;
+  return plan;
+}
+
+std::vector<double> get_acceleration(const LaneResults& results) {
+  std::vector<double> values;
+  const auto lanes = static_cast<std::size_t>(results.lanes);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(results.sample_count); ++i) {
+    values.push_back(
+        results.history[(i * CarChannel::kCount + CarChannel::kBodyAccelerationZ) * lanes]);
+  }
+  return values;
+}
+
+}  // namespace
+
+BenchCases make_bench_cases(const CaseSource& source, int count) {
+  BenchCases bench;
+  Case c = load_case(source);
+  bench.cases.push_back(prepare_case(source, c));
+  bench.duration = c.maneuver.duration;
+  CasePreparer preparer;
+  preparer.prepare(c);  // the mechanism, which a sweep makes once
+  const double start = now();
+  for (int i = 1; i <= count; ++i) {
+    for (std::size_t p = 0; p < std::size(kAxes); ++p) {
+      const double share = std::fmod(i * kSteps[p], 1.0);
+      set_parameter(c, kAxes[p].name, kAxes[p].from + share * (kAxes[p].to - kAxes[p].from));
+    }
+    bench.cases.push_back(preparer.prepare(c));
+  }
+  bench.seconds_to_prepare = (now() - start) / count;
+  // All of one mechanism, the nominal one first.
+  bench.cases[0] = preparer.prepare(load_case(source));
+  bench.cases.pop_back();
+  bench.acceleration = get_acceleration(run_cvode(bench.cases[0], {}, make_reference_plan()));
+  return bench;
+}
+
+LaneResults run_cases(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting,
+                      const SamplePlan& plan) {
+  if (!setting.in_lanes) return kernel.run_scalar(bench.cases[0], setting.options, plan);
+  std::vector<const PreparedCase*> pointers;
+  for (const PreparedCase& c : bench.cases) pointers.push_back(&c);
+  return kernel.run_lanes(pointers.data(), static_cast<int>(pointers.size()), setting.options,
+                          plan);
+}
+
+double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting) {
+  const LaneResults results = run_cases(bench, kernel, setting, make_reference_plan());
+  for (const int status : results.status) {
+    if (status != 0) return std::numeric_limits<double>::infinity();
+  }
+  const std::vector<double> acceleration = get_acceleration(results);
+  double difference = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < acceleration.size(); ++i) {
+    difference += square(acceleration[i] - bench.acceleration[i]);
+    size += square(bench.acceleration[i]);
+  }
+  return std::sqrt(difference / size);
+}
+
+std::vector<BenchSetting> list_standard_settings() {
+  IntegrateOptions newton, table;
+  newton.step.step = table.step.step = 1e-3;
+  table.closure = Closure::kTable;
+  return {{"double", newton, false}, {"lanes", newton}, {"lanes_tabulated", table}};
+}
+
+std::vector<BenchSetting> list_fast_settings(bool quick) {
+  std::vector<double> steps = {0.5e-3, 0.75e-3, 1e-3, 1.25e-3, 1.5e-3, 2e-3, 2.5e-3, 3e-3};
+  if (quick) steps = {1e-3, 1.5e-3, 2e-3};
+  std::vector<BenchSetting> settings;
+  for (const double step : steps) {
+    for (const Stepper stepper : {Stepper::kRk4, Stepper::kAbm4}) {
+      for (const bool events : {true, false}) {
+        IntegrateOptions options;
+        options.step = {stepper, step, events};
+        options.closure = Closure::kTable;
+        const std::string name = std::string(stepper == Stepper::kRk4 ? "rk4" : "abm4") + " " +
+                                 format_number(1e3 * step) + " ms, table, exponential spin, " +
+                                 (events ? "events located" : "events not located");
+        settings.push_back({name, options});
+      }
+    }
+  }
+  return settings;
+}
+
+}  // namespace strut

@@ -1,0 +1,45 @@
+// What `strut bench` runs: the paper's maneuver, a little different in every lane.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "jobs/load_case.h"
+
+namespace strut {
+
+/// A way to run cases, with the name it has in tables.
+struct BenchSetting {
+  std::string name;
+  IntegrateOptions options;
+  bool in_lanes = true;
+};
+
+/// Prepared cases that differ in springs and dampers over the paper's ranges, the nominal one
+/// first.
+struct BenchCases {
+  std::vector<PreparedCase> cases;
+  double duration = 0.0;             // s
+  double seconds_to_prepare = 0.0;   // s a case
+  std::vector<double> acceleration;  // m/s^2, the nominal body's by CVODE, sampled at kBenchRate
+};
+inline constexpr double kBenchRate = 1000.0;  // Hz
+
+/// Reads, prepares and integrates the reference. Throws InputError.
+BenchCases make_bench_cases(const CaseSource& source, int count);
+
+/// Runs all cases once, in lanes or one after the other.
+LaneResults run_cases(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting,
+                      const SamplePlan& plan);
+
+/// rms of the nominal case's body acceleration minus the reference's, over the reference's rms.
+/// Infinite where the run fails.
+double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting);
+
+/// The single-core figures other than the fastest: double, lanes, lanes_tabulated.
+std::vector<BenchSetting> list_standard_settings();
+
+/// Candidates for the fastest setting.
+std::vector<BenchSetting> list_fast_settings(bool quick);
+
+}  // namespace strut
