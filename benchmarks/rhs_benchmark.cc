@@ -42,7 +42,7 @@ template <class T, template <class> class Closure>
 struct RightHandSide {
   Vehicle<T> vehicle;
   Workspace<T> workspace{};
-  State<T> x, dx;
+  State<T> x{}, dx{};  // rates of states that the car does not have stay zero
 
   explicit RightHandSide(int first_lane = 0) : vehicle(make_vehicle()) {
     workspace.segment.fill(T(0.0));
@@ -82,6 +82,20 @@ void run_right_hand_side(benchmark::State& state) {
   state.counters["W"] = kLaneCount<T>;
 }
 
+/// The elementary functions alone: sine and cosine, arctangent, exponential of one vector.
+template <class T>
+void run_functions(benchmark::State& state) {
+  T x(0.0);
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) set_lane(x, lane, 0.1 + 0.3 * lane);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(x);
+    T s, c;
+    sin_cos(x, s, c);
+    T sum = s + c + atan(x) + exp(x);
+    benchmark::DoNotOptimize(sum);
+  }
+}
+
 /// 1000 times a dependent multiplication and addition.
 void spin(benchmark::State& state) {
   for (auto _ : state) {
@@ -117,6 +131,7 @@ void add_candidate(const char* name) {
               find_difference<T, Table>(), find_difference<T, Newton>());
   const std::string prefix = std::string(name) + "/";
   benchmark::RegisterBenchmark((prefix + "table").c_str(), &run_right_hand_side<T, Table>);
+  benchmark::RegisterBenchmark((prefix + "functions").c_str(), &run_functions<T>);
   benchmark::RegisterBenchmark((prefix + "newton").c_str(), &run_right_hand_side<T, Newton>);
 }
 

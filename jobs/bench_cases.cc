@@ -91,7 +91,10 @@ std::vector<BenchSetting> list_standard_settings() {
   IntegrateOptions newton, table;
   newton.step.step = table.step.step = 1e-3;
   table.closure = Closure::kTable;
-  return {{"double", newton, false}, {"lanes", newton}, {"lanes_tabulated", table}};
+  const std::string rest = ", exponential spin, events located";
+  return {{"double", "rk4 1 ms, newton" + rest, newton, false},
+          {"lanes", "rk4 1 ms, newton" + rest, newton},
+          {"lanes_tabulated", "rk4 1 ms, table" + rest, table}};
 }
 
 std::vector<BenchSetting> list_fast_settings(bool quick) {
@@ -104,10 +107,10 @@ std::vector<BenchSetting> list_fast_settings(bool quick) {
         IntegrateOptions options;
         options.step = {stepper, step, events};
         options.closure = Closure::kTable;
-        const std::string name = std::string(stepper == Stepper::kRk4 ? "rk4" : "abm4") + " " +
+        const std::string text = std::string(stepper == Stepper::kRk4 ? "rk4" : "abm4") + " " +
                                  format_number(1e3 * step) + " ms, table, exponential spin, " +
                                  (events ? "events located" : "events not located");
-        settings.push_back({name, options});
+        settings.push_back({"candidate", text, options});
       }
     }
   }

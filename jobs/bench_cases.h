@@ -8,9 +8,10 @@
 
 namespace strut {
 
-/// A way to run cases, with the name it has in tables.
+/// A way to run cases.
 struct BenchSetting {
-  std::string name;
+  std::string label;  // "lanes"
+  std::string text;   // "rk4 1 ms, ..."
   IntegrateOptions options;
   bool in_lanes = true;
 };

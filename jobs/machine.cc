@@ -21,10 +21,7 @@ std::string read_cpu_name() {
 }
 
 /// Keeps a result alive in the eyes of the compiler.
-void keep(double value) {
-  static volatile double sink;
-  sink = value;
-}
+void keep(const double& value) { asm volatile("" : : "m"(value)); }
 
 }  // namespace
 

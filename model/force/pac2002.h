@@ -341,12 +341,14 @@ T calc_rolling_resistance(const Pac2002<C>& p, const LoadPoint<T>& at, const Tir
 /// Force and moment of the road on a tire. Zero load gives exactly zero. No `if` depends on the
 /// state; `parts` is common to a batch.
 ///
+/// `flatten`: one function without calls lets independent chains of operations overlap.
+///
 /// @param side +1 left tire, the side of the coefficients; -1 right tire, its mirror image: camber
 ///   and alpha are given in the same W axes on both sides, f(alpha, camber) becomes f(-alpha,
 ///   -camber) with the sign of fy, mx and mz changed.
 template <class C, class T>
-TireForce<T> calc_tire_force(const Pac2002<C>& p, const TireSlip<T>& slip, const T& side,
-                             const Pac2002Parts& parts = {}) {
+[[gnu::flatten]] TireForce<T> calc_tire_force(const Pac2002<C>& p, const TireSlip<T>& slip,
+                                              const T& side, const Pac2002Parts& parts = {}) {
   const TireSlip<T> s{slip.load, slip.kappa, side * slip.alpha, side * slip.camber, slip.speed};
   const pac2002::LoadPoint<T> at = pac2002::calc_load_point(p, s.load);
   const pac2002::CombinedSlip<T> c = pac2002::calc_combined_slip(p, at, s, parts);

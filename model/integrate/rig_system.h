@@ -87,11 +87,8 @@ class RigSystem {
 
   /// The tire's lift-off and touch-down.
   int guard_count() const { return rig_.layout.unilateral_tire ? 1 : 0; }
-  void get_guards(T* g) const {
-    if (guard_count() > 0) g[0] = ws_.unclamped_load;
-  }
+  void get_guards(T* g) const { g[0] = ws_.unclamped_load; }
   void calc_guards(const T& t, const T* x, T* g) {
-    if (guard_count() == 0) return;
     if (inputs_[0]) ws_.input[0] = calc_signal(*inputs_[0], t);
     update_tire(x);
     get_guards(g);

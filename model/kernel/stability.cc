@@ -59,15 +59,18 @@ class StepMap {
   int derivative(int past) const { return n_ + past * (n_ + stiff_); }
   int spin(int past) const { return derivative(past) + n_; }
 
+  /// The past of a disturbed step; of past states the formulas read the stiff components only.
   void read_past(const Eigen::VectorXd& y) {
     for (int past = 0; past < kPast; ++past) {
       const auto at = static_cast<std::size_t>(past);
       for (int i = 0; i < n_; ++i) {
-        past_.f[at][static_cast<std::size_t>(i)] = y[derivative(past) + i] / h_;
+        past_f_[at][static_cast<std::size_t>(i)] = y[derivative(past) + i] / h_;
       }
       for (int i = 0; i < stiff_; ++i) {
-        past_.stiff[at][static_cast<std::size_t>(i)] = y[spin(past) + i];
+        past_x_[at][static_cast<std::size_t>(system_.stiff_begin() + i)] = y[spin(past) + i];
       }
+      past_.f[at] = past_f_[at].data();
+      past_.x[at] = past_x_[at].data();
     }
   }
 
@@ -83,7 +86,8 @@ class StepMap {
   double h_;
   bool multistep_;
   Eigen::VectorXd base_;
-  AdamsHistory<double, System::kCapacity> past_{};
+  std::array<State<double>, kPast> past_x_{}, past_f_{};
+  AdamsHistory<double> past_{};
   StepScratch<double, System::kCapacity> scratch_{};
 };
 

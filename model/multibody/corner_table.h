@@ -41,12 +41,21 @@ inline void evaluate_group(const std::array<std::array<C, N>, kTableTerms>& coef
                            std::size_t first, int degree, const T& x, T* value, T* slope,
                            T* curvature) {
   const auto top = static_cast<std::size_t>(degree);
+  if (top == 0) {
+    for (std::size_t f = 0; f < Count; ++f) {
+      value[f] = T(coefficient[0][first + f]);
+      if constexpr (Order >= 1) slope[f] = T(0.0);
+      if constexpr (Order >= 2) curvature[f] = T(0.0);
+    }
+    return;
+  }
   for (std::size_t f = 0; f < Count; ++f) {
-    value[f] = T(coefficient[top][first + f]);
-    if constexpr (Order >= 1) slope[f] = T(0.0);
+    const T highest(coefficient[top][first + f]);
+    value[f] = highest * x + T(coefficient[top - 1][first + f]);
+    if constexpr (Order >= 1) slope[f] = highest;
     if constexpr (Order >= 2) curvature[f] = T(0.0);
   }
-  for (std::size_t power = top; power-- > 0;) {
+  for (std::size_t power = top - 1; power-- > 0;) {
     const std::array<C, N>& row = coefficient[power];
     for (std::size_t f = 0; f < Count; ++f) {
       if constexpr (Order >= 2) curvature[f] = curvature[f] * x + slope[f];

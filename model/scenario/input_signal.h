@@ -63,17 +63,18 @@ template <class T>
 SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
   constexpr double kStride = 5.0;
   const double last_bin = static_cast<double>(signal.bins.size()) - 1.0;
+  const T held = min(max(t, T(signal.begin)), T(signal.end));
   // Comparisons, not min and max: a NaN must end in bin 0, not outside the table.
-  T bin = floor((t - T(signal.begin)) * T(signal.inverse_bin));
+  T bin = floor((held - T(signal.begin)) * T(signal.inverse_bin));
   bin = select(bin > T(0.0), bin, T(0.0));
   bin = select(bin < T(last_bin), bin, T(last_bin));
   const auto* table = reinterpret_cast<const double*>(signal.cells.data());
   T at = T(kStride) * gather(signal.bins.data(), bin);
   for (int i = 0; i < signal.search_steps; ++i) {
-    at += select(gather(table, at + T(kStride)) <= t, T(kStride), T(0.0));
+    at += select(gather(table, at + T(kStride)) <= held, T(kStride), T(0.0));
   }
   const auto inside = (t >= T(signal.begin)) & (t <= T(signal.end));
-  const T s = min(max(t, T(signal.begin)), T(signal.end)) - gather(table, at);
+  const T s = held - gather(table, at);
   const T c1 = gather(table + 2, at), c2 = gather(table + 3, at), c3 = gather(table + 4, at);
   const T rate = c1 + s * (T(2.0) * c2 + s * (T(3.0) * c3));
   return {gather(table + 1, at) + s * (c1 + s * (c2 + s * c3)), select(inside, rate, T(0.0)),

@@ -1,0 +1,354 @@
+// The program as a user meets it: arguments in, exit code, messages and files out.
+// Asked for by Boost's own parser, which uses the names it deprecates.
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS
+#include <sys/wait.h>
+
+#include <array>
+#include <boost/property_tree/json_parser.hpp>
+#include <catch2/catch.hpp>
+#include <cstdio>
+
+#include "io/csv.h"
+#include "io/hdf5.h"
+#include "jobs/json.h"
+#include "model/vehicle/channels.h"
+#include "tests/temporary_folder.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::read_text;
+using test::TemporaryFolder;
+
+const std::string kProgram = STRUT_PROGRAM;
+const std::string kExamples = STRUT_SOURCE_DIR "/examples";
+const std::string kSedan = kExamples + "/vehicles/paper_sedan.toml";
+const std::string kBump = kExamples + "/maneuvers/bump_20mps.toml";
+
+struct Outcome {
+  int code = -1;
+  std::string out, messages;
+};
+
+Outcome run_shell(const std::string& command) {
+  const TemporaryFolder folder;
+  const std::string messages = folder / "messages";
+  FILE* pipe = ::popen((command + " 2>" + messages).c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  Outcome outcome;
+  std::array<char, 4096> buffer;
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+    outcome.out.append(buffer.data(), n);
+  }
+  const int status = ::pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.messages = read_text(messages);
+  return outcome;
+}
+
+Outcome run(const std::string& arguments) { return run_shell(kProgram + " " + arguments); }
+
+/// The example car with one text replaced, which must be there.
+std::string change_example(const TemporaryFolder& folder, const std::string& file,
+                           const std::string& old_text, const std::string& new_text) {
+  std::string text = read_text(file);
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+  };
+  replace(old_text, new_text);
+  if (text.find("\"../tires/") != std::string::npos) replace("../tires/", kExamples + "/tires/");
+  return folder.write("changed.toml", text);
+}
+
+/// Runs a case that must be refused: exit code 2, nothing written, every text in the message.
+void check_refused(const std::string& vehicle, const std::string& maneuver,
+                   const std::string& options, const std::vector<std::string>& texts) {
+  for (const char* name : {"run.csv", "run.h5"}) {
+    const TemporaryFolder folder;
+    const Outcome outcome = run("simulate " + vehicle + " " + maneuver + " -o " +
+                                (folder / name).string() + " " + options);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK(folder.file_count() == 0);
+    for (const std::string& text : texts) CHECK_THAT(outcome.messages, Contains(text));
+  }
+}
+
+TEST_CASE("Every command explains itself with an example", "[unit][io]") {
+  for (const char* command : {"simulate", "bench"}) {
+    const Outcome outcome = run(std::string(command) + " --help");
+    CHECK(outcome.code == 0);
+    CHECK(outcome.messages.empty());
+    CHECK_THAT(outcome.out, Contains("Usage: strut ") && Contains("Examples:\n  strut "));
+  }
+  CHECK_THAT(run("--help").out, Contains("simulate") && Contains("bench"));
+}
+
+TEST_CASE("The version says what could differ between two programs", "[unit][io]") {
+  const Outcome outcome = run("--version");
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.out, Contains("strut 0.") && Contains("compiler:") && Contains("baseline") &&
+                              Contains("HDF5: 1.") && Contains("SUNDIALS: "));
+}
+
+TEST_CASE("An unknown command or option suggests the nearest", "[unit][io]") {
+  const Outcome command = run("simulat");
+  CHECK(command.code == 2);
+  CHECK(command.out.empty());
+  CHECK_THAT(command.messages, Contains("'simulat'") && Contains("did you mean 'simulate'?"));
+  CHECK(run("").code == 2);
+  const Outcome option = run("simulate a b --intgrator rk4");
+  CHECK(option.code == 2);
+  CHECK_THAT(option.messages, Contains("did you mean '--integrator'?"));
+}
+
+TEST_CASE("A run writes every channel with its unit as CSV and prints the snapshot", "[io]") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "run.csv";
+  const Outcome outcome = run("simulate " + kSedan + " " + kBump + " -o " + file);
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.out, Contains("event_time") && Contains("pitch_rate"));
+  const CsvTable table = read_csv(file);
+  REQUIRE(table.columns.size() == list_car_channels().size());
+  CHECK(table.row_count() == 3001);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    CHECK(table.columns[c].name == list_car_channels()[c].name);
+    CHECK(table.columns[c].unit == list_car_channels()[c].unit);
+  }
+  CHECK(table.column("time").values.back() == Approx(3.0).epsilon(1e-12));
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("HDF5 holds the same run as CSV, with parameters and provenance", "[io]") {
+  const TemporaryFolder folder;
+  const std::string csv = folder / "run.csv", h5 = folder / "run.h5";
+  const std::string options = " --rate 200 --set front_stiffness=38000 --integrator abm4";
+  REQUIRE(run("simulate " + kSedan + " " + kBump + options + " -o " + csv).code == 0);
+  const Outcome outcome = run("simulate " + kSedan + " " + kBump + options + " --json -o " + h5);
+  REQUIRE(outcome.code == 0);
+  const CsvTable table = read_csv(csv);
+  const Hdf5Reader reader(h5);
+  for (const ChannelInfo& channel : list_car_channels()) {
+    const Hdf5Dataset dataset = reader.read("/history/" + channel.name);
+    CHECK(dataset.values == table.column(channel.name).values);
+    CHECK(dataset.label.unit == channel.unit);
+    CHECK(dataset.label.description == channel.description);
+  }
+  CHECK(reader.read("/parameters/front_stiffness").values.front() == 38000.0);
+  CHECK(reader.read("/parameters/front_stiffness").label.unit == "N/m");
+  CHECK(reader.read_attribute("/", "integrator") == "abm4");
+  CHECK(reader.read_attribute("/", "vehicle") == kSedan);
+
+  std::istringstream text(outcome.out);
+  boost::property_tree::ptree json;
+  boost::property_tree::read_json(text, json);
+  CHECK(json.get<double>("event_time") == reader.read("/snapshot/event_time").values.front());
+  for (const char* name :
+       {"body_position_z", "body_velocity_z", "body_acceleration_z", "pitch_angle", "pitch_rate"}) {
+    CHECK(json.get<double>(std::string("snapshot.") + name) ==
+          reader.read(std::string("/snapshot/") + name).values.front());
+  }
+}
+
+TEST_CASE("Integrators and closures agree on the snapshot", "[io]") {
+  // 1e-5 m/s^2 of 7: the error of rk4 at 1 ms is below 1e-4 of the acceleration's rms.
+  const TemporaryFolder folder;
+  const auto snapshot = [&](const std::string& options) {
+    const Outcome outcome = run("simulate " + kSedan + " " + kBump + " -o " +
+                                (folder / "run.csv").string() + " --json " + options);
+    REQUIRE(outcome.code == 0);
+    std::istringstream text(outcome.out);
+    boost::property_tree::ptree json;
+    boost::property_tree::read_json(text, json);
+    return json.get<double>("snapshot.body_acceleration_z");
+  };
+  const double truth = snapshot("--integrator cvode");
+  CHECK(snapshot("--integrator rk4 --step 0.00025") == Approx(truth).epsilon(1e-4));
+  CHECK(snapshot("--integrator abm4 --step 0.00025") == Approx(truth).epsilon(1e-4));
+  CHECK(snapshot("--step 0.00025 --closure table") == Approx(truth).epsilon(1e-4));
+  CHECK(snapshot("--step 0.00025 --spin explicit --no-events") == Approx(truth).epsilon(1e-4));
+}
+
+TEST_CASE("Kinematics have the columns and rows that were agreed on", "[io]") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "curves.csv";
+  const Outcome outcome = run("simulate --kinematics " + kSedan + " -o " + file);
+  CHECK(outcome.code == 0);
+  CHECK(outcome.out.empty());
+  std::istringstream text(read_text(file));
+  std::string line;
+  std::getline(text, line);
+  CHECK(line ==
+        "wheel_travel,camber_rad,toe_rad,wc_dx,wc_dy,wc_dz,caster_change_rad,spring_len,damper_len,"
+        "axle,track");
+  int front = 0, rear = 0;
+  while (std::getline(text, line)) {
+    front += line.find(",front,") != std::string::npos ? 1 : 0;
+    rear += line.find(",rear,") != std::string::npos ? 1 : 0;
+  }
+  CHECK(front == 81);
+  CHECK(rear == 81);
+}
+
+TEST_CASE("An unknown key is refused with file, line and the nearest key", "[io]") {
+  const TemporaryFolder folder;
+  const std::string vehicle =
+      change_example(folder, kSedan, "centroid_height = ", "centroid_hight = ");
+  check_refused(vehicle, kBump, "", {vehicle + ":", "centroid_height"});
+  const std::string maneuver =
+      change_example(folder, kBump, "gravity = 9.81", "gravity = 9.81\nwind = 3.0");
+  check_refused(kSedan, maneuver, "", {maneuver + ":", "wind"});
+}
+
+TEST_CASE("A missing file is refused by name", "[io]") {
+  check_refused("/nowhere/car.toml", kBump, "", {"/nowhere/car.toml"});
+  check_refused(kSedan, "/nowhere/bump.toml", "", {"/nowhere/bump.toml"});
+}
+
+TEST_CASE("A negative mass is refused with key, value and allowed range", "[io]") {
+  const TemporaryFolder folder;
+  const std::string vehicle = change_example(folder, kSedan, "mass = 1155.0", "mass = -1155.0");
+  check_refused(vehicle, kBump, "", {vehicle + ":", "whole_car.mass", "-1155", "must lie in [200"});
+  check_refused(kSedan, kBump, "--set mass=-5", {"--set mass = -5", "must lie in [200"});
+}
+
+TEST_CASE("Hardpoints that cannot close the loop are refused", "[io]") {
+  const TemporaryFolder folder;
+  // A tie rod of 34 mm in place of 340 mm.
+  const std::string vehicle = change_example(folder, kSedan, "chassis = [-0.16387, 0.3047, 0.0495]",
+                                             "chassis = [-0.12817, 0.609, 0.02844]");
+  check_refused(vehicle, kBump, "", {vehicle, "front_suspension", "close the loop", "allowed"});
+  const Outcome curves =
+      run("simulate --kinematics " + vehicle + " -o " + (folder / "curves.csv").string());
+  CHECK(curves.code == 2);
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("A spring that cannot carry the car is refused", "[io]") {
+  const TemporaryFolder folder;
+  const std::string vehicle = change_example(folder, kSedan, "stiffness = 40000.0",
+                                             "stiffness = 2000.0\n"
+                                             "nominal_stiffness = 40000.0");
+  check_refused(vehicle, kBump, "", {vehicle, "equilibrium", "100 mm"});
+}
+
+TEST_CASE("A step that is unstable is refused with the longest stable one", "[io]") {
+  check_refused(kSedan, kBump, "--step 0.005 --spin explicit",
+                {"--step = 0.005", "unstable", "must lie in (0, 0.004", "--spin exponential"});
+  check_refused(kSedan, kExamples + "/maneuvers/bump_3mps.toml", "--spin explicit",
+                {"--step = 0.001", "unstable", "must lie in (0, 0.0006"});
+  check_refused(kSedan, kBump, "--step 0.021", {"--step = 0.021", "must lie in (0, 0.02] s"});
+  check_refused(kSedan, kBump, "--step 0", {"must lie in (0, 0.02] s"});
+  check_refused(kSedan, kBump, "--step nan", {"--step = nan", "must lie in (0, 0.02] s"});
+}
+
+TEST_CASE("Bad options are refused with what is allowed", "[io]") {
+  check_refused(kSedan, kBump, "--integrator euler", {"euler", "rk4, abm4, cvode"});
+  check_refused(kSedan, kBump, "--integrator cvode --step 0.001", {"--step", "cvode"});
+  check_refused(kSedan, kBump, "--set front_stifness=1", {"did you mean 'front_stiffness'?"});
+  check_refused(kSedan, kBump, "--rate 0", {"--rate = 0", "must lie in [1"});
+  check_refused(kSedan, "", "", {"expected VEHICLE and MANEUVER", "Usage:"});
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run("simulate " + kSedan + " " + kBump + " -o " + (folder / "run.txt").string());
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains("run.txt") && Contains(".csv, .h5 or .hdf5"));
+}
+
+TEST_CASE("A folder that is not there is the environment's failure", "[io]") {
+  for (const char* name : {"run.csv", "run.h5"}) {
+    const std::string file = std::string("/nowhere/") + name;
+    const Outcome outcome = run("simulate " + kSedan + " " + kBump + " -o " + file);
+    CHECK(outcome.code == 3);
+    CHECK_THAT(outcome.messages, Contains(file));
+  }
+  const TemporaryFolder folder;
+  CHECK(
+      run("simulate " + kSedan + " " + kBump + " -o " + (folder / "a.csv").string() + " >/dev/full")
+          .code == 3);
+}
+
+TEST_CASE("A run that leaves the modeled travel says when, writes nothing, and answers no",
+          "[io]") {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run("simulate " + kSedan + " " + kBump + " --set bump_height=0.19 --closure table -o " +
+          (folder / "run.csv").string());
+  CHECK(outcome.code == 1);
+  CHECK_THAT(outcome.messages, Contains("failed at t = 0.") && Contains("100 mm"));
+  CHECK(folder.file_count() == 0);
+}
+
+TEST_CASE("SIGINT and SIGTERM end a run with 130 and 143 and leave nothing", "[io]") {
+  const std::pair<const char*, int> signals[] = {{"INT", 130}, {"TERM", 143}};
+  for (const auto& [signal, code] : signals) {
+    const TemporaryFolder folder;
+    // An hour of driving takes a minute.
+    const Outcome outcome = run_shell(
+        std::string("timeout --preserve-status -s ") + signal + " 0.5 " + kProgram + " simulate " +
+        kSedan + " " + kBump + " --rate 1 --set duration=3600 -o " + (folder / "run.csv").string());
+    CHECK(outcome.code == code);
+    CHECK(folder.file_count() == 0);
+  }
+}
+
+TEST_CASE("The benchmark prints the agreed keys and compares with itself", "[io][slow]") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "old.json";
+  const Outcome first = run("bench --quick --json");
+  REQUIRE(first.code == 0);
+  folder.write("old.json", first.out);
+  boost::property_tree::ptree json;
+  boost::property_tree::read_json(file, json);
+  for (const char* name : {"double", "lanes", "lanes_tabulated", "fastest"}) {
+    const std::string figure = std::string("single_core.") + name;
+    const double runs = json.get<double>(figure + ".runs_per_s");
+    CHECK(runs > 0.0);
+    CHECK(json.get<double>(figure + ".real_time_factor") == Approx(3.0 * runs));
+  }
+  CHECK(!json.get<std::string>("single_core.fastest.setting").empty());
+  CHECK(json.get_child("threads").front().second.get<int>("threads") == 1);
+  CHECK(json.get<double>("accuracy.body_acceleration_rms_relative") <= 1e-3);
+  CHECK(json.get<long>("flops_per_rhs") > json.get<long>("flops_per_rhs_tabulated"));
+  const double share = json.get<double>("share_of_peak");
+  CHECK((share > 0.0 && share < 1.0));
+  CHECK(json.get<int>("bytes_per_case") > 0);
+  for (const char* name : {"cpu", "cores", "isa", "compiler", "commit"}) {
+    CHECK(json.get_optional<std::string>(std::string("machine.") + name));
+  }
+  const Outcome second = run("bench --quick --baseline " + file);
+  CHECK(second.code == 0);
+  CHECK_THAT(second.out, Contains("new / old") && Contains("flops_per_rhs         1.000"));
+}
+
+TEST_CASE("A baseline that is no benchmark is refused", "[io]") {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("old.json", "{\"a\": 1}");
+  const Outcome outcome = run("bench --quick --baseline " + file);
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains(file) && Contains("strut bench --json"));
+  CHECK(run("bench --baseline /nowhere.json").code == 2);
+}
+
+TEST_CASE("JSON escapes text, nests, and has no number that is not finite", "[unit]") {
+  const Json json = Json::object()
+                        .set("text", std::string("a\"b\\c\n"))
+                        .set("number", 0.1)
+                        .set("nothing", std::nan(""))
+                        .set("list", Json::array().push(1).push(true).push("x"))
+                        .set("empty", Json::object());
+  CHECK(json.dump() ==
+        "{\n"
+        "  \"text\": \"a\\\"b\\\\c\\u000a\",\n"
+        "  \"number\": 0.1,\n"
+        "  \"nothing\": null,\n"
+        "  \"list\": [1, true, \"x\"],\n"
+        "  \"empty\": {}\n"
+        "}");
+}
+
+}  // namespace
+}  // namespace strut
