@@ -76,15 +76,15 @@ void print_table(std::ostream& stream, const BenchResult& result,
   }
   print_line(stream, "\nerror: body acceleration, rms over the run, relative to CVODE at 1e-12");
   print_line(stream, "spin: a fixed loop timed beside, 1 on this machine when nobody else uses it");
-  print_line(
-      "right-hand side: %ld operations closed by Newton, %ld tabulated; %ld, %ld calls of "
-      "sin, cos, atan, exp",
-      result.newton.arithmetic, result.table.arithmetic, result.newton.transcendental,
-      result.table.transcendental);
-  print_line(
-      "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above; "
-      "a case is %d bytes of data",
-      1e-9 * result.peak, 1e3 * result.seconds_to_prepare, kBytesPerCase);
+  print_line(stream,
+             "right-hand side: %ld operations closed by Newton, %ld tabulated; %ld, %ld calls of "
+             "sin, cos, atan, exp",
+             result.newton.arithmetic, result.table.arithmetic, result.newton.transcendental,
+             result.table.transcendental);
+  print_line(stream,
+             "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above; "
+             "a case is %d bytes of data",
+             1e-9 * result.peak, 1e3 * result.seconds_to_prepare, kBytesPerCase);
   if (ratios.empty()) return;
   print_line(stream, "\n%-16s %10s", "new / old", "ratio");
   for (const FigureRatio& r : ratios) print_line(stream, "%-16s %10.3f", r.name.c_str(), r.ratio);

@@ -1,10 +1,11 @@
 // The reduced equations of motion against the full-coordinate car, and laws they must obey.
 
+#include "model/multibody/dynamics.h"
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "model/multibody/closures.h"
-#include "model/multibody/dynamics.h"
 #include "tests/reference/full_coordinate_car.h"
 #include "tests/test_car.h"
 

@@ -21,7 +21,9 @@ Case make_flat_case(const VehicleSpec& spec = reference::make_paper_sedan_spec()
   return {spec, maneuver};
 }
 
-TrimResult rest(const PreparedCase& c) {
+/// At rest, nothing driving.
+TrimResult rest(PreparedCase c) {
+  c.vehicle.numbers.drive_torque.fill(0.0);
   return solve_rest(c.vehicle, c.mechanism->tables, c.mechanism->car.center_height);
 }
 
@@ -41,9 +43,10 @@ TEST_CASE("Static tire loads are those of the lever rule", "[unit]") {
     const Case c = make_flat_case(spec);
     const PreparedCase prepared = prepare(c);
     for (int corner = 0; corner < kCorners; ++corner) {
-      // Toe and camber together move the contact points by micrometers of a wheelbase of 2.8 m.
+      // Camber times toe times radius moves the contact points by up to 10 of 2.8e6 micrometers.
+      const double allowed = spec.suspension[kRear].static_toe == 0.0 ? 1e-7 : 1e-5;
       CHECK(prepared.static_load[corner] ==
-            Approx(calc_load(spec.whole, c.maneuver.gravity, corner)).epsilon(tolerance(1e-6)));
+            Approx(calc_load(spec.whole, c.maneuver.gravity, corner)).epsilon(tolerance(allowed)));
     }
   }
 }
@@ -104,16 +107,16 @@ TEST_CASE("Worn springs sag by the force over the lost stiffness", "[unit]") {
     const double q = trim.state[I::kCorner + corner];
     const double deflection = c.vehicle.numbers.nominal_length[corner * kLines + kSpringLine] -
                               calc_motion(c.mechanism->car, corner, q).length[kSpringLine];
-    // The load on the spring grows as its lever shrinks: F ratio = F0 ratio0. The wheel's own
-    // weight, and the axle load after pitching, keep this to some 0.1 % of F0.
+    // The load on the spring grows as its lever shrinks: F ratio = F0 ratio0. Links' own weight and
+    // camber change keep this to some 0.3 % of F0.
     const double force0 = c.mechanism->car.preload[corner];
     const double force = force0 * calc_spring_ratio(truth, corner, 0.0).ratio /
                          calc_spring_ratio(truth, corner, q).ratio;
     const double expected = force / strut.stiffness - force0 / strut.nominal_stiffness;
     INFO("corner " << corner << ": preload " << force0 << " N, sag " << deflection
                    << " m, expected " << expected << " m");
-    CHECK(deflection > 0.01);
-    CHECK(std::abs(deflection - expected) < tolerance(2e-3) * force0 / strut.stiffness);
+    CHECK(deflection > 0.005);
+    CHECK(std::abs(deflection - expected) < tolerance(5e-3) * force0 / strut.stiffness);
   }
 }
 
@@ -171,6 +174,29 @@ double calc_held_load(const PreparedCase& c, const State<double>& at_rest, int c
   return ws.contact[corner].load;
 }
 
+/// The same from the potential energy V(z, q) of the independent car: chassis height z, one corner
+/// free: V_zz - V_zq^2 / V_qq.
+double calc_ride_rate(const VehicleSpec& spec, const State<double>& at_rest, int corner) {
+  reference::FullCoordinateCar car(spec, make_flat_case().maneuver);
+  const auto c = static_cast<std::size_t>(corner);
+  const auto potential = [&](double z, double q) {
+    reference::ReducedState x = car.make_nominal();
+    x.position.z() = at_rest[I::kPosition + 2] + z;
+    x.q[c] = at_rest[I::kCorner + corner] + q;
+    const reference::ReferenceState state = car.assemble(x);
+    const reference::CarEnergy energy = car.calc_energy(state);
+    const double deflection = car.calc_contact(state, corner).deflection;
+    return energy.springs + energy.gravity + 0.5 * spec.tire.stiffness * deflection * deflection;
+  };
+  constexpr double h = 1e-3;
+  const double v = potential(0.0, 0.0);
+  const double zz = (potential(h, 0.0) - 2.0 * v + potential(-h, 0.0)) / (h * h);
+  const double qq = (potential(0.0, h) - 2.0 * v + potential(0.0, -h)) / (h * h);
+  const double zq =
+      (potential(h, h) - potential(h, -h) - potential(-h, h) + potential(-h, -h)) / (4.0 * h * h);
+  return zz - zq * zq / qq;
+}
+
 TEST_CASE("An axle's ride rate is wheel rate and tire in series", "[unit][reference]") {
   const VehicleSpec spec = reference::make_paper_sedan_spec();
   const PreparedCase c = prepare(make_flat_case(spec));
@@ -181,11 +207,15 @@ TEST_CASE("An axle's ride rate is wheel rate and tire in series", "[unit][refere
         (calc_held_load(c, x, corner, -kLift) - calc_held_load(c, x, corner, kLift)) /
         (2.0 * kLift);
     const double wheel = calc_wheel_rate(spec, c, corner), tire = spec.tire.stiffness;
-    const double expected = wheel * tire / (wheel + tire);
+    const double series = wheel * tire / (wheel + tire);
+    const double exact = calc_ride_rate(spec, x, corner);
     INFO("corner " << corner << ": wheel rate " << wheel << " N/m, ride rate " << rate
-                   << ", expected " << expected);
-    // Left out: camber change with travel tilts tire and load by hundredths of a radian squared.
-    CHECK(rate == Approx(expected).epsilon(tolerance(2e-3)));
+                   << ", from energies " << exact << ", series " << series);
+    // Second differences over 1 mm: h^2 / 12 times fourth derivatives.
+    CHECK(rate == Approx(exact).epsilon(tolerance(1e-4)));
+    // Left out of the textbook's series: camber change, which shifts the contact point sideways,
+    // and the weight of links that turn.
+    CHECK(rate == Approx(series).epsilon(tolerance(0.03)));
   }
 }
 
@@ -274,7 +304,7 @@ TEST_CASE("Heave and pitch frequencies are those of a linear half car", "[unit][
     // Left out of the half car: the wheels' way forward and back and the horizontal shift of the
     // tire forces as the body pitches (0.4 % of the pitch stiffness). Wheel hop also depends on
     // how arms, rods and the turning upright share in the motion.
-    CHECK(modes[i] == Approx(expected[i]).epsilon(tolerance(i < 2 ? 0.02 : 0.08)));
+    CHECK(modes[i] == Approx(expected[i]).epsilon(tolerance(i < 2 ? 0.02 : 0.05)));
   }
 }
 

@@ -8,7 +8,7 @@
 
 namespace strut {
 
-/// Largest loop error a step may leave, and how far a corner may leave the fitted travel [m].
+/// Largest loop error a step may leave [m].
 inline constexpr double kClosureTolerance = 1e-9;
 /// Speeds beyond this are an unstable integration, not a car [m/s].
 inline constexpr double kAbsurdSpeed = 500.0;
@@ -63,6 +63,7 @@ class CarSystem {
     failed_ = (!is_finite(workspace_.acceleration.z + workspace_.acceleration.x +
                           workspace_.angular_acceleration.y)) |
               (workspace_.closure_error > T(kClosureTolerance)) |
+              (workspace_.travel_excess > T(0.0)) |
               (abs(x[StateIndex::kVelocity]) > T(kAbsurdSpeed)) |
               (abs(x[StateIndex::kVelocity + 2]) > T(kAbsurdSpeed));
     largest_loop_error_ = max(largest_loop_error_, workspace_.closure_error);
@@ -99,10 +100,10 @@ class CarSystem {
 
   Mask has_failed() const { return failed_; }
   RunStatus get_failure(int lane) const {
-    const double error = get_lane(workspace_.closure_error, lane);
-    const double sum = get_lane(workspace_.acceleration.z, lane);
-    return std::isfinite(sum) && error > kClosureTolerance ? RunStatus::kOutOfTravel
-                                                           : RunStatus::kDiverged;
+    const bool finite = std::isfinite(get_lane(workspace_.acceleration.z, lane));
+    const bool open = get_lane(workspace_.closure_error, lane) > kClosureTolerance ||
+                      get_lane(workspace_.travel_excess, lane) > 0.0;
+    return finite && open ? RunStatus::kOutOfTravel : RunStatus::kDiverged;
   }
 
   /// Channels at the state of the last calc_derivative.

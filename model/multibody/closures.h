@@ -8,6 +8,7 @@
 
 namespace strut {
 
+/// Newton's one iteration from the predictor. Returns the loop error left [m].
 template <class T>
 struct NewtonClosure {
   const VehicleLayout* layout;
@@ -39,10 +40,10 @@ template <class T, class C>
 struct TableClosure {
   const VehicleTables<C>* tables;
 
-  /// Loop error stands for "outside the table" here: 0 inside, the excess [m] outside.
+  /// A table has no loops left to err in.
   T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
     update_corner_motion(tables->corner[corner], tables->degree[corner], q, motion);
-    return max(abs(q) - T(tables->half_travel), T(0.0));
+    return T(0.0);
   }
   void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
     update_wheel_place(tables->corner[corner], tables->degree[corner], q, motion);

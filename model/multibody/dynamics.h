@@ -35,6 +35,7 @@ struct Workspace {
   Mat3<T> rotation;  // chassis to world
   std::array<CornerMotion<T>, kCorners> motion;
   T closure_error;  // m, largest over corners
+  T travel_excess;  // m, how far a corner is beyond its travel; negative inside
   // tires
   std::array<WheelMotion<T>, kCorners> wheel;
   std::array<TireContact<T>, kCorners> contact;
@@ -281,8 +282,11 @@ void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode
   using I = StateIndex;
   ws.rotation = rotation_of(get_quaternion(x));
   ws.closure_error = T(0.0);
+  ws.travel_excess = T(-1.0);
   for (int c = 0; c < kCorners; ++c) {
-    ws.closure_error = max(ws.closure_error, closure(c, x[I::kCorner + c], ws.motion[c]));
+    const T& q = x[I::kCorner + c];
+    ws.closure_error = max(ws.closure_error, closure(c, q, ws.motion[c]));
+    ws.travel_excess = max(ws.travel_excess, abs(q) - T(vehicle.layout.predictor[c].half_travel));
   }
   for (int axle = 0; axle < kAxles; ++axle) {
     update_tires(vehicle, x, mode, axle, update_contacts(vehicle, x, axle, ws), ws);

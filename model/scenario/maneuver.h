@@ -11,12 +11,12 @@ enum class TrimKind {
 };
 
 struct ManeuverSpec {
-  double speed = 20.0;           // m/s, initial forward speed
-  double duration = 3.0;         // s
-  double drive_torque = 500.0;   // N m in all, reacted by the chassis
-  double bump_distance = 10.0;   // m, bump center ahead of the front wheel centers at t = 0
+  double speed = 20.0;          // m/s, initial forward speed
+  double duration = 3.0;        // s
+  double drive_torque = 500.0;  // N m in all, reacted by the chassis
+  double bump_distance = 10.0;  // m, bump center ahead of the front wheel centers at t = 0
   TrimKind trim = TrimKind::kSteady;
-  double gravity = 9.81;         // m/s^2
+  double gravity = 9.81;  // m/s^2
   RoadSpec road;
   bool operator==(const ManeuverSpec&) const = default;
 };
