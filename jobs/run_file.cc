@@ -4,19 +4,18 @@
 
 #include "io/csv.h"
 #include "io/hdf5.h"
-#include "io/nearest_name.h"
+#include "jobs/build_info.h"
 #include "jobs/interrupt.h"
-#include "sweep/parameters.h"
 
 namespace strut {
 namespace {
 
 void write_run_csv(const std::filesystem::path& path, const RunRecord& run) {
   std::vector<CsvColumn> columns;
-  const auto& channels = list_car_channels();
-  for (int c = 0; c < CarChannel::kCount; ++c) {
-    const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
-    columns.push_back({channel.name, channel.unit, get_history(run.results, c)});
+  const std::vector<ChannelInfo>& channels = *run.channels;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    columns.push_back(
+        {channels[c].name, channels[c].unit, get_history(run.results, channels.size(), c)});
   }
   write_csv(path, columns);
 }
@@ -28,11 +27,10 @@ void write_one(Hdf5Writer& file, const std::string& name, double value, const st
 
 void write_run_hdf5(const std::filesystem::path& path, const RunRecord& run) {
   Hdf5Writer file(path);
-  const auto& channels = list_car_channels();
-  for (int c = 0; c < CarChannel::kCount; ++c) {
-    const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
-    file.write("/history/" + channel.name, get_history(run.results, c),
-               {channel.unit, channel.description, {}});
+  const std::vector<ChannelInfo>& channels = *run.channels;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    file.write("/history/" + channels[c].name, get_history(run.results, channels.size(), c),
+               {channels[c].unit, channels[c].description, {}});
   }
   if (has_snapshot(run.results)) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -42,8 +40,8 @@ void write_run_hdf5(const std::filesystem::path& path, const RunRecord& run) {
     write_one(file, "/snapshot/event_time", run.results.event_time[0], "s",
               "time at which the rear wheel centers are over the bump's center");
   }
-  for (const ParameterInfo& p : list_parameters()) {
-    write_one(file, "/parameters/" + p.name, p.get(run.input), p.unit, p.description);
+  for (const RunParameter& p : run.parameters) {
+    write_one(file, "/parameters/" + p.name, p.value, p.unit, p.description);
   }
   for (const auto& [name, text] : run.provenance) file.write_attribute("/", name, text);
   file.commit();
@@ -60,12 +58,26 @@ RunFormat find_run_format(const std::filesystem::path& path) {
 
 bool has_snapshot(const LaneResults& results) { return std::isfinite(results.event_time[0]); }
 
-std::vector<double> get_history(const LaneResults& results, int channel) {
+std::vector<double> get_history(const LaneResults& results, std::size_t channels,
+                                std::size_t channel) {
   std::vector<double> values(static_cast<std::size_t>(results.sample_count));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = results.history[i * CarChannel::kCount + static_cast<std::size_t>(channel)];
+    values[i] = results.history[i * channels + channel];
   }
   return values;
+}
+
+std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source) {
+  const BuildInfo& build = get_build_info();
+  std::string settings;
+  for (const std::string& s : source.settings) settings += (settings.empty() ? "" : " ") + s;
+  return {{"strut_version", build.version},
+          {"commit", build.commit},
+          {"compiler", build.compiler},
+          {"instruction_set", list_kernels().front().isa},
+          {"vehicle", source.vehicle.string()},
+          {"maneuver", source.maneuver.string()},
+          {"settings", settings}};
 }
 
 void write_run(const std::filesystem::path& path, RunFormat format, const RunRecord& run) {

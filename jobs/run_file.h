@@ -15,10 +15,17 @@ enum class RunFormat { kCsv, kHdf5 };
 /// By the name's end: .csv, .h5 or .hdf5. Throws InputError.
 RunFormat find_run_format(const std::filesystem::path& path);
 
-/// A finished run of one case.
+/// A number that went into a run.
+struct RunParameter {
+  std::string name, unit, description;
+  double value;
+};
+
+/// A finished run of a car or a rig.
 struct RunRecord {
-  Case input;
-  LaneResults results;  // one lane, with history
+  const std::vector<ChannelInfo>* channels = nullptr;
+  LaneResults results;  // one lane, with history of all channels
+  std::vector<RunParameter> parameters;
   /// How it was made, as (name, text) in the order of the file.
   std::vector<std::pair<std::string, std::string>> provenance;
 };
@@ -26,8 +33,12 @@ struct RunRecord {
 /// True where the snapshot's line was reached.
 bool has_snapshot(const LaneResults& results);
 
-/// One channel of the history.
-std::vector<double> get_history(const LaneResults& results, int channel);
+/// One channel of the history of `channels` channels.
+std::vector<double> get_history(const LaneResults& results, std::size_t channels,
+                                std::size_t channel);
+
+/// Version, commit, compiler and instruction set of this program, and the files of the run.
+std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source);
 
 /// CSV: one column a channel. HDF5: datasets /history/CHANNEL, /snapshot/CHANNEL (one value each,
 /// none where the snapshot's line was not reached), /snapshot/event_time, /parameters/NAME, and the

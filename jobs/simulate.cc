@@ -7,12 +7,14 @@
 #include <iostream>
 
 #include "jobs/arguments.h"
-#include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/json.h"
 #include "jobs/kinematics.h"
 #include "jobs/run_file.h"
+#include "model/integrate/rig_system.h"
 #include "model/kernel/stability.h"
+#include "sweep/parameters.h"
+#include "sweep/read_rig.h"
 
 namespace strut {
 namespace {
@@ -164,25 +166,26 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
 
 std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOptions& options,
                                                               const LaneResults& results) {
-  const BuildInfo& build = get_build_info();
   const IntegrateOptions& integrate = options.integrate;
   const bool cvode = options.integrator == kCvode;
-  std::string settings;
-  for (const std::string& s : options.source.settings)
-    settings += (settings.empty() ? "" : " ") + s;
-  return {{"strut_version", build.version},
-          {"commit", build.commit},
-          {"compiler", build.compiler},
-          {"instruction_set", list_kernels().front().isa},
-          {"vehicle", options.source.vehicle.string()},
-          {"maneuver", options.source.maneuver.string()},
-          {"settings", settings},
-          {"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
-          {"step", cvode ? "adaptive, tolerance 1e-12" : format_number(integrate.step.step) + " s"},
-          {"closure", kClosures[static_cast<std::size_t>(integrate.closure)]},
-          {"spin", cvode ? "explicit" : kSpins[static_cast<std::size_t>(integrate.spin)]},
-          {"events", cvode || integrate.step.locate_events ? "located" : "not located"},
-          {"event_count", std::to_string(results.event_count)}};
+  auto list = describe_program(options.source);
+  list.insert(
+      list.end(),
+      {{"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
+       {"step", cvode ? "adaptive, tolerance 1e-12" : format_number(integrate.step.step) + " s"},
+       {"closure", kClosures[static_cast<std::size_t>(integrate.closure)]},
+       {"spin", cvode ? "explicit" : kSpins[static_cast<std::size_t>(integrate.spin)]},
+       {"events", cvode || integrate.step.locate_events ? "located" : "not located"},
+       {"event_count", std::to_string(results.event_count)}});
+  return list;
+}
+
+std::vector<RunParameter> list_case_parameters(const Case& c) {
+  std::vector<RunParameter> parameters;
+  for (const ParameterInfo& p : list_parameters()) {
+    parameters.push_back({p.name, p.unit, p.description, p.get(c)});
+  }
+  return parameters;
 }
 
 void print_snapshot(const LaneResults& results) {
@@ -222,10 +225,11 @@ void print_json(const LaneResults& results, double duration, double seconds) {
 void print_summary(const SimulateOptions& options, const LaneResults& results, double duration,
                    double seconds) {
   double travel = 0.0;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    const int channel = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
-                        CarChannel::kSuspensionDeflection;
-    for (const double d : get_history(results, channel)) travel = std::max(travel, std::fabs(d));
+  for (std::size_t corner = 0; corner < kCorners; ++corner) {
+    const std::size_t channel = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
+                                CarChannel::kSuspensionDeflection;
+    for (const double d : get_history(results, CarChannel::kCount, channel))
+      travel = std::max(travel, std::fabs(d));
   }
   char line[256];
   std::snprintf(line, sizeof line,
@@ -236,29 +240,78 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
   std::cerr << options.output.string() << line;
 }
 
+void check_rate(double rate, double duration) {
+  if (duration * rate <= kMaxSamples) return;
+  throw InputError("--rate = " + format_number(rate) + " Hz: must be at most " +
+                   format_number(std::floor(kMaxSamples / duration)) + " Hz for " +
+                   format_number(duration) + " s");
+}
+
 int run_case(const SimulateOptions& options) {
   const RunFormat format = find_run_format(options.output);
-  RunRecord run;
-  run.input = load_case(options.source);
-  const double duration = run.input.maneuver.duration;
-  if (duration * options.rate > kMaxSamples) {
-    throw InputError("--rate = " + format_number(options.rate) + " Hz: must be at most " +
-                     format_number(std::floor(kMaxSamples / duration)) + " Hz for " +
-                     format_number(duration) + " s");
-  }
-  const PreparedCase prepared = prepare_case(options.source, run.input);
+  const Case input = load_case(options.source);
+  const double duration = input.maneuver.duration;
+  check_rate(options.rate, duration);
+  const PreparedCase prepared = prepare_case(options.source, input);
   check_step(prepared, options);
 
+  RunRecord run;
+  run.channels = &list_car_channels();
   const auto start = std::chrono::steady_clock::now();
   run.results = integrate(prepared, options, options.integrate.step.step);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (run.results.status[0] != 0) return explain_failure(prepared, options, run.results);
 
+  run.parameters = list_case_parameters(input);
   run.provenance = describe_run(options, run.results);
   write_run(options.output, format, run);
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
   print_summary(options, run.results, duration, seconds);
+  return kExitDone;
+}
+
+/// A rig instead of a car: same files out, no snapshot.
+int run_rig(const SimulateOptions& options, RigKind kind) {
+  if (options.integrator == kCvode) {
+    throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
+  }
+  const RunFormat format = find_run_format(options.output);
+  RigSpec rig = read_rig(options.source.vehicle);
+  for (const std::string& setting : options.source.settings) {
+    const auto [name, value] = parse_setting(setting);
+    set_rig_parameter(rig, name, value);
+  }
+  const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, kind);
+  check_rate(options.rate, maneuver.duration);
+  SamplePlan plan;
+  plan.duration = maneuver.duration;
+  plan.interval = 1.0 / options.rate;
+
+  RunRecord run;
+  run.channels = &list_rig_channels(kind);
+  const auto start = std::chrono::steady_clock::now();
+  run.results = simulate_rig(rig, maneuver.inputs, options.integrate.step, plan);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (run.results.status[0] != 0) {
+    throw InputError("--step = " + format_number(options.integrate.step.step) +
+                     " s: " + options.source.vehicle.string() + " diverged at t = " +
+                     format_number(run.results.failure_time[0]) + " s; a shorter one is needed");
+  }
+  for (const RigParameterInfo& p : list_rig_parameters(kind)) {
+    run.parameters.push_back({p.name, p.unit, p.description, rig.*p.field});
+  }
+  run.provenance = describe_program(options.source);
+  run.provenance.insert(run.provenance.end(),
+                        {{"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
+                         {"step", format_number(options.integrate.step.step) + " s"},
+                         {"event_count", std::to_string(run.results.event_count)}});
+  write_run(options.output, format, run);
+  char line[160];
+  std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s\n",
+                run.results.sample_count, run.channels->size(), maneuver.duration, seconds);
+  std::cerr << options.output.string() << line;
   return kExitDone;
 }
 
@@ -277,7 +330,9 @@ int run_simulate(const std::vector<std::string>& arguments) {
   Arguments parsed = make_arguments();
   if (!parsed.parse(arguments)) return kExitDone;
   const SimulateOptions options = read_options(parsed);
-  return options.kinematics ? run_kinematics(options) : run_case(options);
+  if (options.kinematics) return run_kinematics(options);
+  if (const auto rig = find_rig_kind(options.source.vehicle)) return run_rig(options, *rig);
+  return run_case(options);
 }
 
 }  // namespace strut

@@ -263,7 +263,7 @@ void set_parameter(Case& c, const std::string& name, double value) {
   parameter.set(c, value);
 }
 
-void apply_setting(Case& c, const std::string& setting) {
+std::pair<std::string, double> parse_setting(const std::string& setting) {
   const auto equals = setting.find('=');
   if (equals == std::string::npos) {
     throw InputError("'" + setting + "': must be name=value, for example front_stiffness=38000");
@@ -273,9 +273,13 @@ void apply_setting(Case& c, const std::string& setting) {
   double value = 0.0;
   const auto result = std::from_chars(text.data(), end, value);
   if (result.ec != std::errc() || result.ptr != end) {
-    throw InputError(name + " = '" + text + "': must be a number; " +
-                     find_parameter(name).allowed.describe());
+    throw InputError(name + " = '" + text + "': must be a number");
   }
+  return {name, value};
+}
+
+void apply_setting(Case& c, const std::string& setting) {
+  const auto [name, value] = parse_setting(setting);
   set_parameter(c, name, value);
 }
 

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/config.h"
@@ -36,6 +37,9 @@ double get_parameter(const Case& c, const std::string& name);
 
 /// Throws InputError with name, value and allowed range.
 void set_parameter(Case& c, const std::string& name, double value);
+
+/// Name and value of "name=value". Throws InputError where the text is not that.
+std::pair<std::string, double> parse_setting(const std::string& setting);
 
 /// Applies "name=value". Throws InputError where the text is not that.
 void apply_setting(Case& c, const std::string& setting);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "io/config.h"
+#include "model/vehicle/rigs.h"
 #include "sweep/parameters.h"
 #include "sweep/read_tire.h"
 
@@ -10,7 +11,13 @@ namespace strut {
 
 namespace {
 
-const std::vector<std::string> kTypes = {"full_vehicle"};
+/// Every `type` a vehicle file may name; a program looks for the rigs first (read_rig.h).
+std::vector<std::string> list_types() {
+  std::vector<std::string> types = {"full_vehicle"};
+  const auto& rigs = list_rig_kinds();
+  types.insert(types.end(), rigs.begin(), rigs.end());
+  return types;
+}
 const std::vector<std::string> kSuspensions = {"macpherson", "multilink"};  // SuspensionKind
 const std::vector<std::string> kContacts = {"envelope", "point"};           // ContactKind
 const std::vector<std::string> kPreloads = {"free_length", "trimmed"};      // PreloadKind
@@ -240,7 +247,9 @@ void read_options(const Table& root, VehicleSpec& vehicle) {
 VehicleSpec read_vehicle(const std::filesystem::path& path) {
   const Document document(path);
   const Table root = document.root();
-  root.choice("type", kTypes);
+  if (root.choice("type", list_types()) != 0) {
+    throw InputError(path.string() + ": type: a rig, where a car (full_vehicle) is needed");
+  }
   VehicleSpec vehicle;
   vehicle.name = root.text_or("name", path.stem().string());
   vehicle.whole = read_whole_car(root.table("whole_car"));

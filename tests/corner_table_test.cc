@@ -78,14 +78,6 @@ TEST_CASE("Tables equal Newton's closure in values, slopes and second derivative
   }
 }
 
-TEST_CASE("A table tells how far a corner is outside", "[unit]") {
-  const VehicleTables<double> tables = tabulate_corners(make_paper_car());
-  const TableClosure<double, double> table{&tables};
-  Motion motion{};
-  CHECK(table(kFrontLeft, 1.1 * kHalfTravel, motion) == Approx(0.1 * kHalfTravel));
-  CHECK(table(kRearLeft, -1.2 * kHalfTravel, motion) == Approx(0.2 * kHalfTravel));
-}
-
 TEST_CASE("A table places the wheel as its motion functions do", "[unit]") {
   const VehicleTables<double> tables = tabulate_corners(make_paper_car());
   const TableClosure<double, double> table{&tables};

@@ -312,6 +312,16 @@ TEST_CASE("Momentum changes by gravity and the road's forces alone", "[unit][pro
   }
 }
 
+TEST_CASE("A corner beyond its travel is told by how much", "[unit]") {
+  Car car = make_paper_car_on(BumpShape::kNone);
+  State<double> x = car.prepared.start;
+  car.evaluate(x);
+  CHECK(car.ws.travel_excess < 0.0);
+  x[I::kCorner + kRearRight] = -1.1 * kHalfTravel;
+  car.evaluate(x);
+  CHECK(car.ws.travel_excess == Approx(0.1 * kHalfTravel));
+}
+
 TEST_CASE("A damper dissipates", "[unit][property]") {
   Car car(make_uneven_spec());
   Random random(18);
