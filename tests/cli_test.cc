@@ -227,7 +227,7 @@ TEST_CASE("Hardpoints that cannot close the loop are refused", "[io]") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("A spring that cannot carry the car is refused", "[io]") {
+TEST_CASE("The program refuses a spring that cannot carry the car", "[io]") {
   const TemporaryFolder folder;
   const std::string vehicle = change_example(folder, kSedan, "stiffness = 40000.0",
                                              "stiffness = 2000.0\n"

@@ -29,7 +29,7 @@ TEST_CASE("One Newton iteration closes every corner over its travel", "[unit][pr
       }
     }
     INFO("largest loop error " << worst << " m");
-    CHECK(worst < tolerance(1e-12));
+    CHECK(worst < tolerance(2e-14));  // rounding; the predictor alone leaves 1e-12
   }
 }
 

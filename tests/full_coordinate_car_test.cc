@@ -482,7 +482,7 @@ TEST_CASE("A tire slips and pushes as its contact moves", "[unit][reference]") {
   CHECK(sinking.load == Approx(load + 500.0 * sinking.deflection_rate).epsilon(kEpsilon));
 }
 
-TEST_CASE("A damper dissipates", "[unit][reference]") {
+TEST_CASE("A damper of the reference car dissipates", "[unit][reference]") {
   const FullCoordinateCar car = make_car(make_paper_sedan_spec());
   const ReferenceState state = car.assemble(make_random_state(car, 500));
   for (int corner = 0; corner < kCorners; ++corner) {

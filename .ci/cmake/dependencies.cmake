@@ -9,7 +9,7 @@ add_library(strut::xsimd ALIAS strut_xsimd)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(SUNDIALS 6.4 REQUIRED
-  COMPONENTS kinsol cvode ida nvecserial sunmatrixdense sunlinsoldense)
+  COMPONENTS kinsol cvode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
 find_package(tomlplusplus 3.3 REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
 find_package(OpenMP REQUIRED COMPONENTS CXX)

@@ -10,7 +10,7 @@
 //   MaskOf<T> has_failed() const;                  closure or finiteness lost
 //   void observe(const T& t, const T* x, T* out);  channels
 // and at any state
-//   void calc_guards(const T& t, const T* x, T* g);  T calc_trigger(const T& t, const T* x);
+//   void calc_guards(const T& t, const T* x, T* g);
 //   bool cross(int guard, MaskOf<T> lanes);        guard passed there; true if f must be renewed
 #pragma once
 
@@ -93,11 +93,14 @@ class Simulation {
     evaluate(time_ + h_, x1(), f1(), decay1_.data());
     system_.get_guards(guard1_.data());
     trigger1_ = system_.get_trigger();
-    Mask restarted = time_ < T(-1.0);
-    if (options_.locate_events && system_.guard_count() > 0) restarted = locate_events();
+    T landed = T(-1.0);  // guard at which a lane's step now ends
+    if (options_.locate_events && system_.guard_count() > 0) landed = locate_events();
     retire_failed();
     if (plan_.snapshot) locate_trigger();
     if (results_.sample_count > 0) record_samples();
+    // Only now may the right-hand side change sides: the step just taken belongs to the old one.
+    const Mask restarted = landed > T(-0.5);
+    if (any(restarted)) pass_guards(restarted, landed);
     commit(restarted, last);
   }
 
@@ -122,11 +125,10 @@ class Simulation {
   }
 
   /// Shortens the step of lanes in which a guard changed sides, to end at the first change. Returns
-  /// the lanes that did.
-  Mask locate_events() {
+  /// the guard at which each lane's step now ends, -1 where none.
+  T locate_events() {
     const int guards = system_.guard_count();
-    Mask restarted = time_ < T(-1.0);
-    T landed = T(-1.0);  // guard at which the lane's step now ends
+    T landed = T(-1.0);
     for (int attempt = 0; attempt < kMaxGuards; ++attempt) {
       T theta = T(2.0), chosen = T(-1.0);
       for (int g = 0; g < guards; ++g) {
@@ -145,10 +147,8 @@ class Simulation {
       if (!any(crossing)) break;
       shorten_step(crossing, refine_crossing(crossing, chosen));
       landed = select(crossing, chosen, landed);
-      restarted = restarted | crossing;
     }
-    if (any(restarted)) pass_guards(restarted, landed);
-    return restarted;
+    return landed;
   }
 
   /// Root of each lane's chosen guard on the dense output, as a fraction of h_ (Illinois method).
@@ -161,7 +161,7 @@ class Simulation {
       gb = select(mine, guard1_[g], gb);
     }
     constexpr int kIterations = 8;
-    T theta = T(1.0);
+    T theta = T(1.0), kept = T(0.0);  // which end stayed in the last iteration: -1 a, +1 b
     std::array<T, kMaxGuards> g_now;
     for (int i = 0; i < kIterations; ++i) {
       theta = select(crossing, (a * gb - b * ga) / (gb - ga), T(1.0));
@@ -171,11 +171,13 @@ class Simulation {
       for (int g = 0; g < guards; ++g) {
         value = select(abs(chosen - T(g)) < T(0.5), g_now[g], value);
       }
-      const Mask same_as_b = value * gb > T(0.0);
-      ga = select(same_as_b, T(0.5) * ga, value);
-      a = select(same_as_b, a, theta);
-      gb = select(same_as_b, value, T(0.5) * gb);
-      b = select(same_as_b, theta, b);
+      // An end that stays twice counts half: without this the method creeps towards the other.
+      const Mask replaces_b = value * gb > T(0.0);
+      ga = select(replaces_b, select(kept < T(-0.5), T(0.5) * ga, ga), value);
+      gb = select(replaces_b, value, select(kept > T(0.5), T(0.5) * gb, gb));
+      a = select(replaces_b, a, theta);
+      b = select(replaces_b, theta, b);
+      kept = select(replaces_b, T(-1.0), T(1.0));
     }
     return theta;
   }

@@ -51,9 +51,10 @@ PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
 
   // Trims stand on flat road.
   vehicle.layout.on_bump.fill(false);
-  prepared.static_load = solve_rest(vehicle, mechanism_->tables, car.center_height).load;
   const auto torque = vehicle.numbers.drive_torque;
-  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
+  vehicle.numbers.drive_torque.fill(0.0);
+  prepared.static_load = solve_rest(vehicle, mechanism_->tables, car.center_height).load;
+  if (c.maneuver.trim == TrimKind::kSteady) vehicle.numbers.drive_torque = torque;
   prepared.start =
       solve_rolling(vehicle, mechanism_->tables, car.center_height, c.maneuver.speed).state;
   vehicle.numbers.drive_torque = torque;

@@ -7,7 +7,7 @@
 namespace strut {
 
 inline constexpr int kPredictorTerms = 13;
-inline constexpr int kNewtonIterations = 1;  // the predictor is good to 1e-8
+inline constexpr int kNewtonIterations = 1;  // the predictor is good to 1e-12 m
 
 /// First guess of the dependent coordinates: polynomials in q / half_travel, lowest power first.
 /// It depends on q alone, so a closure has no memory and a case's result no history.

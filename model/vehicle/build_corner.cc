@@ -148,7 +148,8 @@ RigidBody<double> combine_upright_and_wheel(const SuspensionSpec& spec, const Pl
 
 /// Elimination order of Phi_d by complete pivoting at nominal trim.
 template <CornerTree kTree>
-void choose_pivots(const CornerGeometry<double>& geometry, CornerTopology& topology) {
+void choose_pivots(const CornerGeometry<double>& geometry, const char* where,
+                   CornerTopology& topology) {
   constexpr int n = kTree.dependent_count();
   static_assert(n == kTree.constraint_count());
   CornerPose<double> pose;
@@ -167,7 +168,8 @@ void choose_pivots(const CornerGeometry<double>& geometry, CornerTopology& topol
       }
     }
     if (std::abs(a[row][column]) < 1e-4) {
-      throw ModelError("hardpoints: the loop equations are singular at nominal trim");
+      throw ModelError(std::string(where) +
+                       ": hardpoints: the loop equations are singular at nominal trim");
     }
     std::swap(a[k], a[row]);
     std::swap(topology.pivot_row[k], topology.pivot_row[row]);
@@ -228,7 +230,7 @@ ClosurePredictor fit_predictor(const JointSamples& joints) {
 /// Pivots and predictor of a corner.
 template <CornerTree kTree>
 void prepare_closure(const char* where, BuiltCorner& corner) {
-  choose_pivots<kTree>(corner.geometry, corner.topology);
+  choose_pivots<kTree>(corner.geometry, where, corner.topology);
   corner.predictor =
       fit_predictor<kTree>(close_over_travel<kTree>(corner.topology, corner.geometry, where));
 }
