@@ -8,31 +8,23 @@
 #include <string>
 
 #include "sweep/read_tire.h"
+#include "tests/temporary_folder.h"
 
 namespace strut {
 namespace {
 
 const std::string kPaperTire = std::string(STRUT_SOURCE_DIR) + "/examples/tires/paper_sedan.tir";
 
-std::string read_text(const std::string& path) {
-  std::ifstream stream(path);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 /// The paper's tire file with `from` replaced by `to`, on disk while the object lives.
 class ChangedTire {
  public:
   ChangedTire(const std::string& from, const std::string& to) {
-    std::string text = read_text(kPaperTire);
+    std::string text = test::read_text(kPaperTire);
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);
     text.replace(at, from.size(), to);
-    path_ = (std::filesystem::temp_directory_path() / "strut_changed_tire.tir").string();
-    std::ofstream(path_) << text;
+    path_ = folder_.write("changed.tir", text).string();
   }
-  ~ChangedTire() { std::filesystem::remove(path_); }
 
   const std::string& path() const { return path_; }
 
@@ -47,6 +39,7 @@ class ChangedTire {
   }
 
  private:
+  test::TemporaryFolder folder_;
   std::string path_;
 };
 
@@ -157,7 +150,7 @@ TEST_CASE("A wrong tire file is refused with key, value and range", "[io]") {
 
 TEST_CASE("A message starts with file and line", "[io]") {
   const ChangedTire tire("PHX1  ", "PHXI  ");
-  const std::string text = read_text(tire.path());
+  const std::string text = test::read_text(tire.path());
   const auto line =
       std::count(text.begin(), text.begin() + static_cast<long>(text.find("PHXI")), '\n') + 1;
   CHECK_THAT(tire.message(), StartsWith(tire.path() + ":" + std::to_string(line) + ": PHXI"));
