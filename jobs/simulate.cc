@@ -57,6 +57,8 @@ Arguments make_arguments() {
   arguments.add_option("integrator", "NAME",
                        "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, 1e-12");
   arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
+  arguments.add_option("coarse-step", "S",
+                       "longer step [s], in (0, 0.02], away from the bump (default: --step)");
   arguments.add_option("closure", "NAME",
                        "newton (default): loops closed in every step; table: corner kinematics "
                        "tabulated over their coordinate");
@@ -77,12 +79,13 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   const Range step{.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"};
   IntegrateOptions& integrate = options.integrate;
   integrate.step.step = arguments.number_or("step", integrate.step.step, step);
+  integrate.step.coarse_step = arguments.number_or("coarse-step", 0.0, step);
   integrate.step.stepper = options.integrator == 1 ? Stepper::kAbm4 : Stepper::kRk4;
   integrate.step.locate_events = !arguments.is_on("no-events");
   integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0, kClosures));
   integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0, kSpins));
   options.rate = arguments.number_or("rate", options.rate, between(1.0, 1e6, "Hz"));
-  for (const char* name : {"step", "spin"}) {
+  for (const char* name : {"step", "coarse-step", "spin"}) {
     if (options.integrator != kCvode || !arguments.has(name)) continue;
     throw InputError(std::string("--") + name + ": cvode chooses its own; allowed with rk4, abm4");
   }
@@ -120,11 +123,11 @@ LaneResults integrate(const PreparedCase& c, const SimulateOptions& options, dou
   return list_kernels().front().run_scalar(c, integrate, plan);
 }
 
-InputError unstable_step(const SimulateOptions& options, const std::string& how,
-                         const std::string& allowed) {
+InputError unstable_step(const SimulateOptions& options, const char* name, double step,
+                         const std::string& how, const std::string& allowed) {
   const IntegrateOptions& integrate = options.integrate;
   const bool is_explicit = integrate.spin == SpinTreatment::kExplicit;
-  return InputError("--step = " + format_number(integrate.step.step) + " s: unstable (" + how +
+  return InputError(std::string(name) + " = " + format_number(step) + " s: unstable (" + how +
                     ") with --integrator " +
                     kIntegrators[static_cast<std::size_t>(options.integrator)] + " --spin " +
                     kSpins[static_cast<std::size_t>(integrate.spin)] + " on " +
@@ -133,15 +136,24 @@ InputError unstable_step(const SimulateOptions& options, const std::string& how,
 }
 
 /// A step whose map amplifies disturbances is refused before anything runs.
-void check_step(const PreparedCase& c, const SimulateOptions& options) {
-  if (options.integrator == kCvode) return;
-  const double amplification = calc_amplification(c, options.integrate);
+void check_step(const PreparedCase& c, const SimulateOptions& options, const char* name,
+                double step) {
+  IntegrateOptions integrate = options.integrate;
+  integrate.step.step = step;
+  const double amplification = calc_amplification(c, integrate);
   if (amplification <= kMaxAmplification) return;
   char how[64], allowed[64];
   std::snprintf(how, sizeof how, "each step multiplies a disturbance by %.3g", amplification);
   std::snprintf(allowed, sizeof allowed, "must lie in (0, %.2g] s here",
-                find_stable_step(c, options.integrate));
-  throw unstable_step(options, how, allowed);
+                find_stable_step(c, integrate));
+  throw unstable_step(options, name, step, how, allowed);
+}
+
+void check_steps(const PreparedCase& c, const SimulateOptions& options) {
+  if (options.integrator == kCvode) return;
+  const StepOptions& step = options.integrate.step;
+  check_step(c, options, "--step", step.step);
+  if (step.coarse_step > 0.0) check_step(c, options, "--coarse-step", step.coarse_step);
 }
 
 /// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.
@@ -152,7 +164,7 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
   if (options.integrator != kCvode) {
     const double shorter = kRetryFraction * options.integrate.step.step;
     if (integrate(c, options, shorter).status[0] == 0) {
-      throw unstable_step(options, "failed at t = " + at,
+      throw unstable_step(options, "--step", options.integrate.step.step, "failed at t = " + at,
                           "a step of " + format_number(shorter) + " s runs through");
     }
   }
@@ -173,6 +185,7 @@ std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOpti
       list.end(),
       {{"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
        {"step", cvode ? "adaptive, tolerance 1e-12" : format_number(integrate.step.step) + " s"},
+       {"coarse_step", format_number(integrate.step.coarse_step) + " s"},
        {"closure", kClosures[static_cast<std::size_t>(integrate.closure)]},
        {"spin", cvode ? "explicit" : kSpins[static_cast<std::size_t>(integrate.spin)]},
        {"events", cvode || integrate.step.locate_events ? "located" : "not located"},
@@ -253,7 +266,7 @@ int run_case(const SimulateOptions& options) {
   const double duration = input.maneuver.duration;
   check_rate(options.rate, duration);
   const PreparedCase prepared = prepare_case(options.source, input);
-  check_step(prepared, options);
+  check_steps(prepared, options);
 
   RunRecord run;
   run.channels = &list_car_channels();
@@ -275,6 +288,9 @@ int run_case(const SimulateOptions& options) {
 int run_rig(const SimulateOptions& options, RigKind kind) {
   if (options.integrator == kCvode) {
     throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
+  }
+  if (options.integrate.step.coarse_step > 0.0) {
+    throw InputError("--coarse-step: a rig has no bump to be away from; allowed for cars");
   }
   const RunFormat format = find_run_format(options.output);
   RigSpec rig = read_rig(options.source.vehicle);

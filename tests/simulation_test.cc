@@ -225,6 +225,27 @@ TEST_CASE("A crossing at 3 m/s is as accurate as one at 20", "[unit][reference]"
   CHECK(z < tolerance(2e-5));
 }
 
+TEST_CASE("Coarse steps away from the bump cost less than a tenth of a percent",
+          "[unit][reference]") {
+  const PreparedCase c = test::prepare(test::make_paper_case());
+  const SamplePlan plan = make_plan(1e-3);
+  const LaneResults truth = run_cvode(c, {}, plan);
+  double size = 0.0;
+  for (int i = 0; i < truth.sample_count; ++i) {
+    size += square(get_history(truth, i, C::kBodyAccelerationZ));
+  }
+  size = std::sqrt(size / truth.sample_count);
+  IntegrateOptions options = make_options(Stepper::kRk4, 1.5e-3, Closure::kTable);
+  const long fine = widest().run_scalar(c, options, {}).derivative_count;
+  options.step.coarse_step = 6e-3;
+  const LaneResults run = widest().run_scalar(c, options, plan);
+  const double error = calc_rms_difference(run, truth, C::kBodyAccelerationZ) / size;
+  INFO("body acceleration, rms relative " << std::scientific << error);
+  CHECK(error < tolerance(1e-3));
+  CHECK(std::abs(run.event_time[0] - truth.event_time[0]) < tolerance(1e-5));
+  CHECK(widest().run_scalar(c, options, {}).derivative_count < fine / 2);
+}
+
 TEST_CASE("Tabulated corners give the same run as Newton closure", "[unit][property]") {
   const PreparedCase c = test::prepare(test::make_paper_case());
   const SamplePlan plan = make_plan(0.01);

@@ -10,6 +10,8 @@ namespace strut {
 
 /// Largest loop error a step may leave [m].
 inline constexpr double kClosureTolerance = 1e-9;
+/// Wheel hop after the bump fades within this; until then steps stay fine [s].
+inline constexpr double kSettlingTime = 0.12;
 /// Speeds beyond this are an unstable integration, not a car [m/s].
 inline constexpr double kAbsurdSpeed = 500.0;
 
@@ -93,6 +95,16 @@ class CarSystem {
     T& segment = workspace_.segment[guard - kCorners];
     segment = select(lanes, segment + T(1.0), segment);
     return true;
+  }
+
+  /// On the bump, about to reach it within a coarse step and a half, or still shaking from it.
+  Mask wants_fine_step(const T* x, const T& coarse_step) const {
+    const T& speed = x[StateIndex::kVelocity];
+    const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;
+    const T front = ahead + vehicle_.numbers.geometry[kFrontLeft].wheel_center.x;
+    const T rear = ahead + vehicle_.numbers.geometry[kRearLeft].wheel_center.x;
+    return (front > vehicle_.road.reach_begin - T(1.5) * coarse_step * speed) &
+           (rear < vehicle_.road.reach_end + T(kSettlingTime) * speed);
   }
 
   /// Mean forward position of the rear wheels that see the bump, from the trigger line [m].

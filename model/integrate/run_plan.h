@@ -17,6 +17,7 @@ struct StepOptions {
   Stepper stepper = Stepper::kRk4;
   double step = 1e-3;         // s
   bool locate_events = true;  // end steps at contact events
+  double coarse_step = 0.0;   // s, where the system says that nothing happens; 0: `step` everywhere
 };
 
 struct SamplePlan {

@@ -12,6 +12,8 @@
 // and at any state
 //   void calc_guards(const T& t, const T* x, T* g);
 //   bool cross(int guard, MaskOf<T> lanes);        guard passed there; true if f must be renewed
+// and, if it can tell where long steps will do (StepOptions::coarse_step),
+//   MaskOf<T> wants_fine_step(const T* x, const T& coarse_step) const;
 #pragma once
 
 #include <cmath>
@@ -64,6 +66,7 @@ class Simulation {
     time_ = T(0.0);
     end_ = T(plan_.duration);
     past_count_ = T(0.0);
+    past_step_ = T(0.0);
     next_sample_ = T(0.0);
     triggered_ = T(plan_.snapshot ? 0.0 : 1.0);
     evaluate(time_, x(), f(), decay_.data());
@@ -83,12 +86,14 @@ class Simulation {
 
   /// One step of every lane that has not ended.
   void advance() {
-    const T nominal = T(options_.step);
+    const T nominal = choose_step();
     const T left = max(end_ - time_, T(0.0));
     const Mask last = left < nominal * T(1.0 + 1e-9);
     h_ = select(last, left, nominal);
     const Mask full = h_ > nominal * T(1.0 - 1e-9);
     update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
+    past_count_ = select(abs(nominal - past_step_) > T(0.0), T(0.0), past_count_);
+    past_step_ = nominal;
     take_step(full);
     evaluate(time_ + h_, x1(), f1(), decay1_.data());
     system_.get_guards(guard1_.data());
@@ -102,6 +107,18 @@ class Simulation {
     const Mask restarted = landed > T(-0.5);
     if (any(restarted)) pass_guards(restarted, landed);
     commit(restarted, last);
+  }
+
+  /// Fine or coarse, by each lane's own state.
+  T choose_step() {
+    const T fine(options_.step);
+    if constexpr (requires { system_.wants_fine_step(x(), T(0.0)); }) {
+      if (options_.coarse_step > 0.0) {
+        const T coarse(options_.coarse_step);
+        return select(system_.wants_fine_step(x(), coarse), fine, coarse);
+      }
+    }
+    return fine;
   }
 
   /// x1_ from the stepper each lane is ready for.
@@ -363,7 +380,7 @@ class Simulation {
   StiffWeights<T> weights_;
   StepScratch<T, N> scratch_;
   std::array<T, kMaxGuards> guard_{}, guard1_{}, side_{};
-  T time_, end_, h_, past_count_, next_sample_, trigger_, trigger1_, triggered_;
+  T time_, end_, h_, past_count_, past_step_, next_sample_, trigger_, trigger1_, triggered_;
   std::vector<T> channel_;
 };
 
