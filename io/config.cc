@@ -282,7 +282,7 @@ int Table::choice_or(const std::string& key, int fallback,
 
 fs::path Table::file(const std::string& key) const {
   const fs::path named = text(key);
-  const fs::path path = (source_->path.parent_path() / named).lexically_normal();
+  fs::path path = (source_->path.parent_path() / named).lexically_normal();
   if (fs::is_regular_file(path)) return path;
   throw error(key, "file not found: " + path.string());
 }

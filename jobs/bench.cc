@@ -80,8 +80,7 @@ ThreadFigure measure_threads(const BenchCases& bench, const Kernel& kernel,
   return {threads, rate, spins / best_spin};
 }
 
-BenchResult run_benchmark(const CaseSource& source, bool quick) {
-  const Kernel& kernel = list_kernels().front();
+BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool quick) {
   const Effort effort = quick ? Effort{0.05, 2} : Effort{};
   BenchResult result;
   result.machine = read_machine(kernel);
@@ -128,6 +127,7 @@ int run_bench(const std::vector<std::string>& arguments) {
       "  strut bench --json > old.json\n  strut bench --baseline old.json");
   parsed.add_switch("json", "print JSON instead of a table");
   parsed.add_option("baseline", "FILE", "print each figure relative to this output of --json");
+  parsed.add_option("isa", "NAME", "instruction set, one that --version lists (default: widest)");
   parsed.add_switch("quick", "a tenth of the time, rougher figures");
   if (!parsed.parse(arguments)) return kExitDone;
   const auto& files = parsed.positional();
@@ -143,7 +143,11 @@ int run_bench(const std::vector<std::string>& arguments) {
   std::optional<Baseline> baseline;
   if (parsed.has("baseline")) baseline = read_baseline(parsed.text("baseline"));
 
-  const BenchResult result = run_benchmark(source, parsed.is_on("quick"));
+  std::vector<std::string> names;
+  for (const Kernel& kernel : list_kernels()) names.emplace_back(kernel.isa);
+  const Kernel& kernel =
+      list_kernels()[static_cast<std::size_t>(parsed.choice_or("isa", 0, names))];
+  const BenchResult result = run_benchmark(source, kernel, parsed.is_on("quick"));
   const std::vector<FigureRatio> ratios =
       baseline ? compare(result, *baseline) : std::vector<FigureRatio>{};
   parsed.is_on("json") ? print_json(std::cout, result, ratios)

@@ -142,6 +142,7 @@ struct Pac2002 {
 #define STRUT_PAC2002_FIELD(section, name, value, unit, meaning) T name = T(value);
   STRUT_PAC2002_COEFFICIENTS(STRUT_PAC2002_FIELD)
 #undef STRUT_PAC2002_FIELD
+  bool operator==(const Pac2002&) const = default;
 };
 
 /// The tire mounted on the other side of the car: what is odd under reflection at the wheel plane

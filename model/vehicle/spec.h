@@ -7,7 +7,6 @@
 #pragma once
 
 #include <array>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -17,10 +16,6 @@
 #include "model/scenario/road.h"
 
 namespace strut {
-
-inline bool operator==(const Pac2002<double>& a, const Pac2002<double>& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
 
 /// Corners in the order of every array and channel.
 enum Corner : int { kFrontLeft = 0, kFrontRight = 1, kRearLeft = 2, kRearRight = 3 };
