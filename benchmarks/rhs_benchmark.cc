@@ -136,11 +136,8 @@ void add_candidate(const char* name) {
 }
 
 }  // namespace
-}  // namespace strut
 
-int main(int argc, char** argv) {
-  using namespace strut;
-  benchmark::Initialize(&argc, argv);
+void run_benchmarks() {
   benchmark::RegisterBenchmark("spin", &spin);
   add_candidate<double>("double");
   add_candidate<NativeLanes>("xsimd");
@@ -150,5 +147,12 @@ int main(int argc, char** argv) {
 #endif
   add_candidate<Lanes<VectorBackend>>("vector");
   benchmark::RunSpecifiedBenchmarks();
+}
+
+}  // namespace strut
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  strut::run_benchmarks();
   return 0;
 }

@@ -93,6 +93,7 @@ std::vector<std::string> read_strings(const fs::path& path, hid_t object,
   std::vector<char*> raw(static_cast<std::size_t>(count), nullptr);
   check<InputError>(H5Aread(attribute.id(), type.id(), raw.data()) >= 0, path, name, what);
   std::vector<std::string> values;
+  values.reserve(raw.size());
   for (const char* text : raw) values.emplace_back(text == nullptr ? "" : text);
   H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, raw.data());
   return values;

@@ -84,7 +84,7 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
   const Effort effort = quick ? Effort{0.05, 2} : Effort{};
   BenchResult result;
   result.machine = read_machine(kernel);
-  std::cerr << "preparing " << kernel.lanes << " cases and the reference\n";
+  std::cerr << "preparing " << kernel.lanes << " cases and their references\n";
   const BenchCases bench = make_bench_cases(source, kernel.lanes);
   result.seconds_to_prepare = bench.seconds_to_prepare;
   const double spin = calibrate_spin();

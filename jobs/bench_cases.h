@@ -20,21 +20,22 @@ struct BenchSetting {
 /// first.
 struct BenchCases {
   std::vector<PreparedCase> cases;
-  double duration = 0.0;             // s
-  double seconds_to_prepare = 0.0;   // s a case
-  std::vector<double> acceleration;  // m/s^2, the nominal body's by CVODE, sampled at kBenchRate
+  double duration = 0.0;            // s
+  double seconds_to_prepare = 0.0;  // s a case
+  /// m/s^2, each case's body by CVODE, sampled at kBenchRate.
+  std::vector<std::vector<double>> acceleration;
 };
 inline constexpr double kBenchRate = 1000.0;  // Hz
 
-/// Reads, prepares and integrates the reference. Throws InputError.
+/// Reads, prepares and integrates the references. Throws InputError.
 BenchCases make_bench_cases(const CaseSource& source, int count);
 
-/// Runs all cases once, in lanes or one after the other.
+/// Runs all cases once in lanes; in the scalar setting the nominal case alone.
 LaneResults run_cases(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting,
                       const SamplePlan& plan);
 
-/// rms of the nominal case's body acceleration minus the reference's, over the reference's rms.
-/// Infinite where the run fails.
+/// rms of a case's body acceleration minus its reference's, over the reference's rms: the worst of
+/// the cases that run_cases runs. Infinite where one fails.
 double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting);
 
 /// The single-core figures other than the fastest: double, lanes, lanes_tabulated.

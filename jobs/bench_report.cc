@@ -11,19 +11,24 @@
 namespace strut {
 namespace {
 
-/// One case in a data set: number, layer, status, four parameters, five inputs, event time.
+/// A row of the data set that sweeps are planned to write: number, layer, status, four parameters,
+/// five inputs, event time.
 constexpr int kBytesPerCase = 13 * 8;
 
 Json make_json(const BenchResult& result) {
   Json single = Json::object();
   for (const Figure& f : result.single_core) {
-    single.set(f.setting.label, Json::object()
-                                    .set("runs_per_s", f.runs_per_s)
-                                    .set("real_time_factor", f.real_time_factor)
-                                    .set("setting", f.setting.text)
-                                    .set("body_acceleration_rms_relative", f.error)
-                                    .set("share_of_peak", result.share_of_peak(f))
-                                    .set("spin_control", f.spin_control));
+    Json figure = Json::object()
+                      .set("runs_per_s", f.runs_per_s)
+                      .set("real_time_factor", f.real_time_factor)
+                      .set("setting", f.setting.text)
+                      .set("body_acceleration_rms_relative", f.error)
+                      .set("share_of_peak", result.share_of_peak(f))
+                      .set("spin_control", f.spin_control);
+    if (f.setting.label == "lanes") {
+      figure.set("speedup_over_double", result.speedup_over_double(f));
+    }
+    single.set(f.setting.label, figure);
   }
   Json threads = Json::array();
   for (const ThreadFigure& t : result.threads) {
@@ -61,12 +66,13 @@ void print_table(std::ostream& stream, const BenchResult& result,
   const Machine& machine = result.machine;
   print_line(stream, "%s, %d cores, %s, %s, %s\n", machine.cpu.c_str(), machine.cores,
              machine.isa.c_str(), machine.compiler.c_str(), machine.commit.c_str());
-  print_line(stream, "%-16s %10s %12s %12s %8s %6s  %s", "one core", "runs/s", "x real time",
-             "error [1]", "of peak", "spin", "setting");
+  print_line(stream, "%-16s %10s %9s %12s %12s %8s %6s  %s", "one core", "runs/s", "x double",
+             "x real time", "error [1]", "of peak", "spin", "setting");
   for (const Figure& f : result.single_core) {
-    print_line(stream, "%-16s %10.1f %12.1f %12.2e %7.1f%% %6.2f  %s", f.setting.label.c_str(),
-               f.runs_per_s, f.real_time_factor, f.error, 100.0 * result.share_of_peak(f),
-               f.spin_control, f.setting.text.c_str());
+    print_line(stream, "%-16s %10.1f %9.2f %12.1f %12.2e %7.1f%% %6.2f  %s",
+               f.setting.label.c_str(), f.runs_per_s, result.speedup_over_double(f),
+               f.real_time_factor, f.error, 100.0 * result.share_of_peak(f), f.spin_control,
+               f.setting.text.c_str());
   }
   print_line(stream, "\n%-16s %10s %12s %19s", "threads", "runs/s", "speedup",
              "spin of one thread");
@@ -74,7 +80,9 @@ void print_table(std::ostream& stream, const BenchResult& result,
     print_line(stream, "%-16d %10.1f %12.2f %19.2f", t.threads, t.runs_per_s,
                t.runs_per_s / result.threads.front().runs_per_s, t.spin_control);
   }
-  print_line(stream, "\nerror: body acceleration, rms over the run, relative to CVODE at 1e-12");
+  print_line(
+      stream,
+      "\nerror: body acceleration, rms over the run, relative to CVODE at 1e-12; worst lane");
   print_line(stream, "spin: a fixed loop timed beside, 1 on this machine when nobody else uses it");
   print_line(stream,
              "right-hand side: %ld operations closed by Newton, %ld tabulated; %ld, %ld calls of "
@@ -83,7 +91,7 @@ void print_table(std::ostream& stream, const BenchResult& result,
              result.table.transcendental);
   print_line(stream,
              "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above; "
-             "a case is %d bytes of data",
+             "a planned shard row has %d bytes",
              1e-9 * result.peak, 1e3 * result.seconds_to_prepare, kBytesPerCase);
   if (ratios.empty()) return;
   print_line(stream, "\n%-16s %10s", "new / old", "ratio");

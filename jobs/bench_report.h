@@ -17,7 +17,7 @@ struct Figure {
   BenchSetting setting;
   double runs_per_s = 0.0;
   double real_time_factor = 0.0;
-  double error = 0.0;         // body acceleration rms, relative to CVODE at 1e-12
+  double error = 0.0;         // body acceleration rms, relative to CVODE at 1e-12, worst lane
   double spin_control = 0.0;  // during the best repeat, 1: machine undisturbed
   double rhs_per_s = 0.0;     // right-hand sides a second, of one case each
 };
@@ -39,6 +39,9 @@ struct BenchResult {
   const Figure& figure(const std::string& name) const {
     return *std::find_if(single_core.begin(), single_core.end(),
                          [&](const Figure& f) { return f.setting.label == name; });
+  }
+  double speedup_over_double(const Figure& f) const {
+    return f.runs_per_s / figure("double").runs_per_s;
   }
   double share_of_peak(const Figure& f) const {
     const FlopCount& flops = f.setting.options.closure == Closure::kNewton ? newton : table;

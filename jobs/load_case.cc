@@ -46,7 +46,12 @@ Case load_case(const CaseSource& source) {
 }
 
 PreparedCase prepare_case(const CaseSource& source, const Case& c) {
-  return call_model(source, [&] { return CasePreparer().prepare(c); });
+  CasePreparer preparer;
+  return prepare_case(source, c, preparer);
+}
+
+PreparedCase prepare_case(const CaseSource& source, const Case& c, CasePreparer& preparer) {
+  return call_model(source, [&] { return preparer.prepare(c); });
 }
 
 AssembledVehicle assemble_case(const CaseSource& source, const Case& c) {

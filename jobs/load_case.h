@@ -23,6 +23,7 @@ Case load_case(const CaseSource& source);
 /// Calls a function of the model on `source`; what the model finds impossible becomes an InputError
 /// that names the file and the settings.
 PreparedCase prepare_case(const CaseSource& source, const Case& c);
+PreparedCase prepare_case(const CaseSource& source, const Case& c, CasePreparer& preparer);
 AssembledVehicle assemble_case(const CaseSource& source, const Case& c);
 
 }  // namespace strut

@@ -1,9 +1,11 @@
 #include "jobs/simulate.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <iostream>
 
 #include "jobs/arguments.h"
@@ -11,35 +13,20 @@
 #include "jobs/json.h"
 #include "jobs/kinematics.h"
 #include "jobs/run_file.h"
-#include "model/integrate/rig_system.h"
-#include "model/kernel/stability.h"
+#include "jobs/simulate_rig.h"
+#include "jobs/step_check.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
 
 namespace strut {
 namespace {
 
-const std::vector<std::string> kIntegrators = {"rk4", "abm4", "cvode"};
-const std::vector<std::string> kClosures = {"newton", "table"};       // Closure
-const std::vector<std::string> kSpins = {"exponential", "explicit"};  // SpinTreatment
-constexpr int kCvode = 2;
-constexpr double kMaxStep = 0.02;    // s, a wheel hop has 80 ms
-constexpr double kMaxSamples = 2e6;  // one gigabyte of history
-constexpr double kRetryFraction = 0.125;
+constexpr double kMaxStep = 0.02;  // s, a wheel hop has 80 ms
 
 /// The network inputs of the paper.
 constexpr std::array<int, 5> kInputs = {CarChannel::kBodyPositionZ, CarChannel::kBodyVelocityZ,
                                         CarChannel::kBodyAccelerationZ, CarChannel::kPitchAngle,
                                         CarChannel::kPitchRate};
-
-struct SimulateOptions {
-  CaseSource source;
-  std::filesystem::path output;
-  int integrator = 0;  // of kIntegrators
-  IntegrateOptions integrate;
-  double rate = 1000.0;  // Hz
-  bool kinematics = false, json = false;
-};
 
 Arguments make_arguments() {
   Arguments arguments(
@@ -57,8 +44,9 @@ Arguments make_arguments() {
   arguments.add_option("integrator", "NAME",
                        "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, 1e-12");
   arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
-  arguments.add_option("coarse-step", "S",
-                       "longer step [s], in (0, 0.02], away from the bump (default: --step)");
+  arguments.add_option(
+      "coarse-step", "S",
+      "longer step [s], from --step to 0.02, away from the bump (default: --step)");
   arguments.add_option("closure", "NAME",
                        "newton (default): loops closed in every step; table: corner kinematics "
                        "tabulated over their coordinate");
@@ -74,21 +62,31 @@ Arguments make_arguments() {
   return arguments;
 }
 
+/// What would have no effect is refused: `why` says what makes it so.
+void refuse_options(const Arguments& arguments, std::initializer_list<const char*> names,
+                    const std::string& why) {
+  for (const std::string name : names) {
+    const bool given = name == "no-events" ? arguments.is_on(name) : arguments.has(name);
+    if (given) throw InputError("--" + name + ": " + why);
+  }
+}
+
 void read_integration(const Arguments& arguments, SimulateOptions& options) {
   options.integrator = arguments.choice_or("integrator", 0, kIntegrators);
-  const Range step{.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"};
+  if (options.integrator == kCvode) {
+    refuse_options(arguments, {"step", "coarse-step", "spin", "no-events"},
+                   "cvode chooses its own; allowed with rk4, abm4");
+  }
   IntegrateOptions& integrate = options.integrate;
-  integrate.step.step = arguments.number_or("step", integrate.step.step, step);
-  integrate.step.coarse_step = arguments.number_or("coarse-step", 0.0, step);
-  integrate.step.stepper = options.integrator == 1 ? Stepper::kAbm4 : Stepper::kRk4;
-  integrate.step.locate_events = !arguments.is_on("no-events");
+  StepOptions& step = integrate.step;
+  step.step = arguments.number_or("step", step.step,
+                                  {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
+  step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
+  step.stepper = options.integrator == kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.locate_events = !arguments.is_on("no-events");
   integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0, kClosures));
   integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0, kSpins));
   options.rate = arguments.number_or("rate", options.rate, between(1.0, 1e6, "Hz"));
-  for (const char* name : {"step", "coarse-step", "spin"}) {
-    if (options.integrator != kCvode || !arguments.has(name)) continue;
-    throw InputError(std::string("--") + name + ": cvode chooses its own; allowed with rk4, abm4");
-  }
 }
 
 SimulateOptions read_options(const Arguments& arguments) {
@@ -106,11 +104,17 @@ SimulateOptions read_options(const Arguments& arguments) {
   options.source.settings = arguments.list("set");
   if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
   options.output = arguments.text("output");
+  if (options.kinematics) {
+    refuse_options(arguments,
+                   {"integrator", "step", "coarse-step", "closure", "spin", "no-events", "rate"},
+                   "--kinematics runs nothing over time; allowed without it");
+  }
   read_integration(arguments, options);
   return options;
 }
 
-LaneResults integrate(const PreparedCase& c, const SimulateOptions& options, double step) {
+LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
+                      const StepOptions& step) {
   SamplePlan plan;
   plan.interval = 1.0 / options.rate;
   if (options.integrator == kCvode) {
@@ -119,41 +123,8 @@ LaneResults integrate(const PreparedCase& c, const SimulateOptions& options, dou
     return run_cvode(c, reference, plan);
   }
   IntegrateOptions integrate = options.integrate;
-  integrate.step.step = step;
+  integrate.step = step;
   return list_kernels().front().run_scalar(c, integrate, plan);
-}
-
-InputError unstable_step(const SimulateOptions& options, const char* name, double step,
-                         const std::string& how, const std::string& allowed) {
-  const IntegrateOptions& integrate = options.integrate;
-  const bool is_explicit = integrate.spin == SpinTreatment::kExplicit;
-  return InputError(std::string(name) + " = " + format_number(step) + " s: unstable (" + how +
-                    ") with --integrator " +
-                    kIntegrators[static_cast<std::size_t>(options.integrator)] + " --spin " +
-                    kSpins[static_cast<std::size_t>(integrate.spin)] + " on " +
-                    options.source.vehicle.string() + " in " + options.source.maneuver.string() +
-                    "; " + allowed + (is_explicit ? ", or --spin exponential" : ""));
-}
-
-/// A step whose map amplifies disturbances is refused before anything runs.
-void check_step(const PreparedCase& c, const SimulateOptions& options, const char* name,
-                double step) {
-  IntegrateOptions integrate = options.integrate;
-  integrate.step.step = step;
-  const double amplification = calc_amplification(c, integrate);
-  if (amplification <= kMaxAmplification) return;
-  char how[64], allowed[64];
-  std::snprintf(how, sizeof how, "each step multiplies a disturbance by %.3g", amplification);
-  std::snprintf(allowed, sizeof allowed, "must lie in (0, %.2g] s here",
-                find_stable_step(c, integrate));
-  throw unstable_step(options, name, step, how, allowed);
-}
-
-void check_steps(const PreparedCase& c, const SimulateOptions& options) {
-  if (options.integrator == kCvode) return;
-  const StepOptions& step = options.integrate.step;
-  check_step(c, options, "--step", step.step);
-  if (step.coarse_step > 0.0) check_step(c, options, "--coarse-step", step.coarse_step);
 }
 
 /// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.
@@ -162,10 +133,15 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
   const std::string at = format_number(results.failure_time[0]) + " s";
   const bool out = results.status[0] == static_cast<int>(RunStatus::kOutOfTravel);
   if (options.integrator != kCvode) {
-    const double shorter = kRetryFraction * options.integrate.step.step;
+    const StepOptions& step = options.integrate.step;
+    StepOptions shorter = step;
+    shorter.step = kRetryFraction * step.step;
+    shorter.coarse_step = 0.0;
     if (integrate(c, options, shorter).status[0] == 0) {
-      throw unstable_step(options, "--step", options.integrate.step.step, "failed at t = " + at,
-                          "a step of " + format_number(shorter) + " s runs through");
+      throw make_step_error(options, "--step", step.step, "failed at t = " + at,
+                            "a step of " + format_number(shorter.step) + " s " +
+                                (step.coarse_step > 0.0 ? "without --coarse-step " : "") +
+                                "runs through");
     }
   }
   std::cerr << "strut simulate: the run failed at t = " << at << ": "
@@ -183,13 +159,15 @@ std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOpti
   auto list = describe_program(options.source);
   list.insert(
       list.end(),
-      {{"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
+      {{"integrator", options.integrator_name()},
        {"step", cvode ? "adaptive, tolerance 1e-12" : format_number(integrate.step.step) + " s"},
-       {"coarse_step", format_number(integrate.step.coarse_step) + " s"},
-       {"closure", kClosures[static_cast<std::size_t>(integrate.closure)]},
-       {"spin", cvode ? "explicit" : kSpins[static_cast<std::size_t>(integrate.spin)]},
+       {"closure", options.closure_name()},
+       {"spin", cvode ? "explicit" : options.spin_name()},
        {"events", cvode || integrate.step.locate_events ? "located" : "not located"},
        {"event_count", std::to_string(results.event_count)}});
+  if (integrate.step.coarse_step > 0.0) {
+    list.emplace_back("coarse_step", format_number(integrate.step.coarse_step) + " s");
+  }
   return list;
 }
 
@@ -253,13 +231,6 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
   std::cerr << options.output.string() << line;
 }
 
-void check_rate(double rate, double duration) {
-  if (duration * rate <= kMaxSamples) return;
-  throw InputError("--rate = " + format_number(rate) + " Hz: must be at most " +
-                   format_number(std::floor(kMaxSamples / duration)) + " Hz for " +
-                   format_number(duration) + " s");
-}
-
 int run_case(const SimulateOptions& options) {
   const RunFormat format = find_run_format(options.output);
   const Case input = load_case(options.source);
@@ -271,7 +242,7 @@ int run_case(const SimulateOptions& options) {
   RunRecord run;
   run.channels = &list_car_channels();
   const auto start = std::chrono::steady_clock::now();
-  run.results = integrate(prepared, options, options.integrate.step.step);
+  run.results = integrate(prepared, options, options.integrate.step);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (run.results.status[0] != 0) return explain_failure(prepared, options, run.results);
@@ -281,53 +252,6 @@ int run_case(const SimulateOptions& options) {
   write_run(options.output, format, run);
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
   print_summary(options, run.results, duration, seconds);
-  return kExitDone;
-}
-
-/// A rig instead of a car: same files out, no snapshot.
-int run_rig(const SimulateOptions& options, RigKind kind) {
-  if (options.integrator == kCvode) {
-    throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
-  }
-  if (options.integrate.step.coarse_step > 0.0) {
-    throw InputError("--coarse-step: a rig has no bump to be away from; allowed for cars");
-  }
-  const RunFormat format = find_run_format(options.output);
-  RigSpec rig = read_rig(options.source.vehicle);
-  for (const std::string& setting : options.source.settings) {
-    const auto [name, value] = parse_setting(setting);
-    set_rig_parameter(rig, name, value);
-  }
-  const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, kind);
-  check_rate(options.rate, maneuver.duration);
-  SamplePlan plan;
-  plan.duration = maneuver.duration;
-  plan.interval = 1.0 / options.rate;
-
-  RunRecord run;
-  run.channels = &list_rig_channels(kind);
-  const auto start = std::chrono::steady_clock::now();
-  run.results = simulate_rig(rig, maneuver.inputs, options.integrate.step, plan);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (run.results.status[0] != 0) {
-    throw InputError("--step = " + format_number(options.integrate.step.step) +
-                     " s: " + options.source.vehicle.string() + " diverged at t = " +
-                     format_number(run.results.failure_time[0]) + " s; a shorter one is needed");
-  }
-  for (const RigParameterInfo& p : list_rig_parameters(kind)) {
-    run.parameters.push_back({p.name, p.unit, p.description, rig.*p.field});
-  }
-  run.provenance = describe_program(options.source);
-  run.provenance.insert(run.provenance.end(),
-                        {{"integrator", kIntegrators[static_cast<std::size_t>(options.integrator)]},
-                         {"step", format_number(options.integrate.step.step) + " s"},
-                         {"event_count", std::to_string(run.results.event_count)}});
-  write_run(options.output, format, run);
-  char line[160];
-  std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s\n",
-                run.results.sample_count, run.channels->size(), maneuver.duration, seconds);
-  std::cerr << options.output.string() << line;
   return kExitDone;
 }
 
@@ -347,7 +271,11 @@ int run_simulate(const std::vector<std::string>& arguments) {
   if (!parsed.parse(arguments)) return kExitDone;
   const SimulateOptions options = read_options(parsed);
   if (options.kinematics) return run_kinematics(options);
-  if (const auto rig = find_rig_kind(options.source.vehicle)) return run_rig(options, *rig);
+  if (const auto rig = find_rig_kind(options.source.vehicle)) {
+    refuse_options(parsed, {"coarse-step", "closure", "spin"},
+                   options.source.vehicle.string() + " is a rig; allowed for cars");
+    return run_rig(options, *rig);
+  }
   return run_case(options);
 }
 

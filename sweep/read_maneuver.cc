@@ -32,7 +32,7 @@ void read_profile(const Table& bump, RoadSpec& road) {
   }
   if (road.table_x.size() < 2) {
     throw InputError(csv.path.string() + ": " + std::to_string(road.table_x.size()) +
-                     " rows: must be at least 2");
+                     " rows: must be at least 3");
   }
   road.height = *std::max_element(road.table_z.begin(), road.table_z.end());
   road.length = road.table_x.back() - road.table_x.front();

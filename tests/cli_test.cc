@@ -10,6 +10,7 @@
 
 #include "io/csv.h"
 #include "io/hdf5.h"
+#include "jobs/bench_cases.h"
 #include "jobs/json.h"
 #include "model/vehicle/channels.h"
 #include "tests/temporary_folder.h"
@@ -25,6 +26,8 @@ const std::string kProgram = STRUT_PROGRAM;
 const std::string kExamples = STRUT_SOURCE_DIR "/examples";
 const std::string kSedan = kExamples + "/vehicles/paper_sedan.toml";
 const std::string kBump = kExamples + "/maneuvers/bump_20mps.toml";
+const std::string kRig = kExamples + "/rigs/quarter_car.toml";
+const std::string kRigBump = kExamples + "/rigs/maneuvers/bump.toml";
 
 struct Outcome {
   int code = -1;
@@ -232,7 +235,9 @@ TEST_CASE("The program refuses a spring that cannot carry the car", "[io]") {
   const std::string vehicle = change_example(folder, kSedan, "stiffness = 40000.0",
                                              "stiffness = 2000.0\n"
                                              "nominal_stiffness = 40000.0");
-  check_refused(vehicle, kBump, "", {vehicle, "equilibrium", "100 mm"});
+  check_refused(vehicle, kBump, "",
+                {vehicle, "front_suspension.spring.stiffness = 2000 N/m", "cannot carry the car",
+                 "allowed: at least"});
 }
 
 TEST_CASE("A step that is unstable is refused with the longest stable one", "[io]") {
@@ -243,6 +248,57 @@ TEST_CASE("A step that is unstable is refused with the longest stable one", "[io
   check_refused(kSedan, kBump, "--step 0.021", {"--step = 0.021", "must lie in (0, 0.02] s"});
   check_refused(kSedan, kBump, "--step 0", {"must lie in (0, 0.02] s"});
   check_refused(kSedan, kBump, "--step nan", {"--step = nan", "must lie in (0, 0.02] s"});
+}
+
+TEST_CASE("A coarse step away from the bump keeps the snapshot and is on record", "[io]") {
+  const TemporaryFolder folder;
+  const std::string fine = folder / "fine.h5", coarse = folder / "coarse.h5";
+  const std::string car = "simulate " + kSedan + " " + kBump + " -o ";
+  REQUIRE(run(car + fine).code == 0);
+  REQUIRE(run(car + coarse + " --coarse-step 0.004").code == 0);
+  const Hdf5Reader reader(coarse), fine_reader(fine);
+  const auto acceleration = [](const Hdf5Reader& r) {
+    return r.read("/snapshot/body_acceleration_z").values.front();
+  };
+  CHECK(reader.read_attribute("/", "coarse_step") == "0.004 s");
+  CHECK_THROWS(fine_reader.read_attribute("/", "coarse_step"));
+  // Measured: 9e-8 apart, less than the fine step is off; five times that.
+  CHECK(acceleration(reader) == Approx(acceleration(fine_reader)).epsilon(5e-7));
+  CHECK(acceleration(reader) != acceleration(fine_reader));
+
+  check_refused(kSedan, kBump, "--step 0.002 --coarse-step 0.001",
+                {"--coarse-step = 0.001", "must lie in [0.002, 0.02] s"});
+  check_refused(kSedan, kBump, "--coarse-step 0.021", {"must lie in [0.001, 0.02] s"});
+  check_refused(kSedan, kBump, "--coarse-step 0.005 --spin explicit",
+                {"--coarse-step = 0.005", "unstable", "must lie in (0, 0.004"});
+  check_refused(kSedan, kBump, "--coarse-step 0.004 --integrator cvode", {"--coarse-step: cvode"});
+  check_refused(kRig, kRigBump, "--coarse-step 0.004", {"--coarse-step: ", "is a rig"});
+}
+
+TEST_CASE("Options that would have no effect are refused", "[io]") {
+  for (const std::string option : {"--step 0.001", "--spin explicit", "--no-events"}) {
+    check_refused(kSedan, kBump, "--integrator cvode " + option,
+                  {option.substr(0, option.find(' ')) + ": cvode", "allowed with rk4, abm4"});
+  }
+  check_refused(kRig, kRigBump, "--closure table", {"--closure: ", "is a rig", "for cars"});
+  check_refused(kRig, kRigBump, "--spin explicit", {"--spin: ", "is a rig", "for cars"});
+  check_refused(kRig, kRigBump, "--integrator cvode", {"allowed for a rig: rk4, abm4"});
+  const TemporaryFolder folder;
+  for (const std::string option : {"--integrator rk4", "--step 0.001", "--coarse-step 0.002",
+                                   "--closure table", "--spin explicit", "--no-events"}) {
+    const Outcome outcome = run("simulate --kinematics " + kSedan + " -o " +
+                                (folder / "curves.csv").string() + " " + option);
+    CHECK(outcome.code == 2);
+    CHECK(folder.file_count() == 0);
+    CHECK_THAT(outcome.messages,
+               Contains(option.substr(0, option.find(' ')) + ": --kinematics runs nothing"));
+  }
+}
+
+TEST_CASE("A rig's step that diverges is refused with one that runs through", "[io]") {
+  // Its wheel hop, 207 rad/s, times 20 ms is 4.1; RK4 is stable up to 2.8.
+  check_refused(kRig, kRigBump, "--step 0.02 --set unsprung_mass=0.05 --set damping=0.1",
+                {"--step = 0.02", "diverged at t = ", "a step of 0.0025 s runs through"});
 }
 
 TEST_CASE("Bad options are refused with what is allowed", "[io]") {
@@ -295,6 +351,52 @@ TEST_CASE("SIGINT and SIGTERM end a run with 130 and 143 and leave nothing", "[i
   }
 }
 
+/// The lines of the README's shell blocks that start with `begin`, without their comments.
+std::vector<std::string> find_readme_commands(const std::string& begin) {
+  std::istringstream text(read_text(STRUT_SOURCE_DIR "/README.md"));
+  std::vector<std::string> commands;
+  bool in_block = false;
+  for (std::string line; std::getline(text, line);) {
+    if (line.rfind("```", 0) == 0) in_block = line == "```sh";
+    if (in_block && line.rfind(begin, 0) == 0) commands.push_back(line.substr(0, line.find('#')));
+  }
+  return commands;
+}
+
+TEST_CASE("The README's simulations run", "[io]") {
+  const std::vector<std::string> commands = find_readme_commands("strut simulate ");
+  REQUIRE(commands.size() >= 3);
+  for (std::string command : commands) {
+    const TemporaryFolder folder;
+    const auto replace = [&command](const std::string& from, const std::string& to) {
+      const auto at = command.find(from);
+      if (at != std::string::npos) command.replace(at, from.size(), to);
+    };
+    CAPTURE(command);
+    replace("strut ", kProgram + " ");
+    replace(" VEHICLE", " examples/vehicles/paper_sedan.toml");
+    replace(" MANEUVER", " examples/maneuvers/bump_20mps.toml");
+    replace(" -o ", " -o " + (folder / "").string());
+    const Outcome outcome = run_shell("cd " STRUT_SOURCE_DIR " && " + command);
+    CAPTURE(outcome.messages);
+    CHECK(outcome.code == 0);
+    CHECK(folder.file_count() == 1);
+  }
+}
+
+TEST_CASE("The benchmark's error is that of the worst lane", "[io]") {
+  BenchCases bench = make_bench_cases({kSedan, kBump, {}}, 2);
+  REQUIRE(bench.acceleration.size() == 2);
+  const Kernel& kernel = list_kernels().front();
+  BenchSetting lanes, scalar;
+  scalar.in_lanes = false;
+  CHECK(measure_error(bench, kernel, lanes) < 1e-3);  // what the benchmark counts as exact
+  for (double& value : bench.acceleration[1]) value *= 2.0;
+  // Against twice the truth: |1 - 2| / 2, to the error that both runs have.
+  CHECK(measure_error(bench, kernel, lanes) == Approx(0.5).epsilon(1e-3));
+  CHECK(measure_error(bench, kernel, scalar) < 1e-3);
+}
+
 TEST_CASE("The benchmark prints the agreed keys and compares with itself", "[io][slow]") {
   const TemporaryFolder folder;
   const std::string file = folder / "old.json";
@@ -309,6 +411,9 @@ TEST_CASE("The benchmark prints the agreed keys and compares with itself", "[io]
     CHECK(runs > 0.0);
     CHECK(json.get<double>(figure + ".real_time_factor") == Approx(3.0 * runs));
   }
+  CHECK(json.get<double>("single_core.lanes.speedup_over_double") ==
+        Approx(json.get<double>("single_core.lanes.runs_per_s") /
+               json.get<double>("single_core.double.runs_per_s")));
   CHECK(!json.get<std::string>("single_core.fastest.setting").empty());
   CHECK(json.get_child("threads").front().second.get<int>("threads") == 1);
   CHECK(json.get<double>("accuracy.body_acceleration_rms_relative") <= 1e-3);

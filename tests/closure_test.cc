@@ -13,7 +13,17 @@
 namespace strut {
 namespace {
 
-using namespace test;
+using test::append;
+using test::calc_motion;
+using test::calc_pose;
+using test::differentiate;
+using test::make_car;
+using test::make_paper_car;
+using test::make_travels;
+using test::mirror;
+using test::Motion;
+using test::place;
+using test::tolerance;
 
 TEST_CASE("One Newton iteration closes every corner over its travel", "[unit][property]") {
   VehicleSpec steered = reference::make_paper_sedan_spec();

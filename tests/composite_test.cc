@@ -9,7 +9,15 @@
 namespace strut {
 namespace {
 
-using namespace test;
+using test::append;
+using test::calc_motion;
+using test::calc_pose;
+using test::differentiate;
+using test::make_car;
+using test::make_travels;
+using test::Motion;
+using test::place;
+using test::tolerance;
 
 /// Masses on points of the corner at one q, chassis axes, and rotated inertias.
 struct Sum {

@@ -11,7 +11,12 @@
 namespace strut {
 namespace {
 
-using namespace test;
+using test::append;
+using test::calc_motion;
+using test::make_paper_car;
+using test::make_travels;
+using test::Motion;
+using test::tolerance;
 
 /// Largest differences between table and closure over |q| <= travel, each relative to the largest
 /// size of its function or to 1 (m, kg m, ...): values, slopes, second derivatives.
@@ -37,7 +42,7 @@ std::array<double, 3> compare_table(const AssembledVehicle& car,
     const double q = part / kHalfTravel * travel;
     Motion tabulated{};
     REQUIRE(table(corner, q, tabulated) == 0.0);
-    table.add_center_acceleration(corner, q, tabulated);
+    table.update_center_acceleration(corner, q, tabulated);
     const auto a = collect(tabulated), b = collect(calc_motion(car, corner, q));
     for (std::size_t order = 0; order < 3; ++order) {
       largest[order].resize(a[order].size(), 1.0);

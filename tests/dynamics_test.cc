@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "model/multibody/closures.h"
+#include "tests/reduced_state.h"
 #include "tests/reference/full_coordinate_car.h"
 #include "tests/test_car.h"
 
@@ -14,22 +15,6 @@ namespace {
 
 using I = StateIndex;
 using test::tolerance;
-
-reference::ReducedState to_reduced(const State<double>& x) {
-  reference::ReducedState r;
-  for (int i = 0; i < 3; ++i) {
-    r.position[i] = x[I::kPosition + i];
-    r.velocity[i] = x[I::kVelocity + i];
-    r.angular_velocity[i] = x[I::kAngularVelocity + i];
-  }
-  for (int i = 0; i < 4; ++i) r.quaternion[i] = x[I::kQuaternion + i];
-  for (int c = 0; c < kCorners; ++c) {
-    r.q[c] = x[I::kCorner + c];
-    r.q_dot[c] = x[I::kCornerRate + c];
-    r.spin[c] = x[I::kSpin + c];
-  }
-  return r;
-}
 
 /// Largest difference of accelerations relative to the largest acceleration of its kind.
 double compare_accelerations(const reference::ReducedAcceleration& truth, const double* dx) {
@@ -61,7 +46,7 @@ double find_worst_difference(const VehicleSpec& spec, const ManeuverSpec& maneuv
                                                     spec.tire.unloaded_radius);
     State<double> dx{};
     calc_derivative(c.vehicle, closure, TireMode::kRolling, x.data(), dx.data(), ws);
-    const auto accelerations = truth.calc_accelerations(truth.assemble(to_reduced(x)));
+    const auto accelerations = truth.calc_accelerations(truth.assemble(test::to_reduced(x)));
     worst = std::max(worst, compare_accelerations(accelerations, dx.data()));
   }
   return worst;

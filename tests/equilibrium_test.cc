@@ -12,7 +12,9 @@
 namespace strut {
 namespace {
 
-using namespace test;
+using test::calc_motion;
+using test::prepare;
+using test::tolerance;
 using I = StateIndex;
 
 Case make_flat_case(const VehicleSpec& spec = reference::make_paper_sedan_spec()) {
@@ -284,6 +286,7 @@ std::vector<double> calc_half_car_modes(const VehicleSpec& spec, const PreparedC
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix4d> modes(k, m);
   std::vector<double> frequencies;
+  frequencies.reserve(4);
   for (int i = 0; i < 4; ++i) frequencies.push_back(std::sqrt(modes.eigenvalues()[i]));
   return frequencies;
 }
@@ -362,7 +365,8 @@ TEST_CASE("A steadily driven car keeps height and pitch while its speed rises", 
   plan.snapshot = false;
   const LaneResults run = list_kernels().back().run_scalar(c, {}, plan);
   const auto get = [&](int sample, int channel) {
-    return run.history[static_cast<std::size_t>(sample * CarChannel::kCount + channel)];
+    return run.history[static_cast<std::size_t>(sample) * CarChannel::kCount +
+                       static_cast<std::size_t>(channel)];
   };
   double height = 0.0, pitch = 0.0;
   for (int i = 0; i < run.sample_count; ++i) {

@@ -10,7 +10,12 @@
 namespace strut {
 namespace {
 
-using namespace test;
+using test::append;
+using test::differentiate;
+using test::make_random_state;
+using test::prepare;
+using test::Random;
+using test::tolerance;
 using I = StateIndex;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

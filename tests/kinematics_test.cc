@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "io/csv.h"
-#include "tests/reference/sample_specs.h"
+#include "tests/test_car.h"
 
 namespace strut {
 namespace {
+
+using test::tolerance;
 
 /// The curve's ten digits: 5e-12 rad, 5e-11 m. What is asked of the car is 1e-8.
 constexpr double kTolerance = 1e-10;
@@ -53,7 +55,7 @@ TEST_CASE("The front corner follows the independent curve over +-100 mm in every
     const std::vector<double> values = list_values(points[i]);
     for (std::size_t column = 0; column < values.size(); ++column) {
       INFO(reference.columns[column].name << " at " << 1e3 * points[i].travel << " mm");
-      CHECK(std::abs(values[column] - reference.columns[column].values[i]) < kTolerance);
+      CHECK(std::abs(values[column] - reference.columns[column].values[i]) < tolerance(kTolerance));
     }
   }
 }
@@ -65,11 +67,11 @@ TEST_CASE("Left and right corner mirror each other", "[unit][property]") {
     const auto b = calc_kinematics(car, left + 1, list_travels());
     for (std::size_t i = 0; i < a.size(); ++i) {
       // Newton leaves 1e-13 m; angles are that over 0.1 m.
-      CHECK(std::abs(a[i].camber - b[i].camber) < 1e-11);
-      CHECK(std::abs(a[i].toe - b[i].toe) < 1e-11);
-      CHECK(std::abs(a[i].displacement.y + b[i].displacement.y) < 1e-12);
-      CHECK(std::abs(a[i].caster_change - b[i].caster_change) < 1e-11);
-      CHECK(std::abs(a[i].track - b[i].track) < 1e-12);
+      CHECK(std::abs(a[i].camber - b[i].camber) < tolerance(1e-11));
+      CHECK(std::abs(a[i].toe - b[i].toe) < tolerance(1e-11));
+      CHECK(std::abs(a[i].displacement.y + b[i].displacement.y) < tolerance(1e-12));
+      CHECK(std::abs(a[i].caster_change - b[i].caster_change) < tolerance(1e-11));
+      CHECK(std::abs(a[i].track - b[i].track) < tolerance(1e-12));
     }
   }
 }
@@ -80,11 +82,11 @@ TEST_CASE("At nominal trim wheels have their static angles and the track of the 
   for (const int corner : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) {
     const SuspensionSpec& suspension = spec.suspension[axle_of(corner)];
     const KinematicsPoint p = calc_kinematics(car, corner, {0.0}).front();
-    CHECK(p.toe == Approx(suspension.static_toe).epsilon(1e-12));
-    CHECK(p.camber == Approx(suspension.static_camber).epsilon(1e-12));
-    CHECK(p.track == Approx(2.0 * suspension.wheel_center_y).epsilon(1e-14));
-    CHECK(std::abs(p.caster_change) < 1e-14);
-    CHECK(norm(p.displacement) < 1e-14);
+    CHECK(p.toe == Approx(suspension.static_toe).epsilon(tolerance(1e-12)));
+    CHECK(p.camber == Approx(suspension.static_camber).epsilon(tolerance(1e-12)));
+    CHECK(p.track == Approx(2.0 * suspension.wheel_center_y).epsilon(tolerance(1e-14)));
+    CHECK(std::abs(p.caster_change) < tolerance(1e-14));
+    CHECK(norm(p.displacement) < tolerance(1e-14));
   }
 }
 
@@ -98,8 +100,8 @@ TEST_CASE("The rear corner follows the closure the equations of motion use", "[u
     closure(kRearLeft, travels[i], motion);  // the multilink's coordinate is the wheel's rise
     const Vec3<double> moved =
         car.numbers.geometry[kRearLeft].wheel_center + points[i].displacement;
-    CHECK(norm(motion.center - moved) < 1e-11);
-    CHECK(std::abs(motion.length[kSpringLine] - points[i].spring_length) < 1e-11);
+    CHECK(norm(motion.center - moved) < tolerance(1e-11));
+    CHECK(std::abs(motion.length[kSpringLine] - points[i].spring_length) < tolerance(1e-11));
   }
 }
 

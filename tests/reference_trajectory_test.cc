@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "tests/reduced_state.h"
 #include "tests/test_car.h"
 
 namespace strut {
@@ -24,22 +25,6 @@ Case make_bump_case() {
 
 constexpr double kInterval = 0.01;  // s
 
-reference::ReducedState to_reduced(const State<double>& x) {
-  reference::ReducedState r;
-  for (int i = 0; i < 3; ++i) {
-    r.position[i] = x[I::kPosition + i];
-    r.velocity[i] = x[I::kVelocity + i];
-    r.angular_velocity[i] = x[I::kAngularVelocity + i];
-  }
-  for (int i = 0; i < 4; ++i) r.quaternion[i] = x[I::kQuaternion + i];
-  for (int c = 0; c < kCorners; ++c) {
-    r.q[c] = x[I::kCorner + c];
-    r.q_dot[c] = x[I::kCornerRate + c];
-    r.spin[c] = x[I::kSpin + c];
-  }
-  return r;
-}
-
 std::vector<reference::ReducedState> integrate_reference(const Case& c, const PreparedCase& start) {
   reference::FullCoordinateCar car(
       c.vehicle, c.maneuver, reference::make_bump_laws(c.vehicle, c.maneuver, start.bump_center));
@@ -49,7 +34,7 @@ std::vector<reference::ReducedState> integrate_reference(const Case& c, const Pr
   }
   std::vector<double> times;
   for (int i = 0; i * kInterval <= c.maneuver.duration + 1e-12; ++i) times.push_back(i * kInterval);
-  return reference::integrate(car, to_reduced(start.start), times);
+  return reference::integrate(car, test::to_reduced(start.start), times);
 }
 
 double calc_pitch(const Eigen::Vector4d& q) {
@@ -115,8 +100,10 @@ TEST_CASE("A run over the bump equals the full-coordinate car's", "[reference][s
     CHECK(finest.forward < tolerance(1e-8));
     CHECK(finest.height < tolerance(1e-9));
     CHECK(finest.pitch < tolerance(1e-9));
-    CHECK(coarse.height < tolerance(1e-4));
-    CHECK(coarse.pitch < tolerance(1e-4));
+    // At 1 ms 0.48 micrometers and 0.27 microradians: five times that leaves room for touches that
+    // fall elsewhere between the steps, not for a lost order.
+    CHECK(coarse.height < tolerance(2.5e-6));
+    CHECK(coarse.pitch < tolerance(1.5e-6));
   }
 }
 

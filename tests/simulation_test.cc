@@ -57,12 +57,14 @@ const Kernel& widest() { return list_kernels().front(); }
 LaneResults run_lanes(const Kernel& kernel, const std::vector<PreparedCase>& cases,
                       const IntegrateOptions& options, const SamplePlan& plan) {
   std::vector<const PreparedCase*> pointers;
+  pointers.reserve(cases.size());
   for (const PreparedCase& c : cases) pointers.push_back(&c);
   return kernel.run_lanes(pointers.data(), static_cast<int>(pointers.size()), options, plan);
 }
 
 double get_history(const LaneResults& r, int sample, int channel, int lane = 0) {
-  return r.history[static_cast<std::size_t>((sample * C::kCount + channel) * r.lanes + lane)];
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  return r.history[(at(sample) * C::kCount + at(channel)) * at(r.lanes) + at(lane)];
 }
 
 double calc_rms_difference(const LaneResults& a, const LaneResults& b, int channel,
@@ -107,21 +109,30 @@ void check_order(Stepper stepper, bool lanes) {
   c.maneuver = test::make_gentle_maneuver();
   const PreparedCase prepared = test::prepare(c);
   const SamplePlan plan = make_plan(0.01);
-  const LaneResults truth = run_cvode(prepared, {}, plan);
+  // The same corners as the runs: what differs is the integration alone.
+  ReferenceOptions reference;
+  reference.closure = Closure::kTable;
+  reference.relative_tolerance = reference.absolute_tolerance = 1e-13;
+  const LaneResults truth = run_cvode(prepared, reference, plan);
   const std::vector<PreparedCase> batch(static_cast<std::size_t>(widest().lanes), prepared);
   const double steps[3] = {1e-3, 5e-4, 2.5e-4};
-  double error[3];
+  double height[3], pitch[3];
   for (int i = 0; i < 3; ++i) {
     const IntegrateOptions options = make_options(stepper, steps[i], Closure::kTable);
     const LaneResults run = lanes ? run_lanes(widest(), batch, options, plan)
                                   : widest().run_scalar(prepared, options, plan);
     CHECK(run.event_count == 0);
-    error[i] = calc_rms_difference(run, truth, C::kPitchAngle);
+    height[i] = calc_rms_difference(run, truth, C::kBodyPositionZ);
+    pitch[i] = calc_rms_difference(run, truth, C::kPitchAngle);
   }
-  const double order = std::log2(error[0] / error[2]) / 2.0;
-  INFO("errors " << std::scientific << error[0] << " " << error[1] << " " << error[2] << ", order "
-                 << order);
-  CHECK(std::abs(order - 4.0) < tolerance(0.2));
+  for (const double* error : {height, pitch}) {
+    const double order = std::log2(error[0] / error[2]) / 2.0;
+    INFO((error == height ? "height" : "pitch")
+         << " errors " << std::scientific << error[0] << " " << error[1] << " " << error[2]
+         << ", order " << order);
+    // Some 3e-13 of CVODE's and rounding's stand behind the smallest height error, 5e-13 m.
+    CHECK(std::abs(order - 4.0) < tolerance(error == height ? 0.3 : 0.2));
+  }
 }
 
 TEST_CASE("RK4 has order four on the full car", "[unit][property]") {
@@ -343,18 +354,27 @@ TEST_CASE("A step allocates nothing", "[unit][property]") {
   Case c = test::make_paper_case();
   const Closure closure = GENERATE(Closure::kNewton, Closure::kTable);
   const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
+  const bool with_history = GENERATE(false, true);
   const IntegrateOptions options = make_options(stepper, 1e-3, closure);
+  // Both contain the snapshot, the second twice the steps; as many samples, so that the history
+  // takes as much memory.
+  const double durations[2] = {0.7, 1.4}, intervals[2] = {0.01, 0.02};
   long counts[2];
+  int samples[2];
   for (int i = 0; i < 2; ++i) {
-    c.maneuver.duration =
-        i == 0 ? 0.7 : 1.4;  // both contain the snapshot, the second twice the steps
+    c.maneuver.duration = durations[i];
     const std::vector<PreparedCase> cases = make_grid_cases(widest().lanes, c);
     std::vector<const PreparedCase*> pointers;
+    pointers.reserve(cases.size());
     for (const PreparedCase& p : cases) pointers.push_back(&p);
+    const SamplePlan plan = make_plan(with_history ? intervals[i] : 0.0);
     const long before = allocation_count;
-    widest().run_lanes(pointers.data(), widest().lanes, options, {});
+    samples[i] = widest().run_lanes(pointers.data(), widest().lanes, options, plan).sample_count;
     counts[i] = allocation_count - before;
   }
+  CAPTURE(with_history);
+  CHECK(samples[0] == (with_history ? 71 : 0));
+  CHECK(samples[1] == samples[0]);
   CHECK(counts[0] > 0);
   CHECK(counts[1] == counts[0]);
 }

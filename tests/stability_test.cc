@@ -8,6 +8,8 @@
 namespace strut {
 namespace {
 
+using test::tolerance;
+
 PreparedCase prepare_at_speed(double speed) {
   Case c = test::make_paper_case();
   c.maneuver.speed = speed;
@@ -21,7 +23,7 @@ double calc_spin_decay(const PreparedCase& c) {
   State<double> dx{};
   double decay[kMaxStiff];
   system.calc_derivative(0.0, c.start.data(), dx.data(), decay);
-  const auto& rates = system.workspace().spin_rate;
+  const auto& rates = system.workspace().spin_decay;
   return *std::max_element(rates.begin(), rates.end());
 }
 
@@ -38,7 +40,7 @@ TEST_CASE("Explicit RK4 is stable up to its textbook limit over the spin's decay
   for (const double speed : {3.0, 20.0}) {
     const PreparedCase c = prepare_at_speed(speed);
     const double limit = find_stable_step(c, make_options(Stepper::kRk4, SpinTreatment::kExplicit));
-    CHECK(limit * calc_spin_decay(c) == Approx(2.785).epsilon(0.04));
+    CHECK(limit * calc_spin_decay(c) == Approx(2.785).epsilon(tolerance(0.04)));
   }
 }
 
@@ -46,7 +48,7 @@ TEST_CASE("Explicit ABM4 is stable up to the limit of its PECE pair", "[unit]") 
   // z = -1.25 on the real axis for the fourth-order pair (Hall & Watt 1976, table 4.4).
   const PreparedCase c = prepare_at_speed(20.0);
   const double limit = find_stable_step(c, make_options(Stepper::kAbm4, SpinTreatment::kExplicit));
-  CHECK(limit * calc_spin_decay(c) == Approx(1.25).epsilon(0.08));
+  CHECK(limit * calc_spin_decay(c) == Approx(1.25).epsilon(tolerance(0.08)));
 }
 
 TEST_CASE("Exponential spin is stable at any step that resolves the car", "[unit]") {
@@ -54,9 +56,9 @@ TEST_CASE("Exponential spin is stable at any step that resolves the car", "[unit
     const PreparedCase c = prepare_at_speed(speed);
     IntegrateOptions options = make_options(Stepper::kRk4, SpinTreatment::kExponential);
     options.step.step = 0.005;
-    CHECK(calc_amplification(c, options) <= kMaxAmplification);
+    CHECK(calc_amplification(c, options) - 1.0 <= tolerance(kMaxAmplification - 1.0));
     options.step.stepper = Stepper::kAbm4;
-    CHECK(calc_amplification(c, options) <= kMaxAmplification);
+    CHECK(calc_amplification(c, options) - 1.0 <= tolerance(kMaxAmplification - 1.0));
   }
 }
 

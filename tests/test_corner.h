@@ -24,6 +24,7 @@ inline Motion calc_motion(const AssembledVehicle& car, int corner, double q) {
 /// Equally spaced over the travel, its ends included [m].
 inline std::vector<double> make_travels(int count) {
   std::vector<double> q;
+  q.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) q.push_back(kHalfTravel * (2.0 * i / (count - 1) - 1.0));
   return q;
 }

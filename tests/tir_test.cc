@@ -97,7 +97,7 @@ TEST_CASE("A broken line is named by file and number", "[io]") {
   CHECK_THAT(parse_error("[S]\n{a b}\n1.0 two\n"), StartsWith("x.tir:3: 'two'"));
   CHECK_THAT(parse_error("[S]\nA = 1\nA = 2\n"),
              Contains("x.tir:3: A = 2: already given in line 2"));
-  CHECK(parse_error("A = 1") == "");  // the last line needs no line feed
+  CHECK(parse_error("A = 1").empty());  // the last line needs no line feed
   const TirFile file = parse_tir("A = 1.5x\nB = 'text'\nC = nan\n", "x.tir");
   CHECK_THROWS_WITH(get_number(file, *file.find("A")),
                     "x.tir:1: A = 1.5x: must be a finite number");
@@ -177,7 +177,7 @@ TEST_CASE("Rim geometry, shape tables and neutral values are read over", "[io]")
                          "[SHAPE]\n{radial width}\n1.0 0.0\n1.0 0.9\n"
                          "[TIRE_CONDITIONS]\nIP = 200000\nLIP = 1\nPPX1 = 0.0\n"
                          "[DIMENSION]\nWIDTH = 0.245\nRIM_RADIUS = 0.2");
-  CHECK(tire.message() == "");
+  CHECK(tire.message().empty());
 }
 
 }  // namespace

@@ -5,7 +5,7 @@ target_include_directories(strut_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(strut_options INTERFACE cxx_std_20)
 
 # Nobody reads errno after sqrt or exp, and writing it costs a branch and a call on every one. No
-# other floating-point licence is given: -ffast-math would break the guards against NaN.
+# other floating-point license is given: -ffast-math would break the guards against NaN.
 target_compile_options(strut_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -fno-math-errno
   $<$<BOOL:${STRUT_WARNINGS_AS_ERRORS}>:-Werror>)

@@ -55,8 +55,8 @@ T calc_unclamped_load(const TireVertical<C>& tire, const T& deflection, const T&
          tire.damping * smoothstep(deflection * T(1.0 / kDampingRamp)) * rate;
 }
 
-/// Contact with the plane of `height` above the wheel center's footing and `normal`.
-/// `clearance`: wheel center height over the effective road [m].
+/// Contact with the effective road under the wheel: `normal`, its vertical component `normal_z` in
+/// the world, and `clearance`, the wheel center's height over the road below it [m].
 /// Envelope: the road is where a rigid disc of the free radius would carry the center, so the
 /// deflection is the gap to that path along its normal. Point: the plane itself is the road.
 template <class C, class T>
@@ -124,7 +124,7 @@ TireWrench<T> calc_tire_wrench(const Pac2002<C>& pacejka, const Pac2002Parts& pa
                                const TireSlipState<T>& slip, const T& kappa, const T& tan_alpha,
                                const T& side) {
   const TireSlip<T> input{contact.load, kappa, atan_any(tan_alpha), dot(wheel.axis, contact.normal),
-                          slip.speed};
+                          slip.forward};
   const TireForce<T> f = calc_tire_force(pacejka, input, side, parts);
   TireWrench<T> wrench;
   wrench.fx = f.fx;

@@ -9,11 +9,9 @@
 namespace strut {
 
 /// Largest loop error a step may leave [m].
-inline constexpr double kClosureTolerance = 1e-9;
+inline constexpr double kClosureTolerance = 1e-10;
 /// Wheel hop after the bump fades within this; until then steps stay fine [s].
 inline constexpr double kSettlingTime = 0.12;
-/// Speeds beyond this are an unstable integration, not a car [m/s].
-inline constexpr double kAbsurdSpeed = 500.0;
 
 /// Wheel spin against slip: integrated with the exponential formulas, or like everything else.
 enum class SpinTreatment { kExponential, kExplicit };
@@ -60,7 +58,7 @@ class CarSystem {
   void calc_derivative(const T& /*t*/, const T* x, T* dx, T* decay) {
     derivative_(*this, x, dx);
     if (stiff_) {
-      for (int c = 0; c < kCorners; ++c) decay[c] = workspace_.spin_rate[c];
+      for (int c = 0; c < kCorners; ++c) decay[c] = workspace_.spin_decay[c];
     }
     failed_ = (!is_finite(workspace_.acceleration.z + workspace_.acceleration.x +
                           workspace_.angular_acceleration.y)) |
@@ -148,7 +146,7 @@ class CarSystem {
   template <class Closure>
   static void call_center_acceleration(CarSystem& self, int corner, const T& q) {
     static_cast<const Closure*>(self.closure_)
-        ->add_center_acceleration(corner, q, self.workspace_.motion[corner]);
+        ->update_center_acceleration(corner, q, self.workspace_.motion[corner]);
   }
 
   /// World x of a wheel center.

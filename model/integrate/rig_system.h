@@ -14,9 +14,6 @@
 
 namespace strut {
 
-/// Speeds beyond this are an unstable integration, not a rig [m/s].
-inline constexpr double kAbsurdRigSpeed = 500.0;
-
 /// Number of moving masses.
 constexpr int count_coordinates(RigKind kind) {
   return kind == RigKind::kQuarterCar ? 2 : kind == RigKind::kSingleMass ? 1 : 0;
@@ -81,7 +78,7 @@ class RigSystem {
     for (int i = 0; i < count_; ++i) {
       dx[i] = x[count_ + i];
       dx[count_ + i] = ws_.acceleration[at(i)];
-      failed_ = failed_ | (!is_finite(dx[count_ + i])) | (abs(dx[i]) > T(kAbsurdRigSpeed));
+      failed_ = failed_ | (!is_finite(dx[count_ + i])) | (abs(dx[i]) > T(kAbsurdSpeed));
     }
   }
 

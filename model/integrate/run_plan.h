@@ -9,7 +9,7 @@ enum class Stepper { kRk4, kAbm4 };
 
 enum class RunStatus : int {
   kDone = 0,
-  kDiverged = 1,     // a state is no longer finite
+  kDiverged = 1,     // a state is no longer finite, or faster than any car
   kOutOfTravel = 2,  // a corner left the travel its loops were closed over
 };
 
@@ -26,6 +26,14 @@ struct SamplePlan {
   bool snapshot = true;
   int channel_count = 0;
 };
+
+/// History samples of a plan, the one at t = 0 included.
+inline int count_samples(const SamplePlan& plan) {
+  return plan.interval > 0.0 ? static_cast<int>(plan.duration / plan.interval + 1e-9) + 1 : 0;
+}
+
+/// Speeds beyond this are an unstable integration, not a car or a rig [m/s].
+inline constexpr double kAbsurdSpeed = 500.0;
 
 /// Results of all lanes; arrays of doubles with the lane as the fastest index.
 struct LaneResults {

@@ -2,7 +2,7 @@
 //
 // Every lane has its own time grid. A lane whose guard changes sign inside a step (a wheel lifts
 // off, touches down or reaches a kink of the road) takes a shorter RK4 step that ends there and
-// restarts its multistep history; its neighbours keep their step and every bit of their result.
+// restarts its multistep history; its neighbors keep their step and every bit of their result.
 //
 // Besides what steppers.h asks, a system offers, all after calc_derivative at the same state:
 //   int guard_count() const;  void get_guards(T* g) const;
@@ -31,7 +31,7 @@ class Simulation {
  public:
   static constexpr int N = System::kCapacity;
   static constexpr int kLanes = kLaneCount<T>;
-  static constexpr int kMaxGuards = 8;
+  static constexpr int kMaxGuards = 8;  // capacity; a car on a road with kinks has eight
   using Vector = std::array<T, N>;
   using Mask = MaskOf<T>;
 
@@ -56,14 +56,13 @@ class Simulation {
     results_.failure_time.assign(lanes, plan_.duration);
     results_.event_time.assign(lanes, std::nan(""));
     results_.snapshot.assign(channels * lanes, std::nan(""));
-    results_.sample_count =
-        plan_.interval > 0.0 ? static_cast<int>(plan_.duration / plan_.interval + 1e-9) + 1 : 0;
+    results_.sample_count = count_samples(plan_);
     results_.history.assign(static_cast<std::size_t>(results_.sample_count) * channels * lanes,
                             std::nan(""));
     channel_.resize(channels);
     x_ring_[0] = x0;
     head_ = 0;
-    time_ = T(0.0);
+    time_ = h_ = T(0.0);
     end_ = T(plan_.duration);
     past_count_ = T(0.0);
     past_step_ = T(0.0);
@@ -253,8 +252,8 @@ class Simulation {
     }
   }
 
-  /// Snapshot of the lanes whose trigger changed sign: two RK4 steps to the root refine the dense
-  /// output's root to the accuracy of the integrator itself.
+  /// Snapshot of the lanes whose trigger changed sign: three RK4 steps towards the root refine the
+  /// dense output's root to the accuracy of the integrator itself.
   void locate_trigger() {
     const Mask hit =
         (trigger_ < T(0.0)) & (trigger1_ >= T(0.0)) & (triggered_ < T(0.5)) & (time_ < end_);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "model/integrate/sundials.h"
 #include "model/kernel/simulation.h"
 
 namespace strut {
@@ -20,21 +21,6 @@ namespace {
 /// fixed-point iteration, whose step it would bound.
 constexpr double kStiffDecay = 5000.0;
 constexpr int kMaxRoots = 2 * kCorners + 1;
-
-struct SundialsDeleter {
-  void operator()(_generic_N_Vector* v) const { N_VDestroy(v); }
-  void operator()(_generic_SUNMatrix* m) const { SUNMatDestroy(m); }
-  void operator()(_generic_SUNLinearSolver* s) const { SUNLinSolFree(s); }
-  void operator()(_generic_SUNNonlinearSolver* s) const { SUNNonlinSolFree(s); }
-};
-
-struct Context {
-  Context() { SUNContext_Create(nullptr, &raw); }
-  ~Context() { SUNContext_Free(&raw); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-  SUNContext raw = nullptr;
-};
 
 /// What CVODE's callbacks see.
 struct Problem {
@@ -58,6 +44,15 @@ int calc_roots(double t, N_Vector y, double* g, void* data) {
   return 0;
 }
 
+/// Owns CVODE's memory block.
+struct CvodeMemory {
+  CvodeMemory() = default;
+  ~CvodeMemory() { CVodeFree(&raw); }
+  CvodeMemory(const CvodeMemory&) = delete;
+  CvodeMemory& operator=(const CvodeMemory&) = delete;
+  void* raw = nullptr;
+};
+
 class ReferenceRun {
  public:
   ReferenceRun(const PreparedCase& c, const ReferenceOptions& options, const SamplePlan& plan)
@@ -74,7 +69,6 @@ class ReferenceRun {
     problem_.triggered = !plan.snapshot;
     create(options);
   }
-  ~ReferenceRun() { CVodeFree(&cvode_); }
   ReferenceRun(const ReferenceRun&) = delete;
   ReferenceRun& operator=(const ReferenceRun&) = delete;
 
@@ -85,7 +79,7 @@ class ReferenceRun {
     while (t < plan_.duration) {
       const double target =
           sample_ < results_.sample_count ? sample_ * plan_.interval : plan_.duration;
-      const int flag = CVode(cvode_, std::min(target, plan_.duration), y_.get(), &t, CV_NORMAL);
+      const int flag = CVode(cvode_.raw, std::min(target, plan_.duration), y_.get(), &t, CV_NORMAL);
       if (flag < 0) {
         results_.status[0] = static_cast<int>(system_.get_failure(0));
         results_.failure_time[0] = t;
@@ -105,27 +99,27 @@ class ReferenceRun {
     double decay[kMaxStiff] = {};
     State<double> dx{};
     system_.calc_derivative(0.0, state_.data(), dx.data(), decay);
-    const auto& rates = system_.workspace().spin_rate;
+    const auto& rates = system_.workspace().spin_decay;
     const bool stiff = *std::max_element(rates.begin(), rates.end()) > kStiffDecay;
     const int n = system_.size();
     y_.reset(N_VMake_Serial(n, state_.data(), context_.raw));
-    cvode_ = CVodeCreate(stiff ? CV_BDF : CV_ADAMS, context_.raw);
-    check(CVodeInit(cvode_, calc_rhs, 0.0, y_.get()), "CVodeInit");
-    CVodeSetUserData(cvode_, &problem_);
-    CVodeSStolerances(cvode_, options.relative_tolerance, options.absolute_tolerance);
-    CVodeSetMaxNumSteps(cvode_, 10000000);
-    CVodeSetMaxStep(cvode_, 2e-3);  // no step may jump over the bump
+    cvode_.raw = CVodeCreate(stiff ? CV_BDF : CV_ADAMS, context_.raw);
+    check(CVodeInit(cvode_.raw, calc_rhs, 0.0, y_.get()), "CVodeInit");
+    CVodeSetUserData(cvode_.raw, &problem_);
+    CVodeSStolerances(cvode_.raw, options.relative_tolerance, options.absolute_tolerance);
+    CVodeSetMaxNumSteps(cvode_.raw, 10000000);
+    CVodeSetMaxStep(cvode_.raw, 2e-3);  // no step may jump over the bump
     CVodeSetErrHandlerFn(
-        cvode_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+        cvode_.raw, [](int, const char*, const char*, char*, void*) {}, nullptr);
     if (stiff) {
       matrix_.reset(SUNDenseMatrix(n, n, context_.raw));
       linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.raw));
-      check(CVodeSetLinearSolver(cvode_, linear_.get(), matrix_.get()), "CVodeSetLinearSolver");
+      check(CVodeSetLinearSolver(cvode_.raw, linear_.get(), matrix_.get()), "CVodeSetLinearSolver");
     } else {
       nonlinear_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.raw));
-      check(CVodeSetNonlinearSolver(cvode_, nonlinear_.get()), "CVodeSetNonlinearSolver");
+      check(CVodeSetNonlinearSolver(cvode_.raw, nonlinear_.get()), "CVodeSetNonlinearSolver");
     }
-    check(CVodeRootInit(cvode_, system_.guard_count() + 1, calc_roots), "CVodeRootInit");
+    check(CVodeRootInit(cvode_.raw, system_.guard_count() + 1, calc_roots), "CVodeRootInit");
   }
 
   static void check(int flag, const char* what) {
@@ -138,8 +132,7 @@ class ReferenceRun {
     results_.failure_time.assign(1, plan_.duration);
     results_.event_time.assign(1, std::nan(""));
     results_.snapshot.assign(CarChannel::kCount, std::nan(""));
-    results_.sample_count =
-        plan_.interval > 0.0 ? static_cast<int>(plan_.duration / plan_.interval + 1e-9) + 1 : 0;
+    results_.sample_count = count_samples(plan_);
     results_.history.assign(static_cast<std::size_t>(results_.sample_count) * CarChannel::kCount,
                             std::nan(""));
   }
@@ -161,7 +154,7 @@ class ReferenceRun {
   /// Restarts after a contact event, whose kink no multistep formula may span.
   void pass_roots(double t) {
     int found[kMaxRoots] = {};
-    CVodeGetRootInfo(cvode_, found);
+    CVodeGetRootInfo(cvode_.raw, found);
     const int guards = system_.guard_count();
     if (found[guards] > 0) {
       problem_.triggered = true;
@@ -175,10 +168,10 @@ class ReferenceRun {
       restart = true;
       ++results_.event_count;
     }
-    if (restart) check(CVodeReInit(cvode_, t, y_.get()), "CVodeReInit");
+    if (restart) check(CVodeReInit(cvode_.raw, t, y_.get()), "CVodeReInit");
   }
 
-  Context context_;
+  SundialsContext context_;
   NewtonClosure<double> newton_;
   TableClosure<double, double> table_;
   CarSystem<double> system_;
@@ -187,11 +180,11 @@ class ReferenceRun {
   State<double> state_;
   LaneResults results_;
   int sample_ = 0;
-  void* cvode_ = nullptr;
-  std::unique_ptr<_generic_N_Vector, SundialsDeleter> y_;
-  std::unique_ptr<_generic_SUNMatrix, SundialsDeleter> matrix_;
-  std::unique_ptr<_generic_SUNLinearSolver, SundialsDeleter> linear_;
-  std::unique_ptr<_generic_SUNNonlinearSolver, SundialsDeleter> nonlinear_;
+  SundialsPointer<_generic_N_Vector> y_;
+  SundialsPointer<_generic_SUNMatrix> matrix_;
+  SundialsPointer<_generic_SUNLinearSolver> linear_;
+  SundialsPointer<_generic_SUNNonlinearSolver> nonlinear_;
+  CvodeMemory cvode_;  // last: freed before what it uses
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <utility>
+#include <sstream>
 
 #include "model/kernel/simulation.h"
 
@@ -32,6 +32,22 @@ std::shared_ptr<const Mechanism> make_mechanism(const Case& c) {
 
 Road<double> make_flat_road() { return {}; }
 
+/// A spring softer than this sags beyond its corner's travel before anything moves.
+void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
+  for (int c = 0; c < kCorners; ++c) {
+    const StrutSpec& strut = spec.suspension[axle_of(c)].strut[is_right(c) ? 1 : 0];
+    if (spec.preload == PreloadKind::kTrimmed || strut.nominal_stiffness <= 0.0) continue;
+    const double load = car.preload[c];
+    const double least = load / (load / strut.nominal_stiffness + kHalfTravel);
+    if (strut.stiffness >= least) continue;
+    std::ostringstream message;
+    message << get_axle_key(axle_of(c)) << ".spring.stiffness = " << strut.stiffness
+            << " N/m: cannot carry the car, whose weight needs " << load
+            << " N there; allowed: at least " << least << " N/m";
+    throw ModelError(message.str());
+  }
+}
+
 }  // namespace
 
 PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
@@ -49,6 +65,7 @@ PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
   prepared.trigger_x = prepared.bump_center + snapshot_offset;
   prepared.duration = c.maneuver.duration;
 
+  check_springs(c.vehicle, car);
   // Trims stand on flat road.
   vehicle.layout.on_bump.fill(false);
   const auto torque = vehicle.numbers.drive_torque;

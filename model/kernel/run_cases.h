@@ -41,7 +41,11 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
     surfaces[lane] = &cases[lane]->mechanism->surface;
     centers[lane] = cases[lane]->bump_center;
   }
-  Vehicle<T> vehicle{cases[0]->vehicle.layout,
+  VehicleLayout layout = cases[0]->vehicle.layout;
+  for (std::size_t lane = 1; lane < kWidth; ++lane) {
+    layout.tire_parts = layout.tire_parts | cases[lane]->vehicle.layout.tire_parts;
+  }
+  Vehicle<T> vehicle{layout,
                      pack_lanes<VehicleParameters, T>(numbers.data()),
                      {},
                      make_road<T>(surfaces.data(), centers.data())};
@@ -58,10 +62,15 @@ LaneResults run_system(const Vehicle<T>& vehicle, const Closure& closure, const 
   return Simulation<T, CarSystem<T>>(system, options.step, plan).run(start);
 }
 
-/// Runs kLaneCount<T> cases.
+/// Runs kLaneCount<T> cases. Throws ModelError unless all may share lanes with the first.
 template <class T>
 LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& options,
                       const SamplePlan& plan) {
+  for (int lane = 1; lane < kLaneCount<T>; ++lane) {
+    if (!may_share_lanes(*cases[0], *cases[lane], options.closure)) {
+      throw ModelError("lanes: these cases may not share a batch (see may_share_lanes)");
+    }
+  }
   const Vehicle<T> vehicle = pack_vehicle<T>(cases);
   State<T> start;
   T trigger(0.0);

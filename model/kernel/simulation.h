@@ -54,6 +54,7 @@ struct Kernel {
   const char* isa;  // "baseline", "avx2", "avx512"
   int lanes;        // W
   /// Runs up to W cases in lockstep; results hold W lanes, those beyond `count` repeat the last.
+  /// Throws ModelError for cases that may not share lanes.
   LaneResults (*run_lanes)(const PreparedCase* const* cases, int count,
                            const IntegrateOptions& options, const SamplePlan& plan);
   /// Runs one case in plain double.

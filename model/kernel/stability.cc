@@ -67,7 +67,9 @@ class StepMap {
         past_f_[at][static_cast<std::size_t>(i)] = y[derivative(past) + i] / h_;
       }
       for (int i = 0; i < stiff_; ++i) {
-        past_x_[at][static_cast<std::size_t>(system_.stiff_begin() + i)] = y[spin(past) + i];
+        const auto component =
+            static_cast<std::size_t>(system_.stiff_begin()) + static_cast<std::size_t>(i);
+        past_x_[at][component] = y[spin(past) + i];
       }
       past_.f[at] = past_f_[at].data();
       past_.x[at] = past_x_[at].data();

@@ -169,7 +169,7 @@ struct Twist {
   Vec3<T> at(const Vec3<T>& r) const { return v + cross(w, r); }
 };
 
-/// Motion cross product Z x_m b = [w x b_v + v x b_w ; w x b_w] (physics notes, A.3).
+/// Motion cross product Z x_m b = [w x b_v + v x b_w ; w x b_w] (docs/theory.md, section 2).
 template <class T>
 Twist<T> motion_cross(const Twist<T>& z, const Twist<T>& b) {
   return {cross(z.w, b.v) + cross(z.v, b.w), cross(z.w, b.w)};

@@ -1,5 +1,9 @@
-// The two sources of a corner's motion functions: Newton on the loops, or the table. Callables for
-// calc_derivative.
+// The two sources of a corner's motion functions: Newton on the loops, or the table.
+//
+// A closure c offers
+//   c(corner, q, motion): all motion functions; returns the loop error left [m]
+//   c.place_wheel(corner, q, motion): wheel center and axis alone, for contact events
+//   c.update_center_acceleration(corner, q, motion): center_qq, for output, after c(...)
 #pragma once
 
 #include "model/multibody/corner_motion.h"
@@ -25,7 +29,7 @@ struct NewtonClosure {
   void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
     (*this)(corner, q, motion);
   }
-  void add_center_acceleration(int, const T&, CornerMotion<T>&) const {}
+  void update_center_acceleration(int, const T&, CornerMotion<T>&) const {}
 };
 
 /// Tables of one car (C = double, all lanes alike) or of one car a lane (C = T).
@@ -48,8 +52,8 @@ struct TableClosure {
   void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
     update_wheel_place(tables->corner[corner], tables->degree[corner], q, motion);
   }
-  void add_center_acceleration(int corner, const T& q, CornerMotion<T>& motion) const {
-    update_center_acceleration(tables->corner[corner], tables->degree[corner], q, motion);
+  void update_center_acceleration(int corner, const T& q, CornerMotion<T>& motion) const {
+    strut::update_center_acceleration(tables->corner[corner], tables->degree[corner], q, motion);
   }
 };
 

@@ -109,7 +109,7 @@ void update_center_acceleration(const CornerCoefficients<C>& table, const Corner
   motion.center_qq = {c_qq[0], c_qq[1], c_qq[2]};
 }
 
-/// Wheel center and spin axis alone, for locating contact events.
+/// Wheel center with its slope, and spin axis: what locating contact events needs.
 template <class T, class C>
 void update_wheel_place(const CornerCoefficients<C>& table, const CornerDegrees& degree, const T& q,
                         CornerMotion<T>& motion) {

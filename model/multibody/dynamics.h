@@ -5,16 +5,14 @@
 // velocity of the chassis origin and angular velocity, S, J the whole car's first moment and
 // inertia about it, and h = I_s s the wheel momenta along their axes u,
 //
-//   m dv/dt - S x dw/dt + sum S_q ddq                    = F + m g - w x p - w x S_dot - sum S_qq
-//   dq^2 S x dv/dt + J dw/dt + sum b ddq                      = M + S x g - S_dot x v - J_dot w - v
-//   x p
-//                                                          - w x l - sum (b_q dq^2 + h_dot u + h
-//                                                          u_q dq)
-//   S_q . dv/dt + b . dw/dt + a ddq                      = Q + S_q . g - a_q dq^2 / 2 + v . (w x
-//   S_q)
-//                                                          + w . J_q w / 2 + h u_q . w - h_dot (u .
-//                                                          beta)
-//   I_s ds/dt                                            = moment about the axis = h_dot
+// clang-format off
+//   m dv/dt - S x dw/dt + sum S_q ddq  = F + m g - w x p - w x S_dot - sum S_qq dq^2
+//   S x dv/dt + J dw/dt + sum b ddq    = M + S x g - S_dot x v - J_dot w - v x p - w x l
+//                                        - sum (b_q dq^2 + h_dot u + h u_q dq)
+//   S_q.dv/dt + b.dw/dt + a ddq        = Q + S_q.g - a_q dq^2 / 2 + v.(w x S_q) + w.J_q w / 2
+//                                        + h u_q.w - h_dot (u.beta)
+//   I_s ds/dt                          = moment about the axis = h_dot
+// clang-format on
 //
 // with p, l linear and angular momentum and beta the upright's angular velocity per unit dq. The
 // spin of a wheel measured in inertial space does not couple, so 14 accelerations need one 6 x 6
@@ -51,7 +49,7 @@ struct Workspace {
   // accelerations
   Vec3<T> acceleration, angular_acceleration;  // d/dt of the chassis-axes components
   std::array<T, kCorners> corner_acceleration;
-  std::array<T, kCorners> spin_rate;  // 1/s, decay rate of spin: stiffness
+  std::array<T, kCorners> spin_decay;  // 1/s, decay rate of spin against slip
 };
 
 /// Which forces act; statics have no rolling and hence no in-plane tire forces.
@@ -275,7 +273,7 @@ void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
 }
 
 /// dx/dt of the car at state x. `closure(corner, q, motion)` supplies the corner's motion functions
-/// and returns the loop error left [m]. ws.segment is read, the rest of ws is written.
+/// and returns the loop error left [m] (closures.h). ws.segment is read, the rest of ws is written.
 template <class T, class Closure>
 void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode mode, const T* x,
                      T* dx, Workspace<T>& ws) {
@@ -304,7 +302,7 @@ void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode
     const T inverse = T(1.0) / vehicle.numbers.inertia[c].spin_inertia;
     dx[I::kCornerRate + c] = ws.corner_acceleration[c];
     dx[I::kSpin + c] = ws.spin_moment[c] * inverse;
-    ws.spin_rate[c] = vehicle.layout.relaxation ? T(0.0) : ws.wrench[c].spin_damping * inverse;
+    ws.spin_decay[c] = vehicle.layout.relaxation ? T(0.0) : ws.wrench[c].spin_damping * inverse;
   }
   dx[I::kWork] = power;
   if (vehicle.layout.relaxation) add_relaxation(vehicle, x, ws, dx);

@@ -43,7 +43,7 @@ double calc_corner_mass(const CornerTopology& topology, const CornerInertia<doub
   return mass;
 }
 
-/// Sylvester's criterion and, for a real body, the triangle inequality of principal moments.
+/// Sylvester's criterion.
 void check_chassis_inertia(const Sym3<double>& j) {
   const double minor = j.xx * j.yy - j.xy * j.xy;
   const double det = j.xx * (j.yy * j.zz - j.yz * j.yz) - j.xy * (j.xy * j.zz - j.yz * j.xz) +

@@ -27,7 +27,8 @@ AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& m
 void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneuver,
                               const AssembledVehicle& car, VehicleParameters<double>& numbers);
 
-/// Corner tables of an assembled car; the degree is raised until the functions are resolved.
+/// Corner tables of an assembled car; each group of functions gets the lowest degree that
+/// resolves it to kTableTolerance. Throws ModelError if kTableTerms do not suffice.
 VehicleTables<double> tabulate_corners(const AssembledVehicle& car);
 
 /// The effective road under this car's wheels: tire radius and contact model shape it.

@@ -184,7 +184,7 @@ void choose_pivots(const CornerGeometry<double>& geometry, const char* where,
 
 using JointSamples = std::vector<std::array<double, kMaxJoints>>;
 
-/// Joint coordinates at every node, each continued from its neighbour nearer to nominal trim.
+/// Joint coordinates at every node, each continued from its neighbor nearer to nominal trim.
 template <CornerTree kTree>
 JointSamples close_over_travel(const CornerTopology& topology,
                                const CornerGeometry<double>& geometry, const char* where) {

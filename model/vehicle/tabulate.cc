@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "model/math/chebyshev.h"
@@ -31,6 +32,7 @@ std::vector<Series> sample_corner(const AssembledVehicle& car, int corner) {
     for (double v : plain) values[f++][node] = v;
   }
   std::vector<Series> series;
+  series.reserve(kFunctions);
   for (const auto& v : values) series.push_back(calc_chebyshev_series(v));
   return series;
 }
@@ -40,7 +42,10 @@ int find_group_degree(const std::vector<Series>& series, std::size_t first, std:
   for (std::size_t f = first; f < first + count; ++f) {
     degree = std::max(degree, find_degree(series[f], kTableTolerance, kSmallFunction));
   }
-  return std::min(degree, kTableTerms - 1);
+  if (degree < kTableTerms) return degree;
+  throw ModelError("hardpoints: a corner's kinematics need a polynomial of degree " +
+                   std::to_string(degree) + " over the travel; allowed: at most " +
+                   std::to_string(kTableTerms - 1) + "");
 }
 
 /// Writes the power series in q of functions [first, first + N) into a group's coefficients.

@@ -10,6 +10,7 @@
 #include <memory>
 #include <sstream>
 
+#include "model/integrate/sundials.h"
 #include "model/multibody/dynamics.h"
 
 namespace strut {
@@ -101,26 +102,17 @@ int calc_kinsol_residual(N_Vector u, N_Vector f, void* data) {
   return finite ? 0 : 1;
 }
 
-struct SundialsDeleter {
-  void operator()(_generic_N_Vector* v) const { N_VDestroy(v); }
-  void operator()(_generic_SUNMatrix* m) const { SUNMatDestroy(m); }
-  void operator()(_generic_SUNLinearSolver* s) const { SUNLinSolFree(s); }
-};
-
 /// Solution u of calc_residual = 0 by KINSOL; returns its flag.
 int solve_with_kinsol(TrimProblem& p, double* u) {
-  SUNContext raw = nullptr;
-  SUNContext_Create(nullptr, &raw);
-  const std::unique_ptr<SUNContext, void (*)(SUNContext*)> context(
-      &raw, [](SUNContext* c) { SUNContext_Free(c); });
+  const SundialsContext context;
   const int n = p.unknowns();
-  const std::unique_ptr<_generic_N_Vector, SundialsDeleter> x(N_VMake_Serial(n, u, raw));
-  const std::unique_ptr<_generic_N_Vector, SundialsDeleter> one(N_VNew_Serial(n, raw));
+  const SundialsPointer<_generic_N_Vector> x(N_VMake_Serial(n, u, context.raw));
+  const SundialsPointer<_generic_N_Vector> one(N_VNew_Serial(n, context.raw));
   N_VConst(1.0, one.get());
-  const std::unique_ptr<_generic_SUNMatrix, SundialsDeleter> matrix(SUNDenseMatrix(n, n, raw));
-  const std::unique_ptr<_generic_SUNLinearSolver, SundialsDeleter> solver(
-      SUNLinSol_Dense(x.get(), matrix.get(), raw));
-  void* kin = KINCreate(raw);
+  const SundialsPointer<_generic_SUNMatrix> matrix(SUNDenseMatrix(n, n, context.raw));
+  const SundialsPointer<_generic_SUNLinearSolver> solver(
+      SUNLinSol_Dense(x.get(), matrix.get(), context.raw));
+  void* kin = KINCreate(context.raw);
   const std::unique_ptr<void*, void (*)(void**)> memory(&kin, [](void** k) { KINFree(k); });
   KINSetUserData(kin, &p);
   KINInit(kin, calc_kinsol_residual, x.get());

@@ -185,6 +185,7 @@ std::vector<ReducedState> integrate(const FullCoordinateCar& car, const ReducedS
   Solver solver(&problem, initial, options);
   TrajectoryStatistics counts;
   std::vector<ReducedState> samples;
+  samples.reserve(times.size());
   for (const double time : times) samples.push_back(solver.advance(time, &counts));
   solver.count(&counts);
   if (statistics != nullptr) *statistics = counts;

@@ -1,0 +1,42 @@
+// What the command line of `strut simulate` asks for.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "jobs/load_case.h"
+
+namespace strut {
+
+inline const std::vector<std::string> kIntegrators = {"rk4", "abm4", "cvode"};
+inline const std::vector<std::string> kClosures = {"newton", "table"};       // Closure
+inline const std::vector<std::string> kSpins = {"exponential", "explicit"};  // SpinTreatment
+inline constexpr int kAbm4 = 1, kCvode = 2;                                  // of kIntegrators
+
+/// Share of --step with which a failed run is tried once more, to tell whether the step is to
+/// blame.
+inline constexpr double kRetryFraction = 0.125;
+
+struct SimulateOptions {
+  CaseSource source;
+  std::filesystem::path output;
+  int integrator = 0;  // of kIntegrators
+  IntegrateOptions integrate;
+  double rate = 1000.0;  // Hz
+  bool kinematics = false, json = false;
+
+  const std::string& integrator_name() const {
+    return kIntegrators[static_cast<std::size_t>(integrator)];
+  }
+  const std::string& closure_name() const {
+    return kClosures[static_cast<std::size_t>(integrate.closure)];
+  }
+  const std::string& spin_name() const { return kSpins[static_cast<std::size_t>(integrate.spin)]; }
+};
+
+/// Refuses a rate [Hz] at which the history of `duration` [s] would not fit into memory. Throws
+/// InputError.
+void check_rate(double rate, double duration);
+
+}  // namespace strut

@@ -1,0 +1,19 @@
+// Whether the steps that the user chose are short enough for the car, before anything runs.
+#pragma once
+
+#include <string>
+
+#include "io/input_error.h"
+#include "jobs/simulate_options.h"
+
+namespace strut {
+
+/// The message for the unstable step of option `name`, "--step": `how` it shows, what is `allowed`.
+InputError make_step_error(const SimulateOptions& options, const char* name, double step,
+                           const std::string& how, const std::string& allowed);
+
+/// Refuses --step and --coarse-step whose map amplifies disturbances; cvode has none. Throws
+/// InputError.
+void check_steps(const PreparedCase& c, const SimulateOptions& options);
+
+}  // namespace strut
