@@ -212,7 +212,7 @@ TEST_CASE("A profile must run forward", "[io]") {
   };
   CHECK_THROWS_WITH(read("position,height\n0,0\n0.1,0.05\n0.1,0\n"),
                     Contains("measured_profile.csv:4: position = 0.1: must be > 0.1 m"));
-  CHECK_THROWS_WITH(read("position,height\n0,0\n"), Contains("must be at least 2"));
+  CHECK_THROWS_WITH(read("position,height\n0,0\n"), Contains("must be at least 3"));
   CHECK_THROWS_WITH(read("position,z\n0,0\n1,0\n"), Contains("no column 'height'"));
 }
 

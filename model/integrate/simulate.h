@@ -104,7 +104,8 @@ class Simulation {
     if (results_.sample_count > 0) record_samples();
     // Only now may the right-hand side change sides: the step just taken belongs to the old one.
     const Mask restarted = landed > T(-0.5);
-    if (any(restarted)) pass_guards(restarted, landed);
+    const bool guarded = system_.guard_count() > 0;
+    if (any(restarted) || (guarded && !options_.locate_events)) pass_guards(restarted, landed);
     commit(restarted, last);
   }
 
@@ -209,14 +210,28 @@ class Simulation {
     trigger1_ = system_.get_trigger();
   }
 
-  /// Notes the passed guards; where the right-hand side changes with them, renews f1_.
+  /// Lanes that passed guard g in the step just taken: it ended there, or, both wheels of an axle
+  /// meeting a kink at once, this guard reached zero with the one it ended at. With events not
+  /// located: the guard changed sides somewhere in the step.
+  Mask find_passed(int g, Mask restarted, const T& landed) const {
+    if (!options_.locate_events) {
+      const T side1 = select(guard1_[g] > T(0.0), T(1.0), T(0.0));
+      return (abs(side1 - side_[g]) > T(0.5)) & (time_ < end_);
+    }
+    constexpr double kTogether = 1e-7;  // share of the way to zero left, far above rounding
+    const Mask reached = abs(guard1_[g]) <= T(kTogether) * abs(guard_[g]);
+    return restarted & ((abs(landed - T(g)) < T(0.5)) | reached);
+  }
+
+  /// Notes the passed guards; where the right-hand side changes with them, renews f1.
   void pass_guards(Mask restarted, const T& landed) {
     bool renew = false;
+    std::array<Mask, kMaxGuards> passed;
     for (int g = 0; g < system_.guard_count(); ++g) {
-      const Mask passed = restarted & (abs(landed - T(g)) < T(0.5));
-      if (!any(passed)) continue;
-      side_[g] = select(passed, T(1.0) - side_[g], side_[g]);
-      renew = system_.cross(g, passed) || renew;
+      passed[g] = find_passed(g, restarted, landed);
+      if (!any(passed[g])) continue;
+      side_[g] = select(passed[g], T(1.0) - side_[g], side_[g]);
+      renew = system_.cross(g, passed[g]) || renew;
     }
     for (int lane = 0; lane < kLanes; ++lane) {
       results_.event_count += get_mask_lane(restarted, lane) ? 1 : 0;
@@ -227,10 +242,9 @@ class Simulation {
     system_.get_guards(renewed);
     for (int g = 0; g < system_.guard_count(); ++g) {
       // A kink's guard now measures the distance to the next kink: its side starts anew.
-      const Mask passed = restarted & (abs(landed - T(g)) < T(0.5));
-      const Mask fresh = passed & (abs(renewed[g] - guard1_[g]) > T(1e-6));
+      const Mask fresh = passed[g] & (abs(renewed[g] - guard1_[g]) > T(1e-6));
       side_[g] = select(fresh, select(renewed[g] > T(0.0), T(1.0), T(0.0)), side_[g]);
-      guard1_[g] = select(restarted, renewed[g], guard1_[g]);
+      guard1_[g] = renewed[g];
     }
   }
 
