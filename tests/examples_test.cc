@@ -54,7 +54,8 @@ LaneResults run_table_cvode(const PreparedCase& c, const SamplePlan& plan) {
 }
 
 double get_history(const LaneResults& r, int sample, int channel, int lane = 0) {
-  return r.history[static_cast<std::size_t>((sample * C::kCount + channel) * r.lanes + lane)];
+  const auto row = static_cast<std::size_t>(sample) * C::kCount + static_cast<std::size_t>(channel);
+  return r.history[row * static_cast<std::size_t>(r.lanes) + static_cast<std::size_t>(lane)];
 }
 
 /// Largest difference of a channel over the history.

@@ -48,10 +48,10 @@ TEST_CASE("A tire with aligning torque keeps it beside one without", "[unit][pro
   const LaneResults other = list_kernels().back().run_scalar(a, options, {});
   for (int i = 0; i < 3; ++i) {
     CAPTURE(i);
-    const auto at = static_cast<std::size_t>(StateIndex::kAngularVelocity + i);
+    const auto at = static_cast<std::size_t>(i) + StateIndex::kAngularVelocity;
     CHECK(std::abs(both.final_state[2 * at + 1] - alone.final_state[at]) < tolerance(1e-9));
   }
-  const auto yaw = static_cast<std::size_t>(StateIndex::kAngularVelocity + 2);
+  const auto yaw = std::size_t{StateIndex::kAngularVelocity} + 2;
   CHECK(std::abs(alone.final_state[yaw] - other.final_state[yaw]) > 1e-6);
 }
 

@@ -10,8 +10,9 @@ namespace strut {
 
 /// Largest loop error a step may leave [m].
 inline constexpr double kClosureTolerance = 1e-10;
-/// Wheel hop after the bump fades within this; until then steps stay fine [s].
-inline constexpr double kSettlingTime = 0.12;
+/// Behind the bump, until thrown wheels are back on the road and their hop fades, steps stay fine
+/// for this long [s] (docs/design/0004-integrators.md).
+inline constexpr double kSettlingTime = 0.2;
 
 /// Wheel spin against slip: integrated with the exponential formulas, or like everything else.
 enum class SpinTreatment { kExponential, kExplicit };
