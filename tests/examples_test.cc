@@ -11,11 +11,14 @@
 #include "sweep/read_maneuver.h"
 #include "sweep/read_vehicle.h"
 #include "tests/test_corner.h"
+#include "tests/test_run.h"
 
 namespace strut {
 namespace {
 
 using C = CarChannel;
+using test::get_history;
+using test::make_plan;
 using test::tolerance;
 
 const std::string kExamples = STRUT_SOURCE_DIR "/examples/";
@@ -41,21 +44,10 @@ IntegrateOptions make_options(double step, Closure closure = Closure::kTable) {
   return options;
 }
 
-SamplePlan make_plan(double interval) {
-  SamplePlan plan;
-  plan.interval = interval;
-  return plan;
-}
-
 LaneResults run_table_cvode(const PreparedCase& c, const SamplePlan& plan) {
   ReferenceOptions options;
   options.closure = Closure::kTable;
   return run_cvode(c, options, plan);
-}
-
-double get_history(const LaneResults& r, int sample, int channel, int lane = 0) {
-  const auto row = static_cast<std::size_t>(sample) * C::kCount + static_cast<std::size_t>(channel);
-  return r.history[row * static_cast<std::size_t>(r.lanes) + static_cast<std::size_t>(lane)];
 }
 
 /// Largest difference of a channel over the history.

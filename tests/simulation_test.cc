@@ -10,6 +10,7 @@
 
 #include "model/integrate/car_system.h"
 #include "tests/test_car.h"
+#include "tests/test_run.h"
 
 namespace {
 // One thread allocates here; the runs under test are single threaded.
@@ -36,6 +37,8 @@ namespace strut {
 namespace {
 
 using C = CarChannel;
+using test::get_history;
+using test::make_plan;
 using test::tolerance;
 
 IntegrateOptions make_options(Stepper stepper, double step, Closure closure = Closure::kNewton) {
@@ -46,12 +49,6 @@ IntegrateOptions make_options(Stepper stepper, double step, Closure closure = Cl
   return options;
 }
 
-SamplePlan make_plan(double interval) {
-  SamplePlan plan;
-  plan.interval = interval;
-  return plan;
-}
-
 const Kernel& widest() { return list_kernels().front(); }
 
 LaneResults run_lanes(const Kernel& kernel, const std::vector<PreparedCase>& cases,
@@ -60,11 +57,6 @@ LaneResults run_lanes(const Kernel& kernel, const std::vector<PreparedCase>& cas
   pointers.reserve(cases.size());
   for (const PreparedCase& c : cases) pointers.push_back(&c);
   return kernel.run_lanes(pointers.data(), static_cast<int>(pointers.size()), options, plan);
-}
-
-double get_history(const LaneResults& r, int sample, int channel, int lane = 0) {
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  return r.history[(at(sample) * C::kCount + at(channel)) * at(r.lanes) + at(lane)];
 }
 
 double calc_rms_difference(const LaneResults& a, const LaneResults& b, int channel,
