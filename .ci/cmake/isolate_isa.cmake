@@ -16,6 +16,9 @@ function(strut_isolate_isa output isa)
   target_link_libraries(${objects} PRIVATE strut::options ${arg_LINK})
   target_compile_options(${objects} PRIVATE ${arg_FLAGS}
     $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+  # Every operation of the longest functions here would get its own check: over five minutes of
+  # compiling. Their scalar instantiations elsewhere (model/kernel/cvode.cc, the tests) are checked.
+  set_target_properties(${objects} PROPERTIES STRUT_UNCHECKED ON)
   target_compile_definitions(${objects} PRIVATE STRUT_ISA=${isa})
   set_target_properties(${objects} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
 

@@ -16,8 +16,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 
 if(STRUT_SANITIZE)
-  target_compile_options(strut_options INTERFACE
-    -fsanitize=${STRUT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # A target with the property STRUT_UNCHECKED is compiled without.
+  target_compile_options(strut_options INTERFACE -fno-omit-frame-pointer
+    "$<$<NOT:$<BOOL:$<TARGET_PROPERTY:STRUT_UNCHECKED>>>:-fsanitize=${STRUT_SANITIZE};-fno-sanitize-recover=all>")
   target_link_options(strut_options INTERFACE -fsanitize=${STRUT_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # GCC's documentation: with -fsanitize this warning has false positives (here in std::regex).

@@ -1,0 +1,24 @@
+// Files that several runners, perhaps on several hosts, write into one folder.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace strut {
+
+enum class Published {
+  kNew,      // the file is ours
+  kPresent,  // somebody else's was there first; ours is discarded
+};
+
+/// Writes `bytes` to a new file in the folder `temporary` (a name with `owner` and a number), flushes
+/// it to the disk, reads it back, and gives it the name `target` unless a file has that name already:
+/// by link(2), which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where
+/// links are not supported. Then flushes the target's folder. `target` is whole or absent at any
+/// moment, whatever kills the process. Throws EnvironmentError (nothing left behind).
+Published publish(const std::filesystem::path& target, std::span<const std::byte> bytes,
+                  const std::filesystem::path& temporary, const std::string& owner);
+
+}  // namespace strut

@@ -1,0 +1,116 @@
+// One shard of a sweep: some hundred finished cases in one immutable HDF5 file.
+//
+// The file is built in memory, hashed, and only then written, so the library never meets a full
+// disk. Its first 512 bytes, HDF5's user block, hold a text with plan, shard, size and SHA-256 of
+// everything behind them: any flipped byte is found with the file alone.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/data_digest.h"
+#include "io/hdf5.h"
+#include "io/sha256.h"
+
+namespace strut {
+
+inline constexpr int kShardSchemaVersion = 1;
+
+struct ColumnInfo {
+  std::string name, unit, description;
+};
+
+/// What a row of a shard consists of; the same for all shards of a sweep.
+struct ShardSchema {
+  std::vector<ColumnInfo> parameters;
+  std::vector<ColumnInfo> snapshot;  // empty: none recorded
+  std::vector<ColumnInfo> history;   // one dataset each; empty: none recorded
+  std::size_t history_samples = 0;
+  double history_interval = 0.0;  // s
+  std::string status_meaning;     // "0 done, 1 diverged, ..."
+};
+
+/// Rows of a shard, one per case; arrays row by row.
+struct ShardRows {
+  std::vector<std::int64_t> case_id;
+  std::vector<double> parameters;  // n x p
+  std::vector<double> snapshot;    // n x s; NaN where the case failed or never met its instant
+  std::vector<std::int32_t> layer;
+  std::vector<std::int32_t> status;          // 0: done
+  std::vector<std::int32_t> attempt;         // 0: first try; k: the k-th retry
+  std::vector<double> event_time;            // s, of the snapshot; NaN: none
+  std::vector<double> failure_time;          // s; NaN: none
+  std::vector<std::string> reason;           // why it failed; empty: it did not
+  std::vector<std::vector<double>> history;  // per channel n x t
+
+  std::size_t size() const { return case_id.size(); }
+  /// Room for `count` rows of `schema`; numbers NaN, integers 0.
+  static ShardRows make(const ShardSchema& schema, std::size_t count);
+  /// Copies row `from` of `other` onto row `to`.
+  void set_row(std::size_t to, const ShardRows& other, std::size_t from);
+};
+
+/// Who made it, how and when: nothing here enters the data digest.
+struct ShardProvenance {
+  std::string plan_hash;
+  std::int64_t shard = 0;
+  std::vector<std::pair<std::string, std::string>> texts;  // attribute -> text, in this order
+};
+
+/// SHA-256 of one row: the little-endian bytes of case_id, parameters, snapshot, layer, status,
+/// attempt, event_time, failure_time and each history channel in schema order. Every NaN counts as
+/// the same one.
+Hash calc_row_hash(const ShardRows& rows, std::size_t row);
+
+/// A shard's datasets, compressed; made by worker threads without the HDF5 library.
+struct CompressedShard {
+  struct Dataset {
+    std::string name;  // "/snapshot"
+    enum class Type { kDouble, kInt32, kInt64, kText } type;
+    std::vector<std::size_t> shape;
+    std::size_t chunk_rows = 0;
+    std::vector<std::vector<std::byte>> chunks;  // shuffled and deflated
+    std::size_t text_length = 0;                 // kText: bytes of a text
+    Hdf5Label label;
+  };
+  std::vector<Dataset> datasets;
+  DataDigest digest;
+  std::size_t cases = 0;
+};
+
+CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows);
+
+/// The bytes of the shard's file.
+std::vector<std::byte> make_shard_image(const CompressedShard& shard,
+                                        const ShardProvenance& provenance);
+
+/// What the user block says.
+struct ShardSeal {
+  std::string plan_hash;
+  std::int64_t shard = 0;
+  std::uint64_t size = 0;  // bytes of the whole file
+  std::string sha256;      // of all bytes behind the user block
+};
+
+/// Reads 512 bytes and the file's size. Throws InputError where that is no seal, or the size is
+/// another.
+ShardSeal read_shard_seal(const std::filesystem::path& path);
+
+/// Reads every byte and compares it with the seal. Throws InputError that names the file and what
+/// is wrong.
+ShardSeal check_shard_bytes(const std::filesystem::path& path);
+
+struct Shard {
+  ShardSchema schema;
+  ShardRows rows;
+  ShardProvenance provenance;
+};
+
+/// Throws InputError with file and dataset where a dataset is missing, damaged or misshapen, or the
+/// schema version is unknown.
+Shard read_shard(const std::filesystem::path& path);
+
+}  // namespace strut

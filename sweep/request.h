@@ -1,0 +1,63 @@
+// What a sweep file asks for.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/kernel/simulation.h"
+#include "model/vehicle/case.h"
+#include "sweep/grid.h"
+
+namespace strut {
+
+enum class SampleMethod { kGrid, kLatinHypercube, kSobol };
+
+struct SampleRequest {
+  SampleMethod method = SampleMethod::kGrid;
+  int strata = 10;
+  std::string by;           // a grid parameter, or "degradation"; empty: the first axis
+  std::int64_t count = -1;  // -1: all
+  std::uint64_t seed = 1;
+};
+
+enum class Solver { kLanes, kCvode };
+
+struct IntegrateRequest {
+  Solver solver = Solver::kLanes;
+  IntegrateOptions options;    // of the lanes
+  ReferenceOptions reference;  // of CVODE
+};
+
+struct SnapshotRequest {
+  bool on = true;
+  double offset = 0.0;        // m, the snapshot's line ahead of the bump's center
+  std::vector<int> channels;  // CarChannel
+};
+
+struct HistoryRequest {
+  double rate = 0.0;  // 1/s; 0: none
+  std::vector<int> channels;
+};
+
+struct SweepRequest {
+  std::filesystem::path path;
+  Case base;
+  Grid grid;
+  SampleRequest sample;
+  IntegrateRequest integrate;
+  SnapshotRequest snapshot;
+  HistoryRequest history;
+  int shard_cases = 512;
+  bool shuffle = true;  // run order; false where an axis changes the mechanism, see Plan
+};
+
+/// Reads `sweeps/*.toml` (docs/sweeps.md lists every key). Throws InputError with file, line, key,
+/// value and what is allowed.
+SweepRequest read_request(const std::filesystem::path& path);
+
+/// What simulations of this request record.
+SamplePlan make_sample_plan(const SweepRequest& request);
+
+}  // namespace strut
