@@ -6,10 +6,9 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "io/input_error.h"
+#include "io/file_sync.h"
 
 namespace strut {
 
@@ -17,23 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-EnvironmentError failure(const fs::path& target, const std::string& what, int error_number) {
-  return EnvironmentError(target.string() + ": " + what + ": " + std::strerror(error_number));
-}
-
 // A rename replaces a symbolic link itself; the user means the file behind it.
 fs::path resolve_link(const fs::path& path) {
   std::error_code ignored;
   return fs::is_symlink(path, ignored) ? fs::weakly_canonical(path) : path;
-}
-
-// Makes a rename in `folder` survive a power cut. File systems that cannot do it say so; the file
-// itself is complete either way.
-void flush_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
 }
 
 // mkstemp makes files that only their owner reads; the result gets what any new file would get.
@@ -51,7 +37,7 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(resolve_link(target)) {
   }
   std::string name = target_.string() + ".XXXXXX";
   const int descriptor = ::mkstemp(name.data());
-  if (descriptor < 0) throw failure(target_, "cannot be written", errno);
+  if (descriptor < 0) throw file_failure(target_, "cannot be written", errno);
   ::fchmod(descriptor, new_file_mode());
   ::close(descriptor);
   temporary_ = name;
@@ -63,20 +49,16 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  const int descriptor = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) throw failure(target_, "cannot be written", errno);
-  const int flushed = ::fsync(descriptor);
-  const int error_number = errno;
-  ::close(descriptor);
-  // EINVAL: a file system without flush.
-  if (flushed != 0 && error_number != EINVAL) {
-    throw failure(target_, "cannot be written", error_number);
+  {
+    const FileDescriptor file = open_file(temporary_, O_RDONLY);
+    if (!file.is_open()) throw file_failure(target_, "cannot be written", errno);
+    flush_file(file.get(), target_);
   }
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    throw failure(target_, "cannot be written", errno);
+    throw file_failure(target_, "cannot be written", errno);
   }
   committed_ = true;
-  flush_folder(target_.has_parent_path() ? target_.parent_path() : fs::path("."));
+  flush_folder_of(target_);
 }
 
 }  // namespace strut

@@ -1,11 +1,13 @@
 // Who works on which shard: files that need no locks of the file system and no common clock.
 //
-// A runner shows that it lives by a counter in `claims/runner.NAME`, which a thread of its own raises
-// every heartbeat. A claim is a file `claims/UNIT` that names its runner, made by link(2), so that
-// one of many wins. A claim is stale when its runner's process is gone (same host and boot), or when
-// its counter stood still for a whole lease by the reader's own monotonic clock. Taking a stale claim
-// over may, in rare races, let two runners do the same shard: harmless, since a published shard is
-// never replaced, and counted.
+// A runner shows that it lives by a counter in `claims/runner.NAME`, which a thread of its own
+// raises every heartbeat. A claim is a file `claims/UNIT` that names its runner, made by link(2),
+// so that one of many wins. A claim is stale when its runner's process is gone (told by its number
+// only on the same host, boot and namespace of process ids, and with the same start time), when its
+// runner's file is gone, or when the counter stood still for a whole lease by the reader's own
+// monotonic clock. No wall clock and no time of a file is ever read. Taking a stale claim over may,
+// in rare races, let two runners do the same shard: harmless, since a published shard is never
+// replaced, and counted.
 #pragma once
 
 #include <chrono>
@@ -29,9 +31,11 @@ struct ClaimInfo {
 
 class Claims {
  public:
-  /// Starts the heartbeat of this process in `folder`. Throws EnvironmentError.
+  /// Starts the heartbeat of this process in `folder`, by a thread that takes no signals and that a
+  /// full disk does not end; removes what killed runners of this host left of themselves. Throws
+  /// EnvironmentError.
   Claims(const std::filesystem::path& folder, const ClaimOptions& options);
-  /// Gives back all claims and stops the heartbeat.
+  /// Stops the heartbeat and gives back all claims.
   ~Claims();
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
@@ -40,13 +44,19 @@ class Claims {
   const std::string& runner() const;
 
   enum class Answer { kMine, kTaken };
-  /// Claims `unit`, taking over a stale claim. Never blocks for the lease: of a foreign host's claim
-  /// it notes the counter and answers kTaken until the lease has passed between two calls. Throws
-  /// EnvironmentError.
+  /// Claims `unit`, taking over a stale claim. Never blocks for the lease: of a claim whose process
+  /// is not known to be gone it notes the counter and answers kTaken until that stood still for the
+  /// lease between two calls. A unit that this object holds is kTaken. Throws EnvironmentError; and
+  /// std::invalid_argument where the name is "", has '/' or '~', or starts with ".", "runner." or
+  /// "new.". All may be called from any thread.
   Answer claim(const std::string& unit);
+  /// Does nothing to a claim that another runner took over. What cannot be removed is stale once
+  /// this process ends.
   void release(const std::string& unit);
 
-  /// False where the runner of that name is surely gone; used to collect what it left in tmp/.
+  /// False where the runner of that name is gone: it ended properly, or its process ended, or,
+  /// where its process cannot be seen from here, its counter stood still for a lease between two
+  /// calls. To collect what it left in tmp/.
   bool may_live(const std::string& runner);
 
  private:
@@ -54,7 +64,8 @@ class Claims {
   std::unique_ptr<State> state_;
 };
 
-/// The claims in `folder` whose runners may live, for status; stands beside, changes nothing.
+/// The claims in `folder` whose runners may live at one look, for status; stands beside, changes
+/// nothing. Throws EnvironmentError.
 std::vector<ClaimInfo> list_claims(const std::filesystem::path& folder);
 
 }  // namespace strut

@@ -1,7 +1,6 @@
 #include "io/config.h"
 
-#include <toml++/toml.h>
-
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include <sstream>
 
 #include "io/nearest_name.h"
+#include "io/parse_toml.h"
 
 namespace strut {
 
@@ -52,6 +52,8 @@ std::string describe_value(const toml::node& node) {
   return "[" + text + "]";
 }
 
+}  // namespace
+
 std::string read_text_file(const fs::path& path) {
   if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
   if (!fs::is_regular_file(path)) throw InputError(path.string() + ": not a file");
@@ -62,8 +64,6 @@ std::string read_text_file(const fs::path& path) {
   if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
   return text.str();
 }
-
-}  // namespace
 
 bool Range::contains(double value) const {
   return std::isfinite(value) && value <= high && (open_low ? value > low : value >= low);
@@ -221,6 +221,31 @@ double Table::number_or(const std::string& key, double fallback, const Range& ra
   return has(key) ? number(key, range) : fallback;
 }
 
+std::vector<std::string> Table::keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> found;
+  for (const auto& [key, value] : *as_node(node_).as_table()) {
+    found.emplace_back(key.source().begin, std::string(key.str()));
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> names;
+  names.reserve(found.size());
+  for (auto& [position, name] : found) names.push_back(std::move(name));
+  return names;
+}
+
+std::int64_t Table::integer(const std::string& key, std::int64_t low, std::int64_t high) const {
+  const void* node = require(key);
+  const auto* value = as_node(node).as_integer();
+  if (value == nullptr) throw wrong_type(key, node, "a whole number");
+  if (value->get() >= low && value->get() <= high) return value->get();
+  throw error(key, "must lie in [" + std::to_string(low) + ", " + std::to_string(high) + "]");
+}
+
+std::int64_t Table::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
+                               std::int64_t high) const {
+  return has(key) ? integer(key, low, high) : fallback;
+}
+
 bool Table::boolean_or(const std::string& key, bool fallback) const {
   const void* node = find(key);
   if (node == nullptr) return fallback;
@@ -238,6 +263,25 @@ std::string Table::text(const std::string& key) const {
 
 std::string Table::text_or(const std::string& key, const std::string& fallback) const {
   return has(key) ? text(key) : fallback;
+}
+
+bool Table::is_text(const std::string& key) const {
+  const void* node = find(key);
+  return node != nullptr && as_node(node).is_string();
+}
+
+std::vector<std::string> Table::texts(const std::string& key) const {
+  const void* node = require(key);
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr) throw wrong_type(key, node, "an array of texts");
+  std::vector<std::string> values;
+  values.reserve(array->size());
+  for (const toml::node& item : *array) {
+    const auto* value = item.as_string();
+    if (value == nullptr) throw wrong_type(key, node, "an array of texts");
+    values.push_back(value->get());
+  }
+  return values;
 }
 
 std::vector<double> Table::numbers(const std::string& key, const Range& range) const {
@@ -313,13 +357,7 @@ std::vector<Table> Table::tables(const std::string& key) const {
 
 Document::Document(const fs::path& path) : source_(std::make_shared<Table::Source>()) {
   source_->path = path;
-  const std::string text = read_text_file(path);
-  try {
-    source_->root = toml::parse(text, path.string());
-  } catch (const toml::parse_error& e) {
-    throw InputError(path.string() + ":" + std::to_string(e.source().begin.line) +
-                     ": not valid TOML: " + std::string(e.description()));
-  }
+  source_->root = parse_toml(path, read_text_file(path));
 }
 
 Table Document::root() const {

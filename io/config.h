@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -35,17 +36,28 @@ Range any_number(const std::string& unit = "");
 /// The shortest decimal text that reads back as the same double.
 std::string format_number(double value);
 
+/// The whole file. Throws InputError where it is missing, EnvironmentError where it cannot be read.
+std::string read_text_file(const std::filesystem::path& path);
+
 /// One table of a document. All getters throw InputError on a missing key (unless a fallback is
 /// given), a wrong type, a value that is not finite, or one outside the allowed range.
 class Table {
  public:
   bool has(const std::string& key) const;
+  /// All keys, in the order of the file.
+  std::vector<std::string> keys() const;
 
   double number(const std::string& key, const Range& range = {}) const;
   double number_or(const std::string& key, double fallback, const Range& range = {}) const;
+  /// A whole number of [low, high], written without a point.
+  std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high) const;
+  std::int64_t integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
+                          std::int64_t high) const;
   bool boolean_or(const std::string& key, bool fallback) const;
   std::string text(const std::string& key) const;
   std::string text_or(const std::string& key, const std::string& fallback) const;
+  bool is_text(const std::string& key) const;
+  std::vector<std::string> texts(const std::string& key) const;
   std::vector<double> numbers(const std::string& key, const Range& range = {}) const;
   /// An array of exactly three numbers.
   std::array<double, 3> vector(const std::string& key, const Range& range = {}) const;

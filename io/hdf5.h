@@ -1,13 +1,17 @@
 // A checked layer over the HDF5 C library: every failing call is an exception that names file and
 // dataset, every handle is closed, and the library's own printing of errors is off.
 //
-// Files read in other tools without help (`h5dump`, h5py, MATLAB): doubles in native order, strings
-// as UTF-8 of variable length. Every dataset carries the attributes `unit`, `description` and, if
-// it has columns, `names`.
+// Files read in other tools without help (`h5dump`, h5py, MATLAB): numbers in native order, texts of
+// a dataset as UTF-8 of fixed length, padded by zeros, attributes as UTF-8 of variable length. Every
+// dataset carries the attributes `unit`, `description` and, if it has columns, `names`.
+//
+// The library takes one lock around everything: call it from one thread.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -42,7 +46,26 @@ class Hdf5Handle {
 struct Hdf5Label {
   std::string unit;
   std::string description;
-  std::vector<std::string> names;  // of the columns of a 2-D dataset; may be empty
+  std::vector<std::string> names;              // of the columns of a 2-D dataset; may be empty
+  std::vector<std::string> units = {};         // of the columns, where they differ
+  std::vector<std::string> descriptions = {};  // of the columns
+};
+
+enum class Hdf5Type { kDouble, kInt32, kInt64, kText };
+
+/// Bytes of one element; `text_length` counts for texts only.
+std::size_t get_element_size(Hdf5Type type, std::size_t text_length);
+
+/// A dataset whose chunks were compressed elsewhere, see io/compress.h. Chunks are whole rows; the
+/// last is as long as the others, padded.
+struct Hdf5Chunks {
+  std::string name;  // "/snapshot"
+  Hdf5Type type = Hdf5Type::kDouble;
+  std::vector<std::size_t> shape;
+  std::size_t chunk_rows = 0;
+  std::vector<std::vector<std::byte>> chunks;
+  std::size_t text_length = 0;  // kText: bytes of a text
+  Hdf5Label label;
 };
 
 struct Hdf5Dataset {
@@ -51,28 +74,64 @@ struct Hdf5Dataset {
   Hdf5Label label;
 };
 
-/// Writes one file, which appears under its name at `commit` or not at all. Failures are
-/// EnvironmentError.
+/// Bytes that a file may hold in front of its HDF5 content.
+inline constexpr std::size_t kHdf5UserBlock = 512;
+
+struct Hdf5WriterOptions {
+  bool user_block = false;  // leave kHdf5UserBlock zero bytes in front
+};
+
+/// A file that is not to be written to disk; the name stands in messages.
+struct Hdf5InMemory {
+  std::string name;
+};
+
+/// An open file of a writer, and how messages call it.
+struct Hdf5Sink {
+  std::filesystem::path shown;
+  Hdf5Handle file;
+};
+
+/// Writes one file, which appears under its name at `commit` or not at all. It is built in memory,
+/// so that the library, which loses chunks on a full disk and reports success, never sees one.
+/// Failures are EnvironmentError.
 class Hdf5Writer {
  public:
-  explicit Hdf5Writer(const std::filesystem::path& path);
+  explicit Hdf5Writer(const std::filesystem::path& path, const Hdf5WriterOptions& options = {});
+  explicit Hdf5Writer(const Hdf5InMemory& memory, const Hdf5WriterOptions& options = {});
+  ~Hdf5Writer();
 
   /// 1-D dataset. Groups in `name` ("/history/pitch_rate") are made as needed.
   void write(const std::string& name, std::span<const double> values, const Hdf5Label& label);
+  void write(const std::string& name, std::span<const std::int32_t> values,
+             const Hdf5Label& label);
+  void write(const std::string& name, std::span<const std::int64_t> values,
+             const Hdf5Label& label);
+  void write(const std::string& name, const std::vector<std::string>& values,
+             const Hdf5Label& label);
   /// 2-D dataset, `values` row by row; values.size() must be a multiple of `columns`.
   void write(const std::string& name, std::span<const double> values, std::size_t columns,
              const Hdf5Label& label);
+  void write_chunks(const Hdf5Chunks& dataset);
+
   /// Attribute of the dataset or group `object` ("/": the file).
   void write_attribute(const std::string& object, const std::string& key, const std::string& value);
+  void write_attribute(const std::string& object, const std::string& key, std::int64_t value);
+  void write_attribute(const std::string& object, const std::string& key, double value);
 
+  /// Ends the file; its bytes, those of the user block zero. Nothing can be written any more.
+  std::vector<std::byte> image();
   void commit();
 
  private:
-  void write_shaped(const std::string& name, std::span<const double> values,
-                    const std::vector<std::size_t>& shape, const Hdf5Label& label);
+  struct Memory;
 
-  AtomicFile target_;
-  Hdf5Handle file_;
+  void open(const Hdf5WriterOptions& options);
+
+  std::optional<AtomicFile> target_;
+  std::size_t user_block_ = 0;
+  std::unique_ptr<Memory> memory_;
+  Hdf5Sink sink_;
 };
 
 /// Reads a file. A missing file, one that is not HDF5, and a missing or damaged dataset are
@@ -80,14 +139,33 @@ class Hdf5Writer {
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::filesystem::path& path);
+  /// Reads the bytes of a file; `path` stands in messages.
+  Hdf5Reader(const std::filesystem::path& path, std::span<const std::byte> image);
 
   bool has(const std::string& name) const;
   Hdf5Dataset read(const std::string& name) const;
+  /// Rows [first, first + count). Reading blocks of whole chunks decompresses each chunk once.
+  Hdf5Dataset read_rows(const std::string& name, std::size_t first, std::size_t count) const;
+  std::vector<std::int64_t> read_integers(const std::string& name) const;
+  /// A dataset of texts of fixed length.
+  std::vector<std::string> read_texts(const std::string& name) const;
+  Hdf5Label read_label(const std::string& name) const;
+  std::vector<std::size_t> read_shape(const std::string& name) const;
+  /// Rows of a chunk; all rows where the dataset is not chunked.
+  std::size_t read_chunk_rows(const std::string& name) const;
+
+  bool has_attribute(const std::string& object, const std::string& key) const;
   std::string read_attribute(const std::string& object, const std::string& key) const;
+  std::int64_t read_integer_attribute(const std::string& object, const std::string& key) const;
+  double read_number_attribute(const std::string& object, const std::string& key) const;
+  /// Names of the attributes of `object`, sorted.
+  std::vector<std::string> list_attributes(const std::string& object) const;
   /// Names of the datasets and groups in `group`, sorted.
   std::vector<std::string> list(const std::string& group) const;
 
  private:
+  Hdf5Handle open_dataset(const std::string& name) const;
+
   std::filesystem::path path_;
   Hdf5Handle file_;
 };

@@ -1,7 +1,9 @@
 // A clean end on SIGINT and SIGTERM.
 #pragma once
 
+#include <atomic>
 #include <csignal>
+#include <thread>
 
 namespace strut {
 
@@ -18,6 +20,30 @@ class InterruptGuard {
 
  private:
   sigset_t before_;
+};
+
+/// Turns the first of those signals into a flag, so that long work stops where it is whole. A
+/// second signal, or work that has not ended 1.5 s after the first, ends the program as SIGKILL
+/// would: for work that survives that. To be made before other threads are.
+class InterruptWatcher {
+ public:
+  InterruptWatcher();
+  ~InterruptWatcher();
+  InterruptWatcher(const InterruptWatcher&) = delete;
+  InterruptWatcher& operator=(const InterruptWatcher&) = delete;
+
+  /// True once a signal came. Others may set it too, to stop the same work.
+  std::atomic<bool>& halt() { return halt_; }
+  /// The signal; 0: none came.
+  int signal() const { return signal_; }
+
+ private:
+  void watch();
+
+  InterruptGuard guard_;
+  std::atomic<bool> halt_{false}, over_{false};
+  std::atomic<int> signal_{0};
+  std::thread thread_;
 };
 
 }  // namespace strut

@@ -21,8 +21,6 @@
 namespace strut {
 namespace {
 
-constexpr double kMaxStep = 0.02;  // s, a wheel hop has 80 ms
-
 /// The network inputs of the paper.
 constexpr std::array<int, 5> kInputs = {CarChannel::kBodyPositionZ, CarChannel::kBodyVelocityZ,
                                         CarChannel::kBodyAccelerationZ, CarChannel::kPitchAngle,

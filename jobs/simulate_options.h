@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "jobs/load_case.h"
+#include "sweep/integrate_names.h"
 
 namespace strut {
-
-inline const std::vector<std::string> kIntegrators = {"rk4", "abm4", "cvode"};
-inline const std::vector<std::string> kClosures = {"newton", "table"};       // Closure
-inline const std::vector<std::string> kSpins = {"exponential", "explicit"};  // SpinTreatment
-inline constexpr int kAbm4 = 1, kCvode = 2;                                  // of kIntegrators
 
 /// Share of --step with which a failed run is tried once more, to tell whether the step is to
 /// blame.

@@ -1,9 +1,12 @@
 // Some cases of a plan through the simulation into rows of a shard, failures and retries included.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "io/shard.h"
 #include "sweep/plan.h"
@@ -11,50 +14,72 @@
 namespace strut {
 
 /// How a case ended; RunStatus and what can happen before and after the integration.
-enum class CaseStatus : int {
+enum class CaseStatus : std::int32_t {
   kDone = 0,
   kDiverged = 1,       // a state is no longer finite, or faster than any car
   kOutOfTravel = 2,    // a corner left the travel its loops were closed over
-  kNoEquilibrium = 3,  // loops cannot be closed, springs cannot carry the car, no trim
+  kNoEquilibrium = 3,  // loops that cannot be closed, springs that cannot carry the car
   kNoEvent = 4,        // the car never met the snapshot's line
 };
-
 inline constexpr int kCaseStatusCount = 5;
+
 /// "done", "diverged", ...: the words of status, journal and documentation.
-const char* get_case_status_name(CaseStatus status);
+const char* get_case_status_name(std::int32_t status);
+
+/// "0 done, 1 diverged, ..."
+std::string describe_case_status();
+
+/// What another try with a smaller step may mend.
+bool may_retry(std::int32_t status);
+
+/// Retries divide the step by 4 each; the last one still allowed.
+inline constexpr int kLastAttempt = 4;
 
 /// Time spent, by part [s].
 struct SimulationSeconds {
   double prepare = 0.0, integrate = 0.0, retry = 0.0;
+
+  double total() const { return prepare + integrate + retry; }
+  SimulationSeconds& operator+=(const SimulationSeconds& other);
 };
 
 /// One thread's simulator; not to be shared.
 class CaseSimulator {
  public:
-  /// `first_attempt` 0: in lanes as the request says. k > 0: in plain double with the request's step
-  /// divided by 4^k, everywhere and with contact events located.
+  /// Both must outlive it.
   CaseSimulator(const Plan& plan, const Kernel& kernel);
 
-  /// Simulates `cases` (ids) into the rows from `first_row` on. A case that fails in lanes is tried
-  /// once more at once, alone, in plain double with a quarter of the step. A case's row does not
-  /// depend on the others.
-  void simulate(std::span<const std::int64_t> cases, ShardRows& rows, std::size_t first_row);
+  /// Cases that are best simulated together.
+  std::size_t batch_size() const;
 
-  /// One case alone; `attempt` >= 1 as above.
+  /// Simulates `cases` (ids) into the rows from `first_row` on. A case that fails in lanes is tried
+  /// once more at once (attempt 1 of `retry`). A case's row does not depend on the others, nor on
+  /// how they are grouped. Returns false, rows incomplete, where `stop` turned true on the way.
+  bool simulate(std::span<const std::int64_t> cases, ShardRows& rows, std::size_t first_row,
+                const std::atomic<bool>& stop);
+
+  /// Simulates one case alone in plain double with the request's step divided by 4^attempt
+  /// everywhere, contact events located.
   void retry(std::int64_t case_id, int attempt, ShardRows& rows, std::size_t row);
 
   const SimulationSeconds& seconds() const { return seconds_; }
 
  private:
-  void record(const PreparedCase& prepared, const LaneResults& results, int lane, int attempt,
-              ShardRows& rows, std::size_t row) const;
+  struct Ready {
+    PreparedCase prepared;
+    std::size_t row;
+  };
+
   void start_row(std::int64_t case_id, ShardRows& rows, std::size_t row) const;
-  void fail(ShardRows& rows, std::size_t row, CaseStatus status, double time,
-            const std::string& reason) const;
+  std::optional<PreparedCase> prepare(std::int64_t case_id, ShardRows& rows, std::size_t row);
+  std::vector<Ready> prepare_all(std::span<const std::int64_t> cases, ShardRows& rows,
+                                 std::size_t first_row);
+  std::size_t run_group(std::span<const Ready> ready, ShardRows& rows);
+  void record(const LaneResults& results, int lane, ShardRows& rows, std::size_t row) const;
 
   const Plan& plan_;
   const Kernel& kernel_;
-  SamplePlan samples_;
+  const SamplePlan samples_;
   CasePreparer preparer_;
   SimulationSeconds seconds_;
 };

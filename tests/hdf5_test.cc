@@ -20,7 +20,7 @@ void write_example(const std::filesystem::path& path) {
   Hdf5Writer file(path);
   file.write("/history/time", kValues, {"s", "time", {}});
   file.write("/parameters", kValues, 2, kLabel);
-  file.write("/empty", {}, {"", "", {}});
+  file.write("/empty", std::vector<double>{}, {"", "", {}});
   file.write_attribute("/", "strut_version", "0.1.0");
   file.write_attribute("/history", "empty", "");
   file.commit();

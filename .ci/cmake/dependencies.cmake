@@ -6,6 +6,11 @@ add_library(strut_xsimd INTERFACE)
 target_include_directories(strut_xsimd SYSTEM INTERFACE ${STRUT_XSIMD_INCLUDE_DIR})
 add_library(strut::xsimd ALIAS strut_xsimd)
 
+find_path(STRUT_RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+add_library(strut_random123 INTERFACE)
+target_include_directories(strut_random123 SYSTEM INTERFACE ${STRUT_RANDOM123_INCLUDE_DIR})
+add_library(strut::random123 ALIAS strut_random123)
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(SUNDIALS 6.4 REQUIRED
@@ -13,6 +18,8 @@ find_package(SUNDIALS 6.4 REQUIRED
 find_package(tomlplusplus 3.3 REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(ZLIB 1.2 REQUIRED)
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)
 if(STRUT_BUILD_TESTS)
   find_package(Catch2 2.13 REQUIRED)
 endif()

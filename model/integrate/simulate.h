@@ -71,7 +71,7 @@ class Simulation {
     evaluate(time_, x(), f(), decay_.data());
     system_.get_guards(guard_.data());
     for (int g = 0; g < system_.guard_count(); ++g) {
-      side_[g] = select(guard_[g] > T(0.0), T(1.0), T(0.0));
+      side_[g] = calc_side(guard_[g]);
     }
     trigger_ = system_.get_trigger();
     retire_failed();
@@ -141,6 +141,9 @@ class Simulation {
     }
   }
 
+  /// 1 where a guard is positive, 0 elsewhere.
+  static T calc_side(const T& guard) { return select(guard > T(0.0), T(1.0), T(0.0)); }
+
   /// Shortens the step of lanes in which a guard changed sides, to end at the first change. Returns
   /// the guard at which each lane's step now ends, -1 where none.
   T locate_events() {
@@ -149,7 +152,7 @@ class Simulation {
     for (int attempt = 0; attempt < kMaxGuards; ++attempt) {
       T theta = T(2.0), chosen = T(-1.0);
       for (int g = 0; g < guards; ++g) {
-        const T side1 = select(guard1_[g] > T(0.0), T(1.0), T(0.0));
+        const T side1 = calc_side(guard1_[g]);
         const Mask changed =
             (abs(side1 - side_[g]) > T(0.5)) & (abs(landed - T(g)) > T(0.5)) & (time_ < end_);
         const Mask inside = guard_[g] * guard1_[g] < T(0.0);
@@ -215,7 +218,7 @@ class Simulation {
   /// located: the guard changed sides somewhere in the step.
   Mask find_passed(int g, Mask restarted, const T& landed) const {
     if (!options_.locate_events) {
-      const T side1 = select(guard1_[g] > T(0.0), T(1.0), T(0.0));
+      const T side1 = calc_side(guard1_[g]);
       return (abs(side1 - side_[g]) > T(0.5)) & (time_ < end_);
     }
     constexpr double kTogether = 1e-7;  // share of the way to zero left, far above rounding
@@ -243,7 +246,7 @@ class Simulation {
     for (int g = 0; g < system_.guard_count(); ++g) {
       // A kink's guard now measures the distance to the next kink: its side starts anew.
       const Mask fresh = passed[g] & (abs(renewed[g] - guard1_[g]) > T(1e-6));
-      side_[g] = select(fresh, select(renewed[g] > T(0.0), T(1.0), T(0.0)), side_[g]);
+      side_[g] = select(fresh, calc_side(renewed[g]), side_[g]);
       guard1_[g] = renewed[g];
     }
   }

@@ -1,5 +1,6 @@
 #include <sstream>
 
+#include "model/kernel/mechanism.h"
 #include "model/kernel/simulation.h"
 
 namespace strut {
@@ -49,6 +50,11 @@ void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
 }
 
 }  // namespace
+
+bool shares_mechanism(const Case& a, const Case& b) {
+  const Case x = strip_to_mechanism(a), y = strip_to_mechanism(b);
+  return x.vehicle == y.vehicle && x.maneuver == y.maneuver;
+}
 
 PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
   const Case key = strip_to_mechanism(c);

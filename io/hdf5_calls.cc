@@ -1,0 +1,239 @@
+#include "io/hdf5_calls.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace strut::hdf5 {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_strings(const fs::path& path, hid_t object, const std::string& object_name,
+                   const std::string& key, const std::vector<std::string>& values, bool scalar) {
+  const std::string name = object_name + "@" + key;
+  const std::string what = "attribute cannot be written";
+  std::vector<const char*> texts;
+  texts.reserve(values.size());
+  for (const std::string& value : values) texts.push_back(value.c_str());
+  const hsize_t count = texts.size();
+  const Hdf5Handle type = make_string_type(path);
+  const Hdf5Handle space = checked<EnvironmentError>(
+      scalar ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose, path, name,
+      what);
+  const Hdf5Handle attribute = checked<EnvironmentError>(
+      H5Acreate2(object, key.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+      path, name, what);
+  check<EnvironmentError>(H5Awrite(attribute.id(), type.id(), texts.data()) >= 0, path, name, what);
+}
+
+void write_label(const fs::path& path, hid_t dataset, const std::string& name,
+                 const Hdf5Label& label) {
+  write_strings(path, dataset, name, "unit", {label.unit}, true);
+  write_strings(path, dataset, name, "description", {label.description}, true);
+  const auto write_list = [&](const char* key, const std::vector<std::string>& texts) {
+    if (!texts.empty()) write_strings(path, dataset, name, key, texts, false);
+  };
+  write_list("names", label.names);
+  write_list("units", label.units);
+  write_list("descriptions", label.descriptions);
+}
+
+// Groups that the library makes itself would carry the time.
+void make_groups(const Hdf5Sink& sink, const std::string& name) {
+  const std::string what = "group cannot be made";
+  for (std::size_t slash = name.find('/', 1); slash != std::string::npos;
+       slash = name.find('/', slash + 1)) {
+    const std::string group = name.substr(0, slash);
+    if (H5Lexists(sink.file.id(), group.c_str(), H5P_DEFAULT) > 0) continue;
+    const Hdf5Handle creation = checked<EnvironmentError>(H5Pcreate(H5P_GROUP_CREATE), H5Pclose,
+                                                          sink.shown, group, what);
+    check<EnvironmentError>(H5Pset_obj_track_times(creation.id(), false) >= 0, sink.shown, group,
+                            what);
+    checked<EnvironmentError>(
+        H5Gcreate2(sink.file.id(), group.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+        H5Gclose, sink.shown, group, what);
+  }
+}
+
+Hdf5Handle make_space(const Hdf5Sink& sink, const std::string& name,
+                      const std::vector<std::size_t>& shape) {
+  const std::vector<hsize_t> sizes(shape.begin(), shape.end());
+  return checked<EnvironmentError>(
+      H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose, sink.shown,
+      name, "dataset cannot be written");
+}
+
+}  // namespace
+
+// Errors become exceptions, so the library must not print them as well; and it must not clean up
+// at exit: every handle is closed here, and a file that could not be flushed to a full disk crashes
+// 1.10.8 there.
+void prepare_library() {
+  static const bool no_cleanup = H5dont_atexit() >= 0;
+  static_cast<void>(no_cleanup);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+// The deepest entry of the library's error stack says what really happened.
+std::string take_library_error() {
+  std::string text;
+  const auto keep_first = [](unsigned, const H5E_error2_t* entry, void* out) -> herr_t {
+    auto& message = *static_cast<std::string*>(out);
+    if (message.empty() && entry->desc != nullptr) message = entry->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  H5Eclear2(H5E_DEFAULT);
+  return text.empty() ? "" : " (" + text + ")";
+}
+
+Hdf5Handle make_string_type(const fs::path& path) {
+  Hdf5Handle type = checked<EnvironmentError>(H5Tcopy(H5T_C_S1), H5Tclose, path, "", "string type");
+  check<EnvironmentError>(H5Tset_size(type.id(), H5T_VARIABLE) >= 0, path, "", "string type");
+  check<EnvironmentError>(H5Tset_cset(type.id(), H5T_CSET_UTF8) >= 0, path, "", "string type");
+  return type;
+}
+
+Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_length) {
+  const auto copy = [&path](hid_t of) {
+    return checked<EnvironmentError>(H5Tcopy(of), H5Tclose, path, "", "data type");
+  };
+  if (type == Hdf5Type::kDouble) return copy(H5T_NATIVE_DOUBLE);
+  if (type == Hdf5Type::kInt32) return copy(H5T_NATIVE_INT32);
+  if (type == Hdf5Type::kInt64) return copy(H5T_NATIVE_INT64);
+  Hdf5Handle text = copy(H5T_C_S1);
+  const bool good = H5Tset_size(text.id(), text_length) >= 0 &&
+                    H5Tset_cset(text.id(), H5T_CSET_UTF8) >= 0 &&
+                    H5Tset_strpad(text.id(), H5T_STR_NULLPAD) >= 0;
+  check<EnvironmentError>(good, path, "", "data type");
+  return text;
+}
+
+Hdf5Handle make_file_access(const fs::path& path) {
+  Hdf5Handle access = checked<EnvironmentError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "",
+                                                "cannot be written");
+  check<EnvironmentError>(
+      H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0, path, "",
+      "cannot be written");
+  return access;
+}
+
+Hdf5Handle make_file_creation(const fs::path& path, std::size_t user_block) {
+  Hdf5Handle creation = checked<EnvironmentError>(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path, "",
+                                                  "cannot be written");
+  const bool good = H5Pset_obj_track_times(creation.id(), false) >= 0 &&
+                    H5Pset_userblock(creation.id(), user_block) >= 0;
+  check<EnvironmentError>(good, path, "", "cannot be written");
+  return creation;
+}
+
+Hdf5Handle make_dataset_creation(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
+                                 std::size_t text_length) {
+  const std::string what = "dataset cannot be written";
+  Hdf5Handle creation =
+      checked<EnvironmentError>(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, sink.shown, name, what);
+  bool good = H5Pset_obj_track_times(creation.id(), false) >= 0;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::int64_t none = -1;
+  if (type == Hdf5Type::kDouble) {
+    good = good && H5Pset_fill_value(creation.id(), H5T_NATIVE_DOUBLE, &nan) >= 0;
+  } else if (type != Hdf5Type::kText) {
+    good = good && H5Pset_fill_value(creation.id(), H5T_NATIVE_INT64, &none) >= 0;
+  } else {
+    const Hdf5Handle text = make_type(sink.shown, type, text_length);
+    const std::string empty(text_length, '\0');
+    good = good && H5Pset_fill_value(creation.id(), text.id(), empty.data()) >= 0;
+  }
+  check<EnvironmentError>(good, sink.shown, name, what);
+  return creation;
+}
+
+void set_chunks(const Hdf5Sink& sink, const std::string& name, hid_t creation,
+                const std::vector<std::size_t>& shape, std::size_t chunk_rows) {
+  std::vector<hsize_t> sizes(shape.begin(), shape.end());
+  sizes.front() = chunk_rows;
+  // The level is only told to readers, who do not need it.
+  const bool good = H5Pset_chunk(creation, static_cast<int>(sizes.size()), sizes.data()) >= 0 &&
+                    H5Pset_shuffle(creation) >= 0 && H5Pset_deflate(creation, 1) >= 0 &&
+                    H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0;
+  check<EnvironmentError>(good, sink.shown, name, "dataset cannot be written");
+}
+
+Hdf5Handle create_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
+                          std::size_t text_length, const std::vector<std::size_t>& shape,
+                          hid_t creation, const Hdf5Label& label) {
+  make_groups(sink, name);
+  const Hdf5Handle space = make_space(sink, name, shape);
+  const Hdf5Handle element = make_type(sink.shown, type, text_length);
+  Hdf5Handle dataset = checked<EnvironmentError>(
+      H5Dcreate2(sink.file.id(), name.c_str(), element.id(), space.id(), H5P_DEFAULT, creation,
+                 H5P_DEFAULT),
+      H5Dclose, sink.shown, name, "dataset cannot be written");
+  write_label(sink.shown, dataset.id(), name, label);
+  return dataset;
+}
+
+void write_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
+                   std::size_t text_length, const std::vector<std::size_t>& shape,
+                   const void* values, const Hdf5Label& label) {
+  const Hdf5Handle creation = make_dataset_creation(sink, name, type, text_length);
+  Hdf5Handle dataset =
+      create_dataset(sink, name, type, text_length, shape, creation.id(), label);
+  const Hdf5Handle element = make_type(sink.shown, type, text_length);
+  check<EnvironmentError>(
+      H5Dwrite(dataset.id(), element.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, sink.shown,
+      name, "dataset cannot be written");
+  close_dataset(sink, name, dataset);
+}
+
+void write_chunk(const Hdf5Sink& sink, const std::string& name, hid_t dataset, std::size_t rank,
+                 std::size_t first_row, std::span<const std::byte> bytes) {
+  std::vector<hsize_t> offset(rank, 0);
+  offset.front() = first_row;
+  check<EnvironmentError>(
+      H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, offset.data(), bytes.size(), bytes.data()) >= 0,
+      sink.shown, name, "chunk cannot be written; disk full?");
+}
+
+void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& dataset) {
+  check<EnvironmentError>(dataset.reset(), sink.shown, name,
+                          "dataset cannot be written; disk full?");
+}
+
+void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
+                          const std::string& value) {
+  const Hdf5Handle handle = checked<EnvironmentError>(
+      H5Oopen(sink.file.id(), object.c_str(), H5P_DEFAULT), H5Oclose, sink.shown, object,
+      "no such dataset or group to hold attribute " + key);
+  write_strings(sink.shown, handle.id(), object, key, {value}, true);
+}
+
+void write_number_attribute(const Hdf5Sink& sink, const std::string& object,
+                            const std::string& key, hid_t type, const void* value) {
+  const std::string name = object + "@" + key;
+  const std::string what = "attribute cannot be written";
+  const Hdf5Handle space =
+      checked<EnvironmentError>(H5Screate(H5S_SCALAR), H5Sclose, sink.shown, name, what);
+  const Hdf5Handle attribute = checked<EnvironmentError>(
+      H5Acreate_by_name(sink.file.id(), object.c_str(), key.c_str(), type, space.id(), H5P_DEFAULT,
+                        H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose, sink.shown, name, what);
+  check<EnvironmentError>(H5Awrite(attribute.id(), type, value) >= 0, sink.shown, name, what);
+}
+
+std::size_t calc_text_length(const std::vector<std::string>& texts) {
+  std::size_t length = 1;
+  for (const std::string& text : texts) length = std::max(length, text.size());
+  return length;
+}
+
+std::vector<std::byte> pack_texts(std::span<const std::string> texts, std::size_t length) {
+  std::vector<std::byte> bytes(texts.size() * length);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    std::memcpy(bytes.data() + i * length, texts[i].data(), std::min(length, texts[i].size()));
+  }
+  return bytes;
+}
+
+}  // namespace strut::hdf5

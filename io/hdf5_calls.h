@@ -1,0 +1,77 @@
+// What the readers and writers of HDF5 share: checked calls of the C library. Only the hdf5*.cc
+// files include this.
+#pragma once
+
+#include <hdf5.h>
+
+#include <string>
+#include <vector>
+
+#include "io/hdf5.h"
+
+namespace strut::hdf5 {
+
+static_assert(sizeof(hid_t) == sizeof(Hdf5Handle::Id), "handles carry an hid_t");
+
+/// Before the first call of the library.
+void prepare_library();
+
+/// What the library says went wrong last, " (...)"; empty where it says nothing.
+std::string take_library_error();
+
+template <class Error>
+void check(bool good, const std::filesystem::path& path, const std::string& object,
+           const std::string& what) {
+  if (good) return;
+  throw Error(path.string() + (object.empty() ? "" : ": " + object) + ": " + what +
+              take_library_error());
+}
+
+template <class Error>
+Hdf5Handle checked(hid_t id, Hdf5Handle::Close close, const std::filesystem::path& path,
+                   const std::string& object, const std::string& what) {
+  check<Error>(id >= 0, path, object, what);
+  return {id, close};
+}
+
+/// Text of variable length, UTF-8: attributes.
+Hdf5Handle make_string_type(const std::filesystem::path& path);
+/// Type of the elements, in memory as in the file.
+Hdf5Handle make_type(const std::filesystem::path& path, Hdf5Type type, std::size_t text_length);
+
+/// File access: the format of 1.10, which has checksums over all of its own structures.
+Hdf5Handle make_file_access(const std::filesystem::path& path);
+/// File creation without times, so that equal content is equal bytes.
+Hdf5Handle make_file_creation(const std::filesystem::path& path, std::size_t user_block);
+
+/// Dataset creation: fill value NaN, -1 or an empty text, no times.
+Hdf5Handle make_dataset_creation(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
+                                 std::size_t text_length);
+void set_chunks(const Hdf5Sink& sink, const std::string& name, hid_t creation,
+                const std::vector<std::size_t>& shape, std::size_t chunk_rows);
+
+/// A new dataset with its label; groups on the way are made as needed.
+Hdf5Handle create_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
+                          std::size_t text_length, const std::vector<std::size_t>& shape,
+                          hid_t creation, const Hdf5Label& label);
+/// As above, plain, with values.
+void write_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
+                   std::size_t text_length, const std::vector<std::size_t>& shape,
+                   const void* values, const Hdf5Label& label);
+/// Stores chunk number `chunk` as it is.
+void write_chunk(const Hdf5Sink& sink, const std::string& name, hid_t dataset, std::size_t rank,
+                 std::size_t first_row, std::span<const std::byte> bytes);
+/// Closes, which may write.
+void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& dataset);
+
+void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
+                          const std::string& value);
+void write_number_attribute(const Hdf5Sink& sink, const std::string& object,
+                            const std::string& key, hid_t type, const void* value);
+
+/// Longest text, at least 1.
+std::size_t calc_text_length(const std::vector<std::string>& texts);
+/// Texts one behind the other, each padded with zeros (cut where it is longer) to `length`.
+std::vector<std::byte> pack_texts(std::span<const std::string> texts, std::size_t length);
+
+}  // namespace strut::hdf5

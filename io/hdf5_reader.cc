@@ -1,0 +1,300 @@
+#include <algorithm>
+
+#include "io/hdf5_calls.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+using hdf5::check;
+using hdf5::checked;
+
+// Attribute `key` as strings, [] where there is none.
+std::vector<std::string> read_strings(const fs::path& path, hid_t object,
+                                      const std::string& object_name, const std::string& key) {
+  const std::string name = object_name + "@" + key;
+  const std::string what = "attribute cannot be read as text";
+  if (H5Aexists(object, key.c_str()) <= 0) return {};
+  const Hdf5Handle attribute =
+      checked<InputError>(H5Aopen(object, key.c_str(), H5P_DEFAULT), H5Aclose, path, name, what);
+  const Hdf5Handle stored =
+      checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, what);
+  check<InputError>(H5Tis_variable_str(stored.id()) > 0, path, name, what);
+  const Hdf5Handle space =
+      checked<InputError>(H5Aget_space(attribute.id()), H5Sclose, path, name, what);
+  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+  check<InputError>(count >= 0, path, name, what);
+  const Hdf5Handle type = hdf5::make_string_type(path);
+  std::vector<char*> raw(static_cast<std::size_t>(count), nullptr);
+  check<InputError>(H5Aread(attribute.id(), type.id(), raw.data()) >= 0, path, name, what);
+  std::vector<std::string> values;
+  values.reserve(raw.size());
+  for (const char* text : raw) values.emplace_back(text == nullptr ? "" : text);
+  H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, raw.data());
+  return values;
+}
+
+std::string first_or_empty(const std::vector<std::string>& texts) {
+  return texts.empty() ? "" : texts.front();
+}
+
+Hdf5Label get_label(const fs::path& path, const std::string& name, hid_t dataset) {
+  const auto read = [&](const char* key) { return read_strings(path, dataset, name, key); };
+  return {first_or_empty(read("unit")), first_or_empty(read("description")), read("names"),
+          read("units"), read("descriptions")};
+}
+
+std::vector<std::size_t> get_shape(const fs::path& path, const std::string& name, hid_t dataset) {
+  const Hdf5Handle space =
+      checked<InputError>(H5Dget_space(dataset), H5Sclose, path, name, "shape cannot be read");
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  check<InputError>(rank == 1 || rank == 2, path, name, "must have one or two dimensions");
+  std::vector<hsize_t> sizes(static_cast<std::size_t>(rank));
+  check<InputError>(H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr) == rank, path,
+                    name, "shape cannot be read");
+  return {sizes.begin(), sizes.end()};
+}
+
+// Elements of a dataset. A damaged header may claim any number; the stored bytes bound what is
+// believed. Deflate packs at most 1032 to 1.
+std::size_t count_elements(const fs::path& path, const std::string& name, hid_t dataset,
+                           const std::vector<std::size_t>& shape) {
+  constexpr std::size_t kMost = std::size_t{1} << 48;
+  std::size_t count = 1;
+  for (const std::size_t size : shape) {
+    check<InputError>(size == 0 || count <= kMost / size, path, name, "damaged: data missing");
+    count *= size;
+  }
+  const Hdf5Handle creation =
+      checked<InputError>(H5Dget_create_plist(dataset), H5Pclose, path, name, "damaged");
+  const Hdf5Handle type = checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
+  const bool plain = H5Pget_nfilters(creation.id()) == 0;
+  const std::size_t stored = H5Dget_storage_size(dataset);
+  const bool is_view = H5Pget_layout(creation.id()) == H5D_VIRTUAL;
+  const bool present = is_view || stored * (plain ? 1 : 1040) >= count * H5Tget_size(type.id());
+  check<InputError>(present, path, name, "damaged: data missing");
+  return count;
+}
+
+void require_class(const fs::path& path, const std::string& name, hid_t dataset, bool integer,
+                   bool real) {
+  const Hdf5Handle type = checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
+  const H5T_class_t kind = H5Tget_class(type.id());
+  check<InputError>((integer && kind == H5T_INTEGER) || (real && kind == H5T_FLOAT), path, name,
+                    real ? "must hold numbers" : "must hold integers");
+}
+
+}  // namespace
+
+Hdf5Reader::Hdf5Reader(const fs::path& path) : path_(path) {
+  hdf5::prepare_library();
+  if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
+  check<InputError>(H5Fis_hdf5(path.c_str()) > 0, path, "", "not an HDF5 file");
+  file_ = checked<InputError>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, path,
+                              "", "damaged or not readable");
+}
+
+Hdf5Reader::Hdf5Reader(const fs::path& path, std::span<const std::byte> image) : path_(path) {
+  hdf5::prepare_library();
+  const Hdf5Handle access =
+      checked<InputError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "", "cannot be read");
+  // The library copies the image; it takes no const pointer.
+  const bool good =
+      H5Pset_fapl_core(access.id(), image.size(), false) >= 0 &&
+      H5Pset_file_image(access.id(), const_cast<std::byte*>(image.data()), image.size()) >= 0;
+  check<InputError>(good, path, "", "cannot be read");
+  file_ = checked<InputError>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, path,
+                              "", "damaged, or not an HDF5 file");
+}
+
+bool Hdf5Reader::has(const std::string& name) const {
+  // H5Lexists needs every group on the way to exist.
+  for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
+    if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
+      H5Eclear2(H5E_DEFAULT);
+      return false;
+    }
+    if (slash == std::string::npos) return true;
+  }
+}
+
+Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
+  check<InputError>(has(name), path_, name, "no such dataset");
+  return checked<InputError>(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, path_, name,
+                             "not a dataset");
+}
+
+Hdf5Dataset Hdf5Reader::read(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  Hdf5Dataset data;
+  data.shape = get_shape(path_, name, dataset.id());
+  require_class(path_, name, dataset.id(), true, true);
+  data.values.resize(count_elements(path_, name, dataset.id(), data.shape));
+  check<InputError>(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                            data.values.data()) >= 0,
+                    path_, name, "damaged");
+  data.label = get_label(path_, name, dataset.id());
+  return data;
+}
+
+Hdf5Dataset Hdf5Reader::read_rows(const std::string& name, std::size_t first,
+                                  std::size_t count) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  Hdf5Dataset data;
+  data.shape = get_shape(path_, name, dataset.id());
+  require_class(path_, name, dataset.id(), true, true);
+  count_elements(path_, name, dataset.id(), data.shape);
+  const bool inside = first <= data.shape.front() && count <= data.shape.front() - first;
+  check<InputError>(inside, path_, name,
+                    "has " + std::to_string(data.shape.front()) + " rows, asked for " +
+                        std::to_string(first) + " to " + std::to_string(first + count));
+  data.shape.front() = count;
+  std::vector<hsize_t> start(data.shape.size(), 0);
+  start.front() = first;
+  const std::vector<hsize_t> sizes(data.shape.begin(), data.shape.end());
+  const Hdf5Handle stored =
+      checked<InputError>(H5Dget_space(dataset.id()), H5Sclose, path_, name, "damaged");
+  const Hdf5Handle memory =
+      checked<InputError>(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
+                          H5Sclose, path_, name, "damaged");
+  std::size_t total = 1;
+  for (const std::size_t size : data.shape) total *= size;
+  data.values.resize(total);
+  const bool good = H5Sselect_hyperslab(stored.id(), H5S_SELECT_SET, start.data(), nullptr,
+                                        sizes.data(), nullptr) >= 0 &&
+                    H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), stored.id(), H5P_DEFAULT,
+                            data.values.data()) >= 0;
+  check<InputError>(good, path_, name, "damaged");
+  data.label = get_label(path_, name, dataset.id());
+  return data;
+}
+
+std::vector<std::int64_t> Hdf5Reader::read_integers(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  require_class(path_, name, dataset.id(), true, false);
+  const auto shape = get_shape(path_, name, dataset.id());
+  std::vector<std::int64_t> values(count_elements(path_, name, dataset.id(), shape));
+  check<InputError>(H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                            values.data()) >= 0,
+                    path_, name, "damaged");
+  return values;
+}
+
+std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  const Hdf5Handle stored =
+      checked<InputError>(H5Dget_type(dataset.id()), H5Tclose, path_, name, "damaged");
+  const bool fixed =
+      H5Tget_class(stored.id()) == H5T_STRING && H5Tis_variable_str(stored.id()) == 0;
+  check<InputError>(fixed, path_, name, "must hold texts of fixed length");
+  const std::size_t count =
+      count_elements(path_, name, dataset.id(), get_shape(path_, name, dataset.id()));
+  const std::size_t length = H5Tget_size(stored.id());
+  const Hdf5Handle type = hdf5::make_type(path_, Hdf5Type::kText, length);
+  std::vector<char> raw(count * length);
+  check<InputError>(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0,
+                    path_, name, "damaged");
+  std::vector<std::string> texts;
+  texts.reserve(count);
+  for (auto at = raw.begin(); at != raw.end(); at += static_cast<std::ptrdiff_t>(length)) {
+    texts.emplace_back(at, std::find(at, at + static_cast<std::ptrdiff_t>(length), '\0'));
+  }
+  return texts;
+}
+
+Hdf5Label Hdf5Reader::read_label(const std::string& name) const {
+  return get_label(path_, name, open_dataset(name).id());
+}
+
+std::vector<std::size_t> Hdf5Reader::read_shape(const std::string& name) const {
+  return get_shape(path_, name, open_dataset(name).id());
+}
+
+std::size_t Hdf5Reader::read_chunk_rows(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  const auto shape = get_shape(path_, name, dataset.id());
+  const Hdf5Handle creation =
+      checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
+  if (H5Pget_layout(creation.id()) != H5D_CHUNKED) return shape.front();
+  std::vector<hsize_t> sizes(shape.size());
+  check<InputError>(
+      H5Pget_chunk(creation.id(), static_cast<int>(sizes.size()), sizes.data()) >= 0, path_, name,
+      "damaged");
+  return sizes.front();
+}
+
+bool Hdf5Reader::has_attribute(const std::string& object, const std::string& key) const {
+  const bool there = H5Aexists_by_name(file_.id(), object.c_str(), key.c_str(), H5P_DEFAULT) > 0;
+  H5Eclear2(H5E_DEFAULT);
+  return there;
+}
+
+std::string Hdf5Reader::read_attribute(const std::string& object, const std::string& key) const {
+  const Hdf5Handle handle = checked<InputError>(H5Oopen(file_.id(), object.c_str(), H5P_DEFAULT),
+                                                H5Oclose, path_, object, "no such object");
+  const auto values = read_strings(path_, handle.id(), object, key);
+  check<InputError>(values.size() == 1, path_, object + "@" + key, "no such attribute");
+  return values.front();
+}
+
+namespace {
+
+// A scalar attribute of class `kind`, read as `type` into `value`.
+void read_number(const fs::path& path, hid_t file, const std::string& object,
+                 const std::string& key, bool real, hid_t type, void* value) {
+  const std::string name = object + "@" + key;
+  const Hdf5Handle attribute = checked<InputError>(
+      H5Aopen_by_name(file, object.c_str(), key.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, path,
+      name, "no such attribute");
+  const Hdf5Handle stored =
+      checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, "damaged");
+  const Hdf5Handle space =
+      checked<InputError>(H5Aget_space(attribute.id()), H5Sclose, path, name, "damaged");
+  const H5T_class_t kind = H5Tget_class(stored.id());
+  const bool fits = (kind == H5T_INTEGER || (real && kind == H5T_FLOAT)) &&
+                    H5Sget_simple_extent_npoints(space.id()) == 1;
+  check<InputError>(fits, path, name, real ? "must be a number" : "must be an integer");
+  check<InputError>(H5Aread(attribute.id(), type, value) >= 0, path, name, "damaged");
+}
+
+}  // namespace
+
+std::int64_t Hdf5Reader::read_integer_attribute(const std::string& object,
+                                                const std::string& key) const {
+  std::int64_t value = 0;
+  read_number(path_, file_.id(), object, key, false, H5T_NATIVE_INT64, &value);
+  return value;
+}
+
+double Hdf5Reader::read_number_attribute(const std::string& object, const std::string& key) const {
+  double value = 0.0;
+  read_number(path_, file_.id(), object, key, true, H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
+std::vector<std::string> Hdf5Reader::list_attributes(const std::string& object) const {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
+    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+    return 0;
+  };
+  hsize_t start = 0;
+  const herr_t status = H5Aiterate_by_name(file_.id(), object.c_str(), H5_INDEX_NAME, H5_ITER_INC,
+                                           &start, add, &names, H5P_DEFAULT);
+  check<InputError>(status >= 0, path_, object, "attributes cannot be read");
+  return names;
+}
+
+std::vector<std::string> Hdf5Reader::list(const std::string& group) const {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+    return 0;
+  };
+  const herr_t status = H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC,
+                                           nullptr, add, &names, H5P_DEFAULT);
+  check<InputError>(status >= 0, path_, group, "no such group");
+  return names;
+}
+
+}  // namespace strut

@@ -1,0 +1,96 @@
+#include "io/process_identity.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <filesystem>
+#include <sstream>
+
+#include "io/file_sync.h"
+
+namespace strut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_word(const fs::path& path) {
+  std::istringstream text(read_if_present(path).value_or(""));
+  std::string word;
+  text >> word;
+  return word;
+}
+
+struct ProcessState {
+  char letter = '?';
+  std::string start;  // clock ticks since boot
+};
+
+// proc(5): "PID (NAME) STATE ... STARTTIME": fields 3 and 22, counted behind the name, which may
+// hold anything. Empty start: not known.
+ProcessState read_process_state(const std::string& process) {
+  std::string text;
+  try {
+    text = read_if_present("/proc/" + process + "/stat").value_or("");
+  } catch (const EnvironmentError&) {  // it ended while being read
+  }
+  const auto name_end = text.rfind(')');
+  ProcessState state;
+  if (name_end == std::string::npos) return state;
+  std::istringstream fields(text.substr(name_end + 1));
+  constexpr int kFieldsBetween = 18;
+  std::string between;
+  fields >> state.letter;
+  for (int i = 0; i < kFieldsBetween; ++i) fields >> between;
+  fields >> state.start;
+  return state;
+}
+
+// As part of file names and of lines.
+std::string get_host_name() {
+  std::array<char, 65> buffer{};
+  ::gethostname(buffer.data(), buffer.size() - 1);
+  std::string name(buffer.data());
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!plain && c != '-' && c != '.') c = '_';
+  }
+  return name.empty() ? "localhost" : name;
+}
+
+bool share_process_ids(const ProcessIdentity& a, const ProcessIdentity& b) {
+  return !a.boot.empty() && !a.name_space.empty() && a.host == b.host && a.boot == b.boot &&
+         a.name_space == b.name_space;
+}
+
+}  // namespace
+
+ProcessIdentity find_own_identity() {
+  ProcessIdentity own;
+  own.host = get_host_name();
+  own.boot = read_word("/proc/sys/kernel/random/boot_id");
+  std::error_code ignored;
+  own.name_space = fs::read_symlink("/proc/self/ns/pid", ignored).string();
+  own.process = std::to_string(::getpid());
+  own.start = read_process_state("self").start;
+  return own;
+}
+
+Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own) {
+  if (!share_process_ids(process, own)) return Life::kUnknown;
+  pid_t number = 0;
+  const char* end = process.process.data() + process.process.size();
+  const auto parsed = std::from_chars(process.process.data(), end, number);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || number <= 0) return Life::kUnknown;
+  if (::kill(number, 0) != 0 && errno == ESRCH) return Life::kGone;
+  const ProcessState state = read_process_state(process.process);
+  if (state.start.empty()) return Life::kUnknown;  // /proc may hide other users' processes
+  // A zombie ended; only nobody asked how yet, which in a container may be so for ever.
+  const bool ended = state.letter == 'Z' || state.letter == 'X';
+  return ended || state.start != process.start ? Life::kGone : Life::kRuns;
+}
+
+}  // namespace strut

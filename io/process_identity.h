@@ -1,0 +1,30 @@
+// Which process a name stands for, and whether that one still runs.
+#pragma once
+
+#include <string>
+
+namespace strut {
+
+/// What makes a process the same one. A process id means something only on one host since its last
+/// boot and within one namespace of process ids (two containers may share host name and numbers),
+/// and only until the number is given out again, which the start time tells.
+struct ProcessIdentity {
+  std::string host;        // letters, digits, '-', '.', '_'
+  std::string boot;        // /proc/sys/kernel/random/boot_id
+  std::string name_space;  // "pid:[4026531836]"
+  std::string process;
+  std::string start;  // clock ticks since boot
+};
+
+/// This process. What the system does not tell is empty.
+ProcessIdentity find_own_identity();
+
+enum class Life {
+  kGone,     // ended, a zombie, or its number is another process's now
+  kRuns,     // perhaps stopped
+  kUnknown,  // of another host, boot or namespace, or hidden
+};
+
+Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own);
+
+}  // namespace strut

@@ -1,0 +1,25 @@
+// A TOML file as a list of values, and with single values replaced.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/input_error.h"
+
+namespace strut {
+
+/// Dotted key and value.
+using TomlValues = std::vector<std::pair<std::string, std::string>>;
+
+/// Every value of the file as it was meant ("bump.height", "0.05"), sorted by key: comments, order,
+/// blanks and the way a number is written have no effect. Elements of arrays count from 1,
+/// "rod[2].mass". Throws InputError where the file is missing or not TOML.
+TomlValues flatten_toml(const std::filesystem::path& path);
+
+/// The file's text with the texts at the dotted keys replaced, everything else as it stands. Throws
+/// InputError where the file is missing, not TOML, or has no text there.
+std::string replace_toml_texts(const std::filesystem::path& path, const TomlValues& values);
+
+}  // namespace strut

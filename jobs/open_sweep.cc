@@ -1,0 +1,35 @@
+#include "jobs/open_sweep.h"
+
+#include <omp.h>
+
+namespace strut {
+
+OpenSweep open_sweep(const Arguments& arguments) {
+  const auto& names = arguments.positional();
+  if (names.size() != 1) {
+    throw arguments.usage_error(std::to_string(names.size()) +
+                                " arguments; expected DIR, a folder made by strut plan");
+  }
+  SweepFolder folder{names.front()};
+  Plan plan = open_sweep_folder(folder);
+  return {std::move(folder), std::move(plan)};
+}
+
+const Kernel& find_kernel(const Arguments& arguments) {
+  std::vector<std::string> names;
+  names.reserve(list_kernels().size());
+  for (const Kernel& kernel : list_kernels()) names.emplace_back(kernel.isa);
+  return list_kernels()[static_cast<std::size_t>(arguments.choice_or("isa", 0, names))];
+}
+
+int find_threads(const Arguments& arguments) {
+  constexpr double kMost = 4096;
+  const double threads =
+      arguments.number_or("threads", omp_get_num_procs(), between(1, kMost, "threads"));
+  if (threads != static_cast<int>(threads)) {
+    throw InputError("--threads: " + format_number(threads) + ": must be a whole number");
+  }
+  return static_cast<int>(threads);
+}
+
+}  // namespace strut

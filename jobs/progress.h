@@ -1,0 +1,42 @@
+// A line that tells how far long work has come: live on a terminal, now and then elsewhere.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace strut {
+
+/// Prints `line()` to standard error from a thread of its own: on a terminal five times a second in
+/// place, elsewhere every ten seconds. The destructor erases the live line.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::function<std::string()> line);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+ private:
+  void work();
+
+  const std::function<std::string()> line_;
+  const bool live_;
+  std::mutex mutex_;
+  std::condition_variable over_changed_;
+  bool over_ = false;
+  std::thread thread_;
+};
+
+/// "12 s", "3 min 20 s", "5 h 12 min", "9 d 4 h"; "unknown" where not finite.
+std::string format_duration(double seconds);
+
+/// "512 B", "12.3 kB", "4.56 GB"
+std::string format_bytes(double bytes);
+
+/// "12,345"
+std::string format_count(std::int64_t count);
+
+}  // namespace strut

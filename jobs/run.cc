@@ -1,0 +1,173 @@
+#include "jobs/run.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iostream>
+
+#include "jobs/build_info.h"
+#include "jobs/command.h"
+#include "jobs/interrupt.h"
+#include "jobs/json.h"
+#include "jobs/machine.h"
+#include "jobs/open_sweep.h"
+#include "jobs/progress.h"
+#include "sweep/run.h"
+
+namespace strut {
+namespace {
+
+Arguments make_arguments(const std::string& name, bool retries) {
+  Arguments arguments(
+      "strut " + name + " DIR [OPTIONS]",
+      std::string("Simulates every case of the sweep in DIR that is not done yet, and writes whole "
+                  "shards to\nDIR/shards. Stop it when you like (Ctrl-C): running it again goes on "
+                  "from there. Several may\nrun on one folder, also on several hosts.") +
+          (retries ? "\nThen tries what failed once more, with a smaller step." : ""),
+      "  strut plan examples/sweeps/paper.toml -o sweep\n  strut " + name +
+          " sweep --threads 2\n  strut status sweep");
+  arguments.add_option("threads", "N", "worker threads (default: one for each processor)");
+  arguments.add_option("shards", "A:B", "only shards A to B - 1 (default: all)");
+  arguments.add_option("isa", "NAME",
+                       "instruction set, one that --version lists (default: widest)");
+  arguments.add_option("lease", "S",
+                       "a runner on another host counts as dead after S seconds without a sign of "
+                       "life (default 30)");
+  arguments.add_switch("json", "print the summary as JSON");
+  return arguments;
+}
+
+/// "A:B"; either may be left out.
+void read_shards(const Arguments& arguments, const Plan& plan, RunOptions& options) {
+  options.end_shard = plan.shard_count();
+  if (!arguments.has("shards")) return;
+  const std::string text = arguments.text("shards");
+  const std::size_t colon = text.find(':');
+  const auto parse = [&](const std::string& number, std::int64_t fallback) {
+    if (number.empty()) return fallback;
+    std::int64_t value = -1;
+    const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
+    return parsed.ptr == number.data() + number.size() ? value : -1;
+  };
+  const std::int64_t first = parse(text.substr(0, colon), 0);
+  const std::int64_t end =
+      colon == std::string::npos ? -1 : parse(text.substr(colon + 1), plan.shard_count());
+  if (first < 0 || end <= first || end > plan.shard_count()) {
+    throw InputError("--shards " + text + ": must be A:B with 0 <= A < B <= " +
+                     std::to_string(plan.shard_count()) + ", the shards of this sweep");
+  }
+  options.first_shard = first;
+  options.end_shard = end;
+}
+
+RunOptions read_options(const Arguments& arguments, const Plan& plan, bool retries) {
+  RunOptions options;
+  options.kernel = &find_kernel(arguments);
+  options.threads = find_threads(arguments);
+  options.retry_failed = retries;
+  read_shards(arguments, plan, options);
+  const double lease = arguments.number_or("lease", 30.0, between(1.0, 86400.0, "s"));
+  options.claims.lease = std::chrono::milliseconds(std::llround(1e3 * lease));
+  const BuildInfo& build = get_build_info();
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  options.provenance = {{"strut_version", build.version},
+                        {"commit", build.commit},
+                        {"compiler", build.compiler},
+                        {"host", host.data()}};
+  return options;
+}
+
+std::string describe_progress(const RunProgress& progress, double start) {
+  const std::int64_t reached = progress.present + progress.elsewhere + progress.simulated;
+  const double rate = static_cast<double>(progress.simulated) / (now() - start);
+  const double left = static_cast<double>(progress.cases - reached) / rate;
+  std::string line = format_count(reached) + "/" + format_count(progress.cases) + " cases, " +
+                     format_count(std::llround(rate)) + "/s, " + format_duration(left) + " to go";
+  if (progress.failed > 0) line += ", " + format_count(progress.failed) + " failed";
+  return line;
+}
+
+Json make_json(const RunProgress& progress, const RunSummary& summary, double seconds) {
+  Json parts = Json::object();
+  parts.set("prepare", summary.simulation.prepare)
+      .set("integrate", summary.simulation.integrate)
+      .set("retry", summary.simulation.retry)
+      .set("compress", summary.compress)
+      .set("write", summary.write);
+  Json json = Json::object();
+  json.set("cases", static_cast<long>(progress.cases))
+      .set("present", static_cast<long>(progress.present))
+      .set("written", static_cast<long>(progress.written))
+      .set("elsewhere", static_cast<long>(progress.elsewhere))
+      .set("failed", static_cast<long>(progress.failed))
+      .set("mended", static_cast<long>(summary.mended))
+      .set("still_failing", static_cast<long>(summary.still_failing))
+      .set("duplicates", static_cast<long>(summary.duplicates))
+      .set("shards", static_cast<long>(summary.shards_written))
+      .set("bytes", static_cast<long>(summary.bytes))
+      .set("seconds", seconds)
+      .set("runs_per_s", static_cast<double>(progress.written) / seconds)
+      .set("thread_seconds", parts)
+      .set("interrupted", summary.stopped);
+  return json;
+}
+
+void print_summary(const OpenSweep& sweep, const RunProgress& progress, const RunSummary& summary,
+                   double seconds) {
+  const std::int64_t present = progress.present + progress.elsewhere;
+  std::cout << format_count(progress.written) << " cases simulated in " << format_duration(seconds)
+            << " (" << format_count(std::llround(static_cast<double>(progress.written) / seconds))
+            << "/s)";
+  if (present > 0) std::cout << ", " << format_count(present) << " were there already";
+  std::cout << "; " << format_count(progress.failed) << " failed\n";
+  if (summary.mended + summary.still_failing > 0) {
+    std::cout << "tried again: " << format_count(summary.mended) << " mended, "
+              << format_count(summary.still_failing) << " still fail\n";
+  }
+  if (summary.duplicates > 0) {
+    std::cout << summary.duplicates
+              << " shards were made twice, by two runners; one copy is kept\n";
+  }
+  std::cout << "data: " << sweep.folder.shards().string() << " ("
+            << format_count(summary.shards_written) << " shards, "
+            << format_bytes(static_cast<double>(summary.bytes)) << " new)\n";
+}
+
+int run(const std::string& name, bool retries, const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments(name, retries);
+  if (!arguments.parse(words)) return kExitDone;
+  const OpenSweep sweep = open_sweep(arguments);
+  const RunOptions options = read_options(arguments, sweep.plan, retries);
+  InterruptWatcher watcher;
+  RunProgress progress;
+  const double start = now();
+  RunSummary summary;
+  {
+    const ProgressLine line([&] { return describe_progress(progress, start); });
+    summary = run_sweep(sweep.folder, sweep.plan, options, progress, watcher.halt());
+  }
+  const double seconds = now() - start;
+  for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
+  if (arguments.is_on("json")) {
+    std::cout << make_json(progress, summary, seconds).dump() << "\n";
+  } else {
+    print_summary(sweep, progress, summary, seconds);
+  }
+  if (watcher.signal() != 0) {
+    std::cerr << "strut: interrupted; what is written is whole, `strut run "
+              << sweep.folder.root.string() << "` goes on from here\n";
+    return 128 + watcher.signal();
+  }
+  return summary.failed > 0 ? kExitNo : kExitDone;
+}
+
+}  // namespace
+
+int run_run(const std::vector<std::string>& arguments) { return run("run", false, arguments); }
+
+int run_resume(const std::vector<std::string>& arguments) { return run("resume", true, arguments); }
+
+}  // namespace strut

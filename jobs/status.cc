@@ -1,0 +1,97 @@
+#include "jobs/status.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <thread>
+
+#include "jobs/command.h"
+#include "jobs/json.h"
+#include "jobs/open_sweep.h"
+#include "jobs/progress.h"
+#include "sweep/status.h"
+
+namespace strut {
+namespace {
+
+Json make_json(const SweepStatus& status) {
+  Json failures = Json::object(), faults = Json::array(), runners = Json::array();
+  for (const auto& [reason, cases] : status.failures)
+    failures.set(reason, static_cast<long>(cases));
+  for (const std::string& fault : status.faults) faults.push(fault);
+  for (const ClaimInfo& claim : status.claims) {
+    runners.push(Json::object().set("unit", claim.unit).set("runner", claim.runner));
+  }
+  Json json = Json::object();
+  json.set("cases", static_cast<long>(status.cases))
+      .set("done", static_cast<long>(status.done))
+      .set("failed", static_cast<long>(status.failed))
+      .set("running", static_cast<long>(status.running))
+      .set("left", static_cast<long>(status.left))
+      .set("rate_per_s", status.rate > 0.0 ? Json(status.rate) : Json())
+      .set("seconds_left", status.seconds_left)
+      .set("complete", status.complete())
+      .set("failures", failures)
+      .set("shards", static_cast<long>(status.shards_present))
+      .set("shards_planned", static_cast<long>(status.shards))
+      .set("bytes", static_cast<long>(status.bytes))
+      .set("duplicates", static_cast<long>(status.duplicates))
+      .set("data_digest", status.digest.text())
+      .set("claims", runners)
+      .set("faults", faults);
+  return json;
+}
+
+void print_text(const SweepStatus& status) {
+  const auto line = [](const char* name, const std::string& value) {
+    std::cout << name << std::string(10 - std::string(name).size(), ' ') << value << "\n";
+  };
+  line("cases", format_count(status.cases));
+  line("done", format_count(status.done));
+  std::string failed = format_count(status.failed);
+  for (const auto& [reason, cases] : status.failures) {
+    failed += "  " + reason + ": " + format_count(cases);
+  }
+  line("failed", failed);
+  line("running", format_count(status.running));
+  line("left", format_count(status.left));
+  if (status.rate > 0.0) {
+    line("rate", format_count(std::llround(status.rate)) + "/s, " +
+                     format_duration(status.seconds_left) + " to go");
+  }
+  line("shards", format_count(status.shards_present) + " of " + format_count(status.shards) + ", " +
+                     format_bytes(static_cast<double>(status.bytes)));
+  if (status.duplicates > 0) line("made twice", format_count(status.duplicates) + " shards");
+  for (const std::string& fault : status.faults) std::cerr << "strut: " << fault << "\n";
+}
+
+}  // namespace
+
+int run_status(const std::vector<std::string>& words) {
+  Arguments arguments("strut status DIR [OPTIONS]",
+                      "How far the sweep in DIR has come, from its files alone.",
+                      "  strut status sweep --watch\n  strut status sweep --json");
+  arguments.add_switch("json", "print JSON");
+  arguments.add_switch("watch", "print again every second until the sweep is complete");
+  if (!arguments.parse(words)) return kExitDone;
+  const OpenSweep sweep = open_sweep(arguments);
+  const bool on_terminal = isatty(STDOUT_FILENO) == 1;
+  for (;;) {
+    const SweepStatus status = read_status(sweep.folder, sweep.plan);
+    if (arguments.is_on("watch") && on_terminal) std::cout << "\033[H\033[J";
+    if (arguments.is_on("json")) {
+      std::cout << make_json(status).dump() << std::endl;
+    } else {
+      print_text(status);
+      std::cout << std::flush;
+    }
+    if (!arguments.is_on("watch") || status.complete()) {
+      return status.faults.empty() && status.failed == 0 ? kExitDone : kExitNo;
+    }
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
+}
+
+}  // namespace strut

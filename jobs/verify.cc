@@ -1,0 +1,101 @@
+#include "jobs/verify.h"
+
+#include <atomic>
+#include <iostream>
+
+#include "jobs/command.h"
+#include "jobs/json.h"
+#include "jobs/open_sweep.h"
+#include "jobs/progress.h"
+#include "sweep/shard_store.h"
+#include "sweep/verify.h"
+
+namespace strut {
+namespace {
+
+Json make_json(const VerifyReport& report) {
+  Json damaged = Json::array(), differing = Json::array();
+  for (const std::string& what : report.damaged) damaged.push(what);
+  for (const std::string& what : report.differing) differing.push(what);
+  Json json = Json::object();
+  json.set("ok", report.ok())
+      .set("data_digest", report.data_digest)
+      .set("cases", static_cast<long>(report.cases))
+      .set("missing", static_cast<long>(report.missing))
+      .set("double", static_cast<long>(report.twice))
+      .set("foreign", static_cast<long>(report.foreign))
+      .set("damaged", damaged)
+      .set("shards", static_cast<long>(report.shards))
+      .set("resimulated", static_cast<long>(report.resimulated))
+      .set("compared_by_tolerance", static_cast<long>(report.compared_by_tolerance))
+      .set("differing", differing);
+  return json;
+}
+
+void print_text(const VerifyReport& report) {
+  for (const std::string& what : report.damaged) std::cout << "damaged: " << what << "\n";
+  for (const std::string& what : report.differing) {
+    std::cout << "differs when simulated again: " << what << "\n";
+  }
+  std::cout << format_count(report.cases) << " cases: " << format_count(report.missing)
+            << " missing, " << format_count(report.twice) << " double, "
+            << format_count(report.foreign) << " foreign; " << format_count(report.shards)
+            << " sound shards\n";
+  if (report.resimulated > 0) {
+    std::cout << format_count(report.resimulated) << " cases simulated again, "
+              << format_count(report.resimulated - report.compared_by_tolerance)
+              << " compared bit for bit";
+    if (report.compared_by_tolerance > 0) {
+      std::cout << ", the others, made with an instruction set this machine lacks, to 1e-9";
+    }
+    std::cout << "\n";
+  }
+  std::cout << "data digest " << report.data_digest << "\n"
+            << (report.ok() ? "sound and complete\n" : "NOT sound and complete\n");
+}
+
+/// Moves files that are not the plan's out of the way of `strut run`.
+void move_aside(const SweepFolder& folder, const VerifyReport& report) {
+  for (const std::string& what : report.damaged) {
+    const auto file = folder.root / what.substr(0, what.find(": "));
+    if (!std::filesystem::exists(file)) continue;
+    quarantine(folder, file);
+    std::cerr << "strut: moved to quarantine: " << file.string() << "\n";
+  }
+}
+
+}  // namespace
+
+int run_verify(const std::vector<std::string>& words) {
+  Arguments arguments(
+      "strut verify DIR [OPTIONS]",
+      "Reads every byte of the sweep in DIR: checksums, columns, plan, no case missing, double or\n"
+      "foreign. Prints the data digest: the same for the same plan, however it was run.",
+      "  strut verify sweep --sample 20\n  strut verify sweep --quarantine && strut run sweep");
+  arguments.add_option("sample", "N", "simulate N cases again and compare bit for bit (default 0)");
+  arguments.add_option("seed", "S", "of the choice of those (default 1)");
+  arguments.add_switch("quarantine", "move damaged files aside, so that strut run makes them anew");
+  arguments.add_switch("json", "print JSON");
+  if (!arguments.parse(words)) return kExitDone;
+  const OpenSweep sweep = open_sweep(arguments);
+  VerifyOptions options;
+  options.sample =
+      static_cast<std::int64_t>(arguments.number_or("sample", 0, between(0, 1e9, "cases")));
+  options.seed = static_cast<std::uint64_t>(arguments.number_or("seed", 1, between(0, 9e15)));
+  options.fallback = &list_kernels().front();
+  std::atomic<std::int64_t> read{0};
+  VerifyReport report;
+  {
+    const ProgressLine line([&] {
+      return format_count(read) + "/" + format_count(sweep.plan.case_count()) + " cases verified";
+    });
+    report =
+        verify_sweep(sweep.folder, sweep.plan, options, [&](std::int64_t cases) { read = cases; });
+  }
+  arguments.is_on("json") ? void(std::cout << make_json(report).dump() << "\n")
+                          : print_text(report);
+  if (arguments.is_on("quarantine")) move_aside(sweep.folder, report);
+  return report.ok() ? kExitDone : kExitNo;
+}
+
+}  // namespace strut

@@ -1,0 +1,278 @@
+#include "sweep/request.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/config.h"
+#include "io/nearest_name.h"
+#include "sweep/integrate_names.h"
+#include "sweep/parameters.h"
+#include "sweep/read_maneuver.h"
+#include "sweep/read_vehicle.h"
+
+namespace strut {
+namespace {
+
+const std::vector<std::string> kMethods = {"grid", "latin_hypercube", "sobol"};  // SampleMethod
+const std::vector<std::string> kInstants = {"rear_wheels_on_bump"};
+const std::string kDegradation = "degradation";
+
+/// How far, in steps, `to` may be off the last level: decimal fractions are not exact.
+constexpr double kLevelSlack = 1e-6;
+constexpr double kMostLevels = 9e15;  // integers that a double counts
+constexpr std::int64_t kMostLayers = 100000;
+constexpr std::int64_t kMostShardCases = 65536;
+/// Values a case or a shard may record over time: every worker holds some of each in memory.
+constexpr double kMostSamples = 20000;
+constexpr double kMostShardBytes = 64e6;
+
+InputError unreached_error(const Table& table, const Axis& axis, double to, double steps) {
+  const double below = axis.from + std::floor(steps) * axis.step;
+  const double above = axis.from + std::ceil(steps) * axis.step;
+  return table.error("to", "not reached by steps of " + format_number(axis.step) + " from " +
+                               format_number(axis.from) + "; nearest: " + format_number(below) +
+                               " or " + format_number(above));
+}
+
+/// `step` leads from `from` to `to`.
+void read_step(const Table& table, double to, const Range& allowed, Axis& axis) {
+  axis.step = table.number("step", any_number(allowed.unit));
+  const std::string sign = to > axis.from ? "> 0" : "< 0";
+  if (axis.step == 0.0 || (to != axis.from && (axis.step > 0.0) != (to > axis.from))) {
+    throw table.error("step", "must be " + (to == axis.from ? "not 0" : sign) + " to lead from " +
+                                  format_number(axis.from) + " to " + format_number(to));
+  }
+  const double steps = (to - axis.from) / axis.step;
+  if (steps > kMostLevels) throw table.error("step", "too small: more than 9e15 levels");
+  if (std::fabs(steps - std::round(steps)) > kLevelSlack) {
+    throw unreached_error(table, axis, to, steps);
+  }
+  axis.count = static_cast<std::int64_t>(std::round(steps)) + 1;
+}
+
+void read_count(const Table& table, double to, Axis& axis) {
+  const auto most = static_cast<std::int64_t>(kMostLevels);
+  axis.count = table.integer("count", to == axis.from ? 1 : 2, to == axis.from ? 1 : most);
+  if (axis.count > 1) axis.step = (to - axis.from) / static_cast<double>(axis.count - 1);
+}
+
+/// Samples between the bounds need no levels.
+Axis read_bounds(const Table& table, const std::string& name, bool levels) {
+  const Range& allowed = find_parameter(name).allowed;
+  Axis axis{.name = name, .from = table.number("from", allowed)};
+  const double to = table.number("to", allowed);
+  const bool has_step = table.has("step"), has_count = table.has("count");
+  if (has_step && has_count) throw table.error("count", "must not stand beside 'step'");
+  if (has_step) read_step(table, to, allowed, axis);
+  if (has_count) read_count(table, to, axis);
+  if (levels && !has_step && !has_count) throw table.error("missing key 'step' or 'count'");
+  if (!levels) {
+    axis.step = to - axis.from;
+    axis.count = 2;
+  }
+  return axis;
+}
+
+Axis read_axis(const Table& grid, const std::string& name, bool levels, Case probe) {
+  std::vector<std::string> names;
+  names.reserve(list_parameters().size());
+  for (const ParameterInfo& parameter : list_parameters()) names.push_back(parameter.name);
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    throw grid.error(name, "no parameter" + suggest_name(name, names) +
+                               "; parameters: " + join_names(names));
+  }
+  const Axis axis = read_bounds(grid.table(name), name, levels);
+  try {
+    set_parameter(probe, name, axis.from);
+  } catch (const InputError& e) {
+    throw grid.error(name, e.what());
+  }
+  return axis;
+}
+
+/// Two axes must not set the same quantity, as front_stiffness and front_left_stiffness do.
+void check_independence(const Table& grid, const std::vector<Axis>& axes, const Case& base) {
+  for (const Axis& first : axes) {
+    for (const Axis& second : axes) {
+      if (&first == &second) continue;
+      Case c = base;
+      const ParameterInfo& parameter = find_parameter(first.name);
+      parameter.set(c, first.from);
+      const double before = parameter.get(c);
+      // A value that no case has, so that it shows.
+      find_parameter(second.name).set(c, 0.5 * second.from + 0.125);
+      if (parameter.get(c) == before) continue;
+      throw grid.error(second.name,
+                       "sets what the axis '" + first.name + "' sets; allowed: one of the two");
+    }
+  }
+}
+
+Grid read_grid(const Table& root, const SweepRequest& request) {
+  const Table table = root.table("grid");
+  const bool levels = request.sample.method == SampleMethod::kGrid;
+  std::vector<Axis> axes;
+  for (const std::string& name : table.keys()) {
+    axes.push_back(read_axis(table, name, levels, request.base));
+  }
+  if (axes.empty()) {
+    throw table.error("no axis; for example front_stiffness = { from = 40000, to = 35500, "
+                      "step = -500 }");
+  }
+  check_independence(table, axes, request.base);
+  try {
+    return Grid(std::move(axes));
+  } catch (const InputError& e) {
+    throw table.error(e.what());
+  }
+}
+
+SampleRequest read_sample(const std::optional<Table>& table) {
+  SampleRequest sample;
+  if (!table) return sample;
+  sample.method = static_cast<SampleMethod>(table->choice_or("method", 0, kMethods));
+  sample.strata = static_cast<int>(table->integer_or("strata", sample.strata, 1, kMostLayers));
+  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  sample.seed = static_cast<std::uint64_t>(table->integer_or("seed", 1, 0, most));
+  if (table->is_text("count")) {
+    table->choice("count", {"all"});
+  } else if (table->has("count")) {
+    sample.count = table->integer("count", 1, most);
+  }
+  if (sample.method != SampleMethod::kGrid && sample.count < 0) {
+    throw table->error("count", "must be a number of samples for method \"" +
+                                    table->text("method") + "\"");
+  }
+  return sample;
+}
+
+/// After the grid, whose axes are the names allowed.
+void read_by(const std::optional<Table>& table, const Grid& grid, SampleRequest& sample) {
+  sample.by = grid.axes().front().name;
+  if (!table || !table->has("by")) return;
+  std::vector<std::string> names;
+  names.reserve(grid.axes().size() + 1);
+  for (const Axis& axis : grid.axes()) names.push_back(axis.name);
+  names.push_back(kDegradation);
+  sample.by = names[static_cast<std::size_t>(table->choice("by", names))];
+  if (sample.by != kDegradation) return;
+  for (const Axis& axis : grid.axes()) {
+    if (axis.from != 0.0) continue;
+    throw table->error("by", "needs grid." + axis.name +
+                                 ".from other than 0, which a loss is relative to");
+  }
+}
+
+IntegrateRequest read_integrate(const std::optional<Table>& table) {
+  IntegrateRequest request;
+  if (!table) return request;
+  const int method = table->choice_or("method", 0, kIntegrators);
+  const auto closure = static_cast<Closure>(table->choice_or("closure", 0, kClosures));
+  request.options.closure = request.reference.closure = closure;
+  if (method == kCvode) {
+    request.solver = Solver::kCvode;
+    for (const char* key : {"step", "coarse_step", "locate_events"}) {
+      if (table->has(key)) throw table->error(key, "cvode chooses its own; allowed with rk4, abm4");
+    }
+    return request;
+  }
+  StepOptions& step = request.options.step;
+  step.stepper = method == kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.step = table->number_or("step", step.step,
+                               {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
+  step.coarse_step = table->number_or("coarse_step", 0.0, between(step.step, kMaxStep, "s"));
+  step.locate_events = table->boolean_or("locate_events", step.locate_events);
+  return request;
+}
+
+std::vector<int> read_channels(const Table& table) {
+  std::vector<std::string> names;
+  names.reserve(list_car_channels().size());
+  for (const ChannelInfo& channel : list_car_channels()) names.push_back(channel.name);
+  std::vector<int> channels;
+  for (const std::string& name : table.texts("channels")) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      throw table.error("channels", "unknown channel '" + name + "'" + suggest_name(name, names) +
+                                        "; channels: " + join_names(names));
+    }
+    const int channel = static_cast<int>(found - names.begin());
+    if (std::find(channels.begin(), channels.end(), channel) != channels.end()) {
+      throw table.error("channels", "'" + name + "' twice; allowed: once");
+    }
+    channels.push_back(channel);
+  }
+  if (channels.empty()) throw table.error("channels", "must name at least one channel");
+  return channels;
+}
+
+void read_history(const Table& table, SweepRequest& request) {
+  const double duration = request.base.maneuver.duration;
+  const double most = std::floor(kMostSamples / duration);
+  request.history.rate = table.number("rate", between(1.0 / duration, most, "1/s"));
+  request.history.channels = read_channels(table);
+  for (const Axis& axis : request.grid.axes()) {
+    if (axis.name != "duration") continue;
+    throw table.error("must not be recorded where 'duration' is a grid axis: all cases of a shard "
+                      "have as many samples");
+  }
+}
+
+void read_record(const Table& record, SweepRequest& request) {
+  const auto snapshot = record.find_table("snapshot");
+  request.snapshot.on = snapshot.has_value();
+  if (snapshot) {
+    snapshot->choice("when", kInstants);
+    request.snapshot.offset = snapshot->number_or("offset", 0.0, between(-1000.0, 1000.0, "m"));
+    request.snapshot.channels = read_channels(*snapshot);
+  }
+  if (const auto history = record.find_table("history")) read_history(*history, request);
+  if (snapshot || request.history.rate > 0.0) return;
+  throw record.error("nothing to record; allowed: snapshot, history, or both");
+}
+
+void read_shards(const Table& table, SweepRequest& request) {
+  const SamplePlan samples = make_sample_plan(request);
+  const double row = 8.0 * static_cast<double>(request.history.channels.size()) *
+                     static_cast<double>(count_samples(samples));
+  std::int64_t most = kMostShardCases;
+  if (row > 0.0) {
+    most = std::clamp(static_cast<std::int64_t>(kMostShardBytes / row), std::int64_t{1}, most);
+  }
+  request.shard_cases =
+      static_cast<int>(std::min(most, static_cast<std::int64_t>(request.shard_cases)));
+  request.shard_cases =
+      static_cast<int>(table.integer_or("cases", request.shard_cases, 1, most));
+}
+
+}  // namespace
+
+SweepRequest read_request(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  SweepRequest request;
+  request.path = path;
+  request.base.vehicle = read_vehicle(root.file("vehicle"));
+  request.base.maneuver = read_maneuver(root.file("maneuver"));
+  const auto sample = root.find_table("sample");
+  request.sample = read_sample(sample);
+  request.grid = read_grid(root, request);
+  read_by(sample, request.grid, request.sample);
+  request.integrate = read_integrate(root.find_table("integrate"));
+  read_record(root.table("record"), request);
+  if (const auto shards = root.find_table("shards")) read_shards(*shards, request);
+  document.check_all_read();
+  return request;
+}
+
+SamplePlan make_sample_plan(const SweepRequest& request) {
+  SamplePlan plan;
+  plan.duration = request.base.maneuver.duration;
+  plan.interval = request.history.rate > 0.0 ? 1.0 / request.history.rate : 0.0;
+  plan.snapshot = request.snapshot.on;
+  plan.channel_count = CarChannel::kCount;
+  return plan;
+}
+
+}  // namespace strut

@@ -1,0 +1,73 @@
+#include "sweep/sensor_noise.h"
+
+#include "io/config.h"
+#include "io/nearest_name.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+using C = CarChannel;
+
+struct ChannelNoise {
+  int channel;
+  double sigma;
+};
+
+/// Body motion as an inertial navigation or a fusion filter reports it; accelerometers and
+/// gyroscopes of the MEMS class over some 250 Hz.
+constexpr ChannelNoise kBodyNoise[] = {
+    {C::kBodyPositionZ, 1e-3},    {C::kBodyVelocityZ, 5e-3},    {C::kBodyAccelerationZ, 0.02},
+    {C::kPitchAngle, 3.5e-4},     {C::kPitchRate, 1e-3},        {C::kRollAngle, 3.5e-4},
+    {C::kRollRate, 1e-3},         {C::kForwardSpeed, 0.05},     {C::kImuAccelerationX, 0.02},
+    {C::kImuAccelerationY, 0.02}, {C::kImuAccelerationZ, 0.02}, {C::kImuRateX, 1e-3},
+    {C::kImuRateY, 1e-3},         {C::kImuRateZ, 1e-3}};
+constexpr ChannelNoise kCornerNoise[] = {{C::kWheelAccelerationZ, 0.2},
+                                         {C::kSuspensionDeflection, 3e-4},
+                                         {C::kSuspensionVelocity, 5e-3},
+                                         {C::kWheelSpeed, 0.1}};
+
+}  // namespace
+
+SensorNoise make_default_noise() {
+  SensorNoise noise(C::kCount, 0.0);
+  for (const ChannelNoise& n : kBodyNoise) noise[static_cast<std::size_t>(n.channel)] = n.sigma;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    for (const ChannelNoise& n : kCornerNoise) {
+      const int channel = C::kCornerBegin + corner * C::kCornerChannels + n.channel;
+      noise[static_cast<std::size_t>(channel)] = n.sigma;
+    }
+  }
+  return noise;
+}
+
+int find_car_channel(const std::string& name) {
+  std::vector<std::string> names;
+  names.reserve(list_car_channels().size());
+  for (const ChannelInfo& info : list_car_channels()) {
+    if (info.name == name) return static_cast<int>(names.size());
+    names.push_back(info.name);
+  }
+  throw InputError("unknown channel '" + name + "'" + suggest_name(name, names) +
+                   "; channels: " + join_names(names));
+}
+
+void apply_noise(SensorNoise& noise, const std::string& setting) {
+  const auto [name, sigma] = parse_setting(setting);
+  const auto channel = static_cast<std::size_t>(find_car_channel(name));
+  const Range allowed = above(0.0, list_car_channels()[channel].unit);
+  if (!allowed.contains(sigma)) {
+    throw InputError(name + " = " + format_number(sigma) + ": " + allowed.describe());
+  }
+  noise[channel] = sigma;
+}
+
+std::vector<int> list_sensors(const SensorNoise& noise) {
+  std::vector<int> channels;
+  for (std::size_t c = 0; c < noise.size(); ++c) {
+    if (noise[c] > 0.0) channels.push_back(static_cast<int>(c));
+  }
+  return channels;
+}
+
+}  // namespace strut

@@ -1,0 +1,28 @@
+// What sensors of a car can see: one standard deviation of white noise per channel and sample.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/vehicle/channels.h"
+
+namespace strut {
+
+/// One sigma per channel in its unit [CarChannel::kCount]; 0: no such sensor.
+using SensorNoise = std::vector<double>;
+
+/// Defaults for body, inertial sensor, wheel acceleration, suspension deflection and velocity, and
+/// wheel speed (docs/identifiability.md gives each with its reason). Forces, tire deflections,
+/// time and place have none.
+SensorNoise make_default_noise();
+
+/// Channel with this name. Throws InputError with the nearest known name.
+int find_car_channel(const std::string& name);
+
+/// Applies "channel=sigma". Throws InputError where the text is not that or sigma is not positive.
+void apply_noise(SensorNoise& noise, const std::string& setting);
+
+/// Channels that have a sensor, in order.
+std::vector<int> list_sensors(const SensorNoise& noise);
+
+}  // namespace strut

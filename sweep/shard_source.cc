@@ -1,0 +1,122 @@
+#include "sweep/shard_source.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "sweep/shard_store.h"
+
+namespace strut {
+namespace {
+
+/// How often the shards in other runners' hands are looked at.
+constexpr std::chrono::milliseconds kPoll{100};
+
+std::int64_t count_cases(const Plan& plan, std::int64_t shard) {
+  const auto [first, last] = plan.shard_range(shard);
+  return last - first;
+}
+
+}  // namespace
+
+ShardSource::ShardSource(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
+                         Claims& claims, RunProgress& progress)
+    : folder_(folder),
+      plan_(plan),
+      claims_(claims),
+      progress_(progress),
+      schema_(plan.make_schema()) {
+  scan(options.first_shard, options.end_shard < 0 ? plan.shard_count() : options.end_shard);
+}
+
+void ShardSource::scan(std::int64_t first, std::int64_t end) {
+  const std::vector<std::int64_t> there = list_shards(folder_);
+  auto present = std::lower_bound(there.begin(), there.end(), first);
+  for (std::int64_t shard = first; shard < end; ++shard) {
+    const std::int64_t cases = count_cases(plan_, shard);
+    progress_.cases += cases;
+    if (present != there.end() && *present == shard) {
+      ++present;
+      const std::string fault = check_seal(folder_, plan_, shard);
+      if (fault.empty()) {
+        progress_.present += cases;
+        continue;
+      }
+      notes_.push_back("shard " + std::to_string(shard) +
+                       " moved to quarantine, to be simulated again: " + fault);
+      quarantine(folder_, folder_.shard(shard));
+    }
+    to_do_.push_back(shard);
+  }
+}
+
+std::optional<Batch> ShardSource::next(std::size_t size, const std::atomic<bool>& halt) {
+  while (!halt) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!job_) {
+        const Taken taken = open_job();
+        if (taken == Taken::kNothingLeft) return std::nullopt;
+      }
+      if (job_) {
+        const std::size_t count = std::min(size, job_->cases.size() - next_row_);
+        Batch batch{job_, next_row_, count};
+        next_row_ += count;
+        if (next_row_ == job_->cases.size()) job_.reset();
+        return batch;
+      }
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+  return std::nullopt;
+}
+
+ShardSource::Taken ShardSource::open_job() {
+  while (next_ < to_do_.size()) {
+    if (take(to_do_[next_++])) return Taken::kJob;
+  }
+  // Whoever held these may have finished, or died.
+  std::vector<std::int64_t> again;
+  again.swap(elsewhere_);
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    if (!take(again[i])) continue;
+    elsewhere_.insert(elsewhere_.end(), again.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                      again.end());
+    return Taken::kJob;
+  }
+  return elsewhere_.empty() ? Taken::kNothingLeft : Taken::kNothingNow;
+}
+
+bool ShardSource::take(std::int64_t shard) {
+  const std::string unit = SweepFolder::shard_name(shard);
+  const bool mine = claims_.claim(unit) == Claims::Answer::kMine;
+  // Looked at after the claim: a shard is published before its claim is given back.
+  if (std::filesystem::exists(folder_.shard(shard))) {
+    if (mine) claims_.release(unit);
+    progress_.elsewhere += count_cases(plan_, shard);
+    return false;
+  }
+  if (!mine) {
+    elsewhere_.push_back(shard);
+    return false;
+  }
+  job_ = make_job(shard);
+  next_row_ = 0;
+  return true;
+}
+
+std::shared_ptr<ShardJob> ShardSource::make_job(std::int64_t shard) const {
+  auto job = std::make_shared<ShardJob>();
+  const auto [first, last] = plan_.shard_range(shard);
+  job->shard = shard;
+  job->cases.reserve(static_cast<std::size_t>(last - first));
+  for (std::int64_t position = first; position < last; ++position) {
+    job->cases.push_back(plan_.calc_case_id(position));
+  }
+  job->rows = ShardRows::make(schema_, job->cases.size());
+  job->left = job->cases.size();
+  return job;
+}
+
+}  // namespace strut

@@ -1,0 +1,57 @@
+// The shards of a sweep folder: which are there, what their cases came to, and what retries mended.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "io/journal.h"
+#include "io/shard.h"
+#include "sweep/folder.h"
+
+namespace strut {
+
+/// Numbers of the shards that `shards/` holds, ascending, by name alone.
+std::vector<std::int64_t> list_shards(const SweepFolder& folder);
+
+/// Rounds of retries that `retries/` holds for a shard: 0, 1, ... without a gap.
+int count_retries(const SweepFolder& folder, std::int64_t shard);
+
+/// A shard with its rows as the retries left them. Throws InputError where a file is damaged.
+Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard);
+
+/// Why a shard cannot be what the plan asks for, by its seal alone (512 bytes and the size); empty
+/// where nothing speaks against it.
+std::string check_seal(const SweepFolder& folder, const Plan& plan, std::int64_t shard);
+
+/// Moves a file aside, into `quarantine/`, under a name that is free there. Nothing is deleted.
+void quarantine(const SweepFolder& folder, const std::filesystem::path& file);
+
+/// What the journal says of each file, or the file itself where the journal is silent.
+class ShardRecords {
+ public:
+  explicit ShardRecords(const SweepFolder& folder);
+
+  /// Of a shard that is there; failures as the last retry left them. Throws InputError.
+  JournalEntry get(std::int64_t shard);
+  /// Lines that were no lines; entries of work done twice.
+  std::size_t bad_lines() const { return journal_.bad_lines; }
+  std::int64_t duplicates() const { return duplicates_; }
+  const Journal& journal() const { return journal_; }
+
+ private:
+  JournalEntry get_file(const std::filesystem::path& file);
+
+  SweepFolder folder_;
+  Journal journal_;
+  std::map<std::string, std::size_t> lines_;  // file -> its last entry
+  std::int64_t duplicates_ = 0;
+};
+
+/// The journal's line of a shard's rows; time, seconds and runner are left to the caller.
+JournalEntry make_journal_entry(const SweepFolder& folder, const std::filesystem::path& file,
+                                const ShardRows& rows);
+
+}  // namespace strut

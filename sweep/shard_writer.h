@@ -1,0 +1,83 @@
+// The one thread of a runner that writes: takes compressed shards from a bounded queue, publishes
+// them, and tells the journal.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "io/claims.h"
+#include "io/journal.h"
+#include "io/shard.h"
+#include "sweep/folder.h"
+
+namespace strut {
+
+/// A shard, or an overlay of one, ready to be written.
+struct FinishedShard {
+  std::int64_t shard = 0;
+  std::filesystem::path target;
+  std::string unit;  // the claim it was made under
+  CompressedShard data;
+  JournalEntry entry;  // all but bytes, hash, time and runner
+};
+
+struct WriterTotals {
+  std::int64_t shards = 0, cases = 0, failed = 0, duplicates = 0;
+  std::uint64_t bytes = 0;
+  double seconds = 0.0;
+};
+
+class ShardWriter {
+ public:
+  struct Settings {
+    std::string plan_hash;
+    std::vector<std::pair<std::string, std::string>> provenance;
+    std::size_t queue_length = 4;
+  };
+
+  /// `halt` turns true where writing fails. `written` counts cases as they are published. The
+  /// arguments must outlive it.
+  ShardWriter(const SweepFolder& folder, Settings settings, Claims& claims, std::atomic<bool>& halt,
+              std::atomic<std::int64_t>& written, std::atomic<std::int64_t>& failed);
+  /// As finish(), but for the exception.
+  ~ShardWriter();
+  ShardWriter(const ShardWriter&) = delete;
+  ShardWriter& operator=(const ShardWriter&) = delete;
+
+  /// Waits while the queue is full. After a failure shards are dropped.
+  void push(FinishedShard shard);
+
+  /// Writes what is queued and ends the thread. Throws what made it fail.
+  WriterTotals finish();
+
+ private:
+  void work();
+  bool pop(FinishedShard& shard);
+  void write(FinishedShard& shard);
+
+  const SweepFolder& folder_;
+  const Settings settings_;
+  Claims& claims_;
+  std::atomic<bool>& halt_;
+  std::atomic<std::int64_t>& written_;
+  std::atomic<std::int64_t>& failed_;
+  WriterTotals totals_;  // the thread's own until it has ended
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<FinishedShard> queue_;
+  bool closed_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace strut

@@ -1,0 +1,219 @@
+#include "sweep/simulate_cases.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "model/vehicle/model_error.h"
+
+namespace strut {
+namespace {
+
+constexpr std::array<const char*, kCaseStatusCount> kStatusNames = {
+    "done", "diverged", "out_of_travel", "no_equilibrium", "no_event"};
+constexpr std::array<const char*, kCaseStatusCount> kStatusReasons = {
+    "", "a state is no longer finite, or faster than any car",
+    "a corner left the travel its loops were closed over", "",
+    "the rear wheels never met the snapshot's line"};
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Adds the time since its making to a sum.
+class Timer {
+ public:
+  explicit Timer(double& sum) : sum_(sum), start_(now()) {}
+  ~Timer() { sum_ += now() - start_; }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  double& sum_;
+  double start_;
+};
+
+IntegrateOptions make_retry_options(const IntegrateOptions& options, int attempt) {
+  IntegrateOptions finer = options;
+  finer.step.step = std::ldexp(options.step.step, -2 * attempt);
+  finer.step.coarse_step = 0.0;
+  finer.step.locate_events = true;
+  return finer;
+}
+
+void fail(ShardRows& rows, std::size_t row, CaseStatus status, double time, std::string reason) {
+  rows.status[row] = static_cast<std::int32_t>(status);
+  rows.failure_time[row] = time;
+  rows.reason[row] = std::move(reason);
+}
+
+}  // namespace
+
+const char* get_case_status_name(std::int32_t status) {
+  return status >= 0 && status < kCaseStatusCount ? kStatusNames[static_cast<std::size_t>(status)]
+                                                  : "unknown";
+}
+
+std::string describe_case_status() {
+  std::string text;
+  for (std::int32_t status = 0; status < kCaseStatusCount; ++status) {
+    text += (status > 0 ? ", " : "") + std::to_string(status) + " " + get_case_status_name(status);
+  }
+  return text;
+}
+
+bool may_retry(std::int32_t status) {
+  return status == static_cast<std::int32_t>(CaseStatus::kDiverged) ||
+         status == static_cast<std::int32_t>(CaseStatus::kOutOfTravel);
+}
+
+SimulationSeconds& SimulationSeconds::operator+=(const SimulationSeconds& other) {
+  prepare += other.prepare;
+  integrate += other.integrate;
+  retry += other.retry;
+  return *this;
+}
+
+CaseSimulator::CaseSimulator(const Plan& plan, const Kernel& kernel)
+    : plan_(plan), kernel_(kernel), samples_(make_sample_plan(plan.request())) {}
+
+std::size_t CaseSimulator::batch_size() const {
+  const bool in_lanes = plan_.request().integrate.solver == Solver::kLanes;
+  return in_lanes ? static_cast<std::size_t>(kernel_.lanes) : 1;
+}
+
+bool CaseSimulator::simulate(std::span<const std::int64_t> cases, ShardRows& rows,
+                             std::size_t first_row, const std::atomic<bool>& stop) {
+  const std::vector<Ready> ready = prepare_all(cases, rows, first_row);
+  for (std::size_t begin = 0; begin < ready.size();) {
+    if (stop) return false;
+    begin += run_group(std::span(ready).subspan(begin), rows);
+  }
+  if (plan_.request().integrate.solver == Solver::kCvode) return true;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!may_retry(rows.status[first_row + i])) continue;
+    if (stop) return false;
+    retry(cases[i], 1, rows, first_row + i);
+  }
+  return true;
+}
+
+void CaseSimulator::retry(std::int64_t case_id, int attempt, ShardRows& rows, std::size_t row) {
+  const Timer timer(seconds_.retry);
+  start_row(case_id, rows, row);
+  rows.attempt[row] = attempt;
+  const std::optional<PreparedCase> prepared = prepare(case_id, rows, row);
+  if (!prepared) return;
+  const IntegrateRequest& integrate = plan_.request().integrate;
+  record(
+      integrate.solver == Solver::kCvode
+          ? run_cvode(*prepared, integrate.reference, samples_)
+          : kernel_.run_scalar(*prepared, make_retry_options(integrate.options, attempt), samples_),
+      0, rows, row);
+}
+
+/// Everything but parameters and layer neutral, whatever stood there before.
+void CaseSimulator::start_row(std::int64_t case_id, ShardRows& rows, std::size_t row) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const SweepRequest& request = plan_.request();
+  const std::size_t axes = request.grid.axes().size();
+  const std::size_t channels = request.snapshot.on ? request.snapshot.channels.size() : 0;
+  rows.case_id[row] = case_id;
+  plan_.calc_parameters(case_id, std::span(rows.parameters).subspan(row * axes, axes));
+  rows.layer[row] = plan_.calc_layer(case_id);
+  rows.status[row] = rows.attempt[row] = 0;
+  rows.event_time[row] = rows.failure_time[row] = kNone;
+  rows.reason[row].clear();
+  std::fill_n(rows.snapshot.data() + row * channels, channels, kNone);
+  for (std::vector<double>& channel : rows.history) {
+    const std::size_t samples = channel.size() / rows.size();
+    std::fill_n(channel.data() + row * samples, samples, kNone);
+  }
+}
+
+std::optional<PreparedCase> CaseSimulator::prepare(std::int64_t case_id, ShardRows& rows,
+                                                   std::size_t row) {
+  try {
+    return preparer_.prepare(plan_.make_case(case_id), plan_.request().snapshot.offset);
+  } catch (const ModelError& e) {
+    fail(rows, row, CaseStatus::kNoEquilibrium, 0.0, e.what());
+    return std::nullopt;
+  }
+}
+
+std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std::int64_t> cases,
+                                                             ShardRows& rows,
+                                                             std::size_t first_row) {
+  const Timer timer(seconds_.prepare);
+  std::vector<Ready> ready;
+  ready.reserve(cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    start_row(cases[i], rows, first_row + i);
+    std::optional<PreparedCase> prepared = prepare(cases[i], rows, first_row + i);
+    if (prepared) ready.push_back({std::move(*prepared), first_row + i});
+  }
+  return ready;
+}
+
+/// Runs the first of `ready` with as many of its successors as may share lanes with it; returns how
+/// many ran.
+std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& rows) {
+  const Timer timer(seconds_.integrate);
+  const IntegrateRequest& integrate = plan_.request().integrate;
+  if (integrate.solver == Solver::kCvode) {
+    record(run_cvode(ready[0].prepared, integrate.reference, samples_), 0, rows, ready[0].row);
+    return 1;
+  }
+  std::vector<const PreparedCase*> lanes;
+  lanes.reserve(batch_size());
+  for (const Ready& next : ready) {
+    if (lanes.size() == batch_size() ||
+        !may_share_lanes(ready[0].prepared, next.prepared, integrate.options.closure)) {
+      break;
+    }
+    lanes.push_back(&next.prepared);
+  }
+  const auto count = static_cast<int>(lanes.size());
+  const LaneResults results = kernel_.run_lanes(lanes.data(), count, integrate.options, samples_);
+  for (int lane = 0; lane < count; ++lane) {
+    record(results, lane, rows, ready[static_cast<std::size_t>(lane)].row);
+  }
+  return lanes.size();
+}
+
+void CaseSimulator::record(const LaneResults& results, int lane, ShardRows& rows,
+                           std::size_t row) const {
+  const SweepRequest& request = plan_.request();
+  const auto in_lane = static_cast<std::size_t>(lane);
+  const auto lanes = static_cast<std::size_t>(results.lanes);
+  if (results.status[in_lane] != static_cast<int>(RunStatus::kDone)) {
+    const auto status = static_cast<CaseStatus>(results.status[in_lane]);
+    fail(rows, row, status, results.failure_time[in_lane],
+         kStatusReasons[static_cast<std::size_t>(status)]);
+    return;
+  }
+  const std::vector<int>& kept = request.history.channels;
+  for (std::size_t h = 0; h < rows.history.size(); ++h) {
+    const auto samples = static_cast<std::size_t>(results.sample_count);
+    for (std::size_t i = 0; i < samples; ++i) {
+      const std::size_t sample = i * CarChannel::kCount + static_cast<std::size_t>(kept[h]);
+      rows.history[h][row * samples + i] = results.history[sample * lanes + in_lane];
+    }
+  }
+  if (!request.snapshot.on) return;
+  rows.event_time[row] = results.event_time[in_lane];
+  if (std::isnan(rows.event_time[row])) {
+    fail(rows, row, CaseStatus::kNoEvent, request.base.maneuver.duration,
+         kStatusReasons[static_cast<std::size_t>(CaseStatus::kNoEvent)]);
+    return;
+  }
+  const std::vector<int>& channels = request.snapshot.channels;
+  for (std::size_t s = 0; s < channels.size(); ++s) {
+    rows.snapshot[row * channels.size() + s] =
+        results.snapshot[static_cast<std::size_t>(channels[s]) * lanes + in_lane];
+  }
+}
+
+}  // namespace strut

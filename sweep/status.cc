@@ -1,0 +1,95 @@
+#include "sweep/status.h"
+
+#include <algorithm>
+#include <charconv>
+#include <ctime>
+#include <limits>
+#include <set>
+
+#include "io/input_error.h"
+#include "sweep/shard_store.h"
+
+namespace strut {
+namespace {
+
+constexpr std::int64_t kRateWindow = 60;  // s
+
+/// Cases a second over the journal's last minute; 0 where it says nothing of now.
+double calc_rate(const Journal& journal) {
+  const std::int64_t now = std::time(nullptr);
+  std::int64_t first = now, cases = 0;
+  for (const JournalEntry& entry : journal.entries) {
+    if (entry.duplicate || entry.time < now - kRateWindow || entry.time > now) continue;
+    // The first entry marks when the others' work began.
+    if (entry.time < first) {
+      first = entry.time;
+    } else {
+      cases += entry.cases;
+    }
+  }
+  return now > first ? static_cast<double>(cases) / static_cast<double>(now - first) : 0.0;
+}
+
+std::int64_t count_cases(const Plan& plan, std::int64_t shard) {
+  const auto [first, last] = plan.shard_range(shard);
+  return last - first;
+}
+
+void add_shard(ShardRecords& records, const Plan& plan, std::int64_t shard, SweepStatus& status) {
+  try {
+    const JournalEntry entry = records.get(shard);
+    std::int64_t failed = 0;
+    for (const auto& [reason, cases] : entry.failures) {
+      status.failures[reason] += cases;
+      failed += cases;
+    }
+    status.failed += failed;
+    status.done += entry.cases - failed;
+    status.bytes += entry.bytes;
+    status.simulation_seconds += entry.seconds;
+    status.digest.add(DataDigest::parse(entry.digest));
+    ++status.shards_present;
+  } catch (const InputError& e) {
+    status.faults.emplace_back(e.what());
+    status.left += count_cases(plan, shard);
+  }
+}
+
+/// The shard of a claim; -1 where the claim is of something else.
+std::int64_t parse_unit(const std::string& unit) {
+  std::int64_t shard = -1;
+  const auto parsed = std::from_chars(unit.data(), unit.data() + unit.size(), shard);
+  return parsed.ec == std::errc() && parsed.ptr == unit.data() + unit.size() ? shard : -1;
+}
+
+}  // namespace
+
+SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
+  SweepStatus status;
+  status.cases = plan.case_count();
+  status.shards = plan.shard_count();
+  // Claims first: a shard that is published in between is then counted as done, not lost.
+  status.claims = list_claims(folder.claims());
+  ShardRecords records(folder);
+  std::int64_t present = 0;
+  std::vector<std::int64_t> shards = list_shards(folder);
+  shards.erase(std::lower_bound(shards.begin(), shards.end(), status.shards), shards.end());
+  for (const std::int64_t shard : shards) {
+    present += count_cases(plan, shard);
+    add_shard(records, plan, shard, status);
+  }
+  status.left += status.cases - present;
+  for (const ClaimInfo& claim : status.claims) {
+    const std::int64_t shard = parse_unit(claim.unit);
+    const bool open = shard >= 0 && shard < status.shards &&
+                      !std::binary_search(shards.begin(), shards.end(), shard);
+    if (open) status.running += count_cases(plan, shard);
+  }
+  status.duplicates = records.duplicates();
+  status.rate = status.running > 0 ? calc_rate(records.journal()) : 0.0;
+  status.seconds_left = status.rate > 0.0 ? static_cast<double>(status.left) / status.rate
+                                          : std::numeric_limits<double>::quiet_NaN();
+  return status;
+}
+
+}  // namespace strut
