@@ -35,6 +35,16 @@ std::size_t get_element_size(Hdf5Type type, std::size_t text_length) {
   return type == Hdf5Type::kInt32 ? 4 : 8;
 }
 
+PackedTexts pack_texts(std::span<const std::string> texts) {
+  PackedTexts packed;
+  for (const std::string& text : texts) packed.length = std::max(packed.length, text.size());
+  packed.bytes.resize(texts.size() * packed.length);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    std::memcpy(packed.bytes.data() + i * packed.length, texts[i].data(), texts[i].size());
+  }
+  return packed;
+}
+
 // The memory of a file of the core driver. Closing the file hands it over: the bytes are complete
 // only then (H5Fget_file_image of 1.10.8 leaves out the user block, and clears flags in the
 // superblock without renewing its checksum).
@@ -102,8 +112,8 @@ Hdf5Writer::~Hdf5Writer() = default;
 void Hdf5Writer::open(const Hdf5WriterOptions& options) {
   hdf5::prepare_library();
   memory_ = std::make_unique<Memory>();
-  H5FD_file_image_callbacks_t callbacks = {Memory::allocate, Memory::copy,    Memory::resize,
-                                           Memory::release,  Memory::share,   Memory::unshare,
+  H5FD_file_image_callbacks_t callbacks = {Memory::allocate, Memory::copy,  Memory::resize,
+                                           Memory::release,  Memory::share, Memory::unshare,
                                            memory_.get()};
   const Hdf5Handle access = hdf5::make_file_access(sink_.shown);
   const bool good = H5Pset_fapl_core(access.id(), kMemoryIncrement, false) >= 0 &&
@@ -112,8 +122,8 @@ void Hdf5Writer::open(const Hdf5WriterOptions& options) {
   user_block_ = options.user_block ? kHdf5UserBlock : 0;
   const Hdf5Handle creation = hdf5::make_file_creation(sink_.shown, user_block_);
   sink_.file = checked<EnvironmentError>(
-      H5Fcreate(sink_.shown.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose,
-      sink_.shown, "", "cannot be written");
+      H5Fcreate(hdf5::make_memory_name().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()),
+      H5Fclose, sink_.shown, "", "cannot be written");
 }
 
 void Hdf5Writer::write(const std::string& name, std::span<const double> values,
@@ -133,9 +143,9 @@ void Hdf5Writer::write(const std::string& name, std::span<const std::int64_t> va
 
 void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& values,
                        const Hdf5Label& label) {
-  const std::size_t length = hdf5::calc_text_length(values);
-  const auto bytes = hdf5::pack_texts(values, length);
-  hdf5::write_dataset(sink_, name, Hdf5Type::kText, length, {values.size()}, bytes.data(), label);
+  const PackedTexts texts = pack_texts(values);
+  hdf5::write_dataset(sink_, name, Hdf5Type::kText, texts.length, {values.size()},
+                      texts.bytes.data(), label);
 }
 
 void Hdf5Writer::write(const std::string& name, std::span<const double> values, std::size_t columns,
@@ -150,11 +160,10 @@ void Hdf5Writer::write(const std::string& name, std::span<const double> values, 
 }
 
 void Hdf5Writer::write_chunks(const Hdf5Chunks& d) {
-  const Hdf5Handle creation =
-      hdf5::make_dataset_creation(sink_, d.name, d.type, d.text_length);
+  const Hdf5Handle creation = hdf5::make_dataset_creation(sink_, d.name, d.type, d.text_length);
   hdf5::set_chunks(sink_, d.name, creation.id(), d.shape, d.chunk_rows);
-  Hdf5Handle dataset = hdf5::create_dataset(sink_, d.name, d.type, d.text_length, d.shape,
-                                            creation.id(), d.label);
+  Hdf5Handle dataset =
+      hdf5::create_dataset(sink_, d.name, d.type, d.text_length, d.shape, creation.id(), d.label);
   for (std::size_t i = 0; i < d.chunks.size(); ++i) {
     hdf5::write_chunk(sink_, d.name, dataset.id(), d.shape.size(), i * d.chunk_rows, d.chunks[i]);
   }
@@ -163,7 +172,12 @@ void Hdf5Writer::write_chunks(const Hdf5Chunks& d) {
 
 void Hdf5Writer::write_attribute(const std::string& object, const std::string& key,
                                  const std::string& value) {
-  hdf5::write_text_attribute(sink_, object, key, value);
+  hdf5::write_text_attribute(sink_, object, key, {value}, true);
+}
+
+void Hdf5Writer::write_attribute_list(const std::string& object, const std::string& key,
+                                      const std::vector<std::string>& values) {
+  hdf5::write_text_attribute(sink_, object, key, values, false);
 }
 
 void Hdf5Writer::write_attribute(const std::string& object, const std::string& key,

@@ -1,9 +1,9 @@
 // A checked layer over the HDF5 C library: every failing call is an exception that names file and
 // dataset, every handle is closed, and the library's own printing of errors is off.
 //
-// Files read in other tools without help (`h5dump`, h5py, MATLAB): numbers in native order, texts of
-// a dataset as UTF-8 of fixed length, padded by zeros, attributes as UTF-8 of variable length. Every
-// dataset carries the attributes `unit`, `description` and, if it has columns, `names`.
+// Files read in other tools without help (`h5dump`, h5py, MATLAB): numbers in native order, texts
+// of a dataset as UTF-8 of fixed length, padded by zeros, attributes as UTF-8 of variable length.
+// Every dataset carries the attributes `unit`, `description` and, if it has columns, `names`.
 //
 // The library takes one lock around everything: call it from one thread.
 #pragma once
@@ -56,6 +56,22 @@ enum class Hdf5Type { kDouble, kInt32, kInt64, kText };
 /// Bytes of one element; `text_length` counts for texts only.
 std::size_t get_element_size(Hdf5Type type, std::size_t text_length);
 
+/// Hdf5Type of a C++ type.
+template <class T>
+inline constexpr Hdf5Type hdf5_type = Hdf5Type::kDouble;
+template <>
+inline constexpr Hdf5Type hdf5_type<std::int32_t> = Hdf5Type::kInt32;
+template <>
+inline constexpr Hdf5Type hdf5_type<std::int64_t> = Hdf5Type::kInt64;
+
+/// Texts of one length, one behind the other, padded with zeros.
+struct PackedTexts {
+  std::size_t length = 1;  // of the longest, at least 1
+  std::vector<std::byte> bytes;
+};
+
+PackedTexts pack_texts(std::span<const std::string> texts);
+
 /// A dataset whose chunks were compressed elsewhere, see io/compress.h. Chunks are whole rows; the
 /// last is as long as the others, padded.
 struct Hdf5Chunks {
@@ -103,10 +119,8 @@ class Hdf5Writer {
 
   /// 1-D dataset. Groups in `name` ("/history/pitch_rate") are made as needed.
   void write(const std::string& name, std::span<const double> values, const Hdf5Label& label);
-  void write(const std::string& name, std::span<const std::int32_t> values,
-             const Hdf5Label& label);
-  void write(const std::string& name, std::span<const std::int64_t> values,
-             const Hdf5Label& label);
+  void write(const std::string& name, std::span<const std::int32_t> values, const Hdf5Label& label);
+  void write(const std::string& name, std::span<const std::int64_t> values, const Hdf5Label& label);
   void write(const std::string& name, const std::vector<std::string>& values,
              const Hdf5Label& label);
   /// 2-D dataset, `values` row by row; values.size() must be a multiple of `columns`.
@@ -118,6 +132,8 @@ class Hdf5Writer {
   void write_attribute(const std::string& object, const std::string& key, const std::string& value);
   void write_attribute(const std::string& object, const std::string& key, std::int64_t value);
   void write_attribute(const std::string& object, const std::string& key, double value);
+  void write_attribute_list(const std::string& object, const std::string& key,
+                            const std::vector<std::string>& values);
 
   /// Ends the file; its bytes, those of the user block zero. Nothing can be written any more.
   std::vector<std::byte> image();
@@ -156,6 +172,9 @@ class Hdf5Reader {
 
   bool has_attribute(const std::string& object, const std::string& key) const;
   std::string read_attribute(const std::string& object, const std::string& key) const;
+  /// Empty where there is none.
+  std::vector<std::string> read_attribute_list(const std::string& object,
+                                               const std::string& key) const;
   std::int64_t read_integer_attribute(const std::string& object, const std::string& key) const;
   double read_number_attribute(const std::string& object, const std::string& key) const;
   /// Names of the attributes of `object`, sorted.

@@ -1,7 +1,6 @@
 #include "io/hdf5_calls.h"
 
-#include <algorithm>
-#include <cstring>
+#include <atomic>
 #include <limits>
 
 namespace strut::hdf5 {
@@ -46,8 +45,8 @@ void make_groups(const Hdf5Sink& sink, const std::string& name) {
        slash = name.find('/', slash + 1)) {
     const std::string group = name.substr(0, slash);
     if (H5Lexists(sink.file.id(), group.c_str(), H5P_DEFAULT) > 0) continue;
-    const Hdf5Handle creation = checked<EnvironmentError>(H5Pcreate(H5P_GROUP_CREATE), H5Pclose,
-                                                          sink.shown, group, what);
+    const Hdf5Handle creation =
+        checked<EnvironmentError>(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, sink.shown, group, what);
     check<EnvironmentError>(H5Pset_obj_track_times(creation.id(), false) >= 0, sink.shown, group,
                             what);
     checked<EnvironmentError>(
@@ -113,9 +112,8 @@ Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_lengt
 Hdf5Handle make_file_access(const fs::path& path) {
   Hdf5Handle access = checked<EnvironmentError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "",
                                                 "cannot be written");
-  check<EnvironmentError>(
-      H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0, path, "",
-      "cannot be written");
+  check<EnvironmentError>(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0,
+                          path, "", "cannot be written");
   return access;
 }
 
@@ -166,10 +164,10 @@ Hdf5Handle create_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Typ
   make_groups(sink, name);
   const Hdf5Handle space = make_space(sink, name, shape);
   const Hdf5Handle element = make_type(sink.shown, type, text_length);
-  Hdf5Handle dataset = checked<EnvironmentError>(
-      H5Dcreate2(sink.file.id(), name.c_str(), element.id(), space.id(), H5P_DEFAULT, creation,
-                 H5P_DEFAULT),
-      H5Dclose, sink.shown, name, "dataset cannot be written");
+  Hdf5Handle dataset =
+      checked<EnvironmentError>(H5Dcreate2(sink.file.id(), name.c_str(), element.id(), space.id(),
+                                           H5P_DEFAULT, creation, H5P_DEFAULT),
+                                H5Dclose, sink.shown, name, "dataset cannot be written");
   write_label(sink.shown, dataset.id(), name, label);
   return dataset;
 }
@@ -178,8 +176,7 @@ void write_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
                    std::size_t text_length, const std::vector<std::size_t>& shape,
                    const void* values, const Hdf5Label& label) {
   const Hdf5Handle creation = make_dataset_creation(sink, name, type, text_length);
-  Hdf5Handle dataset =
-      create_dataset(sink, name, type, text_length, shape, creation.id(), label);
+  Hdf5Handle dataset = create_dataset(sink, name, type, text_length, shape, creation.id(), label);
   const Hdf5Handle element = make_type(sink.shown, type, text_length);
   check<EnvironmentError>(
       H5Dwrite(dataset.id(), element.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, sink.shown,
@@ -202,15 +199,15 @@ void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& da
 }
 
 void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
-                          const std::string& value) {
+                          const std::vector<std::string>& values, bool scalar) {
   const Hdf5Handle handle = checked<EnvironmentError>(
       H5Oopen(sink.file.id(), object.c_str(), H5P_DEFAULT), H5Oclose, sink.shown, object,
       "no such dataset or group to hold attribute " + key);
-  write_strings(sink.shown, handle.id(), object, key, {value}, true);
+  write_strings(sink.shown, handle.id(), object, key, values, scalar);
 }
 
-void write_number_attribute(const Hdf5Sink& sink, const std::string& object,
-                            const std::string& key, hid_t type, const void* value) {
+void write_number_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
+                            hid_t type, const void* value) {
   const std::string name = object + "@" + key;
   const std::string what = "attribute cannot be written";
   const Hdf5Handle space =
@@ -222,18 +219,9 @@ void write_number_attribute(const Hdf5Sink& sink, const std::string& object,
   check<EnvironmentError>(H5Awrite(attribute.id(), type, value) >= 0, sink.shown, name, what);
 }
 
-std::size_t calc_text_length(const std::vector<std::string>& texts) {
-  std::size_t length = 1;
-  for (const std::string& text : texts) length = std::max(length, text.size());
-  return length;
-}
-
-std::vector<std::byte> pack_texts(std::span<const std::string> texts, std::size_t length) {
-  std::vector<std::byte> bytes(texts.size() * length);
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    std::memcpy(bytes.data() + i * length, texts[i].data(), std::min(length, texts[i].size()));
-  }
-  return bytes;
+std::string make_memory_name() {
+  static std::atomic<std::uint64_t> count = 0;
+  return "strut memory " + std::to_string(count++);
 }
 
 }  // namespace strut::hdf5

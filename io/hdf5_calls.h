@@ -65,13 +65,12 @@ void write_chunk(const Hdf5Sink& sink, const std::string& name, hid_t dataset, s
 void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& dataset);
 
 void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
-                          const std::string& value);
-void write_number_attribute(const Hdf5Sink& sink, const std::string& object,
-                            const std::string& key, hid_t type, const void* value);
+                          const std::vector<std::string>& values, bool scalar);
+void write_number_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
+                            hid_t type, const void* value);
 
-/// Longest text, at least 1.
-std::size_t calc_text_length(const std::vector<std::string>& texts);
-/// Texts one behind the other, each padded with zeros (cut where it is longer) to `length`.
-std::vector<std::byte> pack_texts(std::span<const std::string> texts, std::size_t length);
+/// A name for a file in memory that no other open file has; the library would take files of one
+/// name for the same.
+std::string make_memory_name();
 
 }  // namespace strut::hdf5

@@ -67,7 +67,8 @@ std::size_t count_elements(const fs::path& path, const std::string& name, hid_t 
   }
   const Hdf5Handle creation =
       checked<InputError>(H5Dget_create_plist(dataset), H5Pclose, path, name, "damaged");
-  const Hdf5Handle type = checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
+  const Hdf5Handle type =
+      checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
   const bool plain = H5Pget_nfilters(creation.id()) == 0;
   const std::size_t stored = H5Dget_storage_size(dataset);
   const bool is_view = H5Pget_layout(creation.id()) == H5D_VIRTUAL;
@@ -78,7 +79,8 @@ std::size_t count_elements(const fs::path& path, const std::string& name, hid_t 
 
 void require_class(const fs::path& path, const std::string& name, hid_t dataset, bool integer,
                    bool real) {
-  const Hdf5Handle type = checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
+  const Hdf5Handle type =
+      checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
   const H5T_class_t kind = H5Tget_class(type.id());
   check<InputError>((integer && kind == H5T_INTEGER) || (real && kind == H5T_FLOAT), path, name,
                     real ? "must hold numbers" : "must hold integers");
@@ -103,8 +105,9 @@ Hdf5Reader::Hdf5Reader(const fs::path& path, std::span<const std::byte> image) :
       H5Pset_fapl_core(access.id(), image.size(), false) >= 0 &&
       H5Pset_file_image(access.id(), const_cast<std::byte*>(image.data()), image.size()) >= 0;
   check<InputError>(good, path, "", "cannot be read");
-  file_ = checked<InputError>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose, path,
-                              "", "damaged, or not an HDF5 file");
+  file_ =
+      checked<InputError>(H5Fopen(hdf5::make_memory_name().c_str(), H5F_ACC_RDONLY, access.id()),
+                          H5Fclose, path, "", "damaged, or not an HDF5 file");
 }
 
 bool Hdf5Reader::has(const std::string& name) const {
@@ -174,9 +177,9 @@ std::vector<std::int64_t> Hdf5Reader::read_integers(const std::string& name) con
   require_class(path_, name, dataset.id(), true, false);
   const auto shape = get_shape(path_, name, dataset.id());
   std::vector<std::int64_t> values(count_elements(path_, name, dataset.id(), shape));
-  check<InputError>(H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                            values.data()) >= 0,
-                    path_, name, "damaged");
+  check<InputError>(
+      H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
+      path_, name, "damaged");
   return values;
 }
 
@@ -192,8 +195,9 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
   const std::size_t length = H5Tget_size(stored.id());
   const Hdf5Handle type = hdf5::make_type(path_, Hdf5Type::kText, length);
   std::vector<char> raw(count * length);
-  check<InputError>(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0,
-                    path_, name, "damaged");
+  check<InputError>(
+      H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0, path_, name,
+      "damaged");
   std::vector<std::string> texts;
   texts.reserve(count);
   for (auto at = raw.begin(); at != raw.end(); at += static_cast<std::ptrdiff_t>(length)) {
@@ -217,9 +221,8 @@ std::size_t Hdf5Reader::read_chunk_rows(const std::string& name) const {
       checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
   if (H5Pget_layout(creation.id()) != H5D_CHUNKED) return shape.front();
   std::vector<hsize_t> sizes(shape.size());
-  check<InputError>(
-      H5Pget_chunk(creation.id(), static_cast<int>(sizes.size()), sizes.data()) >= 0, path_, name,
-      "damaged");
+  check<InputError>(H5Pget_chunk(creation.id(), static_cast<int>(sizes.size()), sizes.data()) >= 0,
+                    path_, name, "damaged");
   return sizes.front();
 }
 
@@ -229,10 +232,15 @@ bool Hdf5Reader::has_attribute(const std::string& object, const std::string& key
   return there;
 }
 
-std::string Hdf5Reader::read_attribute(const std::string& object, const std::string& key) const {
+std::vector<std::string> Hdf5Reader::read_attribute_list(const std::string& object,
+                                                         const std::string& key) const {
   const Hdf5Handle handle = checked<InputError>(H5Oopen(file_.id(), object.c_str(), H5P_DEFAULT),
                                                 H5Oclose, path_, object, "no such object");
-  const auto values = read_strings(path_, handle.id(), object, key);
+  return read_strings(path_, handle.id(), object, key);
+}
+
+std::string Hdf5Reader::read_attribute(const std::string& object, const std::string& key) const {
+  const auto values = read_attribute_list(object, key);
   check<InputError>(values.size() == 1, path_, object + "@" + key, "no such attribute");
   return values.front();
 }

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,30 +65,28 @@ struct ShardProvenance {
 /// attempt, event_time, failure_time and each history channel in schema order. Every NaN counts as
 /// the same one.
 Hash calc_row_hash(const ShardRows& rows, std::size_t row);
+/// Of all rows.
+DataDigest calc_rows_digest(const ShardRows& rows);
 
 /// A shard's datasets, compressed; made by worker threads without the HDF5 library.
 struct CompressedShard {
-  struct Dataset {
-    std::string name;  // "/snapshot"
-    enum class Type { kDouble, kInt32, kInt64, kText } type;
-    std::vector<std::size_t> shape;
-    std::size_t chunk_rows = 0;
-    std::vector<std::vector<std::byte>> chunks;  // shuffled and deflated
-    std::size_t text_length = 0;                 // kText: bytes of a text
-    Hdf5Label label;
-  };
-  std::vector<Dataset> datasets;
+  std::vector<Hdf5Chunks> datasets;
   DataDigest digest;
   std::size_t cases = 0;
+  std::vector<std::string> history_names;
+  double history_interval = 0.0;  // s; 0: no histories
+  std::string status_meaning;
 };
 
+/// Thread-safe. Throws std::logic_error where the rows are not of the schema.
 CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows);
 
-/// The bytes of the shard's file.
+/// The bytes of the shard's file: equal arguments, equal bytes.
 std::vector<std::byte> make_shard_image(const CompressedShard& shard,
                                         const ShardProvenance& provenance);
 
-/// What the user block says.
+/// What the user block says: lines of text, the last of them the SHA-256 of those before, then
+/// zeros. `tail -c +513 FILE | sha256sum` computes `sha256`.
 struct ShardSeal {
   std::string plan_hash;
   std::int64_t shard = 0;
@@ -99,18 +98,26 @@ struct ShardSeal {
 /// another.
 ShardSeal read_shard_seal(const std::filesystem::path& path);
 
+/// The user block of `image`, whose first 512 bytes do not count.
+std::string render_shard_seal(const std::string& plan_hash, std::int64_t shard,
+                              std::span<const std::byte> image);
+
 /// Reads every byte and compares it with the seal. Throws InputError that names the file and what
 /// is wrong.
 ShardSeal check_shard_bytes(const std::filesystem::path& path);
 
+/// As above, of the bytes of a file called `path`.
+ShardSeal check_shard_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 struct Shard {
   ShardSchema schema;
   ShardRows rows;
-  ShardProvenance provenance;
+  ShardProvenance provenance;  // texts sorted by name
+  DataDigest digest;           // of the rows
 };
 
-/// Throws InputError with file and dataset where a dataset is missing, damaged or misshapen, or the
-/// schema version is unknown.
+/// Reads a file once and checks it in every way. Throws InputError with file and dataset where a
+/// byte or a dataset is missing, damaged or misshapen, or the schema version is unknown.
 Shard read_shard(const std::filesystem::path& path);
 
 }  // namespace strut

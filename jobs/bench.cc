@@ -58,16 +58,15 @@ BenchSetting find_fastest(const BenchCases& bench, const Kernel& kernel, bool qu
   return best;
 }
 
-/// Every thread runs its own batches for `seconds`; before, all spin at once.
+/// Every thread runs its own batches for `seconds`; all spin at once before and after.
 ThreadFigure measure_threads(const BenchCases& bench, const Kernel& kernel,
                              const BenchSetting& setting, int threads, double seconds,
                              double best_spin) {
-  double spins = 0.0, rate = 0.0;
-#pragma omp parallel num_threads(threads) reduction(+ : spins, rate)
+  const double before = measure_spins(threads);
+  double rate = 0.0;
+#pragma omp parallel num_threads(threads) reduction(+ : rate)
   {
     run_cases(bench, kernel, setting, {});  // wakes the thread and its memory
-#pragma omp barrier
-    for (int i = 0; i < 8; ++i) spins += measure_spin() / 8.0;
 #pragma omp barrier
     const double start = now();
     long runs = 0;
@@ -77,10 +76,11 @@ ThreadFigure measure_threads(const BenchCases& bench, const Kernel& kernel,
     } while (now() - start < seconds);
     rate += static_cast<double>(runs) / (now() - start);
   }
-  return {threads, rate, spins / best_spin};
+  return {threads, rate, 0.5 * (before + measure_spins(threads)) / best_spin};
 }
 
-BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool quick) {
+BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool quick,
+                          const std::filesystem::path& scratch) {
   const Effort effort = quick ? Effort{0.05, 2} : Effort{};
   BenchResult result;
   result.machine = read_machine(kernel);
@@ -113,6 +113,8 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
     }
     result.threads.push_back(best);
   }
+  std::cerr << "measuring a sweep\n";
+  result.pipeline = measure_pipeline(quick ? 320 : 2000, result.machine.cores, spin, scratch);
   return result;
 }
 
@@ -123,11 +125,16 @@ int run_bench(const std::vector<std::string>& arguments) {
       "strut bench [VEHICLE MANEUVER] [OPTIONS]",
       "Measures how many runs a second this machine simulates on one core and on all, and how\n"
       "exactly. Without files: examples/vehicles/paper_sedan.toml over\n"
-      "examples/maneuvers/bump_20mps.toml, springs and dampers spread over the paper's ranges.",
+      "examples/maneuvers/bump_20mps.toml, springs and dampers spread over the paper's ranges. "
+      "Then\n"
+      "runs a sweep of examples/sweeps/paper_fast.toml from plan to shards.",
       "  strut bench --json > old.json\n  strut bench --baseline old.json");
   parsed.add_switch("json", "print JSON instead of a table");
   parsed.add_option("baseline", "FILE", "print each figure relative to this output of --json");
   parsed.add_option("isa", "NAME", "instruction set, one that --version lists (default: widest)");
+  parsed.add_option("scratch", "DIR",
+                    "where the sweep's files go for a moment (default: the system's temporary "
+                    "folder)");
   parsed.add_switch("quick", "a tenth of the time, rougher figures");
   if (!parsed.parse(arguments)) return kExitDone;
   const auto& files = parsed.positional();
@@ -147,7 +154,10 @@ int run_bench(const std::vector<std::string>& arguments) {
   for (const Kernel& kernel : list_kernels()) names.emplace_back(kernel.isa);
   const Kernel& kernel =
       list_kernels()[static_cast<std::size_t>(parsed.choice_or("isa", 0, names))];
-  const BenchResult result = run_benchmark(source, kernel, parsed.is_on("quick"));
+  const BenchResult result =
+      run_benchmark(source, kernel, parsed.is_on("quick"),
+                    parsed.has("scratch") ? std::filesystem::path(parsed.text("scratch"))
+                                          : std::filesystem::temp_directory_path());
   const std::vector<FigureRatio> ratios =
       baseline ? compare(result, *baseline) : std::vector<FigureRatio>{};
   parsed.is_on("json") ? print_json(std::cout, result, ratios)

@@ -11,10 +11,6 @@
 namespace strut {
 namespace {
 
-/// A row of the data set that sweeps are planned to write: number, layer, status, four parameters,
-/// five inputs, event time.
-constexpr int kBytesPerCase = 13 * 8;
-
 Json make_json(const BenchResult& result) {
   Json single = Json::object();
   for (const Figure& f : result.single_core) {
@@ -47,8 +43,9 @@ Json make_json(const BenchResult& result) {
       .set("transcendentals_per_rhs", result.newton.transcendental)
       .set("share_of_peak", result.share_of_peak(result.figure("lanes")))
       .set("peak_flops_per_s", result.peak)
-      .set("bytes_per_case", kBytesPerCase)
+      .set("bytes_per_case", result.pipeline.bytes_per_case)
       .set("seconds_to_prepare_case", result.seconds_to_prepare)
+      .set("pipeline", make_json(result.pipeline))
       .set("machine", make_json(result.machine));
 }
 
@@ -90,9 +87,9 @@ void print_table(std::ostream& stream, const BenchResult& result,
              result.newton.arithmetic, result.table.arithmetic, result.newton.transcendental,
              result.table.transcendental);
   print_line(stream,
-             "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above; "
-             "a planned shard row has %d bytes",
-             1e-9 * result.peak, 1e3 * result.seconds_to_prepare, kBytesPerCase);
+             "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above",
+             1e-9 * result.peak, 1e3 * result.seconds_to_prepare);
+  print_pipeline(stream, result.pipeline);
   if (ratios.empty()) return;
   print_line(stream, "\n%-16s %10s", "new / old", "ratio");
   for (const FigureRatio& r : ratios) print_line(stream, "%-16s %10.3f", r.name.c_str(), r.ratio);
@@ -141,6 +138,15 @@ std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& base
       if (old.get("threads", 0) != t.threads) continue;
       add(std::to_string(t.threads) + " threads", old.get_optional<double>("runs_per_s"),
           t.runs_per_s);
+    }
+  }
+  const auto runs = baseline.get_child_optional("pipeline.runs");
+  for (const PipelineFigure& f : result.pipeline.figures) {
+    if (!runs) break;
+    for (const auto& [key, old] : *runs) {
+      if (old.get("isa", "") != f.isa || old.get("threads", 0) != f.threads) continue;
+      add("sweep, " + f.isa + ", " + std::to_string(f.threads) + " threads",
+          old.get_optional<double>("runs_per_s"), f.runs_per_s);
     }
   }
   add("flops_per_rhs", baseline.get_optional<double>("flops_per_rhs"),

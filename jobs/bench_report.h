@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "jobs/bench_cases.h"
+#include "jobs/bench_pipeline.h"
 #include "jobs/count_flops.h"
 #include "jobs/machine.h"
 
@@ -34,6 +35,7 @@ struct BenchResult {
   FlopCount newton, table;
   double peak = 0.0;  // flop/s of one core
   double seconds_to_prepare = 0.0;
+  PipelineResult pipeline;
   Machine machine;
 
   const Figure& figure(const std::string& name) const {

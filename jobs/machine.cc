@@ -53,6 +53,18 @@ double measure_spin() {
   return kLinks / seconds;
 }
 
+double measure_spins(int threads) {
+  constexpr int kSpins = 8;
+  double sum = 0.0;
+#pragma omp parallel num_threads(threads) reduction(+ : sum)
+  {
+    measure_spin();  // wakes the thread
+#pragma omp barrier
+    for (int i = 0; i < kSpins; ++i) sum += measure_spin() / kSpins;
+  }
+  return sum;
+}
+
 double calibrate_spin() {
   double best = 0.0;
   for (int i = 0; i < 40; ++i) best = std::max(best, measure_spin());

@@ -25,6 +25,9 @@ double now();
 /// what is measured beside it by at least the same factor.
 double measure_spin();
 
+/// Sum of the rates of `threads` threads that spin at once.
+double measure_spins(int threads);
+
 /// The best of many spins: this machine undisturbed.
 double calibrate_spin();
 

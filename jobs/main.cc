@@ -10,8 +10,12 @@
 #include "jobs/bench.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
+#include "jobs/design.h"
 #include "jobs/interrupt.h"
+#include "jobs/run.h"
 #include "jobs/simulate.h"
+#include "jobs/status.h"
+#include "jobs/verify.h"
 #include "model/kernel/simulation.h"
 
 namespace {
@@ -21,6 +25,12 @@ using strut::Command;
 constexpr Command kCommands[] = {
     {"simulate", "run a car through a maneuver, or write its suspension's kinematics",
      &strut::run_simulate},
+    {"design", "which instant, window and sensors identify a sweep's parameters best",
+     &strut::run_design},
+    {"run", "simulate what a sweep still lacks", &strut::run_run},
+    {"resume", "the same, and try again what failed", &strut::run_resume},
+    {"status", "how far a sweep has come", &strut::run_status},
+    {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
     {"bench", "measure how fast this machine simulates, and how exactly", &strut::run_bench},
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "jobs/load_case.h"
-#include "sweep/integrate_names.h"
+#include "sweep/choices.h"
 
 namespace strut {
 

@@ -9,8 +9,7 @@ namespace strut {
 Grid::Grid(std::vector<Axis> axes) : axes_(std::move(axes)), size_(1) {
   for (const Axis& axis : axes_) {
     if (axis.count > std::numeric_limits<std::int64_t>::max() / size_) {
-      throw InputError("more than " +
-                       std::to_string(std::numeric_limits<std::int64_t>::max()) +
+      throw InputError("more than " + std::to_string(std::numeric_limits<std::int64_t>::max()) +
                        " points; at most that many are allowed");
     }
     size_ *= axis.count;

@@ -6,17 +6,14 @@
 
 #include "io/config.h"
 #include "io/nearest_name.h"
-#include "sweep/integrate_names.h"
+#include "sweep/case_order.h"
+#include "sweep/choices.h"
 #include "sweep/parameters.h"
 #include "sweep/read_maneuver.h"
 #include "sweep/read_vehicle.h"
 
 namespace strut {
 namespace {
-
-const std::vector<std::string> kMethods = {"grid", "latin_hypercube", "sobol"};  // SampleMethod
-const std::vector<std::string> kInstants = {"rear_wheels_on_bump"};
-const std::string kDegradation = "degradation";
 
 /// How far, in steps, `to` may be off the last level: decimal fractions are not exact.
 constexpr double kLevelSlack = 1e-6;
@@ -27,7 +24,7 @@ constexpr std::int64_t kMostShardCases = 65536;
 constexpr double kMostSamples = 20000;
 constexpr double kMostShardBytes = 64e6;
 
-InputError unreached_error(const Table& table, const Axis& axis, double to, double steps) {
+InputError unreached_error(const Table& table, const Axis& axis, double steps) {
   const double below = axis.from + std::floor(steps) * axis.step;
   const double above = axis.from + std::ceil(steps) * axis.step;
   return table.error("to", "not reached by steps of " + format_number(axis.step) + " from " +
@@ -46,7 +43,7 @@ void read_step(const Table& table, double to, const Range& allowed, Axis& axis) 
   const double steps = (to - axis.from) / axis.step;
   if (steps > kMostLevels) throw table.error("step", "too small: more than 9e15 levels");
   if (std::fabs(steps - std::round(steps)) > kLevelSlack) {
-    throw unreached_error(table, axis, to, steps);
+    throw unreached_error(table, axis, steps);
   }
   axis.count = static_cast<std::int64_t>(std::round(steps)) + 1;
 }
@@ -79,8 +76,8 @@ Axis read_axis(const Table& grid, const std::string& name, bool levels, Case pro
   names.reserve(list_parameters().size());
   for (const ParameterInfo& parameter : list_parameters()) names.push_back(parameter.name);
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw grid.error(name, "no parameter" + suggest_name(name, names) +
-                               "; parameters: " + join_names(names));
+    throw grid.error(
+        name, "no parameter" + suggest_name(name, names) + "; parameters: " + join_names(names));
   }
   const Axis axis = read_bounds(grid.table(name), name, levels);
   try {
@@ -117,8 +114,9 @@ Grid read_grid(const Table& root, const SweepRequest& request) {
     axes.push_back(read_axis(table, name, levels, request.base));
   }
   if (axes.empty()) {
-    throw table.error("no axis; for example front_stiffness = { from = 40000, to = 35500, "
-                      "step = -500 }");
+    throw table.error(
+        "no axis; for example front_stiffness = { from = 40000, to = 35500, "
+        "step = -500 }");
   }
   check_independence(table, axes, request.base);
   try {
@@ -131,7 +129,7 @@ Grid read_grid(const Table& root, const SweepRequest& request) {
 SampleRequest read_sample(const std::optional<Table>& table) {
   SampleRequest sample;
   if (!table) return sample;
-  sample.method = static_cast<SampleMethod>(table->choice_or("method", 0, kMethods));
+  sample.method = static_cast<SampleMethod>(table->choice_or("method", 0, kSampleMethods));
   sample.strata = static_cast<int>(table->integer_or("strata", sample.strata, 1, kMostLayers));
   const std::int64_t most = std::numeric_limits<std::int64_t>::max();
   sample.seed = static_cast<std::uint64_t>(table->integer_or("seed", 1, 0, most));
@@ -141,8 +139,8 @@ SampleRequest read_sample(const std::optional<Table>& table) {
     sample.count = table->integer("count", 1, most);
   }
   if (sample.method != SampleMethod::kGrid && sample.count < 0) {
-    throw table->error("count", "must be a number of samples for method \"" +
-                                    table->text("method") + "\"");
+    throw table->error("count",
+                       "must be a number of samples for method \"" + table->text("method") + "\"");
   }
   return sample;
 }
@@ -159,8 +157,8 @@ void read_by(const std::optional<Table>& table, const Grid& grid, SampleRequest&
   if (sample.by != kDegradation) return;
   for (const Axis& axis : grid.axes()) {
     if (axis.from != 0.0) continue;
-    throw table->error("by", "needs grid." + axis.name +
-                                 ".from other than 0, which a loss is relative to");
+    throw table->error(
+        "by", "needs grid." + axis.name + ".from other than 0, which a loss is relative to");
   }
 }
 
@@ -214,8 +212,9 @@ void read_history(const Table& table, SweepRequest& request) {
   request.history.channels = read_channels(table);
   for (const Axis& axis : request.grid.axes()) {
     if (axis.name != "duration") continue;
-    throw table.error("must not be recorded where 'duration' is a grid axis: all cases of a shard "
-                      "have as many samples");
+    throw table.error(
+        "must not be recorded where 'duration' is a grid axis: all cases of a shard "
+        "have as many samples");
   }
 }
 
@@ -232,18 +231,17 @@ void read_record(const Table& record, SweepRequest& request) {
   throw record.error("nothing to record; allowed: snapshot, history, or both");
 }
 
-void read_shards(const Table& table, SweepRequest& request) {
-  const SamplePlan samples = make_sample_plan(request);
-  const double row = 8.0 * static_cast<double>(request.history.channels.size()) *
-                     static_cast<double>(count_samples(samples));
+/// Cases of a shard: a worker holds the history of all of them in memory.
+void read_shards(const std::optional<Table>& table, SweepRequest& request) {
+  const double bytes = 8.0 * static_cast<double>(request.history.channels.size()) *
+                       static_cast<double>(count_samples(make_sample_plan(request)));
   std::int64_t most = kMostShardCases;
-  if (row > 0.0) {
-    most = std::clamp(static_cast<std::int64_t>(kMostShardBytes / row), std::int64_t{1}, most);
+  if (bytes * static_cast<double>(most) > kMostShardBytes) {
+    most = std::max(std::int64_t{1}, static_cast<std::int64_t>(kMostShardBytes / bytes));
   }
+  const std::int64_t usual = std::min<std::int64_t>(most, request.shard_cases);
   request.shard_cases =
-      static_cast<int>(std::min(most, static_cast<std::int64_t>(request.shard_cases)));
-  request.shard_cases =
-      static_cast<int>(table.integer_or("cases", request.shard_cases, 1, most));
+      static_cast<int>(table ? table->integer_or("cases", usual, 1, most) : usual);
 }
 
 }  // namespace
@@ -253,15 +251,18 @@ SweepRequest read_request(const std::filesystem::path& path) {
   const Table root = document.root();
   SweepRequest request;
   request.path = path;
-  request.base.vehicle = read_vehicle(root.file("vehicle"));
-  request.base.maneuver = read_maneuver(root.file("maneuver"));
+  request.vehicle = root.file("vehicle");
+  request.maneuver = root.file("maneuver");
+  request.base.vehicle = read_vehicle(request.vehicle);
+  request.base.maneuver = read_maneuver(request.maneuver);
   const auto sample = root.find_table("sample");
   request.sample = read_sample(sample);
   request.grid = read_grid(root, request);
   read_by(sample, request.grid, request.sample);
   request.integrate = read_integrate(root.find_table("integrate"));
   read_record(root.table("record"), request);
-  if (const auto shards = root.find_table("shards")) read_shards(*shards, request);
+  read_shards(root.find_table("shards"), request);
+  request.shuffle = request.sample.method == SampleMethod::kGrid && find_slow_axes(request).empty();
   document.check_all_read();
   return request;
 }

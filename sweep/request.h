@@ -17,7 +17,7 @@ enum class SampleMethod { kGrid, kLatinHypercube, kSobol };
 struct SampleRequest {
   SampleMethod method = SampleMethod::kGrid;
   int strata = 10;
-  std::string by;           // a grid parameter, or "degradation"; empty: the first axis
+  std::string by;           // a grid parameter, or "degradation"; absent: the first axis
   std::int64_t count = -1;  // -1: all
   std::uint64_t seed = 1;
 };
@@ -42,7 +42,7 @@ struct HistoryRequest {
 };
 
 struct SweepRequest {
-  std::filesystem::path path;
+  std::filesystem::path path, vehicle, maneuver;  // the files it was read from
   Case base;
   Grid grid;
   SampleRequest sample;
@@ -50,7 +50,7 @@ struct SweepRequest {
   SnapshotRequest snapshot;
   HistoryRequest history;
   int shard_cases = 512;
-  bool shuffle = true;  // run order; false where an axis changes the mechanism, see Plan
+  bool shuffle = true;  // run order, see case_order.h
 };
 
 /// Reads `sweeps/*.toml` (docs/sweeps.md lists every key). Throws InputError with file, line, key,

@@ -23,11 +23,7 @@ Case make_flat_case(const VehicleSpec& spec = reference::make_paper_sedan_spec()
   return {spec, maneuver};
 }
 
-/// At rest, nothing driving.
-TrimResult rest(PreparedCase c) {
-  c.vehicle.numbers.drive_torque.fill(0.0);
-  return solve_rest(c.vehicle, c.mechanism->tables, c.mechanism->car.center_height);
-}
+using test::rest;
 
 double get_pitch(const State<double>& x) { return 2.0 * x[I::kQuaternion + 2]; }
 
@@ -43,11 +39,11 @@ TEST_CASE("Static tire loads are those of the lever rule", "[unit]") {
   for (SuspensionSpec& axle : straight.suspension) axle.static_toe = axle.static_camber = 0.0;
   for (const VehicleSpec& spec : {straight, reference::make_paper_sedan_spec()}) {
     const Case c = make_flat_case(spec);
-    const PreparedCase prepared = prepare(c);
+    const auto load = rest(prepare(c)).load;
     for (int corner = 0; corner < kCorners; ++corner) {
       // Camber times toe times radius moves the contact points by up to 10 of 2.8e6 micrometers.
       const double allowed = spec.suspension[kRear].static_toe == 0.0 ? 1e-7 : 1e-5;
-      CHECK(prepared.static_load[corner] ==
+      CHECK(load[corner] ==
             Approx(calc_load(spec.whole, c.maneuver.gravity, corner)).epsilon(tolerance(allowed)));
     }
   }

@@ -48,6 +48,12 @@ inline PreparedCase prepare(const Case& c) {
   return preparer.prepare(c);
 }
 
+/// At rest on the road under it, nothing driving.
+inline TrimResult rest(PreparedCase c) {
+  c.vehicle.numbers.drive_torque.fill(0.0);
+  return solve_rest(c.vehicle, c.mechanism->tables, c.mechanism->car.center_height);
+}
+
 /// A car in wild but possible motion, wheels pressed onto the road or off it.
 inline State<double> make_random_state(Random& random, double center_height, double speed,
                                        double wheel_radius) {

@@ -63,7 +63,7 @@ PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
     mechanism_ = make_mechanism(c);
   }
   const AssembledVehicle& car = mechanism_->car;
-  PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, make_flat_road()}, {}, {}};
+  PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, make_flat_road()}, {}};
   Vehicle<double>& vehicle = prepared.vehicle;
   set_operating_parameters(c.vehicle, c.maneuver, car, vehicle.numbers);
   vehicle.struts = make_strut_elements(vehicle.numbers);
@@ -72,12 +72,10 @@ PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
   prepared.duration = c.maneuver.duration;
 
   check_springs(c.vehicle, car);
-  // Trims stand on flat road.
+  // Trims roll on flat road.
   vehicle.layout.on_bump.fill(false);
   const auto torque = vehicle.numbers.drive_torque;
-  vehicle.numbers.drive_torque.fill(0.0);
-  prepared.static_load = solve_rest(vehicle, mechanism_->tables, car.center_height).load;
-  if (c.maneuver.trim == TrimKind::kSteady) vehicle.numbers.drive_torque = torque;
+  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
   prepared.start =
       solve_rolling(vehicle, mechanism_->tables, car.center_height, c.maneuver.speed).state;
   vehicle.numbers.drive_torque = torque;

@@ -33,7 +33,6 @@ struct PreparedCase {
   std::shared_ptr<const Mechanism> mechanism;
   Vehicle<double> vehicle;
   State<double> start;
-  std::array<double, kCorners> static_load;  // N, tires at rest
   double bump_center = 0.0;                  // m, world x
   double trigger_x = 0.0;                    // m, world x of the snapshot's line
   double duration = 0.0;                     // s

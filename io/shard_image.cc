@@ -1,0 +1,106 @@
+// Rows to the bytes of a shard's file: compression, then HDF5.
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "io/compress.h"
+#include "io/shard_layout.h"
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kLargestChunk = std::size_t{1} << 20;
+
+// Chunks of whole rows; what the last one has too much is zero.
+std::vector<std::vector<std::byte>> compress_rows(std::span<const std::byte> bytes,
+                                                  std::size_t chunk_bytes,
+                                                  std::size_t element_size) {
+  std::vector<std::vector<std::byte>> chunks;
+  chunks.reserve(bytes.size() / chunk_bytes + 1);
+  for (; bytes.size() >= chunk_bytes; bytes = bytes.subspan(chunk_bytes)) {
+    chunks.push_back(compress_chunk(bytes.first(chunk_bytes), element_size));
+  }
+  if (!bytes.empty()) {
+    std::vector<std::byte> last(bytes.begin(), bytes.end());
+    last.resize(chunk_bytes);
+    chunks.push_back(compress_chunk(last, element_size));
+  }
+  return chunks;
+}
+
+Hdf5Chunks make_chunks(const ShardColumn& column, std::size_t rows, Hdf5Type type,
+                       std::size_t text_length, std::span<const std::byte> bytes) {
+  const std::size_t element = get_element_size(type, text_length);
+  const std::size_t row_bytes = std::max<std::size_t>(column.columns, 1) * element;
+  if (bytes.size() != rows * row_bytes) {
+    throw std::logic_error("shard: " + column.name + " does not fit its schema");
+  }
+  Hdf5Chunks chunks{.name = column.name,
+                    .type = type,
+                    .shape = {rows},
+                    .chunk_rows = calc_chunk_rows(rows, row_bytes),
+                    .chunks = {},
+                    .text_length = text_length,
+                    .label = column.label};
+  if (column.columns > 0) chunks.shape.push_back(column.columns);
+  chunks.chunks = compress_rows(bytes, chunks.chunk_rows * row_bytes, element);
+  return chunks;
+}
+
+}  // namespace
+
+std::size_t calc_chunk_rows(std::size_t rows, std::size_t row_bytes) {
+  const std::size_t most = std::max<std::size_t>(kLargestChunk / row_bytes, 1);
+  const std::size_t chunks = std::max<std::size_t>((rows + most - 1) / most, 1);
+  return std::max<std::size_t>((rows + chunks - 1) / chunks, 1);
+}
+
+CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows) {
+  if (rows.history.size() != schema.history.size()) {
+    throw std::logic_error("shard: histories do not fit their schema");
+  }
+  CompressedShard shard;
+  visit_shard_columns(schema, rows, [&](const ShardColumn& column, const auto& values) {
+    using Values = std::decay_t<decltype(values)>;
+    if constexpr (std::is_same_v<Values, std::vector<std::string>>) {
+      const PackedTexts texts = pack_texts(values);
+      shard.datasets.push_back(
+          make_chunks(column, rows.size(), Hdf5Type::kText, texts.length, texts.bytes));
+    } else {
+      shard.datasets.push_back(make_chunks(column, rows.size(),
+                                           hdf5_type<typename Values::value_type>, 0,
+                                           std::as_bytes(std::span(values))));
+    }
+  });
+  shard.digest = calc_rows_digest(rows);
+  shard.cases = rows.size();
+  shard.history_names.reserve(schema.history.size());
+  for (const ColumnInfo& channel : schema.history) shard.history_names.push_back(channel.name);
+  shard.history_interval = schema.history.empty() ? 0.0 : schema.history_interval;
+  shard.status_meaning = schema.status_meaning;
+  return shard;
+}
+
+std::vector<std::byte> make_shard_image(const CompressedShard& shard,
+                                        const ShardProvenance& provenance) {
+  Hdf5Writer file(Hdf5InMemory{"shard " + std::to_string(provenance.shard)}, {.user_block = true});
+  for (const Hdf5Chunks& dataset : shard.datasets) file.write_chunks(dataset);
+  file.write_attribute("/", kSchemaVersionKey, std::int64_t{kShardSchemaVersion});
+  file.write_attribute("/", kPlanHashKey, provenance.plan_hash);
+  file.write_attribute("/", kShardKey, provenance.shard);
+  file.write_attribute("/", kChecksumKey, shard.digest.text());
+  file.write_attribute("/", kStatusMeaningKey, shard.status_meaning);
+  file.write_attribute("/", kHistoryIntervalKey, shard.history_interval);
+  if (!shard.history_names.empty()) {
+    file.write_attribute_list(kHistoryGroup, "names", shard.history_names);
+  }
+  for (const auto& [key, text] : provenance.texts) file.write_attribute("/", key, text);
+  std::vector<std::byte> image = file.image();
+  const std::string seal = render_shard_seal(provenance.plan_hash, provenance.shard, image);
+  std::memcpy(image.data(), seal.data(), seal.size());
+  return image;
+}
+
+}  // namespace strut

@@ -1,0 +1,48 @@
+// `strut bench` over the whole factory: a real sweep from plan to shards in a scratch folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "jobs/json.h"
+#include "model/kernel/simulation.h"
+
+namespace strut {
+
+struct PipelineFigure {
+  std::string isa;
+  int lanes = 1, threads = 1;
+  double runs_per_s = 0.0;
+  double spin_control = 0.0;  // spins of all threads at once over those of one alone
+};
+
+struct PipelineResult {
+  std::string sweep;  // the request's file
+  std::int64_t cases = 0;
+  std::vector<PipelineFigure> figures;
+  /// Thread-seconds of the run with the widest lanes on all cores.
+  double prepare = 0.0, integrate = 0.0, compress = 0.0, write = 0.0;
+  double bytes_per_case = 0.0;
+  double plan_seconds = 0.0;    // from request to folder
+  double resume_seconds = 0.0;  // of running the finished sweep again
+  double peak_memory = 0.0;     // bytes, of this process so far
+
+  /// Compression and disk over all work.
+  double output_share() const {
+    return (compress + write) / (prepare + integrate + compress + write);
+  }
+};
+
+/// Sweeps `cases` cases of the request in examples/sweeps/paper_fast.toml with every kernel on one
+/// thread and the widest on 1 to `cores`, below `scratch`. `best_spin`: as calibrate_spin. Throws
+/// EnvironmentError.
+PipelineResult measure_pipeline(std::int64_t cases, int cores, double best_spin,
+                                const std::filesystem::path& scratch);
+
+Json make_json(const PipelineResult& result);
+void print_pipeline(std::ostream& stream, const PipelineResult& result);
+
+}  // namespace strut

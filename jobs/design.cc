@@ -1,0 +1,131 @@
+#include "jobs/design.h"
+
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+
+#include "jobs/arguments.h"
+#include "jobs/command.h"
+#include "jobs/design_report.h"
+#include "jobs/interrupt.h"
+
+namespace strut {
+namespace {
+
+constexpr double kMostSamples = 20000.0;  // of each run: 2 GB of history in all at most
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut design SWEEP.toml [OPTIONS]",
+      "Which instant, window and sensors identify the parameters of a sweep's grid best: the\n"
+      "sensitivity of every channel to every grid parameter, and from it, for given sensor noise,\n"
+      "the Cramer-Rao bound of the sweep's snapshot, of every instant along the way, of the best\n"
+      "one, two and three instants, and of the whole window. Proposes the best instant.",
+      "  strut design examples/sweeps/paper.toml\n"
+      "  strut design examples/sweeps/paper.toml --at front_stiffness=38000,rear_damping=1850 \\\n"
+      "      --noise pitch_rate=0.002 --csv sensitivity.csv --json");
+  arguments.add_option("at", "NAME=VALUE,...", "base point; axes not named: their middle");
+  arguments.add_list("set", "NAME=VALUE", "any parameter at the base point, repeatable");
+  arguments.add_option("channels", "NAME,...", "what is measured (default: the snapshot's)");
+  arguments.add_list("noise", "CHANNEL=SIGMA",
+                     "1 sigma of a sensor's white noise per sample, repeatable");
+  arguments.add_option("rate", "HZ", "instants a second (default 1000)");
+  arguments.add_option("difference", "SHARE",
+                       "step of the differences as a share of the base value (default 1e-4)");
+  arguments.add_switch("as-requested",
+                       "integrate as the sweep does, not by RK4 1 ms with Newton closure");
+  arguments.add_option("csv", "FILE", "write the sensitivity curves");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+std::vector<std::string> list_or_empty(const Arguments& arguments, const std::string& name) {
+  return arguments.has(name) ? split(arguments.text(name)) : std::vector<std::string>{};
+}
+
+/// Calls `function`; an InputError of it names the option it came from.
+template <class Function>
+auto name_option(const std::string& option, const Function& function) {
+  try {
+    return function();
+  } catch (const InputError& e) {
+    throw InputError(option + " " + e.what());
+  }
+}
+
+SensorNoise read_noise(const Arguments& arguments) {
+  SensorNoise noise = make_default_noise();
+  for (const std::string& setting : arguments.list("noise")) {
+    name_option("--noise:", [&] { apply_noise(noise, setting); });
+  }
+  return noise;
+}
+
+std::vector<int> read_channels(const Arguments& arguments, const SweepRequest& request) {
+  if (!arguments.has("channels")) return request.snapshot.channels;
+  std::vector<int> channels;
+  for (const std::string& name : list_or_empty(arguments, "channels")) {
+    const int channel = name_option("--channels:", [&] { return find_car_channel(name); });
+    if (std::find(channels.begin(), channels.end(), channel) != channels.end()) {
+      throw InputError("--channels: '" + name + "' twice; allowed: once");
+    }
+    channels.push_back(channel);
+  }
+  return channels;
+}
+
+SensitivityOptions read_options(const Arguments& arguments, const SweepRequest& request,
+                                double duration) {
+  SensitivityOptions options;
+  options.rate = arguments.number_or("rate", options.rate, between(20.0, 5000.0, "Hz"));
+  if (options.rate * duration > kMostSamples) {
+    throw InputError("--rate = " + format_number(options.rate) + " Hz: must be at most " +
+                     format_number(kMostSamples / duration) + " Hz for " + format_number(duration) +
+                     " s");
+  }
+  options.relative_step =
+      arguments.number_or("difference", options.relative_step, between(1e-7, 0.1));
+  options.integrate =
+      arguments.is_on("as-requested") ? request.integrate : make_accurate(request.integrate);
+  return options;
+}
+
+}  // namespace
+
+int run_design(const std::vector<std::string>& arguments) {
+  Arguments parsed = make_arguments();
+  if (!parsed.parse(arguments)) return kExitDone;
+  if (parsed.positional().size() != 1) {
+    throw parsed.usage_error(std::to_string(parsed.positional().size()) +
+                             " files; expected SWEEP.toml");
+  }
+  const SweepRequest request = read_request(parsed.positional().front());
+  DesignReport report;
+  report.noise = read_noise(parsed);
+  report.channels = read_channels(parsed, request);
+  const Case base = make_base_point(request, list_or_empty(parsed, "at"), parsed.list("set"));
+  const SensitivityOptions options = read_options(parsed, request, base.maneuver.duration);
+  report.sensitivity = name_option(request.path.string() + ":", [&] {
+    return calc_sensitivity(base, request.grid.axes(), request.snapshot.offset, options);
+  });
+  report.design = calc_design(report.sensitivity, report.channels, report.noise);
+  if (parsed.has("csv")) {
+    const InterruptGuard guard;
+    write_design_csv(parsed.text("csv"), report);
+  }
+  if (parsed.is_on("json")) {
+    std::cout << make_design_json(report).dump() << "\n";
+  } else {
+    print_design(report);
+  }
+  return kExitDone;
+}
+
+}  // namespace strut

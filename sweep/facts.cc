@@ -1,0 +1,127 @@
+#include "sweep/facts.h"
+
+#include <algorithm>
+
+#include "io/config.h"
+#include "io/file_bytes.h"
+#include "io/sha256.h"
+#include "io/toml_text.h"
+#include "sweep/choices.h"
+#include "sweep/named_files.h"
+
+namespace strut {
+namespace {
+
+void add_sample(const SweepRequest& request, Facts& facts) {
+  const SampleRequest& sample = request.sample;
+  facts.emplace_back("sample.method", kSampleMethods[static_cast<std::size_t>(sample.method)]);
+  facts.emplace_back("sample.strata", std::to_string(sample.strata));
+  facts.emplace_back("sample.by", sample.by);
+  facts.emplace_back("sample.count", sample.count < 0 ? "all" : std::to_string(sample.count));
+  facts.emplace_back("sample.seed", std::to_string(sample.seed));
+}
+
+void add_grid(const SweepRequest& request, Facts& facts) {
+  const auto& axes = request.grid.axes();
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    facts.emplace_back("grid[" + std::to_string(a + 1) + "]",
+                       axes[a].name + " from " + format_number(axes[a].from) + " step " +
+                           format_number(axes[a].step) + " count " + std::to_string(axes[a].count));
+  }
+}
+
+void add_integrate(const IntegrateRequest& request, Facts& facts) {
+  const auto closure = static_cast<std::size_t>(request.options.closure);
+  if (request.solver == Solver::kCvode) {
+    facts.emplace_back("integrate.method", "cvode");
+    facts.emplace_back("integrate.relative_tolerance",
+                       format_number(request.reference.relative_tolerance));
+    facts.emplace_back("integrate.absolute_tolerance",
+                       format_number(request.reference.absolute_tolerance));
+  } else {
+    const StepOptions& step = request.options.step;
+    facts.emplace_back("integrate.method", step.stepper == Stepper::kAbm4 ? "abm4" : "rk4");
+    facts.emplace_back("integrate.step", format_number(step.step));
+    facts.emplace_back("integrate.coarse_step", format_number(step.coarse_step));
+    facts.emplace_back("integrate.locate_events", step.locate_events ? "true" : "false");
+    facts.emplace_back("integrate.spin", kSpins[static_cast<std::size_t>(request.options.spin)]);
+  }
+  facts.emplace_back("integrate.closure", kClosures[closure]);
+}
+
+std::string list_channels(const std::vector<int>& channels) {
+  std::string text;
+  for (const int channel : channels) {
+    text +=
+        (text.empty() ? "" : ", ") + list_car_channels()[static_cast<std::size_t>(channel)].name;
+  }
+  return text;
+}
+
+void add_record(const SweepRequest& request, Facts& facts) {
+  if (request.snapshot.on) {
+    facts.emplace_back("record.snapshot.when", kInstants.front());
+    facts.emplace_back("record.snapshot.offset", format_number(request.snapshot.offset));
+    facts.emplace_back("record.snapshot.channels", list_channels(request.snapshot.channels));
+  }
+  if (request.history.rate > 0.0) {
+    facts.emplace_back("record.history.rate", format_number(request.history.rate));
+    facts.emplace_back("record.history.channels", list_channels(request.history.channels));
+  }
+}
+
+void add_file(const std::string& prefix, const std::filesystem::path& path, Facts& facts) {
+  const std::vector<NamedFile> files = list_named_files(path);
+  for (const auto& [key, value] : flatten_toml(path)) {
+    const auto named = std::find_if(files.begin(), files.end(),
+                                    [&name = key](const NamedFile& f) { return f.key == name; });
+    facts.emplace_back(
+        prefix + key,
+        named == files.end() ? value : "SHA-256 " + to_hex(calc_sha256(read_bytes(named->path))));
+  }
+}
+
+const std::string* find_value(const Facts& facts, const std::string& name) {
+  for (const auto& [key, value] : facts) {
+    if (key == name) return &value;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Facts list_facts(const SweepRequest& request) {
+  Facts facts = {{"results_version", std::to_string(kResultsVersion)}};
+  add_grid(request, facts);
+  add_sample(request, facts);
+  add_integrate(request.integrate, facts);
+  add_record(request, facts);
+  facts.emplace_back("shards.cases", std::to_string(request.shard_cases));
+  facts.emplace_back("order", request.shuffle ? "shuffled" : "by number, slow axes first");
+  add_file("vehicle.", request.vehicle, facts);
+  add_file("maneuver.", request.maneuver, facts);
+  return facts;
+}
+
+std::string calc_hash(const Facts& facts) {
+  Sha256 hash;
+  for (const auto& [name, value] : facts) hash.update(name + " = " + value + "\n");
+  return to_hex(hash.finish());
+}
+
+std::vector<std::string> compare_facts(const Facts& was, const Facts& is) {
+  std::vector<std::string> lines;
+  for (const auto& [name, value] : was) {
+    const std::string* now = find_value(is, name);
+    if (now == nullptr) lines.push_back(name + ": was " + value + ", is absent");
+    if (now != nullptr && *now != value) {
+      lines.push_back(name + ": was " + value + ", is " + *now);
+    }
+  }
+  for (const auto& [name, value] : is) {
+    if (find_value(was, name) == nullptr) lines.push_back(name + ": was absent, is " + value);
+  }
+  return lines;
+}
+
+}  // namespace strut

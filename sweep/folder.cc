@@ -1,0 +1,117 @@
+#include "sweep/folder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <system_error>
+
+#include "io/input_error.h"
+#include "sweep/freeze_inputs.h"
+#include "sweep/plan_file.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> list_subfolders(const SweepFolder& folder) {
+  return {folder.inputs(),    folder.shards(),     folder.retries(), folder.claims(),
+          folder.temporary(), folder.quarantine(), folder.logs()};
+}
+
+std::string list_changes(const Facts& was, const Facts& is) {
+  std::string text;
+  for (const std::string& line : compare_facts(was, is)) text += "\n  " + line;
+  return text;
+}
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
+}
+
+/// The rest of a planning that was stopped: nothing else.
+bool is_leftover(const SweepFolder& folder, const fs::directory_entry& entry) {
+  const auto is_file_of = [&entry](const fs::path& path) {  // or its temporary, AtomicFile's
+    return entry.path().filename().string().rfind(path.filename().string(), 0) == 0;
+  };
+  if (entry.is_regular_file()) return is_file_of(folder.request()) || is_file_of(folder.plan());
+  const auto known = list_subfolders(folder);
+  if (std::find(known.begin(), known.end(), entry.path()) == known.end()) return false;
+  return entry.path() == folder.inputs() || fs::is_empty(entry.path());
+}
+
+void check_free(const SweepFolder& folder) {
+  if (!fs::exists(folder.root)) return;
+  if (!fs::is_directory(folder.root)) {
+    throw InputError(folder.root.string() + ": a file; must be a new or empty folder");
+  }
+  for (const auto& entry : fs::directory_iterator(folder.root)) {
+    if (is_leftover(folder, entry)) continue;
+    throw InputError(folder.root.string() + ": not a sweep folder (no plan.h5), but it holds '" +
+                     entry.path().filename().string() + "'; must be a new or empty folder");
+  }
+}
+
+void check_same(const SweepFolder& folder, const Plan& plan) {
+  const PlanRecord record = read_plan(folder.plan());
+  if (record.hash == plan.hash()) {
+    open_sweep_folder(folder);  // its own files may have been changed
+    return;
+  }
+  throw InputError(folder.root.string() + ": planned for another request than " +
+                   plan.request().path.string() +
+                   "; allowed: the same, or another folder. Changed:" +
+                   list_changes(record.facts, plan.facts()));
+}
+
+}  // namespace
+
+std::string SweepFolder::shard_name(std::int64_t shard) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(shard));
+  return name;
+}
+
+SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
+  const SweepFolder folder{root.lexically_normal()};
+  if (fs::exists(folder.plan())) {
+    check_same(folder, plan);
+    return folder;
+  }
+  try {
+    check_free(folder);
+  } catch (const fs::filesystem_error& e) {
+    throw EnvironmentError(root.string() + ": cannot be read: " + e.code().message());
+  }
+  make_folder(folder.root);
+  for (const fs::path& path : list_subfolders(folder)) make_folder(path);
+  freeze_inputs(plan.request(), folder);
+  if (calc_hash(list_facts(read_request(folder.request()))) != plan.hash()) {
+    throw EnvironmentError(folder.request().string() +
+                           ": its files changed while they were copied; plan again");
+  }
+  write_plan(folder.plan(), plan);
+  return folder;
+}
+
+Plan open_sweep_folder(const SweepFolder& folder) {
+  if (!fs::exists(folder.plan())) {
+    throw InputError(folder.root.string() +
+                     ": not a sweep folder: no plan.h5; `strut plan SWEEP.toml -o DIR` makes one");
+  }
+  const PlanRecord record = read_plan(folder.plan());
+  Plan plan(read_request(folder.request()));
+  if (record.hash != plan.hash()) {
+    throw InputError(folder.request().string() +
+                     ": no longer what was planned; allowed: the planned request, or another "
+                     "folder. Changed:" +
+                     list_changes(record.facts, plan.facts()));
+  }
+  if (record.drawn != plan.list_drawn()) {
+    throw InputError(folder.plan().string() + ": /drawn: not the cases that this version draws");
+  }
+  return plan;
+}
+
+}  // namespace strut

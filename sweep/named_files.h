@@ -1,0 +1,18 @@
+// The files that a vehicle or maneuver file names in turn: a tire, a road profile.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace strut {
+
+struct NamedFile {
+  std::string key;             // dotted, "tire.file"
+  std::filesystem::path path;  // where it is
+};
+
+/// Throws InputError where `file` is missing or not TOML.
+std::vector<NamedFile> list_named_files(const std::filesystem::path& file);
+
+}  // namespace strut
