@@ -40,6 +40,13 @@ std::string calc_nonce() {
   return nonce;
 }
 
+// The end of HOST.PID.NONCE; of a text that is no such name, something that a file name can hold.
+std::string get_nonce(const std::string& runner) {
+  const std::string nonce = runner.substr(runner.rfind('.') + 1);
+  const bool is_plain = nonce.find_first_not_of("0123456789abcdef") == std::string::npos;
+  return is_plain ? nonce : "unknown";
+}
+
 bool is_unit_name(const std::string& name) {
   return !name.empty() && name.find_first_of("/~") == std::string::npos &&
          !name.starts_with(kRunnerPrefix) && !name.starts_with(kNewPrefix) && name[0] != '.';
@@ -178,8 +185,7 @@ bool Claims::State::acquire(const fs::path& claim) {
 // claim "CLAIM~NONCE of the holder", an ordinary claim that can be taken over itself. Whoever gets
 // it later finds another holder named and leaves it.
 bool Claims::State::take_over(const fs::path& claim, const std::string& holder) {
-  const auto dot = holder.rfind('.');
-  const fs::path right = claim.string() + kTakeoverMark + holder.substr(dot + 1);
+  const fs::path right = claim.string() + kTakeoverMark + get_nonce(holder);
   if (!acquire(right)) return false;
   const bool unchanged = read_holder(claim) == holder;
   if (unchanged) {

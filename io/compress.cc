@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace strut {
@@ -14,6 +15,13 @@ std::vector<std::byte> shuffle_bytes(std::span<const std::byte> bytes, std::size
     for (std::size_t i = 0; i < count; ++i) plane[i] = bytes[i * element_size + b];
   }
   return shuffled;
+}
+
+std::size_t calc_chunk_rows(std::size_t rows, std::size_t row_bytes) {
+  constexpr std::size_t kLargestChunk = std::size_t{1} << 20;
+  const std::size_t most = std::max<std::size_t>(kLargestChunk / row_bytes, 1);
+  const std::size_t chunks = std::max<std::size_t>((rows + most - 1) / most, 1);
+  return std::max<std::size_t>((rows + chunks - 1) / chunks, 1);
 }
 
 std::vector<std::byte> compress_chunk(std::span<const std::byte> bytes, std::size_t element_size) {

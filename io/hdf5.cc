@@ -35,8 +35,8 @@ std::size_t get_element_size(Hdf5Type type, std::size_t text_length) {
   return type == Hdf5Type::kInt32 ? 4 : 8;
 }
 
-PackedTexts pack_texts(std::span<const std::string> texts) {
-  PackedTexts packed;
+PackedTexts pack_texts(std::span<const std::string> texts, std::size_t at_least) {
+  PackedTexts packed{.length = at_least, .bytes = {}};
   for (const std::string& text : texts) packed.length = std::max(packed.length, text.size());
   packed.bytes.resize(texts.size() * packed.length);
   for (std::size_t i = 0; i < texts.size(); ++i) {

@@ -63,14 +63,16 @@ template <>
 inline constexpr Hdf5Type hdf5_type<std::int32_t> = Hdf5Type::kInt32;
 template <>
 inline constexpr Hdf5Type hdf5_type<std::int64_t> = Hdf5Type::kInt64;
+template <>
+inline constexpr Hdf5Type hdf5_type<std::string> = Hdf5Type::kText;
 
 /// Texts of one length, one behind the other, padded with zeros.
 struct PackedTexts {
-  std::size_t length = 1;  // of the longest, at least 1
+  std::size_t length = 1;  // of the longest
   std::vector<std::byte> bytes;
 };
 
-PackedTexts pack_texts(std::span<const std::string> texts);
+PackedTexts pack_texts(std::span<const std::string> texts, std::size_t at_least = 1);
 
 /// A dataset whose chunks were compressed elsewhere, see io/compress.h. Chunks are whole rows; the
 /// last is as long as the others, padded.
@@ -165,6 +167,8 @@ class Hdf5Reader {
   std::vector<std::int64_t> read_integers(const std::string& name) const;
   /// A dataset of texts of fixed length.
   std::vector<std::string> read_texts(const std::string& name) const;
+  /// Bytes of each of them.
+  std::size_t read_text_length(const std::string& name) const;
   Hdf5Label read_label(const std::string& name) const;
   std::vector<std::size_t> read_shape(const std::string& name) const;
   /// Rows of a chunk; all rows where the dataset is not chunked.

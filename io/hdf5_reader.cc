@@ -183,16 +183,21 @@ std::vector<std::int64_t> Hdf5Reader::read_integers(const std::string& name) con
   return values;
 }
 
-std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
+std::size_t Hdf5Reader::read_text_length(const std::string& name) const {
   const Hdf5Handle dataset = open_dataset(name);
   const Hdf5Handle stored =
       checked<InputError>(H5Dget_type(dataset.id()), H5Tclose, path_, name, "damaged");
   const bool fixed =
       H5Tget_class(stored.id()) == H5T_STRING && H5Tis_variable_str(stored.id()) == 0;
   check<InputError>(fixed, path_, name, "must hold texts of fixed length");
+  return H5Tget_size(stored.id());
+}
+
+std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
+  const std::size_t length = read_text_length(name);
+  const Hdf5Handle dataset = open_dataset(name);
   const std::size_t count =
       count_elements(path_, name, dataset.id(), get_shape(path_, name, dataset.id()));
-  const std::size_t length = H5Tget_size(stored.id());
   const Hdf5Handle type = hdf5::make_type(path_, Hdf5Type::kText, length);
   std::vector<char> raw(count * length);
   check<InputError>(

@@ -25,6 +25,7 @@ enum class Life {
   kUnknown,  // of another host, boot or namespace, or hidden
 };
 
+/// `own`: this process. By the process number where host, boot and namespace are the same.
 Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own);
 
 }  // namespace strut

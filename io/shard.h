@@ -22,6 +22,7 @@ inline constexpr int kShardSchemaVersion = 1;
 
 struct ColumnInfo {
   std::string name, unit, description;
+  bool operator==(const ColumnInfo&) const = default;
 };
 
 /// What a row of a shard consists of; the same for all shards of a sweep.
@@ -32,6 +33,7 @@ struct ShardSchema {
   std::size_t history_samples = 0;
   double history_interval = 0.0;  // s
   std::string status_meaning;     // "0 done, 1 diverged, ..."
+  bool operator==(const ShardSchema&) const = default;
 };
 
 /// Rows of a shard, one per case; arrays row by row.

@@ -11,8 +11,6 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kLargestChunk = std::size_t{1} << 20;
-
 // Chunks of whole rows; what the last one has too much is zero.
 std::vector<std::vector<std::byte>> compress_rows(std::span<const std::byte> bytes,
                                                   std::size_t chunk_bytes,
@@ -51,12 +49,6 @@ Hdf5Chunks make_chunks(const ShardColumn& column, std::size_t rows, Hdf5Type typ
 
 }  // namespace
 
-std::size_t calc_chunk_rows(std::size_t rows, std::size_t row_bytes) {
-  const std::size_t most = std::max<std::size_t>(kLargestChunk / row_bytes, 1);
-  const std::size_t chunks = std::max<std::size_t>((rows + most - 1) / most, 1);
-  return std::max<std::size_t>((rows + chunks - 1) / chunks, 1);
-}
-
 CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows) {
   if (rows.history.size() != schema.history.size()) {
     throw std::logic_error("shard: histories do not fit their schema");
@@ -76,8 +68,7 @@ CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows)
   });
   shard.digest = calc_rows_digest(rows);
   shard.cases = rows.size();
-  shard.history_names.reserve(schema.history.size());
-  for (const ColumnInfo& channel : schema.history) shard.history_names.push_back(channel.name);
+  shard.history_names = list_names(schema.history);
   shard.history_interval = schema.history.empty() ? 0.0 : schema.history_interval;
   shard.status_meaning = schema.status_meaning;
   return shard;
@@ -87,15 +78,9 @@ std::vector<std::byte> make_shard_image(const CompressedShard& shard,
                                         const ShardProvenance& provenance) {
   Hdf5Writer file(Hdf5InMemory{"shard " + std::to_string(provenance.shard)}, {.user_block = true});
   for (const Hdf5Chunks& dataset : shard.datasets) file.write_chunks(dataset);
-  file.write_attribute("/", kSchemaVersionKey, std::int64_t{kShardSchemaVersion});
-  file.write_attribute("/", kPlanHashKey, provenance.plan_hash);
+  write_shard_attributes(file, shard.history_names, shard.history_interval, shard.status_meaning,
+                         provenance.plan_hash, shard.digest);
   file.write_attribute("/", kShardKey, provenance.shard);
-  file.write_attribute("/", kChecksumKey, shard.digest.text());
-  file.write_attribute("/", kStatusMeaningKey, shard.status_meaning);
-  file.write_attribute("/", kHistoryIntervalKey, shard.history_interval);
-  if (!shard.history_names.empty()) {
-    file.write_attribute_list(kHistoryGroup, "names", shard.history_names);
-  }
   for (const auto& [key, text] : provenance.texts) file.write_attribute("/", key, text);
   std::vector<std::byte> image = file.image();
   const std::string seal = render_shard_seal(provenance.plan_hash, provenance.shard, image);

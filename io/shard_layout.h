@@ -27,6 +27,7 @@ inline constexpr char kHistoryIntervalKey[] = "history_interval";
 
 inline constexpr char kParametersName[] = "/parameters";
 inline constexpr char kSnapshotName[] = "/snapshot";
+inline constexpr char kReasonName[] = "/reason";
 inline constexpr char kHistoryGroup[] = "/history";
 
 inline ShardColumn make_table_column(const char* name, const std::vector<ColumnInfo>& columns,
@@ -65,7 +66,7 @@ void visit_shard_columns(const ShardSchema& schema, Rows& rows, const Visit& vis
   visit(plain("/event_time", "s", "time of the snapshot; NaN: none"), rows.event_time);
   visit(plain("/failure_time", "s", "time at which the case failed; NaN: it did not"),
         rows.failure_time);
-  visit(plain("/reason", "1", "why the case failed; empty: it did not"), rows.reason);
+  visit(plain(kReasonName, "1", "why the case failed; empty: it did not"), rows.reason);
   for (std::size_t c = 0; c < schema.history.size(); ++c) {
     const ColumnInfo& channel = schema.history[c];
     visit(ShardColumn{kHistoryGroup + ("/" + channel.name),
@@ -75,7 +76,24 @@ void visit_shard_columns(const ShardSchema& schema, Rows& rows, const Visit& vis
   }
 }
 
-/// Rows of a chunk of at most 1 MiB, such that all chunks are about as long.
-std::size_t calc_chunk_rows(std::size_t rows, std::size_t row_bytes);
+/// The attributes that make a file's datasets those of a schema; `File` is any writer.
+template <class File>
+void write_shard_attributes(File& file, const std::vector<std::string>& history_names,
+                            double history_interval, const std::string& status_meaning,
+                            const std::string& plan_hash, const DataDigest& digest) {
+  file.write_attribute("/", kSchemaVersionKey, std::int64_t{kShardSchemaVersion});
+  file.write_attribute("/", kPlanHashKey, plan_hash);
+  file.write_attribute("/", kChecksumKey, digest.text());
+  file.write_attribute("/", kStatusMeaningKey, status_meaning);
+  file.write_attribute("/", kHistoryIntervalKey, history_interval);
+  if (!history_names.empty()) file.write_attribute_list(kHistoryGroup, "names", history_names);
+}
+
+inline std::vector<std::string> list_names(const std::vector<ColumnInfo>& columns) {
+  std::vector<std::string> names;
+  names.reserve(columns.size());
+  for (const ColumnInfo& column : columns) names.push_back(column.name);
+  return names;
+}
 
 }  // namespace strut

@@ -1,6 +1,7 @@
 #include "io/toml_text.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <sstream>
 
 #include "io/config.h"
@@ -46,9 +47,18 @@ std::size_t find_place(const std::string& text, const toml::source_position& pos
 
 /// A basic string of TOML.
 std::string quote(const std::string& text) {
-  std::ostringstream stream;
-  stream << toml::value<std::string>(text);
-  return stream.str();
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (static_cast<unsigned char>(c) >= 0x20U) {
+      quoted += c;
+      continue;
+    }
+    char escaped[8];
+    std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(c));
+    quoted += escaped;
+  }
+  return quoted + "\"";
 }
 
 }  // namespace

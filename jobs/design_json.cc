@@ -103,8 +103,12 @@ Json make_design_json(const DesignReport& report) {
   window.set("samples", static_cast<long>(s.instants.size()));
   Json best = Json::array();
   for (const DesignChoice& choice : design.best) best.push(make_choice_json(s, choice));
+  const auto [first, last] = find_good_range(design);
+  Json range = Json::array();
+  range.push(s.instants[first].offset).push(s.instants[last].offset);
   Json json = make_head_json(report);
   return json.set("best_offset", s.instants[design.best[0].instants[0]].offset)
+      .set("best_range", range)
       .set("snapshot", snapshot)
       .set("best", best)
       .set("window", window)

@@ -10,7 +10,8 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kSlices = 12;  // rows of the table along the way
+constexpr double kMostPercent = 1e4;  // beyond, a bound is shown as "free"
+constexpr std::size_t kSlices = 12;   // rows of the table along the way
 
 template <class... Values>
 std::string format(const char* pattern, Values... values) {
@@ -25,9 +26,9 @@ std::string pad(const std::string& text, std::size_t width) {
   return text + std::string(text.size() < width ? width - text.size() : 0, ' ');
 }
 
-/// Short, and a word where there is no bound.
+/// Per cent, short; a word where there is no bound to speak of.
 std::string format_bound(double value) {
-  return std::isfinite(value) ? format("%.3g", value) : "free";
+  return value <= kMostPercent ? format("%.3g", value) : "free";
 }
 
 void print_head(const DesignReport& report) {
@@ -70,8 +71,9 @@ void print_bounds(const Sensitivity& s, const std::string& label, const std::str
                       format_bound(bounds.rms).c_str());
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
     const double bound = bounds.bound[p];
-    std::cout << format("  %12s  %6s", format_bound(to_unit(s.parameters[p], bound)).c_str(),
-                        format_bound(bound).c_str());
+    const std::string value =
+        bound <= kMostPercent ? format("%.3g", to_unit(s.parameters[p], bound)) : "free";
+    std::cout << format("  %12s  %6s", value.c_str(), format_bound(bound).c_str());
   }
   std::cout << "\n";
 }
@@ -159,7 +161,9 @@ void print_weakness(const DesignReport& report, const char* where, const Bounds&
 void print_proposal(const DesignReport& report) {
   const Design& design = report.design;
   const Bounds& best = design.best[0].bounds;
-  const Instant& instant = report.sensitivity.instants[design.best[0].instants[0]];
+  const Sensitivity& s = report.sensitivity;
+  const Instant& instant = s.instants[design.best[0].instants[0]];
+  const auto range = find_good_range(design);
   std::cout << "\n";
   print_weakness(report, "at the sweep's instant", design.snapshot);
   print_weakness(report, "by all instants", design.window);
@@ -170,7 +174,9 @@ void print_proposal(const DesignReport& report) {
   std::cout << "best instant: offset = " << format("%.3f", instant.offset)
             << " m; put `offset = " << format("%.3f", instant.offset)
             << "` into [record] snapshot: rms of the bounds " << format_bound(design.snapshot.rms)
-            << " -> " << format_bound(best.rms) << " %\n";
+            << " -> " << format_bound(best.rms) << " %,\nless than a tenth more from "
+            << format("%.3f to %.3f m\n", s.instants[range.first].offset,
+                      s.instants[range.second].offset);
 }
 
 }  // namespace

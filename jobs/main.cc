@@ -12,6 +12,8 @@
 #include "jobs/command.h"
 #include "jobs/design.h"
 #include "jobs/interrupt.h"
+#include "jobs/merge.h"
+#include "jobs/plan.h"
 #include "jobs/run.h"
 #include "jobs/simulate.h"
 #include "jobs/status.h"
@@ -27,10 +29,12 @@ constexpr Command kCommands[] = {
      &strut::run_simulate},
     {"design", "which instant, window and sensors identify a sweep's parameters best",
      &strut::run_design},
+    {"plan", "make the folder of a sweep: which cases, in which shards", &strut::run_plan},
     {"run", "simulate what a sweep still lacks", &strut::run_run},
     {"resume", "the same, and try again what failed", &strut::run_resume},
     {"status", "how far a sweep has come", &strut::run_status},
     {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
+    {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
     {"bench", "measure how fast this machine simulates, and how exactly", &strut::run_bench},
 };
 

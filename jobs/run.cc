@@ -102,7 +102,7 @@ Json make_json(const RunProgress& progress, const RunSummary& summary, double se
       .set("present", static_cast<long>(progress.present))
       .set("written", static_cast<long>(progress.written))
       .set("elsewhere", static_cast<long>(progress.elsewhere))
-      .set("failed", static_cast<long>(progress.failed))
+      .set("failed", static_cast<long>(summary.failed))
       .set("mended", static_cast<long>(summary.mended))
       .set("still_failing", static_cast<long>(summary.still_failing))
       .set("duplicates", static_cast<long>(summary.duplicates))
@@ -122,7 +122,7 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
             << " (" << format_count(std::llround(static_cast<double>(progress.written) / seconds))
             << "/s)";
   if (present > 0) std::cout << ", " << format_count(present) << " were there already";
-  std::cout << "; " << format_count(progress.failed) << " failed\n";
+  std::cout << "; " << format_count(summary.failed) << " failed\n";
   if (summary.mended + summary.still_failing > 0) {
     std::cout << "tried again: " << format_count(summary.mended) << " mended, "
               << format_count(summary.still_failing) << " still fail\n";

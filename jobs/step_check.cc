@@ -1,5 +1,6 @@
 #include "jobs/step_check.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "io/config.h"
@@ -8,20 +9,32 @@
 namespace strut {
 namespace {
 
+/// To two digits, so that what is printed as allowed is.
+double round_down(double value) {
+  if (!(value > 0.0)) return 0.0;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::floor(value / unit) * unit;
+}
+
 void check_step(const PreparedCase& c, const SimulateOptions& options, const char* name,
                 double step) {
-  IntegrateOptions integrate = options.integrate;
-  integrate.step.step = step;
-  const double amplification = calc_amplification(c, integrate);
-  if (amplification <= kMaxAmplification) return;
-  char how[64], allowed[64];
-  std::snprintf(how, sizeof how, "each step multiplies a disturbance by %.3g", amplification);
-  std::snprintf(allowed, sizeof allowed, "must lie in (0, %.2g] s here",
-                find_stable_step(c, integrate));
-  throw make_step_error(options, name, step, how, allowed);
+  const auto fault = find_step_fault(c, options.integrate, step);
+  if (fault) throw make_step_error(options, name, step, fault->how, fault->allowed);
 }
 
 }  // namespace
+
+std::optional<StepFault> find_step_fault(const PreparedCase& c, IntegrateOptions integrate,
+                                         double step) {
+  integrate.step.step = step;
+  const double amplification = calc_amplification(c, integrate);
+  if (amplification <= kMaxAmplification) return std::nullopt;
+  char how[64], allowed[64];
+  std::snprintf(how, sizeof how, "each step multiplies a disturbance by %.3g", amplification);
+  std::snprintf(allowed, sizeof allowed, "must lie in (0, %.2g] s here",
+                round_down(find_stable_step(c, integrate)));
+  return StepFault{how, allowed};
+}
 
 InputError make_step_error(const SimulateOptions& options, const char* name, double step,
                            const std::string& how, const std::string& allowed) {

@@ -108,6 +108,14 @@ Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
   return design;
 }
 
+std::pair<std::size_t, std::size_t> find_good_range(const Design& design) {
+  const double most = 1.1 * design.best[0].bounds.rms;
+  std::size_t first = design.best[0].instants[0], last = first;
+  while (first > 0 && design.scan[first - 1].rms < most) --first;
+  while (last + 1 < design.scan.size() && design.scan[last + 1].rms < most) ++last;
+  return {first, last};
+}
+
 WorstCurve find_worst_curve(const Sensitivity& s, const std::vector<int>& channels) {
   WorstCurve worst;
   for (const int channel : channels) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sweep/instants.h"
@@ -45,6 +46,10 @@ struct Design {
 /// Throws InputError for a channel without noise, and where there are fewer than three instants.
 Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
                    const SensorNoise& noise);
+
+/// First and last instant around the best one between which the rms of the bounds is less than a
+/// tenth above its.
+std::pair<std::size_t, std::size_t> find_good_range(const Design& design);
 
 /// The largest half-step error among the curves of `channels`.
 struct WorstCurve {

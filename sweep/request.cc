@@ -61,9 +61,8 @@ Axis read_bounds(const Table& table, const std::string& name, bool levels) {
   const double to = table.number("to", allowed);
   const bool has_step = table.has("step"), has_count = table.has("count");
   if (has_step && has_count) throw table.error("count", "must not stand beside 'step'");
-  if (has_step) read_step(table, to, allowed, axis);
   if (has_count) read_count(table, to, axis);
-  if (levels && !has_step && !has_count) throw table.error("missing key 'step' or 'count'");
+  if (!has_count && (has_step || levels)) read_step(table, to, allowed, axis);
   if (!levels) {
     axis.step = to - axis.from;
     axis.count = 2;
@@ -160,6 +159,19 @@ void read_by(const std::optional<Table>& table, const Grid& grid, SampleRequest&
     throw table->error(
         "by", "needs grid." + axis.name + ".from other than 0, which a loss is relative to");
   }
+}
+
+/// Nobody asked for ten layers: no more than there are levels, points or samples.
+void limit_default_strata(const std::optional<Table>& table, const Grid& grid,
+                          SampleRequest& sample) {
+  if (table && table->has("strata")) return;
+  std::int64_t most = sample.method == SampleMethod::kGrid ? grid.size() : sample.count;
+  if (sample.count > 0) most = std::min(most, sample.count);
+  for (const Axis& axis : grid.axes()) {
+    const bool levels = sample.method == SampleMethod::kGrid && axis.name == sample.by;
+    if (levels) most = std::min(most, axis.count);
+  }
+  sample.strata = static_cast<int>(std::min<std::int64_t>(sample.strata, most));
 }
 
 IntegrateRequest read_integrate(const std::optional<Table>& table) {
@@ -259,6 +271,7 @@ SweepRequest read_request(const std::filesystem::path& path) {
   request.sample = read_sample(sample);
   request.grid = read_grid(root, request);
   read_by(sample, request.grid, request.sample);
+  limit_default_strata(sample, request.grid, request.sample);
   request.integrate = read_integrate(root.find_table("integrate"));
   read_record(root.table("record"), request);
   read_shards(root.find_table("shards"), request);

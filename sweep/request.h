@@ -16,7 +16,7 @@ enum class SampleMethod { kGrid, kLatinHypercube, kSobol };
 
 struct SampleRequest {
   SampleMethod method = SampleMethod::kGrid;
-  int strata = 10;
+  int strata = 10;          // absent: at most as many as there are levels of `by`
   std::string by;           // a grid parameter, or "degradation"; absent: the first axis
   std::int64_t count = -1;  // -1: all
   std::uint64_t seed = 1;

@@ -79,6 +79,7 @@ class Run {
       });
     }
     summary_.stopped = halt_;
+    count_failed();
     return summary_;
   }
 
@@ -175,15 +176,28 @@ class Run {
     return finished;
   }
 
-  std::vector<std::int64_t> list_failing_shards() {
+  /// Calls `act(shard, failures)` for each of the shards asked for that is there.
+  template <class Act>
+  void for_each_present(const Act& act) {
     ShardRecords records(folder_);
-    std::vector<std::int64_t> shards;
     const std::int64_t end = options_.end_shard < 0 ? plan_.shard_count() : options_.end_shard;
     for (const std::int64_t shard : list_shards(folder_)) {
-      if (shard < options_.first_shard || shard >= end) continue;
-      if (!records.get(shard).failures.empty()) shards.push_back(shard);
+      if (shard >= options_.first_shard && shard < end) act(shard, records.get(shard).failures);
     }
+  }
+
+  std::vector<std::int64_t> list_failing_shards() {
+    std::vector<std::int64_t> shards;
+    for_each_present([&](std::int64_t shard, const auto& failures) {
+      if (!failures.empty()) shards.push_back(shard);
+    });
     return shards;
+  }
+
+  void count_failed() {
+    for_each_present([&](std::int64_t, const auto& failures) {
+      for (const auto& [reason, cases] : failures) summary_.failed += cases;
+    });
   }
 
   void add_seconds(const SimulationSeconds& seconds) {

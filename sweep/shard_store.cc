@@ -47,10 +47,13 @@ int count_retries(const SweepFolder& folder, std::int64_t shard) {
   return rounds;
 }
 
-Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard) {
+Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
+                        std::vector<RowOrigin>* origins) {
   Shard mended = read_shard(folder.shard(shard));
   std::map<std::int64_t, std::size_t> row_of;
   for (std::size_t row = 0; row < mended.rows.size(); ++row) row_of[mended.rows.case_id[row]] = row;
+  std::vector<RowOrigin> from(mended.rows.size());
+  for (std::size_t row = 0; row < from.size(); ++row) from[row] = {-1, row, from.size()};
   const int rounds = count_retries(folder, shard);
   for (int round = 0; round < rounds; ++round) {
     const fs::path file = folder.retry(shard, round);
@@ -62,8 +65,10 @@ Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard) {
                          " is not in shard " + std::to_string(shard));
       }
       mended.rows.set_row(found->second, overlay, row);
+      from[found->second] = {round, row, overlay.size()};
     }
   }
+  if (origins != nullptr) *origins = std::move(from);
   return mended;
 }
 

@@ -19,8 +19,16 @@ std::vector<std::int64_t> list_shards(const SweepFolder& folder);
 /// Rounds of retries that `retries/` holds for a shard: 0, 1, ... without a gap.
 int count_retries(const SweepFolder& folder, std::int64_t shard);
 
-/// A shard with its rows as the retries left them. Throws InputError where a file is damaged.
-Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard);
+/// Where a mended row comes from.
+struct RowOrigin {
+  int round = -1;  // -1: the shard itself; else the retry
+  std::size_t row = 0, file_rows = 0;
+};
+
+/// A shard with its rows as the retries left them; `origins`, where given, tells of each row where
+/// it comes from. Throws InputError where a file is damaged.
+Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
+                        std::vector<RowOrigin>* origins = nullptr);
 
 /// Why a shard cannot be what the plan asks for, by its seal alone (512 bytes and the size); empty
 /// where nothing speaks against it.

@@ -12,10 +12,13 @@ namespace strut {
 namespace {
 
 constexpr std::array<const char*, kCaseStatusCount> kStatusNames = {
-    "done", "diverged", "out_of_travel", "no_equilibrium", "no_event"};
+    "done", "diverged", "out_of_travel", "stalled", "no_equilibrium", "no_event"};
 constexpr std::array<const char*, kCaseStatusCount> kStatusReasons = {
-    "", "a state is no longer finite, or faster than any car",
-    "a corner left the travel its loops were closed over", "",
+    "",
+    "a state is no longer finite, or faster than any car",
+    "a corner left the travel its loops were closed over",
+    "steps cut short by contact events, one upon the other, get nowhere",
+    "",
     "the rear wheels never met the snapshot's line"};
 
 double now() {
@@ -66,7 +69,8 @@ std::string describe_case_status() {
 
 bool may_retry(std::int32_t status) {
   return status == static_cast<std::int32_t>(CaseStatus::kDiverged) ||
-         status == static_cast<std::int32_t>(CaseStatus::kOutOfTravel);
+         status == static_cast<std::int32_t>(CaseStatus::kOutOfTravel) ||
+         status == static_cast<std::int32_t>(CaseStatus::kStalled);
 }
 
 SimulationSeconds& SimulationSeconds::operator+=(const SimulationSeconds& other) {

@@ -18,10 +18,11 @@ enum class CaseStatus : std::int32_t {
   kDone = 0,
   kDiverged = 1,       // a state is no longer finite, or faster than any car
   kOutOfTravel = 2,    // a corner left the travel its loops were closed over
-  kNoEquilibrium = 3,  // loops that cannot be closed, springs that cannot carry the car
-  kNoEvent = 4,        // the car never met the snapshot's line
+  kStalled = 3,        // steps cut short by contact events, one upon the other, get nowhere
+  kNoEquilibrium = 4,  // loops that cannot be closed, springs that cannot carry the car
+  kNoEvent = 5,        // the car never met the snapshot's line
 };
-inline constexpr int kCaseStatusCount = 5;
+inline constexpr int kCaseStatusCount = 6;
 
 /// "done", "diverged", ...: the words of status, journal and documentation.
 const char* get_case_status_name(std::int32_t status);

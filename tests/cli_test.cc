@@ -1,8 +1,6 @@
 // The program as a user meets it: arguments in, exit code, messages and files out.
 // Asked for by Boost's own parser, which uses the names it deprecates.
 #define BOOST_BIND_GLOBAL_PLACEHOLDERS
-#include <sys/wait.h>
-
 #include <array>
 #include <boost/property_tree/json_parser.hpp>
 #include <catch2/catch.hpp>
@@ -13,13 +11,16 @@
 #include "jobs/bench_cases.h"
 #include "jobs/json.h"
 #include "model/vehicle/channels.h"
+#include "tests/run_program.h"
 #include "tests/temporary_folder.h"
 
 namespace strut {
 namespace {
 
 using Catch::Matchers::Contains;
+using test::Outcome;
 using test::read_text;
+using test::run_shell;
 using test::TemporaryFolder;
 
 const std::string kProgram = STRUT_PROGRAM;
@@ -29,28 +30,7 @@ const std::string kBump = kExamples + "/maneuvers/bump_20mps.toml";
 const std::string kRig = kExamples + "/rigs/quarter_car.toml";
 const std::string kRigBump = kExamples + "/rigs/maneuvers/bump.toml";
 
-struct Outcome {
-  int code = -1;
-  std::string out, messages;
-};
-
-Outcome run_shell(const std::string& command) {
-  const TemporaryFolder folder;
-  const std::string messages = folder / "messages";
-  FILE* pipe = ::popen((command + " 2>" + messages).c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  Outcome outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.out.append(buffer.data(), n);
-  }
-  const int status = ::pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  outcome.messages = read_text(messages);
-  return outcome;
-}
-
-Outcome run(const std::string& arguments) { return run_shell(kProgram + " " + arguments); }
+Outcome run(const std::string& arguments) { return test::run_program(arguments); }
 
 /// The example car with one text replaced, which must be there.
 std::string change_example(const TemporaryFolder& folder, const std::string& file,

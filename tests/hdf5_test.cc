@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "io/file_bytes.h"
 #include "tests/limited_file_size.h"
 #include "tests/temporary_folder.h"
 
@@ -49,6 +50,61 @@ TEST_CASE("What is written to HDF5 reads back bit for bit", "[io][property]") {
   CHECK_FALSE(file.has("/history/place"));
   CHECK_FALSE(file.has("/no/place"));
   CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("Integers, texts and numbers of attributes read back", "[io][property]") {
+  const TemporaryFolder folder;
+  const std::vector<std::int64_t> large = {INT64_MIN, -1, 0, INT64_MAX};
+  const std::vector<std::int32_t> small = {INT32_MIN, 7, INT32_MAX};
+  const std::vector<std::string> texts = {"", "a", "rear \xC3\xA9", "longest of all of them"};
+  Hdf5Writer writer(folder / "run.h5");
+  writer.write("/large", large, {"1", "", {}});
+  writer.write("/small", small, {"1", "", {}});
+  writer.write("/texts", texts, {"1", "words", {}});
+  writer.write_attribute("/", "count", INT64_MAX);
+  writer.write_attribute("/texts", "third", 1.0 / 3.0);
+  writer.write_attribute_list("/", "names", {"a", "b"});
+  writer.commit();
+  const Hdf5Reader file(folder / "run.h5");
+  CHECK(file.read_integers("/large") == large);
+  CHECK(file.read_integers("/small") == std::vector<std::int64_t>{INT32_MIN, 7, INT32_MAX});
+  CHECK(file.read_texts("/texts") == texts);
+  CHECK(file.read_label("/texts").description == "words");
+  CHECK(file.read_integer_attribute("/", "count") == INT64_MAX);
+  CHECK(file.read_number_attribute("/texts", "third") == 1.0 / 3.0);
+  CHECK(file.read_attribute_list("/", "names") == std::vector<std::string>{"a", "b"});
+  CHECK(file.list_attributes("/") == std::vector<std::string>{"count", "names"});
+  CHECK_FALSE(file.has_attribute("/", "third"));
+  CHECK_THROWS_WITH(file.read_integers("/texts"), Contains("/texts: must hold integers"));
+  CHECK_THROWS_WITH(file.read("/texts"), Contains("/texts: must hold numbers"));
+  CHECK_THROWS_WITH(file.read_texts("/large"), Contains("/large: must hold texts"));
+  CHECK_THROWS_WITH(file.read_integer_attribute("/texts", "third"), Contains("an integer"));
+  CHECK_THROWS_WITH(file.read_number_attribute("/", "third"), Contains("no such attribute"));
+}
+
+TEST_CASE("A file in memory is that on disk, behind its user block or without", "[io][property]") {
+  const TemporaryFolder folder;
+  const bool user_block = GENERATE(false, true);
+  const auto fill = [](Hdf5Writer& writer) {
+    writer.write("/a/b", kValues, 2, kLabel);
+    writer.write_attribute("/", "key", "value");
+  };
+  Hdf5Writer first(folder / "run.h5", {.user_block = user_block});
+  Hdf5Writer second(Hdf5InMemory{"here"}, {.user_block = user_block});
+  fill(first);
+  fill(second);
+  first.commit();
+  const std::vector<std::byte> image = second.image();
+  CHECK(image == read_bytes(folder / "run.h5"));
+  CHECK(image[0] == (user_block ? std::byte{0} : std::byte{0x89}));
+  CHECK(Hdf5Reader(folder / "run.h5").read("/a/b").values == kValues);
+  const Hdf5Reader one("here", image), other("here", image);
+  CHECK(one.read("/a/b").values == kValues);
+  CHECK(other.read_attribute("/", "key") == "value");
+  CHECK_THROWS_AS(second.commit(), std::logic_error);
+  CHECK_THROWS_AS(fill(second), EnvironmentError);
+  const std::span cut = std::span(image).first(image.size() / 2);
+  CHECK_THROWS_WITH(Hdf5Reader("here", cut), Contains("here: damaged"));
 }
 
 TEST_CASE("A file that is not committed never appears", "[io]") {

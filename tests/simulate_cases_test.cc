@@ -35,13 +35,14 @@ std::vector<std::int64_t> list_ids(std::int64_t count) {
   return ids;
 }
 
-/// Two of the four values of each axis bring trouble: a spring that cannot carry the car, and a
-/// damper too stiff for the step.
+/// The last value of each axis brings trouble: a damper too stiff for the step, a spring that
+/// cannot carry the car.
 SweepText make_troubled() {
   SweepText text;
   text.grid =
       "front_damping = { from = 2000, to = 98000, step = 96000 }\n"
-      "rear_stiffness = { from = 35000, to = 2000, step = -11000 }\n";
+      "rear_stiffness = { from = 35000, to = 2000, count = 2 }\n"
+      "rear_damping = { from = 1980, to = 1800, count = 4 }\n";
   text.sample = "strata = 2\n";
   return text;
 }
@@ -70,7 +71,7 @@ TEST_CASE("A row holds the snapshot of its own case", "[unit][reference]") {
     const LaneResults truth = run_cvode(test::prepare(sweep.plan().make_case(ids[i])), {}, {});
     CHECK(rows.status[i] == 0);
     // Steps of 2 ms: some 1e-4 of the motion.
-    CHECK(rows.event_time[i] == Approx(truth.event_time[0]).epsilon(tolerance(1e-6)));
+    CHECK(rows.event_time[i] == Approx(truth.event_time[0]).epsilon(tolerance(1e-5)));
     for (std::size_t s = 0; s < channels.size(); ++s) {
       const double expected = truth.snapshot[static_cast<std::size_t>(channels[s])];
       CHECK(rows.snapshot[i * channels.size() + s] == Approx(expected).epsilon(tolerance(2e-3)));
@@ -86,7 +87,7 @@ TEST_CASE("What fails is told with reason and time, and harms no neighbor", "[un
   const ShardRows rows = simulate(plan, ids);
   std::map<std::int32_t, int> seen;
   for (std::size_t i = 0; i < ids.size(); ++i) {
-    const double damping = rows.parameters[2 * i], stiffness = rows.parameters[2 * i + 1];
+    const double damping = rows.parameters[3 * i], stiffness = rows.parameters[3 * i + 1];
     ++seen[rows.status[i]];
     INFO("damping " << damping << ", stiffness " << stiffness << ": " << rows.reason[i]);
     if (stiffness < 10000.0) {
@@ -110,7 +111,7 @@ TEST_CASE("A retry is as exact as its quarter of the step", "[unit][reference]")
   SweepText text = make_troubled();
   text.integrate = "method = \"rk4\"\nstep = 2e-3\nclosure = \"newton\"\n";
   const PlannedSweep sweep(text);
-  const std::int64_t id = 4;  // stiff damper, sound spring
+  const std::int64_t id = 8;  // stiff damper, sound spring
   const ShardRows rows = simulate(sweep.plan(), {id});
   REQUIRE(rows.parameters[0] > 50000.0);
   REQUIRE(rows.attempt[0] == 1);

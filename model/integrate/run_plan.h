@@ -11,6 +11,7 @@ enum class RunStatus : int {
   kDone = 0,
   kDiverged = 1,     // a state is no longer finite, or faster than any car
   kOutOfTravel = 2,  // a corner left the travel its loops were closed over
+  kStalled = 3,      // steps cut short by contact events, one upon the other, get nowhere
 };
 
 struct StepOptions {

@@ -32,6 +32,9 @@ class Simulation {
   static constexpr int N = System::kCapacity;
   static constexpr int kLanes = kLaneCount<T>;
   static constexpr int kMaxGuards = 8;  // capacity; a car on a road with kinks has eight
+  /// Steps, in those that a run without contact events takes, that no run needs which gets
+  /// anywhere.
+  static constexpr double kMostSteps = 20.0;
   using Vector = std::array<T, N>;
   using Mask = MaskOf<T>;
 
@@ -66,6 +69,7 @@ class Simulation {
     end_ = T(plan_.duration);
     past_count_ = T(0.0);
     past_step_ = T(0.0);
+    step_count_ = T(0.0);
     next_sample_ = T(0.0);
     triggered_ = T(plan_.snapshot ? 0.0 : 1.0);
     evaluate(time_, x(), f(), decay_.data());
@@ -85,6 +89,7 @@ class Simulation {
 
   /// One step of every lane that has not ended.
   void advance() {
+    step_count_ = step_count_ + T(1.0);
     const T nominal = choose_step();
     const T left = max(end_ - time_, T(0.0));
     const Mask last = left < nominal * T(1.0 + 1e-9);
@@ -252,12 +257,14 @@ class Simulation {
   }
 
   void retire_failed() {
-    const Mask failed = system_.has_failed() & (time_ < end_);
+    const Mask stalled = step_count_ > T(kMostSteps * plan_.duration / options_.step);
+    const Mask failed = (system_.has_failed() | stalled) & (time_ < end_);
     if (!any(failed)) return;
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!get_mask_lane(failed, lane)) continue;
       const auto at = static_cast<std::size_t>(lane);
-      results_.status[at] = static_cast<int>(system_.get_failure(lane));
+      results_.status[at] = static_cast<int>(
+          get_mask_lane(stalled, lane) ? RunStatus::kStalled : system_.get_failure(lane));
       results_.failure_time[at] = get_lane(time_, lane);
     }
     // A retired lane stands still at its last good state.
@@ -396,7 +403,8 @@ class Simulation {
   StiffWeights<T> weights_;
   StepScratch<T, N> scratch_;
   std::array<T, kMaxGuards> guard_{}, guard1_{}, side_{};
-  T time_, end_, h_, past_count_, past_step_, next_sample_, trigger_, trigger1_, triggered_;
+  T time_, end_, h_, past_count_, past_step_, step_count_, next_sample_, trigger_, trigger1_,
+      triggered_;
   std::vector<T> channel_;
 };
 

@@ -1,0 +1,116 @@
+#include "jobs/merge.h"
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+
+#include "jobs/build_info.h"
+#include "jobs/command.h"
+#include "jobs/interrupt.h"
+#include "jobs/json.h"
+#include "jobs/open_sweep.h"
+#include "jobs/progress.h"
+#include "sweep/merge.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut merge DIR -o dataset.h5 [OPTIONS]",
+      "Writes the cases of all shards of the sweep in DIR to one HDF5 file for other tools: the\n"
+      "datasets of a shard, in the order of the plan, retried cases in their place.",
+      "  strut merge sweep -o dataset.h5\n"
+      "  strut merge sweep -o view.h5 --virtual");
+  arguments.add_option("output,o", "FILE", "file to write");
+  arguments.add_switch("virtual",
+                       "virtual datasets over the shards: small, but the shards must stay, and\n"
+                       "what vanishes reads as NaN");
+  arguments.add_switch("partial", "leave out what is missing instead of refusing");
+  arguments.add_switch("force", "replace FILE where it exists");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+/// `folder`: the sweep, of which nothing may be replaced.
+fs::path find_output(const Arguments& arguments, const SweepFolder& folder) {
+  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  const fs::path output = arguments.text("output");
+  if (fs::exists(output) && !arguments.is_on("force")) {
+    throw InputError("--output = " + output.string() + ": exists; --force replaces it");
+  }
+  const auto parent = fs::weakly_canonical(fs::absolute(output)).parent_path();
+  const bool own = parent == fs::weakly_canonical(folder.shards()) ||
+                   parent == fs::weakly_canonical(folder.retries()) ||
+                   fs::weakly_canonical(output) == fs::weakly_canonical(folder.plan());
+  if (own) throw InputError("--output = " + output.string() + ": is the sweep's own");
+  return output;
+}
+
+MergeInput make_input(const Plan& plan) {
+  MergeInput input{plan.hash(), plan.shard_count(), plan.make_schema()};
+  if (input.schema.history.empty()) {
+    input.schema.history_samples = 0;
+    input.schema.history_interval = 0.0;
+  }
+  return input;
+}
+
+void print(const MergeReport& report, const fs::path& output, bool as_json) {
+  if (as_json) {
+    Json json = Json::object();
+    json.set("file", output.string())
+        .set("cases", static_cast<long>(report.cases))
+        .set("failed", static_cast<long>(report.failed))
+        .set("shards", static_cast<long>(report.shards))
+        .set("missing_shards", static_cast<long>(report.missing))
+        .set("data_digest", report.data_digest);
+    std::cout << json.dump() << "\n";
+    return;
+  }
+  std::cout << output.string() << ": " << format_count(report.cases) << " cases ("
+            << format_count(report.failed) << " failed) of " << format_count(report.shards)
+            << " shards";
+  if (report.missing > 0) std::cout << "; " << format_count(report.missing) << " shards MISSING";
+  std::cout << "\ndata digest " << report.data_digest << "\n";
+}
+
+}  // namespace
+
+int run_merge(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  const OpenSweep sweep = open_sweep(arguments);
+  const fs::path output = find_output(arguments, sweep.folder);
+  MergeOptions options;
+  options.is_view = arguments.is_on("virtual");
+  options.partial = arguments.is_on("partial");
+  const BuildInfo& build = get_build_info();
+  options.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
+  // A limit of file size is a full disk, told as one, not the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  InterruptWatcher interrupt;
+  std::atomic<std::int64_t> done{0};
+  MergeReport report;
+  {
+    const ProgressLine line([&] {
+      return format_count(done) + "/" + format_count(sweep.plan.case_count()) + " cases merged";
+    });
+    report =
+        merge_sweep(sweep.folder, make_input(sweep.plan), output, options, [&](std::int64_t cases) {
+          done = cases;
+          return !interrupt.halt();
+        });
+  }
+  if (report.data_digest.empty()) {
+    std::cerr << "strut: interrupted; nothing is written\n";
+    return 128 + interrupt.signal();
+  }
+  print(report, output, arguments.is_on("json"));
+  return kExitDone;
+}
+
+}  // namespace strut

@@ -1,0 +1,167 @@
+#include "jobs/plan.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+
+#include "jobs/arguments.h"
+#include "jobs/command.h"
+#include "jobs/json.h"
+#include "jobs/plan_estimate.h"
+#include "sweep/case_order.h"
+#include "sweep/folder.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut plan SWEEP.toml -o DIR [OPTIONS]",
+      "Reads a sweep file (every key: docs/sweeps.md), draws its cases and makes the folder DIR\n"
+      "that `strut run` fills. The folder holds copies of every file that the sweep names. "
+      "Planning\n"
+      "the same again changes nothing; another sweep in the same folder is refused.",
+      "  strut plan examples/sweeps/paper.toml --dry-run\n"
+      "  strut plan examples/sweeps/paper.toml -o sweep");
+  arguments.add_option("output,o", "DIR", "folder to make");
+  arguments.add_switch("dry-run", "print layers, shards, estimated time and bytes; write nothing");
+  arguments.add_switch("json", "print JSON instead of text");
+  return arguments;
+}
+
+std::string describe_order(const Plan& plan) {
+  const SweepRequest& request = plan.request();
+  if (request.sample.method != SampleMethod::kGrid) return "by number";
+  if (request.shuffle) {
+    return "shuffled: whatever part of it has run is a random sample of the whole";
+  }
+  std::string slow;
+  for (const std::size_t a : find_slow_axes(request)) {
+    slow += (slow.empty() ? "" : ", ") + request.grid.axes()[a].name;
+  }
+  return "the grid's, slowest " + slow + ", which each take a new mechanism or duration";
+}
+
+std::string describe_cases(const Plan& plan) {
+  const std::string count = std::to_string(plan.case_count());
+  if (plan.request().sample.method == SampleMethod::kLatinHypercube) {
+    return count + ", a Latin hypercube";
+  }
+  if (plan.request().sample.method == SampleMethod::kSobol) return count + ", a Sobol sequence";
+  return count + " of the grid's " + std::to_string(plan.point_count()) + " points";
+}
+
+std::string describe_seconds(double seconds) {
+  char text[64];
+  if (seconds < 120.0) {
+    std::snprintf(text, sizeof text, "%.2g s", seconds);
+  } else if (seconds < 7200.0) {
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60.0);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
+  }
+  return text;
+}
+
+std::string describe_bytes(double bytes) {
+  const char* const units[] = {"B", "kB", "MB", "GB", "TB"};
+  std::size_t unit = 0;
+  for (; bytes >= 1000.0 && unit < 4; ++unit) bytes /= 1000.0;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3g %s", bytes, units[unit]);
+  return text;
+}
+
+void print_layers(const Plan& plan) {
+  std::cout << "layers    " << plan.layers().size() << " by " << plan.request().sample.by << "\n";
+  char line[160];
+  std::snprintf(line, sizeof line, "%9s %14s %14s %16s %16s\n", "layer", "from", "to", "cases",
+                "drawn");
+  std::cout << line;
+  std::size_t number = 0;
+  for (const Layer& layer : plan.layers()) {
+    std::snprintf(line, sizeof line, "%9zu %14.7g %14.7g %16lld %16lld\n", ++number, layer.lower,
+                  layer.upper, static_cast<long long>(layer.population),
+                  static_cast<long long>(layer.drawn));
+    std::cout << line;
+  }
+}
+
+void print_text(const Plan& plan, const SweepEstimate& estimate) {
+  std::cout << "cases     " << describe_cases(plan) << "\n";
+  print_layers(plan);
+  std::cout << "order     " << describe_order(plan) << "\nshards    " << plan.shard_count()
+            << " of up to " << plan.request().shard_cases << " cases\ntime      about "
+            << describe_seconds(estimate.seconds) << " on " << estimate.cores
+            << " cores (an estimate, from " << estimate.measured << " cases)\nsize      about "
+            << describe_bytes(estimate.bytes) << " (an estimate, before compression)\nplan      "
+            << plan.hash() << "\n";
+}
+
+void print_json(const Plan& plan, const SweepEstimate& estimate,
+                const std::optional<SweepFolder>& folder) {
+  Json layers = Json::array();
+  for (const Layer& layer : plan.layers()) {
+    layers.push(Json::object()
+                    .set("lower", layer.lower)
+                    .set("upper", layer.upper)
+                    .set("population", static_cast<long>(layer.population))
+                    .set("drawn", static_cast<long>(layer.drawn)));
+  }
+  std::cout << Json::object()
+                   .set("points", static_cast<long>(plan.point_count()))
+                   .set("cases", static_cast<long>(plan.case_count()))
+                   .set("by", plan.request().sample.by)
+                   .set("layers", layers)
+                   .set("shuffled", plan.request().shuffle)
+                   .set("shards", static_cast<long>(plan.shard_count()))
+                   .set("shard_cases", plan.request().shard_cases)
+                   .set("estimated_seconds", estimate.seconds)
+                   .set("estimated_bytes", estimate.bytes)
+                   .set("cores", estimate.cores)
+                   .set("plan_hash", plan.hash())
+                   .set("folder", folder ? Json(folder->root.string()) : Json())
+                   .dump()
+            << "\n";
+}
+
+void warn(const SweepEstimate& estimate) {
+  if (estimate.without_event == estimate.measured) {
+    std::cerr << "strut plan: warning: none of the " << estimate.measured
+              << " cases looked at meets the snapshot's line; a longer duration may\n";
+  }
+  if (estimate.failed == estimate.measured) {
+    std::cerr << "strut plan: warning: all of the " << estimate.measured
+              << " cases looked at fail\n";
+  }
+}
+
+}  // namespace
+
+int run_plan(const std::vector<std::string>& arguments) {
+  Arguments parsed = make_arguments();
+  if (!parsed.parse(arguments)) return kExitDone;
+  if (parsed.positional().size() != 1) {
+    throw parsed.usage_error(std::to_string(parsed.positional().size()) +
+                             " files; expected SWEEP.toml");
+  }
+  const bool dry = parsed.is_on("dry-run");
+  if (!dry && !parsed.has("output")) throw parsed.usage_error("--output: missing");
+
+  const Plan plan(read_request(parsed.positional().front()));
+  check_plan(plan);
+  std::optional<SweepFolder> folder;
+  if (!dry) folder = make_sweep_folder(parsed.text("output"), plan);
+  const SweepEstimate estimate = estimate_sweep(plan, list_kernels().front());
+  parsed.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
+  warn(estimate);
+  if (folder) {
+    std::cerr << folder->root.string() << ": planned; `strut run " << folder->root.string()
+              << "` simulates it\n";
+  }
+  return kExitDone;
+}
+
+}  // namespace strut

@@ -1,0 +1,48 @@
+// All shards of a sweep as one file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/shard.h"
+#include "sweep/folder.h"
+
+namespace strut {
+
+/// What of a plan a merge must know.
+struct MergeInput {
+  std::string plan_hash;
+  std::int64_t shard_count = 0;
+  ShardSchema schema;
+};
+
+struct MergeOptions {
+  bool is_view = false;  // HDF5 virtual datasets over the shards instead of copies of their rows
+  bool partial = false;  // go on where shards are missing; without their rows
+  std::vector<std::pair<std::string, std::string>> provenance;  // attribute -> text
+};
+
+struct MergeReport {
+  std::int64_t cases = 0, failed = 0;
+  std::int64_t shards = 0, missing = 0;
+  std::string data_digest;  // empty: stopped
+};
+
+/// Writes the cases of all shards, in the plan's order and as the retries left them, to one file
+/// with the datasets and attributes of a shard. Every byte of every shard is checked on the way.
+/// The group /shards tells of each shard of the plan its `number`, `first_row` (-1: missing),
+/// `rows` and `retries`. A view finds its shards by their path relative to its own folder; what
+/// vanishes later reads as NaN, -1 or an empty text. Memory: one shard. `progress` is called with
+/// the cases done; where it returns false, nothing is written and the report ends there.
+///
+/// Throws InputError where a shard is damaged or not the plan's, or missing though `partial` is
+/// off.
+MergeReport merge_sweep(const SweepFolder& folder, const MergeInput& input,
+                        const std::filesystem::path& output, const MergeOptions& options,
+                        const std::function<bool(std::int64_t)>& progress);
+
+}  // namespace strut

@@ -1,0 +1,259 @@
+#include "sweep/merge.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "io/file_bytes.h"
+#include "io/hdf5_stream.h"
+#include "tests/example_shard.h"
+#include "tests/limited_file_size.h"
+#include "tests/temporary_folder.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::make_example_rows;
+using test::make_example_schema;
+using test::TemporaryFolder;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kCases = 20;
+
+void write_file(const fs::path& path, const std::vector<std::byte>& image) {
+  fs::create_directories(path.parent_path());
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(image.data()),
+             static_cast<std::streamsize>(image.size()));
+}
+
+ShardRows make_rows(std::int64_t shard) {
+  return make_example_rows(make_example_schema(), kCases, 1000 - 100 * shard);
+}
+
+void write_shard(const fs::path& path, std::int64_t shard, const ShardRows& rows) {
+  write_file(path, make_shard_image(compress_shard(make_example_schema(), rows),
+                                    test::make_example_provenance(shard)));
+}
+
+/// Rows 2 and 5 of a shard, mended.
+ShardRows make_overlay(std::int64_t shard) {
+  const ShardRows rows = make_rows(shard);
+  ShardRows overlay = ShardRows::make(make_example_schema(), 2);
+  overlay.set_row(0, rows, 5);
+  overlay.set_row(1, rows, 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    overlay.status[i] = 0;
+    overlay.attempt[i] = 2;
+    overlay.snapshot[2 * i] = 77.0 + static_cast<double>(i);
+    overlay.reason[i] = "a reason longer than all that the shard itself has";
+  }
+  return overlay;
+}
+
+/// Three shards, of which the second has a retry.
+SweepFolder make_sweep(const TemporaryFolder& folder) {
+  const SweepFolder sweep{folder / "sweep"};
+  for (std::int64_t shard = 0; shard < 3; ++shard) {
+    write_shard(sweep.shard(shard), shard, make_rows(shard));
+  }
+  write_shard(sweep.retry(1, 0), 1, make_overlay(1));
+  return sweep;
+}
+
+MergeInput make_input() { return {std::string(64, 'a'), 3, make_example_schema()}; }
+
+/// All rows in the order of the plan, as the retry left them.
+ShardRows list_rows() {
+  ShardRows all = ShardRows::make(make_example_schema(), 3 * kCases);
+  for (std::size_t i = 0; i < 3 * kCases; ++i) {
+    all.set_row(i, make_rows(static_cast<std::int64_t>(i / kCases)), i % kCases);
+  }
+  all.set_row(kCases + 5, make_overlay(1), 0);
+  all.set_row(kCases + 2, make_overlay(1), 1);
+  return all;
+}
+
+MergeReport merge(const SweepFolder& sweep, const fs::path& output, bool is_view,
+                  bool partial = false) {
+  MergeOptions options;
+  options.is_view = is_view;
+  options.partial = partial;
+  options.provenance = {{"strut_version", "0.1.0"}};
+  return merge_sweep(sweep, make_input(), output, options, [](std::int64_t) { return true; });
+}
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 8 * a.size()) == 0;
+}
+
+void check_content(const fs::path& path, const ShardRows& rows) {
+  const Hdf5Reader file(path);
+  CHECK(file.read_integers("/case_id") == rows.case_id);
+  CHECK(same(file.read("/parameters").values, rows.parameters));
+  CHECK(same(file.read("/snapshot").values, rows.snapshot));
+  CHECK(same(file.read("/event_time").values, rows.event_time));
+  CHECK(same(file.read("/failure_time").values, rows.failure_time));
+  CHECK(same(file.read("/history/body_acceleration_z").values, rows.history[1]));
+  CHECK(same(file.read("/history/pitch_rate").values, rows.history[0]));
+  CHECK(file.read_texts("/reason") == rows.reason);
+  const auto attempts = file.read_integers("/attempt");
+  CHECK(std::equal(attempts.begin(), attempts.end(), rows.attempt.begin(), rows.attempt.end()));
+  CHECK(file.read_label("/snapshot").names ==
+        std::vector<std::string>{"pitch_angle", "body_position_z"});
+  CHECK(file.read_attribute("/", "plan_hash") == std::string(64, 'a'));
+  CHECK(file.read_attribute("/", "checksum") == calc_rows_digest(rows).text());
+  CHECK(file.read_attribute("/", "strut_version") == "0.1.0");
+}
+
+TEST_CASE("A merged file has every case in the plan's order, mended", "[io][property]") {
+  const bool is_view = GENERATE(false, true);
+  const TemporaryFolder folder;
+  const SweepFolder sweep = make_sweep(folder);
+  const MergeReport report = merge(sweep, folder / "merged.h5", is_view);
+  CHECK(report.cases == 3 * kCases);
+  CHECK(report.shards == 3);
+  CHECK(report.missing == 0);
+  CHECK(report.failed == 3 * 6 - 2);
+  CHECK(report.data_digest == calc_rows_digest(list_rows()).text());
+  check_content(folder / "merged.h5", list_rows());
+  const Hdf5Reader file(folder / "merged.h5");
+  CHECK(file.read_integers("/shards/first_row") == std::vector<std::int64_t>{0, 20, 40});
+  CHECK(file.read_integers("/shards/retries") == std::vector<std::int64_t>{0, 1, 0});
+}
+
+TEST_CASE("A view goes with its sweep, and what vanishes reads as nothing", "[io]") {
+  const TemporaryFolder folder;
+  const SweepFolder sweep = make_sweep(folder);
+  fs::create_directory(folder / "views");
+  merge(sweep, folder / "views/view.h5", true);
+  fs::create_directory(folder / "else");
+  fs::rename(folder / "views", folder / "else/views");
+  fs::rename(folder / "sweep", folder / "else/sweep");
+  check_content(folder / "else/views/view.h5", list_rows());
+
+  fs::remove(folder / "else/sweep/shards/000002.h5");
+  const Hdf5Reader file(folder / "else/views/view.h5");
+  CHECK(file.read_integers("/case_id").back() == -1);
+  CHECK(std::isnan(file.read("/snapshot").values.back()));
+  CHECK(file.read_texts("/reason").back().empty());
+  CHECK(file.read_integers("/case_id")[39] == 919);
+}
+
+TEST_CASE("A missing shard refuses a merge, or is left out and told", "[io]") {
+  const bool is_view = GENERATE(false, true);
+  const TemporaryFolder folder;
+  const SweepFolder sweep = make_sweep(folder);
+  fs::remove(sweep.shard(0));
+  CHECK_THROWS_WITH(merge(sweep, folder / "merged.h5", is_view),
+                    Contains("1 of 3 shards are missing") && Contains("000000"));
+  CHECK(folder.file_count() == 1);
+  const MergeReport report = merge(sweep, folder / "merged.h5", is_view, true);
+  CHECK(report.missing == 1);
+  CHECK(report.cases == 2 * kCases);
+  const Hdf5Reader file(folder / "merged.h5");
+  CHECK(file.read_integers("/shards/first_row") == std::vector<std::int64_t>{-1, 0, 20});
+  CHECK(file.read_integers("/case_id").front() == 900);
+  CHECK(file.read_integers("/case_id").size() == 2 * kCases);
+}
+
+TEST_CASE("A damaged or foreign shard stops a merge and is named", "[io]") {
+  const TemporaryFolder folder;
+  const SweepFolder sweep = make_sweep(folder);
+  auto image = read_bytes(sweep.shard(2));
+  image.back() ^= std::byte{1};
+  write_file(sweep.shard(2), image);
+  CHECK_THROWS_WITH(merge(sweep, folder / "merged.h5", false), Contains("000002.h5: damaged"));
+  write_shard(sweep.shard(2), 1, make_rows(2));
+  CHECK_THROWS_WITH(merge(sweep, folder / "merged.h5", true), Contains("000002.h5: is shard 1"));
+  MergeInput other = make_input();
+  other.plan_hash = "b";
+  const auto go_on = [](std::int64_t) { return true; };
+  CHECK_THROWS_WITH(merge_sweep(sweep, other, folder / "merged.h5", {}, go_on),
+                    Contains("000000.h5: belongs to another plan"));
+  other = make_input();
+  other.schema.snapshot.pop_back();
+  CHECK_THROWS_WITH(merge_sweep(sweep, other, folder / "merged.h5", {}, go_on),
+                    Contains("000000.h5: has other columns"));
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("A merge that is stopped, or meets a full disk, leaves nothing", "[io]") {
+  const TemporaryFolder folder;
+  const SweepFolder sweep = make_sweep(folder);
+  const auto stop = [](std::int64_t) { return false; };
+  CHECK(merge_sweep(sweep, make_input(), folder / "merged.h5", {}, stop).data_digest.empty());
+  for (const rlim_t bytes : {100U, 2000U, 6000U, 10000U}) {
+    CAPTURE(bytes);
+    const test::LimitedFileSize limit(bytes);
+    CHECK_THROWS_AS(merge(sweep, folder / "merged.h5", false), EnvironmentError);
+    CHECK_THROWS_AS(merge(sweep, folder / "merged.h5", true), EnvironmentError);
+  }
+  CHECK(folder.file_count() == 1);
+}
+
+template <class T>
+void write_values(const fs::path& path, const std::vector<T>& values) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(values.data()),
+             static_cast<std::streamsize>(values.size() * sizeof(T)));
+}
+
+// For read_with_h5py.py: the files, and what they hold.
+TEST_CASE("Example files for other tools", "[.][example_files]") {
+  const char* const name = std::getenv("STRUT_EXAMPLE_FOLDER");
+  REQUIRE(name != nullptr);
+  const fs::path folder = name;
+  const SweepFolder sweep{folder / "sweep"};
+  const ShardRows rows = make_example_rows(make_example_schema(), kCases, 1000);
+  write_shard(sweep.shard(0), 0, rows);
+  const MergeInput input = {std::string(64, 'a'), 1, make_example_schema()};
+  const auto go_on = [](std::int64_t) { return true; };
+  merge_sweep(sweep, input, folder / "merged.h5", {}, go_on);
+  merge_sweep(sweep, input, folder / "view.h5", {.is_view = true, .provenance = {}}, go_on);
+  fs::copy_file(sweep.shard(0), folder / "shard.h5");
+  write_values(folder / "case_id.bin", rows.case_id);
+  write_values(folder / "parameters.bin", rows.parameters);
+  write_values(folder / "snapshot.bin", rows.snapshot);
+  write_values(folder / "layer.bin", rows.layer);
+  write_values(folder / "status.bin", rows.status);
+  write_values(folder / "event_time.bin", rows.event_time);
+  write_values(folder / "failure_time.bin", rows.failure_time);
+  write_values(folder / "history+pitch_rate.bin", rows.history[0]);
+  write_values(folder / "history+body_acceleration_z.bin", rows.history[1]);
+  std::ofstream reasons(folder / "reason.txt");
+  for (const std::string& reason : rows.reason) reasons << reason << "\n";
+}
+
+TEST_CASE("Rows appended piece by piece are the dataset", "[io][property]") {
+  const TemporaryFolder folder;
+  std::vector<double> values(200000);  // two chunks of 1 MiB
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sqrt(static_cast<double>(i));
+  Hdf5StreamWriter file(folder / "stream.h5");
+  file.create("/group/x", Hdf5Type::kDouble, {values.size() / 2, 2}, {"m", "", {}});
+  std::size_t first = 0;
+  for (std::size_t count = 2; first < values.size(); first += count, count += 994) {
+    count = std::min(count, values.size() - first);
+    file.append("/group/x", std::as_bytes(std::span(values).subspan(first, count)));
+  }
+  CHECK_THROWS_AS(file.append("/group/x", std::vector<double>{1.0, 2.0}), std::logic_error);
+  CHECK_THROWS_AS(file.append("/group/x", std::vector<double>{1.0}), std::logic_error);
+  file.commit();
+  const Hdf5Reader reader(folder / "stream.h5");
+  CHECK(same(reader.read("/group/x").values, values));
+  const auto block = reader.read_rows("/group/x", 60000, 3);
+  CHECK(block.shape == std::vector<std::size_t>{3, 2});
+  CHECK(same(block.values, {values.begin() + 120000, values.begin() + 120006}));
+  CHECK_THROWS_WITH(reader.read_rows("/group/x", 99999, 2), Contains("100000 rows"));
+
+  Hdf5StreamWriter lacking(folder / "lacking.h5");
+  lacking.create("/x", Hdf5Type::kInt64, {2}, {});
+  lacking.append("/x", std::vector<std::int64_t>{1});
+  CHECK_THROWS_AS(lacking.commit(), std::logic_error);
+}
+
+}  // namespace
+}  // namespace strut
