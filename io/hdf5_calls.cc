@@ -84,6 +84,7 @@ std::string take_library_error() {
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
   H5Eclear2(H5E_DEFAULT);
+  std::erase(text, '\n');  // of the time in some of them
   return text.empty() ? "" : " (" + text + ")";
 }
 

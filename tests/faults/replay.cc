@@ -121,11 +121,22 @@ void FolderState::write(const fs::path& folder) const {
   }
 }
 
+std::size_t FolderState::calc_fingerprint() const {
+  std::string text;
+  for (const auto& [path, file] : names_) {
+    const std::string& content = files_.at(file);
+    text += path + '\n' + std::to_string(content.size()) + '\n' + content;
+  }
+  return std::hash<std::string>()(text);
+}
+
 int for_each_crash_state(
     const FolderState& before, const std::vector<Operation>& operations, const CrashStates& kinds,
     const std::function<void(const FolderState&, std::size_t, const std::string&)>& check) {
   int states = 0;
+  std::set<std::size_t> seen;
   const auto check_one = [&](const FolderState& state, std::size_t done, const std::string& what) {
+    if (kinds.distinct && !seen.insert(state.calc_fingerprint()).second) return;
     check(state, done, "after " + std::to_string(done) + " operations" + what);
     ++states;
   };

@@ -31,6 +31,9 @@ class FolderState {
   /// Makes `folder` hold this, and nothing else.
   void write(const std::filesystem::path& folder) const;
 
+  /// The same for the same files.
+  std::size_t calc_fingerprint() const;
+
   bool has(const std::string& path) const { return names_.contains(path); }
   const std::string& content(const std::string& path) const { return files_.at(names_.at(path)); }
   const std::map<std::string, int>& names() const { return names_; }
@@ -46,8 +49,9 @@ class FolderState {
 };
 
 struct CrashStates {
-  bool torn = true;     // the last write also done in part
-  bool dropped = true;  // also without any one write that was not yet flushed
+  bool torn = true;       // the last write also done in part
+  bool dropped = true;    // also without any one write that was not yet flushed
+  bool distinct = false;  // each state of the files once, however many ways lead to it
 };
 
 /// Calls `check(state, done, what)` for the state after each number `done` of operations, and for
