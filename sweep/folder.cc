@@ -74,7 +74,7 @@ std::string SweepFolder::shard_name(std::int64_t shard) {
 }
 
 SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
-  const SweepFolder folder{root.lexically_normal()};
+  SweepFolder folder{root.lexically_normal()};
   if (fs::exists(folder.plan())) {
     check_same(folder, plan);
     return folder;

@@ -27,7 +27,7 @@ class Copies {
 
   /// Copies a file and, first, those it names; returns the copy's name.
   std::string copy(const fs::path& source) {
-    const std::string name = choose_name(source);
+    std::string name = choose_name(source);
     if (source.extension() != ".toml") {
       write_text(folder_ / name, read_text_file(source));
       return name;

@@ -78,7 +78,7 @@ Axis read_axis(const Table& grid, const std::string& name, bool levels, Case pro
     throw grid.error(
         name, "no parameter" + suggest_name(name, names) + "; parameters: " + join_names(names));
   }
-  const Axis axis = read_bounds(grid.table(name), name, levels);
+  Axis axis = read_bounds(grid.table(name), name, levels);
   try {
     set_parameter(probe, name, axis.from);
   } catch (const InputError& e) {

@@ -17,7 +17,7 @@ struct SumAxis {
 struct RankedPoint {
   std::int64_t sum = 0;
   std::int64_t id = 0;  // mixed radix of the levels, first axis slowest
-  auto operator<=>(const RankedPoint&) const = default;
+  auto operator<=>(const RankedPoint&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// All points of a grid sorted by (sum, id), of which any one is found by its rank. Meet in the
