@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 
@@ -120,7 +121,10 @@ Claims::State::State(const fs::path& claims_folder, const ClaimOptions& claim_op
   const fs::path path = get_runner_path(folder, name);
   {
     TemporaryFile file(folder / (std::string(kNewPrefix) + name), path);
-    file.write(write_runner_text(identity, 0));
+    const std::string text = write_runner_text(identity, 0);
+    file.write(text);
+    // Else a power cut may leave an empty file, of which only the lease tells that nobody lives.
+    file.flush_and_compare(std::as_bytes(std::span(text)));
     file.name_over();
   }
   collect_runners();

@@ -93,6 +93,11 @@ void Hdf5StreamWriter::write_virtual(const std::string& name, Hdf5Type type,
   for (const Hdf5ViewPart& part : parts) {
     std::vector<std::size_t> source_shape = shape;
     source_shape.front() = part.source_rows;
+    // The library takes what lies behind the end, and reads other rows for it.
+    if (part.source_first + part.rows > part.source_rows ||
+        part.target_first + part.rows > shape.front()) {
+      throw std::logic_error(name + ": a part of the view lies behind its end");
+    }
     const Hdf5Handle target = select_rows(sink_, name, shape, part.target_first, part.rows);
     const Hdf5Handle source = select_rows(sink_, name, source_shape, part.source_first, part.rows);
     check<EnvironmentError>(H5Pset_virtual(creation.id(), target.id(), part.file.c_str(),

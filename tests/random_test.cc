@@ -1,8 +1,10 @@
 // Numbers by place: Philox against its published values, permutations against their definition.
 #include "model/math/random.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "model/math/permutation.h"
@@ -132,6 +134,38 @@ TEST_CASE("Over the seeds a place takes every number, and a pair every pair, equ
     CHECK(std::abs(calc_chi2(last, seeds / static_cast<double>(n)) - f) < 5.0 * std::sqrt(2 * f));
     CHECK(std::abs(calc_chi2(different, seeds / (g + 1.0)) - g) < 5.0 * std::sqrt(2 * g));
   }
+}
+
+TEST_CASE("Over the seeds every order of four is equally likely", "[unit][statistical]") {
+  constexpr int kSeeds = 24000;
+  std::vector<int> orders(256, 0), counts;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Permutation permutation(4, static_cast<std::uint64_t>(seed), 0);
+    std::int64_t code = 0;
+    for (std::int64_t i = 0; i < 4; ++i) code = 4 * code + permutation.apply(i);
+    ++orders[static_cast<std::size_t>(code)];
+  }
+  std::copy_if(orders.begin(), orders.end(), std::back_inserter(counts),
+               [](int n) { return n > 0; });
+  REQUIRE(counts.size() == 24);
+  CHECK(std::abs(calc_chi2(counts, kSeeds / 24.0) - 23.0) < 5.0 * std::sqrt(46.0));
+}
+
+TEST_CASE("Over the seeds as many orders of sixteen are odd as even", "[unit][statistical]") {
+  // A network of just sixteen numbers would make even ones alone.
+  constexpr int kSeeds = 4000;
+  int odd = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Permutation permutation(16, static_cast<std::uint64_t>(seed), 0);
+    int inversions = 0;
+    for (std::int64_t i = 0; i < 16; ++i) {
+      for (std::int64_t j = 0; j < i; ++j) {
+        if (permutation.apply(j) > permutation.apply(i)) ++inversions;
+      }
+    }
+    odd += inversions % 2;
+  }
+  CHECK(std::abs(odd - kSeeds / 2) < 5.0 * std::sqrt(kSeeds / 4.0));
 }
 
 TEST_CASE("A permutation keeps nothing of the order", "[unit][statistical]") {

@@ -73,7 +73,7 @@ TEST_CASE("The Jacobian at the snapshot is that of CVODE snapshots", "[reference
       const double size = calc_size(s, channel);
       if (size == 0.0) continue;  // no reaction at all: roll, yaw
       INFO(list_car_channels()[at(channel)].name << " by " << s.parameters[p].name);
-      // RK4 rounds the edges of the bump; measured 7e-5, at 1 ms 3e-3.
+      // RK4 rounds the edges of the bump; measured 7e-5, at 1 ms 2e-2.
       const double error = (get_scaled(s, s.snapshot, channel, p) - truth[at(channel)]) / size;
       CHECK(std::abs(error) < tolerance(2e-4));
     }

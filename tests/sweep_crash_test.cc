@@ -30,7 +30,7 @@ using test::TemporaryFolder;
 
 const std::string kExamples = STRUT_SOURCE_DIR "/examples";
 
-// 48 cases in 12 shards, coarse: the crash matters here, not the car.
+// 48 cases in 6 shards, coarse: the crash matters here, not the car.
 const std::string kSweep = "vehicle  = \"" + kExamples + "/vehicles/paper_sedan.toml\"\n" +
                            "maneuver = \"" + kExamples + "/maneuvers/bump_20mps.toml\"\n" + R"(
 [grid]
@@ -45,7 +45,7 @@ closure = "table"
 [record]
 snapshot = { when = "rear_wheels_on_bump", channels = ["body_position_z", "pitch_rate"] }
 [shards]
-cases = 4
+cases = 8
 )";
 
 int run_program(const std::string& variables, const std::string& arguments) {
@@ -142,7 +142,7 @@ TEST_CASE("A sweep killed 200 times at random moments ends with the same data", 
     planned.check_whole(sweep);
     ++sweeps;
   }
-  WARN(kills << " kills in " << sweeps << " sweeps");
+  CHECK(sweeps >= 20);
 }
 
 TEST_CASE("A sweep that crashes at any write ends with the same data", "[io][slow]") {
@@ -165,7 +165,7 @@ TEST_CASE("A sweep that crashes at any write ends with the same data", "[io][slo
   };
   const test::CrashStates kinds{.torn = true, .dropped = true, .distinct = true};
   const int states = test::for_each_crash_state(before, operations, kinds, check);
-  WARN(states << " states of " << operations.size() << " operations");
+  CHECK(states >= 100);
 }
 
 }  // namespace
