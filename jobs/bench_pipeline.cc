@@ -7,8 +7,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <ostream>
 
+#include "io/toml_text.h"
 #include "jobs/find_example.h"
 #include "jobs/machine.h"
 #include "sweep/run.h"
@@ -86,14 +88,29 @@ PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, doub
   return {kernel.isa, kernel.lanes, threads, cases / time.seconds, spin};
 }
 
+/// The sweep file `from` with `cases` cases: a folder can only be made of what is in a file.
+fs::path write_request(const fs::path& from, std::int64_t cases, const fs::path& to) {
+  const SweepRequest request = read_request(from);
+  const std::string mark = "number of cases";
+  std::string text =
+      replace_toml_texts(from, {{"vehicle", fs::absolute(request.vehicle).string()},
+                                {"maneuver", fs::absolute(request.maneuver).string()},
+                                {"sample.count", mark}});
+  text.replace(text.find(mark) - 1, mark.size() + 2, std::to_string(cases));  // with its quotes
+  std::ofstream file(to, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw EnvironmentError(to.string() + ": cannot be written: disk full?");
+  return to;
+}
+
 }  // namespace
 
 PipelineResult measure_pipeline(std::int64_t cases, int cores, double best_spin,
                                 const fs::path& scratch) {
   const fs::path file = find_example("sweeps/paper_fast.toml");
-  SweepRequest request = read_request(file);
-  request.sample.count = cases;
-  const Plan plan(request);
+  const ScratchFolder place(scratch);
+  const Plan plan(read_request(write_request(file, cases, place.path() / "sweep.toml")));
   PipelineResult result;
   result.sweep = file.filename().string();
   result.cases = cases;

@@ -27,7 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 using test::make_worker_entry;
-using test::read_text;
 using test::TemporaryFolder;
 
 bool is_same(const JournalEntry& a, const JournalEntry& b) {

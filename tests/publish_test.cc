@@ -228,7 +228,7 @@ class SmallDisk {
   bool is_mounted_ = false;
 };
 
-TEST_CASE("A full disk is an error; what is published stays, and more fits once there is room",
+TEST_CASE("A full disk is an error, what is published stays, and more fits once there is room",
           "[io]") {
   const SweepLike sweep;
   const SmallDisk disk(sweep.root);

@@ -30,7 +30,8 @@ TEST_CASE("Random bits are the block's of seed, stream and counter", "[unit]") {
         (block[0] | static_cast<std::uint64_t>(block[1]) << 32));
 }
 
-TEST_CASE("Uniform numbers have the moments of [0, 1) and fill it evenly", "[unit][statistical]") {
+TEST_CASE("Uniform numbers have the moments of their interval and fill it evenly",
+          "[unit][statistical]") {
   constexpr int kCount = 100000, kBins = 100;
   double mean = 0.0, square = 0.0, product = 0.0, before = 0.5;
   std::vector<int> bins(kBins, 0);

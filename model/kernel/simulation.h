@@ -33,9 +33,9 @@ struct PreparedCase {
   std::shared_ptr<const Mechanism> mechanism;
   Vehicle<double> vehicle;
   State<double> start;
-  double bump_center = 0.0;                  // m, world x
-  double trigger_x = 0.0;                    // m, world x of the snapshot's line
-  double duration = 0.0;                     // s
+  double bump_center = 0.0;  // m, world x
+  double trigger_x = 0.0;    // m, world x of the snapshot's line
+  double duration = 0.0;     // s
 };
 
 /// Prepares cases, reusing the mechanism while only springs, dampers, speed or torque change.

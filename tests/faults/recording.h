@@ -16,7 +16,6 @@ enum class FileCall : std::uint32_t {
   kSync,
   kSyncFolder,
   kMakeFolder,
-  kRead,  // never recorded; can be made to fail
 };
 
 struct RecordHeader {

@@ -106,7 +106,6 @@ void FolderState::apply(const Operation& operation) {
     case FileCall::kSync:
     case FileCall::kSyncFolder:
     case FileCall::kMakeFolder:
-    case FileCall::kRead:
       break;
   }
 }
