@@ -38,7 +38,7 @@ inline ManeuverSpec make_gentle_maneuver() {
   maneuver.bump_distance = 5.0;
   maneuver.road.shape = BumpShape::kCosine;
   maneuver.road.height = 0.01;
-  maneuver.road.length = 2.0;
+  maneuver.road.length = 3.0;
   return maneuver;
 }
 
