@@ -95,7 +95,8 @@ double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchS
   for (std::size_t lane = 0; lane < count; ++lane) {
     const double error =
         calc_relative_error(get_acceleration(results, lane), bench.acceleration[lane]);
-    if (!(error <= worst)) worst = error;  // a NaN counts as worse
+    // A NaN counts as worse, and stays, since no comparison with it is true.
+    if (std::isnan(error) || error > worst) worst = error;
   }
   return worst;
 }
