@@ -71,11 +71,15 @@ std::optional<RunnerFile> read_runner(const fs::path& folder, const std::string&
   return read_runner_text(*text);
 }
 
+// A missing folder is an empty one.
 std::vector<std::string> list_names(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     names.push_back(it->path().filename().string());
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw file_failure(folder, "cannot be listed", error.value());
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -15,11 +15,7 @@ namespace fs = std::filesystem;
 void write_bytes(const fs::path& path, std::span<const std::byte> bytes, const fs::path& shown) {
   const FileDescriptor file = open_file(path, O_WRONLY | O_TRUNC);
   if (!file.is_open()) throw file_failure(shown, "cannot be written", errno);
-  while (!bytes.empty()) {
-    const std::ptrdiff_t written = write_once(file.get(), bytes);
-    if (written < 0) throw file_failure(shown, "cannot be written", errno);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-  }
+  write_all(file.get(), bytes, shown);
 }
 
 std::vector<std::byte> read_first_bytes(const fs::path& path, std::size_t count) {

@@ -83,15 +83,19 @@ FileDescriptor open_file(const fs::path& path, int flags) {
 
 std::optional<std::string> read_if_present(const fs::path& path) {
   const FileDescriptor file = open_file(path, O_RDONLY);
-  if (!file.is_open() && errno == ENOENT) return std::nullopt;
+  if (!file.is_open()) {
+    if (errno == ENOENT) return std::nullopt;
+    throw file_failure(path, "cannot be read", errno);
+  }
   std::string text;
   std::array<char, 65536> buffer;
   for (;;) {
-    const ssize_t count = file.is_open() ? ::read(file.get(), buffer.data(), buffer.size()) : -1;
-    if (count < 0 && file.is_open() && errno == EINTR) continue;
-    if (count < 0) throw file_failure(path, "cannot be read", errno);
+    const ssize_t count = ::read(file.get(), buffer.data(), buffer.size());
     if (count == 0) return text;
-    text.append(buffer.data(), static_cast<std::size_t>(count));
+    if (count > 0) text.append(buffer.data(), static_cast<std::size_t>(count));
+    // Another host removed or replaced the file while it was open here.
+    if (count < 0 && errno == ESTALE) return read_if_present(path);
+    if (count < 0 && errno != EINTR) throw file_failure(path, "cannot be read", errno);
   }
 }
 
@@ -175,7 +179,19 @@ bool TemporaryFile::has_target_name() const {
          ours.st_dev == theirs.st_dev && ours.st_ino == theirs.st_ino;
 }
 
+// On a network file system others see what was written once it is closed; closing a copy of the
+// descriptor is enough. Elsewhere it costs nothing.
+void TemporaryFile::hand_over() const {
+  int result = -1;
+  do {
+    const int copy = ::fcntl(file_.get(), F_DUPFD_CLOEXEC, 0);
+    result = copy < 0 ? -1 : ::close(copy);
+  } while (result != 0 && errno == EINTR);
+  if (result != 0) throw file_failure(target_, kNotWritten, errno);
+}
+
 bool TemporaryFile::name_new() {
+  hand_over();
   if (::link(path_.c_str(), target_.c_str()) == 0) return true;
   const int error_number = errno;
   if (error_number == EPERM || error_number == EOPNOTSUPP || error_number == ENOSYS) {
@@ -198,6 +214,7 @@ bool TemporaryFile::move_new() {
 }
 
 void TemporaryFile::name_over() {
+  hand_over();
   if (::rename(path_.c_str(), target_.c_str()) != 0 && !has_target_name()) {
     throw file_failure(target_, kNotWritten, errno);
   }

@@ -67,7 +67,8 @@ class TemporaryFile {
   /// Flushes to the disk, and reads from there: throws where that is not `bytes`.
   void flush_and_compare(std::span<const std::byte> bytes);
 
-  /// Gives the file the target's name unless a file has that name already; false: one has. By
+  /// Gives the file, with all that was written, the target's name unless a file has that name
+  /// already; false: one has. By
   /// link(2), which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where
   /// the file system knows no links.
   bool name_new();
@@ -75,6 +76,7 @@ class TemporaryFile {
   void name_over();
 
  private:
+  void hand_over() const;
   bool has_target_name() const;
   bool move_new();
 

@@ -2,8 +2,10 @@
 // dataset, every handle is closed, and the library's own printing of errors is off.
 //
 // Files read in other tools without help (`h5dump`, h5py, MATLAB): numbers in native order, texts
-// of a dataset as UTF-8 of fixed length, padded by zeros, attributes as UTF-8 of variable length.
-// Every dataset carries the attributes `unit`, `description` and, if it has columns, `names`.
+// as UTF-8 of fixed length, padded by zeros, also those of attributes. Texts of variable length
+// would lie in global heaps, the one structure of the format that has no checksum: a flipped bit
+// there ends a program in the library. Every dataset carries the attributes `unit`, `description`
+// and, if it has columns, `names`.
 //
 // The library takes one lock around everything: call it from one thread.
 #pragma once

@@ -8,30 +8,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_strings(const fs::path& path, hid_t object, const std::string& object_name,
-                   const std::string& key, const std::vector<std::string>& values, bool scalar) {
-  const std::string name = object_name + "@" + key;
-  const std::string what = "attribute cannot be written";
-  std::vector<const char*> texts;
-  texts.reserve(values.size());
-  for (const std::string& value : values) texts.push_back(value.c_str());
-  const hsize_t count = texts.size();
-  const Hdf5Handle type = make_string_type(path);
-  const Hdf5Handle space = checked<EnvironmentError>(
-      scalar ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose, path, name,
-      what);
-  const Hdf5Handle attribute = checked<EnvironmentError>(
-      H5Acreate2(object, key.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-      path, name, what);
-  check<EnvironmentError>(H5Awrite(attribute.id(), type.id(), texts.data()) >= 0, path, name, what);
-}
-
 void write_label(const fs::path& path, hid_t dataset, const std::string& name,
                  const Hdf5Label& label) {
-  write_strings(path, dataset, name, "unit", {label.unit}, true);
-  write_strings(path, dataset, name, "description", {label.description}, true);
+  write_texts(path, dataset, name, "unit", {label.unit}, true);
+  write_texts(path, dataset, name, "description", {label.description}, true);
   const auto write_list = [&](const char* key, const std::vector<std::string>& texts) {
-    if (!texts.empty()) write_strings(path, dataset, name, key, texts, false);
+    if (!texts.empty()) write_texts(path, dataset, name, key, texts, false);
   };
   write_list("names", label.names);
   write_list("units", label.units);
@@ -86,13 +68,6 @@ std::string take_library_error() {
   H5Eclear2(H5E_DEFAULT);
   std::erase(text, '\n');  // of the time in some of them
   return text.empty() ? "" : " (" + text + ")";
-}
-
-Hdf5Handle make_string_type(const fs::path& path) {
-  Hdf5Handle type = checked<EnvironmentError>(H5Tcopy(H5T_C_S1), H5Tclose, path, "", "string type");
-  check<EnvironmentError>(H5Tset_size(type.id(), H5T_VARIABLE) >= 0, path, "", "string type");
-  check<EnvironmentError>(H5Tset_cset(type.id(), H5T_CSET_UTF8) >= 0, path, "", "string type");
-  return type;
 }
 
 Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_length) {
@@ -197,27 +172,6 @@ void write_chunk(const Hdf5Sink& sink, const std::string& name, hid_t dataset, s
 void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& dataset) {
   check<EnvironmentError>(dataset.reset(), sink.shown, name,
                           "dataset cannot be written; disk full?");
-}
-
-void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
-                          const std::vector<std::string>& values, bool scalar) {
-  const Hdf5Handle handle = checked<EnvironmentError>(
-      H5Oopen(sink.file.id(), object.c_str(), H5P_DEFAULT), H5Oclose, sink.shown, object,
-      "no such dataset or group to hold attribute " + key);
-  write_strings(sink.shown, handle.id(), object, key, values, scalar);
-}
-
-void write_number_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
-                            hid_t type, const void* value) {
-  const std::string name = object + "@" + key;
-  const std::string what = "attribute cannot be written";
-  const Hdf5Handle space =
-      checked<EnvironmentError>(H5Screate(H5S_SCALAR), H5Sclose, sink.shown, name, what);
-  const Hdf5Handle attribute = checked<EnvironmentError>(
-      H5Acreate_by_name(sink.file.id(), object.c_str(), key.c_str(), type, space.id(), H5P_DEFAULT,
-                        H5P_DEFAULT, H5P_DEFAULT),
-      H5Aclose, sink.shown, name, what);
-  check<EnvironmentError>(H5Awrite(attribute.id(), type, value) >= 0, sink.shown, name, what);
 }
 
 std::string make_memory_name() {

@@ -34,10 +34,28 @@ Hdf5Handle checked(hid_t id, Hdf5Handle::Close close, const std::filesystem::pat
   return {id, close};
 }
 
-/// Text of variable length, UTF-8: attributes.
-Hdf5Handle make_string_type(const std::filesystem::path& path);
 /// Type of the elements, in memory as in the file.
 Hdf5Handle make_type(const std::filesystem::path& path, Hdf5Type type, std::size_t text_length);
+
+/// `count` whole rows of a dataset of `shape`, from row `first` on.
+template <class Error>
+Hdf5Handle select_rows(const std::filesystem::path& path, const std::string& name,
+                       const std::vector<std::size_t>& shape, std::size_t first,
+                       std::size_t count) {
+  const std::string what = "rows cannot be selected";
+  const std::vector<hsize_t> sizes(shape.begin(), shape.end());
+  Hdf5Handle space =
+      checked<Error>(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
+                     H5Sclose, path, name, what);
+  std::vector<hsize_t> start(shape.size(), 0);
+  std::vector<hsize_t> block = sizes;
+  start.front() = first;
+  block.front() = count;
+  check<Error>(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
+                                   nullptr) >= 0,
+               path, name, what);
+  return space;
+}
 
 /// File access: the format of 1.10, which has checksums over all of its own structures.
 Hdf5Handle make_file_access(const std::filesystem::path& path);
@@ -63,6 +81,18 @@ void write_chunk(const Hdf5Sink& sink, const std::string& name, hid_t dataset, s
                  std::size_t first_row, std::span<const std::byte> bytes);
 /// Closes, which may write.
 void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& dataset);
+
+/// Attribute `key` of an object that messages call `object_name`; `scalar`: a single text.
+void write_texts(const std::filesystem::path& path, hid_t object, const std::string& object_name,
+                 const std::string& key, const std::vector<std::string>& values, bool scalar);
+/// Empty where there is none. Throws InputError.
+std::vector<std::string> read_texts_of(const std::filesystem::path& path, hid_t object,
+                                       const std::string& object_name, const std::string& key);
+/// Bytes of a text of `type`, which must be one of fixed length: the library crashes on damaged
+/// texts of variable length.
+std::size_t get_text_length(const std::filesystem::path& path, const std::string& name, hid_t type);
+/// Texts of one length, each up to its first zero.
+std::vector<std::string> unpack_texts(const std::vector<char>& raw, std::size_t length);
 
 void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
                           const std::vector<std::string>& values, bool scalar);

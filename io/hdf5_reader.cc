@@ -9,37 +9,12 @@ namespace fs = std::filesystem;
 using hdf5::check;
 using hdf5::checked;
 
-// Attribute `key` as strings, [] where there is none.
-std::vector<std::string> read_strings(const fs::path& path, hid_t object,
-                                      const std::string& object_name, const std::string& key) {
-  const std::string name = object_name + "@" + key;
-  const std::string what = "attribute cannot be read as text";
-  if (H5Aexists(object, key.c_str()) <= 0) return {};
-  const Hdf5Handle attribute =
-      checked<InputError>(H5Aopen(object, key.c_str(), H5P_DEFAULT), H5Aclose, path, name, what);
-  const Hdf5Handle stored =
-      checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, what);
-  check<InputError>(H5Tis_variable_str(stored.id()) > 0, path, name, what);
-  const Hdf5Handle space =
-      checked<InputError>(H5Aget_space(attribute.id()), H5Sclose, path, name, what);
-  const hssize_t count = H5Sget_simple_extent_npoints(space.id());
-  check<InputError>(count >= 0, path, name, what);
-  const Hdf5Handle type = hdf5::make_string_type(path);
-  std::vector<char*> raw(static_cast<std::size_t>(count), nullptr);
-  check<InputError>(H5Aread(attribute.id(), type.id(), raw.data()) >= 0, path, name, what);
-  std::vector<std::string> values;
-  values.reserve(raw.size());
-  for (const char* text : raw) values.emplace_back(text == nullptr ? "" : text);
-  H5Dvlen_reclaim(type.id(), space.id(), H5P_DEFAULT, raw.data());
-  return values;
-}
-
 std::string first_or_empty(const std::vector<std::string>& texts) {
   return texts.empty() ? "" : texts.front();
 }
 
 Hdf5Label get_label(const fs::path& path, const std::string& name, hid_t dataset) {
-  const auto read = [&](const char* key) { return read_strings(path, dataset, name, key); };
+  const auto read = [&](const char* key) { return hdf5::read_texts_of(path, dataset, name, key); };
   return {first_or_empty(read("unit")), first_or_empty(read("description")), read("names"),
           read("units"), read("descriptions")};
 }
@@ -60,21 +35,22 @@ std::vector<std::size_t> get_shape(const fs::path& path, const std::string& name
 std::size_t count_elements(const fs::path& path, const std::string& name, hid_t dataset,
                            const std::vector<std::size_t>& shape) {
   constexpr std::size_t kMost = std::size_t{1} << 48;
-  std::size_t count = 1;
-  for (const std::size_t size : shape) {
-    check<InputError>(size == 0 || count <= kMost / size, path, name, "damaged: data missing");
-    count *= size;
-  }
   const Hdf5Handle creation =
       checked<InputError>(H5Dget_create_plist(dataset), H5Pclose, path, name, "damaged");
   const Hdf5Handle type =
       checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
-  const bool plain = H5Pget_nfilters(creation.id()) == 0;
-  const std::size_t stored = H5Dget_storage_size(dataset);
+  const std::size_t element = H5Tget_size(type.id());
+  check<InputError>(element > 0, path, name, "damaged");
+  std::size_t bytes = element;
+  for (const std::size_t size : shape) {
+    check<InputError>(size == 0 || bytes <= kMost / size, path, name, "damaged: data missing");
+    bytes *= size;
+  }
   const bool is_view = H5Pget_layout(creation.id()) == H5D_VIRTUAL;
-  const bool present = is_view || stored * (plain ? 1 : 1040) >= count * H5Tget_size(type.id());
+  const std::size_t packed = H5Pget_nfilters(creation.id()) == 0 ? 1 : 1040;
+  const bool present = is_view || H5Dget_storage_size(dataset) >= bytes / packed;
   check<InputError>(present, path, name, "damaged: data missing");
-  return count;
+  return bytes / element;
 }
 
 void require_class(const fs::path& path, const std::string& name, hid_t dataset, bool integer,
@@ -146,28 +122,19 @@ Hdf5Dataset Hdf5Reader::read_rows(const std::string& name, std::size_t first,
   Hdf5Dataset data;
   data.shape = get_shape(path_, name, dataset.id());
   require_class(path_, name, dataset.id(), true, true);
-  count_elements(path_, name, dataset.id(), data.shape);
-  const bool inside = first <= data.shape.front() && count <= data.shape.front() - first;
+  const std::size_t total = count_elements(path_, name, dataset.id(), data.shape);
+  const bool inside =
+      count > 0 && first <= data.shape.front() && count <= data.shape.front() - first;
   check<InputError>(inside, path_, name,
                     "has " + std::to_string(data.shape.front()) + " rows, asked for " +
                         std::to_string(first) + " to " + std::to_string(first + count));
+  const Hdf5Handle stored = hdf5::select_rows<InputError>(path_, name, data.shape, first, count);
+  data.values.resize(total / data.shape.front() * count);
   data.shape.front() = count;
-  std::vector<hsize_t> start(data.shape.size(), 0);
-  start.front() = first;
-  const std::vector<hsize_t> sizes(data.shape.begin(), data.shape.end());
-  const Hdf5Handle stored =
-      checked<InputError>(H5Dget_space(dataset.id()), H5Sclose, path_, name, "damaged");
-  const Hdf5Handle memory =
-      checked<InputError>(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
-                          H5Sclose, path_, name, "damaged");
-  std::size_t total = 1;
-  for (const std::size_t size : data.shape) total *= size;
-  data.values.resize(total);
-  const bool good = H5Sselect_hyperslab(stored.id(), H5S_SELECT_SET, start.data(), nullptr,
-                                        sizes.data(), nullptr) >= 0 &&
-                    H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), stored.id(), H5P_DEFAULT,
-                            data.values.data()) >= 0;
-  check<InputError>(good, path_, name, "damaged");
+  const Hdf5Handle memory = hdf5::select_rows<InputError>(path_, name, data.shape, 0, count);
+  check<InputError>(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), stored.id(), H5P_DEFAULT,
+                            data.values.data()) >= 0,
+                    path_, name, "damaged");
   data.label = get_label(path_, name, dataset.id());
   return data;
 }
@@ -187,10 +154,7 @@ std::size_t Hdf5Reader::read_text_length(const std::string& name) const {
   const Hdf5Handle dataset = open_dataset(name);
   const Hdf5Handle stored =
       checked<InputError>(H5Dget_type(dataset.id()), H5Tclose, path_, name, "damaged");
-  const bool fixed =
-      H5Tget_class(stored.id()) == H5T_STRING && H5Tis_variable_str(stored.id()) == 0;
-  check<InputError>(fixed, path_, name, "must hold texts of fixed length");
-  return H5Tget_size(stored.id());
+  return hdf5::get_text_length(path_, name, stored.id());
 }
 
 std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
@@ -203,12 +167,7 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
   check<InputError>(
       H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0, path_, name,
       "damaged");
-  std::vector<std::string> texts;
-  texts.reserve(count);
-  for (auto at = raw.begin(); at != raw.end(); at += static_cast<std::ptrdiff_t>(length)) {
-    texts.emplace_back(at, std::find(at, at + static_cast<std::ptrdiff_t>(length), '\0'));
-  }
-  return texts;
+  return hdf5::unpack_texts(raw, length);
 }
 
 Hdf5Label Hdf5Reader::read_label(const std::string& name) const {
@@ -229,73 +188,6 @@ std::size_t Hdf5Reader::read_chunk_rows(const std::string& name) const {
   check<InputError>(H5Pget_chunk(creation.id(), static_cast<int>(sizes.size()), sizes.data()) >= 0,
                     path_, name, "damaged");
   return sizes.front();
-}
-
-bool Hdf5Reader::has_attribute(const std::string& object, const std::string& key) const {
-  const bool there = H5Aexists_by_name(file_.id(), object.c_str(), key.c_str(), H5P_DEFAULT) > 0;
-  H5Eclear2(H5E_DEFAULT);
-  return there;
-}
-
-std::vector<std::string> Hdf5Reader::read_attribute_list(const std::string& object,
-                                                         const std::string& key) const {
-  const Hdf5Handle handle = checked<InputError>(H5Oopen(file_.id(), object.c_str(), H5P_DEFAULT),
-                                                H5Oclose, path_, object, "no such object");
-  return read_strings(path_, handle.id(), object, key);
-}
-
-std::string Hdf5Reader::read_attribute(const std::string& object, const std::string& key) const {
-  const auto values = read_attribute_list(object, key);
-  check<InputError>(values.size() == 1, path_, object + "@" + key, "no such attribute");
-  return values.front();
-}
-
-namespace {
-
-// A scalar attribute of class `kind`, read as `type` into `value`.
-void read_number(const fs::path& path, hid_t file, const std::string& object,
-                 const std::string& key, bool real, hid_t type, void* value) {
-  const std::string name = object + "@" + key;
-  const Hdf5Handle attribute = checked<InputError>(
-      H5Aopen_by_name(file, object.c_str(), key.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, path,
-      name, "no such attribute");
-  const Hdf5Handle stored =
-      checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, "damaged");
-  const Hdf5Handle space =
-      checked<InputError>(H5Aget_space(attribute.id()), H5Sclose, path, name, "damaged");
-  const H5T_class_t kind = H5Tget_class(stored.id());
-  const bool fits = (kind == H5T_INTEGER || (real && kind == H5T_FLOAT)) &&
-                    H5Sget_simple_extent_npoints(space.id()) == 1;
-  check<InputError>(fits, path, name, real ? "must be a number" : "must be an integer");
-  check<InputError>(H5Aread(attribute.id(), type, value) >= 0, path, name, "damaged");
-}
-
-}  // namespace
-
-std::int64_t Hdf5Reader::read_integer_attribute(const std::string& object,
-                                                const std::string& key) const {
-  std::int64_t value = 0;
-  read_number(path_, file_.id(), object, key, false, H5T_NATIVE_INT64, &value);
-  return value;
-}
-
-double Hdf5Reader::read_number_attribute(const std::string& object, const std::string& key) const {
-  double value = 0.0;
-  read_number(path_, file_.id(), object, key, true, H5T_NATIVE_DOUBLE, &value);
-  return value;
-}
-
-std::vector<std::string> Hdf5Reader::list_attributes(const std::string& object) const {
-  std::vector<std::string> names;
-  const auto add = [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
-    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
-    return 0;
-  };
-  hsize_t start = 0;
-  const herr_t status = H5Aiterate_by_name(file_.id(), object.c_str(), H5_INDEX_NAME, H5_ITER_INC,
-                                           &start, add, &names, H5P_DEFAULT);
-  check<InputError>(status >= 0, path_, object, "attributes cannot be read");
-  return names;
 }
 
 std::vector<std::string> Hdf5Reader::list(const std::string& group) const {

@@ -7,32 +7,10 @@
 #include "io/hdf5_calls.h"
 
 namespace strut {
-namespace {
 
 namespace fs = std::filesystem;
 using hdf5::check;
 using hdf5::checked;
-
-// A block of whole rows of a dataset of `shape`.
-Hdf5Handle select_rows(const Hdf5Sink& sink, const std::string& name,
-                       const std::vector<std::size_t>& shape, std::size_t first,
-                       std::size_t count) {
-  const std::string what = "view cannot be written";
-  const std::vector<hsize_t> sizes(shape.begin(), shape.end());
-  Hdf5Handle space = checked<EnvironmentError>(
-      H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose, sink.shown,
-      name, what);
-  std::vector<hsize_t> start(shape.size(), 0);
-  std::vector<hsize_t> block = sizes;
-  start.front() = first;
-  block.front() = count;
-  check<EnvironmentError>(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr,
-                                              block.data(), nullptr) >= 0,
-                          sink.shown, name, what);
-  return space;
-}
-
-}  // namespace
 
 Hdf5StreamWriter::Hdf5StreamWriter(const fs::path& path) : target_(path) {
   hdf5::prepare_library();
@@ -98,8 +76,10 @@ void Hdf5StreamWriter::write_virtual(const std::string& name, Hdf5Type type,
         part.target_first + part.rows > shape.front()) {
       throw std::logic_error(name + ": a part of the view lies behind its end");
     }
-    const Hdf5Handle target = select_rows(sink_, name, shape, part.target_first, part.rows);
-    const Hdf5Handle source = select_rows(sink_, name, source_shape, part.source_first, part.rows);
+    const Hdf5Handle target =
+        hdf5::select_rows<EnvironmentError>(sink_.shown, name, shape, part.target_first, part.rows);
+    const Hdf5Handle source = hdf5::select_rows<EnvironmentError>(sink_.shown, name, source_shape,
+                                                                  part.source_first, part.rows);
     check<EnvironmentError>(H5Pset_virtual(creation.id(), target.id(), part.file.c_str(),
                                            part.dataset.c_str(), source.id()) >= 0,
                             sink_.shown, name, "view cannot be written");

@@ -48,7 +48,8 @@ std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t cou
 RunnerFile read_runner_text(const std::string& text) {
   std::map<std::string, std::string> values;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
+  // Without its end a line may be cut short: half a number would be another process's.
+  for (std::string line; std::getline(lines, line) && !lines.eof();) {
     const auto space = line.find(' ');
     if (space != std::string::npos) values[line.substr(0, space)] = line.substr(space + 1);
   }

@@ -21,7 +21,7 @@ struct RunnerFile {
 /// One key and value a line; always the same length, so that it can be written in place.
 std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter);
 
-/// What is missing is empty.
+/// What is missing, or was cut short, is empty.
 RunnerFile read_runner_text(const std::string& text);
 
 /// A thread that raises the counter in a runner's file until the destructor. It takes no signals,

@@ -87,7 +87,8 @@ Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own) {
   if (parsed.ec != std::errc{} || parsed.ptr != end || number <= 0) return Life::kUnknown;
   if (::kill(number, 0) != 0 && errno == ESRCH) return Life::kGone;
   const ProcessState state = read_process_state(process.process);
-  if (state.start.empty()) return Life::kUnknown;  // /proc may hide other users' processes
+  // /proc may hide other users' processes; a runner's file may be half written.
+  if (state.start.empty() || process.start.empty()) return Life::kUnknown;
   // A zombie ended; only nobody asked how yet, which in a container may be so for ever.
   const bool ended = state.letter == 'Z' || state.letter == 'X';
   return ended || state.start != process.start ? Life::kGone : Life::kRuns;

@@ -3,7 +3,6 @@
 #include <array>
 #include <type_traits>
 
-#include "io/file_bytes.h"
 #include "io/shard_layout.h"
 
 namespace strut {
@@ -99,7 +98,7 @@ ShardProvenance read_provenance(const Hdf5Reader& file) {
 }  // namespace
 
 Shard read_shard(const fs::path& path) {
-  const std::vector<std::byte> bytes = read_bytes(path);
+  const std::vector<std::byte> bytes = read_shard_bytes(path);
   const ShardSeal seal = check_shard_bytes(path, bytes);
   const Hdf5Reader file(path, bytes);
   check_schema_version(path, file);

@@ -16,8 +16,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 template <class T>
 void append_bytes(std::vector<std::byte>& bytes, const T& value) {
-  const auto* const begin = reinterpret_cast<const std::byte*>(&value);
-  bytes.insert(bytes.end(), begin, begin + sizeof value);
+  const std::size_t end = bytes.size();
+  bytes.resize(end + sizeof value);
+  std::memcpy(bytes.data() + end, &value, sizeof value);
 }
 
 void append_numbers(std::vector<std::byte>& bytes, const std::vector<double>& values,

@@ -104,6 +104,10 @@ ShardSeal read_shard_seal(const std::filesystem::path& path);
 std::string render_shard_seal(const std::string& plan_hash, std::int64_t shard,
                               std::span<const std::byte> image);
 
+/// All bytes of a file whose first 512 are a seal that names its size, so that what is no shard is
+/// not read, however large. Throws InputError.
+std::vector<std::byte> read_shard_bytes(const std::filesystem::path& path);
+
 /// Reads every byte and compares it with the seal. Throws InputError that names the file and what
 /// is wrong.
 ShardSeal check_shard_bytes(const std::filesystem::path& path);

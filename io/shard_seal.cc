@@ -56,7 +56,7 @@ ShardSeal parse(const fs::path& path, std::span<const std::byte> block) {
 }
 
 ShardSeal parse_sized(const fs::path& path, std::span<const std::byte> block, std::uint64_t size) {
-  const ShardSeal seal = parse(path, block);
+  ShardSeal seal = parse(path, block);
   if (seal.size != size) {
     throw InputError(path.string() + ": damaged: has " + std::to_string(size) + " bytes, was " +
                      std::to_string(seal.size));
@@ -93,8 +93,13 @@ ShardSeal check_shard_bytes(const fs::path& path, std::span<const std::byte> byt
   return seal;
 }
 
+std::vector<std::byte> read_shard_bytes(const fs::path& path) {
+  read_shard_seal(path);
+  return read_bytes(path);
+}
+
 ShardSeal check_shard_bytes(const fs::path& path) {
-  return check_shard_bytes(path, read_bytes(path));
+  return check_shard_bytes(path, read_shard_bytes(path));
 }
 
 }  // namespace strut

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
+#include <string_view>
 
 #include "io/config.h"
 #include "io/parse_toml.h"
@@ -32,9 +33,11 @@ void add_values(const toml::node& node, const std::string& name, TomlValues& val
   }
 }
 
-/// Place in `text` of a line and column as the parser counts them: from 1, columns in code points.
+/// Place in `text` of a line and column as the parser counts them: from 1, columns in code points,
+/// from behind a byte order mark on.
 std::size_t find_place(const std::string& text, const toml::source_position& position) {
-  std::size_t place = 0;
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  std::size_t place = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   for (toml::source_index line = 1; line < position.line; ++line)
     place = text.find('\n', place) + 1;
   for (toml::source_index column = 1; column < position.column; ++column) {
@@ -50,12 +53,13 @@ std::string quote(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') quoted += '\\';
-    if (static_cast<unsigned char>(c) >= 0x20U) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20U && byte != 0x7fU) {
       quoted += c;
       continue;
     }
     char escaped[8];
-    std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(c));
+    std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(byte));
     quoted += escaped;
   }
   return quoted + "\"";
@@ -74,6 +78,7 @@ std::string replace_toml_texts(const std::filesystem::path& path, const TomlValu
   const std::string text = read_text_file(path);
   const toml::table root = parse_toml(path, text);
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, std::string>> changes;
+  changes.reserve(values.size());
   for (const auto& [key, value] : values) {
     const toml::node* node = root.at_path(key).node();
     if (node == nullptr || !node->is_string()) {

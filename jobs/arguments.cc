@@ -102,6 +102,19 @@ double Arguments::number_or(const std::string& name, double fallback, const Rang
   throw InputError("--" + name + " = " + digits + ": " + allowed.describe());
 }
 
+std::int64_t Arguments::integer_or(const std::string& name, std::int64_t fallback, std::int64_t low,
+                                   std::int64_t high) const {
+  if (!has(name)) return fallback;
+  const std::string digits = text(name);
+  const char* end = digits.data() + digits.size();
+  std::int64_t value = 0;
+  const auto result = std::from_chars(digits.data(), end, value);
+  const bool is_integer = result.ec == std::errc() && result.ptr == end;
+  if (is_integer && value >= low && value <= high) return value;
+  throw InputError("--" + name + " = " + digits + ": must be a whole number in [" +
+                   std::to_string(low) + ", " + std::to_string(high) + "]");
+}
+
 int Arguments::choice_or(const std::string& name, int fallback,
                          const std::vector<std::string>& names) const {
   if (!has(name)) return fallback;

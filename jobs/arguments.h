@@ -34,6 +34,9 @@ class Arguments {
   std::string text(const std::string& name) const;
   std::vector<std::string> list(const std::string& name) const;
   double number_or(const std::string& name, double fallback, const Range& allowed) const;
+  /// Of [low, high].
+  std::int64_t integer_or(const std::string& name, std::int64_t fallback, std::int64_t low,
+                          std::int64_t high) const;
   /// Position in `names` of the option's value.
   int choice_or(const std::string& name, int fallback, const std::vector<std::string>& names) const;
 

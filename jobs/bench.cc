@@ -11,6 +11,7 @@
 #include "jobs/command.h"
 #include "jobs/find_example.h"
 #include "jobs/machine.h"
+#include "jobs/open_sweep.h"
 
 namespace strut {
 namespace {
@@ -150,12 +151,8 @@ int run_bench(const std::vector<std::string>& arguments) {
   std::optional<Baseline> baseline;
   if (parsed.has("baseline")) baseline = read_baseline(parsed.text("baseline"));
 
-  std::vector<std::string> names;
-  for (const Kernel& kernel : list_kernels()) names.emplace_back(kernel.isa);
-  const Kernel& kernel =
-      list_kernels()[static_cast<std::size_t>(parsed.choice_or("isa", 0, names))];
   const BenchResult result =
-      run_benchmark(source, kernel, parsed.is_on("quick"),
+      run_benchmark(source, find_kernel(parsed), parsed.is_on("quick"),
                     parsed.has("scratch") ? std::filesystem::path(parsed.text("scratch"))
                                           : std::filesystem::temp_directory_path());
   const std::vector<FigureRatio> ratios =

@@ -3,14 +3,14 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <ostream>
 
-#include "io/toml_text.h"
 #include "jobs/find_example.h"
 #include "jobs/machine.h"
 #include "sweep/run.h"
@@ -48,11 +48,7 @@ struct SweepTime {
   double seconds = 0.0;
 };
 
-SweepTime time_sweep(const SweepFolder& folder, const Plan& plan, const Kernel& kernel,
-                     int threads) {
-  RunOptions options;
-  options.kernel = &kernel;
-  options.threads = threads;
+SweepTime time_sweep(const SweepFolder& folder, const Plan& plan, const RunOptions& options) {
   RunProgress progress;
   std::atomic<bool> halt{false};
   const double start = now();
@@ -67,41 +63,29 @@ double read_peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// One sweep in a fresh folder, the spin control beside it.
+/// The first `result.cases` cases of the plan in a fresh folder, the spin control beside it.
 PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, double best_spin,
                        const fs::path& scratch, PipelineResult& result) {
+  RunOptions options;
+  options.kernel = &kernel;
+  options.threads = threads;
+  options.end_shard = (result.cases - 1) / plan.request().shard_cases + 1;
   const ScratchFolder place(scratch);
   const double start = now();
   const SweepFolder folder = make_sweep_folder(place.path() / "sweep", plan);
   result.plan_seconds = now() - start;
   const double before = measure_spins(threads);
-  const SweepTime time = time_sweep(folder, plan, kernel, threads);
+  const SweepTime time = time_sweep(folder, plan, options);
   const double spin = 0.5 * (before + measure_spins(threads)) / best_spin;
   const RunSummary& summary = time.summary;
   result.prepare = summary.simulation.prepare;
   result.integrate = summary.simulation.integrate + summary.simulation.retry;
   result.compress = summary.compress;
   result.write = summary.write;
-  const auto cases = static_cast<double>(plan.case_count());
-  result.bytes_per_case = static_cast<double>(summary.bytes) / cases;
-  result.resume_seconds = time_sweep(folder, plan, kernel, threads).seconds;
+  const auto cases = static_cast<double>(result.cases);
+  result.bytes_per_case = std::round(static_cast<double>(summary.bytes) / cases);
+  result.resume_seconds = time_sweep(folder, plan, options).seconds;
   return {kernel.isa, kernel.lanes, threads, cases / time.seconds, spin};
-}
-
-/// The sweep file `from` with `cases` cases: a folder can only be made of what is in a file.
-fs::path write_request(const fs::path& from, std::int64_t cases, const fs::path& to) {
-  const SweepRequest request = read_request(from);
-  const std::string mark = "number of cases";
-  std::string text =
-      replace_toml_texts(from, {{"vehicle", fs::absolute(request.vehicle).string()},
-                                {"maneuver", fs::absolute(request.maneuver).string()},
-                                {"sample.count", mark}});
-  text.replace(text.find(mark) - 1, mark.size() + 2, std::to_string(cases));  // with its quotes
-  std::ofstream file(to, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw EnvironmentError(to.string() + ": cannot be written: disk full?");
-  return to;
 }
 
 }  // namespace
@@ -109,11 +93,11 @@ fs::path write_request(const fs::path& from, std::int64_t cases, const fs::path&
 PipelineResult measure_pipeline(std::int64_t cases, int cores, double best_spin,
                                 const fs::path& scratch) {
   const fs::path file = find_example("sweeps/paper_fast.toml");
-  const ScratchFolder place(scratch);
-  const Plan plan(read_request(write_request(file, cases, place.path() / "sweep.toml")));
+  const Plan plan(read_request(file));
   PipelineResult result;
   result.sweep = file.filename().string();
-  result.cases = cases;
+  const std::int64_t shard = plan.request().shard_cases;
+  result.cases = std::min((cases + shard - 1) / shard * shard, plan.case_count());
   for (std::size_t k = list_kernels().size(); k-- > 1;) {
     result.figures.push_back(measure(plan, list_kernels()[k], 1, best_spin, scratch, result));
   }

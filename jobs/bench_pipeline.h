@@ -36,9 +36,9 @@ struct PipelineResult {
   }
 };
 
-/// Sweeps `cases` cases of the request in examples/sweeps/paper_fast.toml with every kernel on one
-/// thread and the widest on 1 to `cores`, below `scratch`. `best_spin`: as calibrate_spin. Throws
-/// EnvironmentError.
+/// Sweeps the first `cases` cases, rounded up to whole shards, of examples/sweeps/paper_fast.toml,
+/// a random sample of its grid, with every kernel on one thread and the widest on 1 to `cores`,
+/// below `scratch`. `best_spin`: as calibrate_spin. Throws EnvironmentError.
 PipelineResult measure_pipeline(std::int64_t cases, int cores, double best_spin,
                                 const std::filesystem::path& scratch);
 

@@ -8,6 +8,7 @@
 #include "jobs/command.h"
 #include "jobs/design_report.h"
 #include "jobs/interrupt.h"
+#include "sweep/find_channel.h"
 
 namespace strut {
 namespace {

@@ -27,14 +27,14 @@ using strut::Command;
 constexpr Command kCommands[] = {
     {"simulate", "run a car through a maneuver, or write its suspension's kinematics",
      &strut::run_simulate},
-    {"design", "which instant, window and sensors identify a sweep's parameters best",
-     &strut::run_design},
     {"plan", "make the folder of a sweep: which cases, in which shards", &strut::run_plan},
     {"run", "simulate what a sweep still lacks", &strut::run_run},
     {"resume", "the same, and try again what failed", &strut::run_resume},
     {"status", "how far a sweep has come", &strut::run_status},
     {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
     {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
+    {"design", "which instant, window and sensors identify a sweep's parameters best",
+     &strut::run_design},
     {"bench", "measure how fast this machine simulates, and how exactly", &strut::run_bench},
 };
 

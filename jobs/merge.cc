@@ -22,7 +22,9 @@ Arguments make_arguments() {
   Arguments arguments(
       "strut merge DIR -o dataset.h5 [OPTIONS]",
       "Writes the cases of all shards of the sweep in DIR to one HDF5 file for other tools: the\n"
-      "datasets of a shard, in the order of the plan, retried cases in their place.",
+      "datasets of a shard, in the order of the plan, retried cases in their place. Ends with code "
+      "2\n"
+      "and writes nothing where a shard is missing or damaged; cases that failed are rows of NaN.",
       "  strut merge sweep -o dataset.h5\n"
       "  strut merge sweep -o view.h5 --virtual");
   arguments.add_option("output,o", "FILE", "file to write");
@@ -35,18 +37,30 @@ Arguments make_arguments() {
   return arguments;
 }
 
+/// A file that the sweep is made of, or a place in one of its subfolders.
+bool is_own(const SweepFolder& folder, const fs::path& output) {
+  const fs::path root = fs::weakly_canonical(fs::absolute(folder.root));
+  const fs::path inside = fs::weakly_canonical(fs::absolute(output)).lexically_relative(root);
+  if (inside.empty() || *inside.begin() == "..") return false;
+  const SweepFolder here;
+  return std::next(inside.begin()) != inside.end() || inside == here.plan() ||
+         inside == here.request() || inside == here.journal();
+}
+
 /// `folder`: the sweep, of which nothing may be replaced.
 fs::path find_output(const Arguments& arguments, const SweepFolder& folder) {
   if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
-  const fs::path output = arguments.text("output");
+  fs::path output = arguments.text("output");
   if (fs::exists(output) && !arguments.is_on("force")) {
     throw InputError("--output = " + output.string() + ": exists; --force replaces it");
   }
-  const auto parent = fs::weakly_canonical(fs::absolute(output)).parent_path();
-  const bool own = parent == fs::weakly_canonical(folder.shards()) ||
-                   parent == fs::weakly_canonical(folder.retries()) ||
-                   fs::weakly_canonical(output) == fs::weakly_canonical(folder.plan());
-  if (own) throw InputError("--output = " + output.string() + ": is the sweep's own");
+  if (fs::is_directory(output)) {
+    throw InputError("--output = " + output.string() + ": a folder; must be a file");
+  }
+  if (is_own(folder, output)) {
+    throw InputError("--output = " + output.string() +
+                     ": the sweep's own; must be another file or folder");
+  }
   return output;
 }
 

@@ -23,13 +23,8 @@ const Kernel& find_kernel(const Arguments& arguments) {
 }
 
 int find_threads(const Arguments& arguments) {
-  constexpr double kMost = 4096;
-  const double threads =
-      arguments.number_or("threads", omp_get_num_procs(), between(1, kMost, "threads"));
-  if (threads != static_cast<int>(threads)) {
-    throw InputError("--threads: " + format_number(threads) + ": must be a whole number");
-  }
-  return static_cast<int>(threads);
+  constexpr int kMost = 4096;
+  return static_cast<int>(arguments.integer_or("threads", omp_get_num_procs(), 1, kMost));
 }
 
 }  // namespace strut

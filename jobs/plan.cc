@@ -1,6 +1,5 @@
 #include "jobs/plan.h"
 
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "jobs/command.h"
 #include "jobs/json.h"
 #include "jobs/plan_estimate.h"
+#include "jobs/progress.h"
 #include "sweep/case_order.h"
 #include "sweep/folder.h"
 #include "sweep/parameters.h"
@@ -53,27 +53,6 @@ std::string describe_cases(const Plan& plan) {
   return count + " of the grid's " + std::to_string(plan.point_count()) + " points";
 }
 
-std::string describe_seconds(double seconds) {
-  char text[64];
-  if (seconds < 120.0) {
-    std::snprintf(text, sizeof text, "%.2g s", seconds);
-  } else if (seconds < 7200.0) {
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60.0);
-  } else {
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600.0);
-  }
-  return text;
-}
-
-std::string describe_bytes(double bytes) {
-  const char* const units[] = {"B", "kB", "MB", "GB", "TB"};
-  std::size_t unit = 0;
-  for (; bytes >= 1000.0 && unit < 4; ++unit) bytes /= 1000.0;
-  char text[64];
-  std::snprintf(text, sizeof text, "%.3g %s", bytes, units[unit]);
-  return text;
-}
-
 void print_layers(const Plan& plan) {
   std::cout << "layers    " << plan.layers().size() << " by " << plan.request().sample.by << "\n";
   char line[160];
@@ -94,9 +73,9 @@ void print_text(const Plan& plan, const SweepEstimate& estimate) {
   print_layers(plan);
   std::cout << "order     " << describe_order(plan) << "\nshards    " << plan.shard_count()
             << " of up to " << plan.request().shard_cases << " cases\ntime      about "
-            << describe_seconds(estimate.seconds) << " on " << estimate.cores
+            << format_duration(estimate.seconds) << " on " << estimate.cores
             << " cores (an estimate, from " << estimate.measured << " cases)\nsize      about "
-            << describe_bytes(estimate.bytes) << " (an estimate, before compression)\nplan      "
+            << format_bytes(estimate.bytes) << " (an estimate, before compression)\nplan      "
             << plan.hash() << "\n";
 }
 

@@ -60,7 +60,7 @@ std::string format_duration(double seconds) {
 std::string format_bytes(double bytes) {
   constexpr std::array<const char*, 5> kNames = {"B", "kB", "MB", "GB", "TB"};
   std::size_t unit = 0;
-  while (bytes >= 1000.0 && unit + 1 < kNames.size()) bytes /= 1000.0, ++unit;
+  while (bytes >= 999.5 && unit + 1 < kNames.size()) bytes /= 1000.0, ++unit;
   char text[32];
   std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.3g %s", bytes, kNames[unit]);
   return text;

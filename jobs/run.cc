@@ -24,8 +24,12 @@ Arguments make_arguments(const std::string& name, bool retries) {
       "strut " + name + " DIR [OPTIONS]",
       std::string("Simulates every case of the sweep in DIR that is not done yet, and writes whole "
                   "shards to\nDIR/shards. Stop it when you like (Ctrl-C): running it again goes on "
-                  "from there. Several may\nrun on one folder, also on several hosts.") +
-          (retries ? "\nThen tries what failed once more, with a smaller step." : ""),
+                  "from there, without the\nfew shards that were unfinished. Several may "
+                  "run on one folder, also on several hosts.\n") +
+          (retries ? "Then tries what failed once more, with a quarter of the step it failed with; "
+                     "three resumes may\ndo so one after the other.\n"
+                   : "") +
+          "Ends with code 1 where cases failed.",
       "  strut plan examples/sweeps/paper.toml -o sweep\n  strut " + name +
           " sweep --threads 2\n  strut status sweep");
   arguments.add_option("threads", "N", "worker threads (default: one for each processor)");
@@ -80,17 +84,24 @@ RunOptions read_options(const Arguments& arguments, const Plan& plan, bool retri
   return options;
 }
 
+/// Rate and time to go are of all runners on this folder, as far as this one knows of them.
 std::string describe_progress(const RunProgress& progress, double start) {
-  const std::int64_t reached = progress.present + progress.elsewhere + progress.simulated;
-  const double rate = static_cast<double>(progress.simulated) / (now() - start);
+  const std::int64_t done = progress.elsewhere + progress.simulated;
+  const std::int64_t reached = progress.present + done;
+  const double rate = static_cast<double>(done) / (now() - start);
   const double left = static_cast<double>(progress.cases - reached) / rate;
-  std::string line = format_count(reached) + "/" + format_count(progress.cases) + " cases, " +
-                     format_count(std::llround(rate)) + "/s, " + format_duration(left) + " to go";
+  std::string line = format_count(reached) + "/" + format_count(progress.cases) + " cases";
+  if (reached < progress.cases) {
+    line += ", " + format_count(std::llround(rate)) + "/s, " + format_duration(left) + " to go";
+  }
   if (progress.failed > 0) line += ", " + format_count(progress.failed) + " failed";
+  if (progress.retried > 0) line += ", " + format_count(progress.retried) + " tried again";
   return line;
 }
 
 Json make_json(const RunProgress& progress, const RunSummary& summary, double seconds) {
+  Json damaged = Json::array();
+  for (const auto& [shard, what] : summary.damaged) damaged.push(what);
   Json parts = Json::object();
   parts.set("prepare", summary.simulation.prepare)
       .set("integrate", summary.simulation.integrate)
@@ -111,6 +122,7 @@ Json make_json(const RunProgress& progress, const RunSummary& summary, double se
       .set("seconds", seconds)
       .set("runs_per_s", static_cast<double>(progress.written) / seconds)
       .set("thread_seconds", parts)
+      .set("damaged", damaged)
       .set("interrupted", summary.stopped);
   return json;
 }
@@ -122,7 +134,11 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
             << " (" << format_count(std::llround(static_cast<double>(progress.written) / seconds))
             << "/s)";
   if (present > 0) std::cout << ", " << format_count(present) << " were there already";
-  std::cout << "; " << format_count(summary.failed) << " failed\n";
+  std::cout << "; " << format_count(summary.failed) << " failed in all\n";
+  const std::int64_t dropped = progress.simulated - progress.written;
+  if (dropped > 0) {
+    std::cout << format_count(dropped) << " cases of unfinished shards are dropped\n";
+  }
   if (summary.mended + summary.still_failing > 0) {
     std::cout << "tried again: " << format_count(summary.mended) << " mended, "
               << format_count(summary.still_failing) << " still fail\n";
@@ -134,6 +150,14 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
   std::cout << "data: " << sweep.folder.shards().string() << " ("
             << format_count(summary.shards_written) << " shards, "
             << format_bytes(static_cast<double>(summary.bytes)) << " new)\n";
+}
+
+void print_notes(const RunSummary& summary) {
+  for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
+  for (const auto& [shard, what] : summary.damaged) std::cerr << "strut: " << what << "\n";
+  if (!summary.damaged.empty()) {
+    std::cerr << "strut: `strut verify DIR --quarantine` moves damaged files aside\n";
+  }
 }
 
 int run(const std::string& name, bool retries, const std::vector<std::string>& words) {
@@ -150,7 +174,7 @@ int run(const std::string& name, bool retries, const std::vector<std::string>& w
     summary = run_sweep(sweep.folder, sweep.plan, options, progress, watcher.halt());
   }
   const double seconds = now() - start;
-  for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
+  print_notes(summary);
   if (arguments.is_on("json")) {
     std::cout << make_json(progress, summary, seconds).dump() << "\n";
   } else {
@@ -161,7 +185,7 @@ int run(const std::string& name, bool retries, const std::vector<std::string>& w
               << sweep.folder.root.string() << "` goes on from here\n";
     return 128 + watcher.signal();
   }
-  return summary.failed > 0 ? kExitNo : kExitDone;
+  return summary.failed > 0 || !summary.damaged.empty() ? kExitNo : kExitDone;
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ namespace {
 
 Json make_json(const SweepStatus& status) {
   Json failures = Json::object(), faults = Json::array(), runners = Json::array();
-  for (const auto& [reason, cases] : status.failures)
+  for (const auto& [reason, cases] : status.failures) {
     failures.set(reason, static_cast<long>(cases));
+  }
   for (const std::string& fault : status.faults) faults.push(fault);
   for (const ClaimInfo& claim : status.claims) {
     runners.push(Json::object().set("unit", claim.unit).set("runner", claim.runner));
@@ -71,7 +72,9 @@ void print_text(const SweepStatus& status) {
 
 int run_status(const std::vector<std::string>& words) {
   Arguments arguments("strut status DIR [OPTIONS]",
-                      "How far the sweep in DIR has come, from its files alone.",
+                      "How far the sweep in DIR has come, from its files alone; `strut verify` "
+                      "checks every byte of\n"
+                      "them. Ends with code 1 where cases failed or files cannot be read.",
                       "  strut status sweep --watch\n  strut status sweep --json");
   arguments.add_switch("json", "print JSON");
   arguments.add_switch("watch", "print again every second until the sweep is complete");

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <iostream>
+#include <limits>
 
 #include "jobs/command.h"
 #include "jobs/json.h"
@@ -79,9 +80,9 @@ int run_verify(const std::vector<std::string>& words) {
   if (!arguments.parse(words)) return kExitDone;
   const OpenSweep sweep = open_sweep(arguments);
   VerifyOptions options;
-  options.sample =
-      static_cast<std::int64_t>(arguments.number_or("sample", 0, between(0, 1e9, "cases")));
-  options.seed = static_cast<std::uint64_t>(arguments.number_or("seed", 1, between(0, 9e15)));
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  options.sample = arguments.integer_or("sample", 0, 0, kMost);
+  options.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMost));
   options.fallback = &list_kernels().front();
   std::atomic<std::int64_t> read{0};
   VerifyReport report;

@@ -1,6 +1,7 @@
 #include "sweep/folder.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <system_error>
 
@@ -73,6 +74,18 @@ std::string SweepFolder::shard_name(std::int64_t shard) {
   return name;
 }
 
+std::int64_t SweepFolder::parse_shard_name(const std::string& name) {
+  std::int64_t shard = -1;
+  const char* const end = name.data() + name.size();
+  const auto parsed = std::from_chars(name.data(), end, shard);
+  const bool whole = parsed.ec == std::errc() && parsed.ptr == end;
+  return whole && name == shard_name(shard) ? shard : -1;
+}
+
+void make_subfolders(const SweepFolder& folder) {
+  for (const fs::path& path : list_subfolders(folder)) make_folder(path);
+}
+
 SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
   SweepFolder folder{root.lexically_normal()};
   if (fs::exists(folder.plan())) {
@@ -85,7 +98,7 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
     throw EnvironmentError(root.string() + ": cannot be read: " + e.code().message());
   }
   make_folder(folder.root);
-  for (const fs::path& path : list_subfolders(folder)) make_folder(path);
+  make_subfolders(folder);
   freeze_inputs(plan.request(), folder);
   if (calc_hash(list_facts(read_request(folder.request()))) != plan.hash()) {
     throw EnvironmentError(folder.request().string() +

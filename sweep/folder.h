@@ -23,8 +23,18 @@ struct SweepFolder {
   std::filesystem::path quarantine() const { return root / "quarantine"; }
   std::filesystem::path logs() const { return root / "logs"; }
 
-  /// "000042"
+  /// "000042": of the file, and of the claim on it.
   static std::string shard_name(std::int64_t shard);
+  /// The number of such a name; -1 for any other text.
+  static std::int64_t parse_shard_name(const std::string& name);
+  /// The claim on the next retry of a shard.
+  static std::string retry_unit(std::int64_t shard) { return kRetryPrefix + shard_name(shard); }
+  static bool is_retry_unit(const std::string& unit) { return unit.rfind(kRetryPrefix, 0) == 0; }
+
+  /// "shards/000042.h5": how journal and messages call a file of the folder.
+  std::string name_of(const std::filesystem::path& file) const {
+    return file.lexically_relative(root).generic_string();
+  }
   std::filesystem::path shard(std::int64_t number) const {
     return shards() / (shard_name(number) + ".h5");
   }
@@ -32,7 +42,14 @@ struct SweepFolder {
   std::filesystem::path retry(std::int64_t number, int round) const {
     return retries() / (shard_name(number) + "." + std::to_string(round) + ".h5");
   }
+
+ private:
+  static constexpr const char* kRetryPrefix = "retry-";
 };
+
+/// Makes the subfolders that are not there: a copy may have lost the empty ones. Throws
+/// EnvironmentError.
+void make_subfolders(const SweepFolder& folder);
 
 /// Makes the folder of a plan: request.toml with copies of every file it names, plan.h5, the empty
 /// subfolders; plan.h5 last, so a folder is planned or it is not. Planning the same request again

@@ -177,13 +177,9 @@ class Merger {
 void check_shard(const SweepFolder& folder, const MergeInput& input, const ShardPlace& place,
                  const Shard& shard) {
   const std::string file = folder.shard(place.number).string();
-  if (shard.provenance.plan_hash != input.plan_hash) {
-    throw InputError(file + ": belongs to another plan");
-  }
-  if (shard.provenance.shard != place.number) {
-    throw InputError(file + ": is shard " + std::to_string(shard.provenance.shard) +
-                     " of the plan");
-  }
+  const std::string misfit = check_place(shard.provenance.plan_hash, shard.provenance.shard,
+                                         input.plan_hash, place.number);
+  if (!misfit.empty()) throw InputError(file + ": " + misfit);
   if (shard.schema != input.schema) throw InputError(file + ": has other columns than its plan");
 }
 

@@ -121,6 +121,11 @@ std::pair<std::int64_t, std::int64_t> Plan::shard_range(std::int64_t shard) cons
   return {first, std::min(first + request().shard_cases, case_count())};
 }
 
+std::int64_t Plan::shard_size(std::int64_t shard) const {
+  const auto [first, last] = shard_range(shard);
+  return last - first;
+}
+
 std::vector<std::int64_t> Plan::list_drawn() const { return state_->order->list_drawn(); }
 
 std::int64_t Plan::calc_case_id(std::int64_t position) const {

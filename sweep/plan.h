@@ -43,6 +43,8 @@ class Plan {
   std::int64_t shard_count() const;
   /// Positions [first, last) of a shard.
   std::pair<std::int64_t, std::int64_t> shard_range(std::int64_t shard) const;
+  /// Cases of a shard.
+  std::int64_t shard_size(std::int64_t shard) const;
 
   /// The drawn cases, ascending; empty where all run.
   std::vector<std::int64_t> list_drawn() const;

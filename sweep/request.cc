@@ -8,6 +8,7 @@
 #include "io/nearest_name.h"
 #include "sweep/case_order.h"
 #include "sweep/choices.h"
+#include "sweep/find_channel.h"
 #include "sweep/parameters.h"
 #include "sweep/read_maneuver.h"
 #include "sweep/read_vehicle.h"
@@ -196,18 +197,18 @@ IntegrateRequest read_integrate(const std::optional<Table>& table) {
   return request;
 }
 
+int read_channel(const Table& table, const std::string& name) {
+  try {
+    return find_car_channel(name);
+  } catch (const InputError& e) {
+    throw table.error("channels", e.what());
+  }
+}
+
 std::vector<int> read_channels(const Table& table) {
-  std::vector<std::string> names;
-  names.reserve(list_car_channels().size());
-  for (const ChannelInfo& channel : list_car_channels()) names.push_back(channel.name);
   std::vector<int> channels;
   for (const std::string& name : table.texts("channels")) {
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) {
-      throw table.error("channels", "unknown channel '" + name + "'" + suggest_name(name, names) +
-                                        "; channels: " + join_names(names));
-    }
-    const int channel = static_cast<int>(found - names.begin());
+    const int channel = read_channel(table, name);
     if (std::find(channels.begin(), channels.end(), channel) != channels.end()) {
       throw table.error("channels", "'" + name + "' twice; allowed: once");
     }

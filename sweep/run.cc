@@ -1,53 +1,24 @@
 #include "sweep/run.h"
 
-#include <omp.h>
-
-#include <chrono>
 #include <exception>
 #include <mutex>
-#include <system_error>
 
+#include "io/input_error.h"
+#include "sweep/leftovers.h"
+#include "sweep/run_team.h"
 #include "sweep/shard_source.h"
 #include "sweep/shard_store.h"
 #include "sweep/shard_writer.h"
+#include "sweep/timer.h"
 
 namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-using SteadyClock = std::chrono::steady_clock;
 
-double seconds_since(SteadyClock::time_point start) {
-  return std::chrono::duration<double>(SteadyClock::now() - start).count();
-}
-
-/// What runners that are gone have left in tmp/: files OWNER.NUMBER.
-void remove_leftovers(const SweepFolder& folder, Claims& claims) {
-  std::error_code error;
-  for (fs::directory_iterator file(folder.temporary(), error), end; !error && file != end;
-       file.increment(error)) {
-    const std::string owner = file->path().stem().string();
-    std::error_code gone;
-    if (owner != claims.runner() && !claims.may_live(owner)) fs::remove(file->path(), gone);
-  }
-}
-
-/// Calls `work(thread)` on every thread of a team; the first exception stops all and comes out.
-template <class Work>
-void run_team(int threads, std::atomic<bool>& halt, const Work& work) {
-  std::exception_ptr failure;
-  std::mutex mutex;
-#pragma omp parallel num_threads(threads)
-  {
-    try {
-      work();
-    } catch (...) {
-      halt = true;
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+const SweepFolder& prepare(const SweepFolder& folder) {
+  make_subfolders(folder);
+  return folder;
 }
 
 /// One sweep, one runner.
@@ -61,22 +32,27 @@ class Run {
         progress_(progress),
         halt_(halt),
         schema_(plan.make_schema()),
-        claims_(folder.claims(), options.claims) {
+        claims_(prepare(folder).claims(), options.claims) {
     remove_leftovers(folder_, claims_);
+    if (options_.retry_failed) rounds_before_ = count_all_retries();
   }
 
   RunSummary run() {
     ShardSource source(folder_, plan_, options_, claims_, progress_);
     summary_.notes = source.notes();
-    summary_.shards_written = with_writer([&](ShardWriter& writer) {
-      run_team(options_.threads, halt_, [&] { simulate_shards(source, writer); });
-    });
+    summary_.shards_written = with_writer(
+        [&](ShardWriter& writer) {
+          run_team(options_.threads, halt_, [&] { simulate_shards(source, writer); });
+        },
+        [this](const JournalEntry& entry) { count_written(entry); });
     if (options_.retry_failed && !halt_) {
       const std::vector<std::int64_t> shards = list_failing_shards();
       std::atomic<std::size_t> next{0};
-      summary_.retries_written = with_writer([&](ShardWriter& writer) {
-        run_team(options_.threads, halt_, [&] { retry_shards(shards, next, writer); });
-      });
+      summary_.retries_written = with_writer(
+          [&](ShardWriter& writer) {
+            run_team(options_.threads, halt_, [&] { retry_shards(shards, next, writer); });
+          },
+          [](const JournalEntry&) {});
     }
     summary_.stopped = halt_;
     count_failed();
@@ -86,9 +62,9 @@ class Run {
  private:
   /// Lets `produce` push into a writer; returns the number of files written.
   template <class Produce>
-  std::int64_t with_writer(const Produce& produce) {
+  std::int64_t with_writer(const Produce& produce, ShardWriter::OnPublished on_published) {
     ShardWriter writer(folder_, {plan_.hash(), make_provenance()}, claims_, halt_,
-                       progress_.written, progress_.failed);
+                       std::move(on_published));
     std::exception_ptr failure;
     try {
       produce(writer);
@@ -101,6 +77,16 @@ class Run {
     summary_.bytes += totals.bytes;
     summary_.write += totals.seconds;
     return totals.shards;
+  }
+
+  void count_written(const JournalEntry& entry) {
+    if (entry.duplicate) {
+      progress_.simulated -= entry.cases;
+      progress_.elsewhere += entry.cases;
+    } else {
+      progress_.written += entry.cases;
+      progress_.failed += count_failures(entry);
+    }
   }
 
   std::vector<std::pair<std::string, std::string>> make_provenance() const {
@@ -121,8 +107,9 @@ class Run {
       job.seconds += simulator.seconds().total() - before;
       progress_.simulated += static_cast<std::int64_t>(batch->count);
       if (job.left.fetch_sub(batch->count) == batch->count) {
-        writer.push(finish(job.shard, folder_.shard(job.shard), SweepFolder::shard_name(job.shard),
-                           job.rows, job.seconds));
+        writer.push(make_finished(job.shard, folder_.shard(job.shard),
+                                  SweepFolder::shard_name(job.shard), job.rows,
+                                  job.seconds.load()));
       }
     }
     add_seconds(simulator.seconds());
@@ -133,23 +120,37 @@ class Run {
                     ShardWriter& writer) {
     CaseSimulator simulator(plan_, *options_.kernel);
     for (std::size_t i = next++; i < shards.size() && !halt_; i = next++) {
-      const std::string unit = "retry-" + SweepFolder::shard_name(shards[i]);
+      const std::int64_t shard = shards[i];
+      const std::string unit = SweepFolder::retry_unit(shard);
       if (claims_.claim(unit) != Claims::Answer::kMine) continue;
+      const int round = count_retries(folder_, shard);
       const double before = simulator.seconds().total();
-      const ShardRows overlay = retry_shard(shards[i], simulator);
+      ShardRows overlay;
+      // Another runner's round counts as this one's: a resume tries a case once, however many help.
+      if (round == find_rounds_before(shard)) overlay = retry_shard(shard, simulator);
       if (overlay.size() == 0 || halt_) {
         claims_.release(unit);
         continue;
       }
-      const int round = count_retries(folder_, shards[i]);
-      writer.push(finish(shards[i], folder_.retry(shards[i], round), unit, overlay,
-                         simulator.seconds().total() - before));
+      writer.push(make_finished(shard, folder_.retry(shard, round), unit, overlay,
+                                simulator.seconds().total() - before));
     }
     add_seconds(simulator.seconds());
   }
 
+  /// None, and told, where the shard is damaged.
+  ShardRows read_rows(std::int64_t shard) {
+    try {
+      return read_mended_shard(folder_, shard).rows;
+    } catch (const InputError& e) {
+      const std::lock_guard lock(mutex_);
+      summary_.damaged[shard] = e.what();
+      return {};
+    }
+  }
+
   ShardRows retry_shard(std::int64_t shard, CaseSimulator& simulator) {
-    const ShardRows rows = read_mended_shard(folder_, shard).rows;
+    const ShardRows rows = read_rows(shard);
     std::vector<std::size_t> failing;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       if (may_retry(rows.status[row]) && rows.attempt[row] < kLastAttempt) failing.push_back(row);
@@ -158,6 +159,7 @@ class Run {
     for (std::size_t i = 0; i < failing.size() && !halt_; ++i) {
       const std::size_t row = failing[i];
       simulator.retry(rows.case_id[row], rows.attempt[row] + 1, overlay, i);
+      ++progress_.retried;
       const bool mended = overlay.status[i] == 0;
       const std::lock_guard lock(mutex_);
       ++(mended ? summary_.mended : summary_.still_failing);
@@ -165,39 +167,61 @@ class Run {
     return overlay;
   }
 
-  FinishedShard finish(std::int64_t shard, const fs::path& target, const std::string& unit,
-                       const ShardRows& rows, double seconds) {
-    const auto start = SteadyClock::now();
-    FinishedShard finished{shard, target, unit, compress_shard(schema_, rows),
-                           make_journal_entry(folder_, target, rows)};
+  std::map<std::int64_t, int> count_all_retries() const {
+    std::map<std::int64_t, int> rounds;
+    for (const std::int64_t shard : list_shards(folder_)) {
+      const int count = count_retries(folder_, shard);
+      if (count > 0) rounds[shard] = count;
+    }
+    return rounds;
+  }
+
+  int find_rounds_before(std::int64_t shard) const {
+    const auto known = rounds_before_.find(shard);
+    return known == rounds_before_.end() ? 0 : known->second;
+  }
+
+  FinishedShard make_finished(std::int64_t shard, const fs::path& target, const std::string& unit,
+                              const ShardRows& rows, double seconds) {
+    double compress = 0.0;
+    FinishedShard finished{shard, target, unit, {}, {}};
+    {
+      const Timer timer(compress);
+      finished.data = compress_shard(schema_, rows);
+      finished.entry = make_journal_entry(folder_, target, rows);
+    }
     finished.entry.seconds = seconds;
     const std::lock_guard lock(mutex_);
-    summary_.compress += seconds_since(start);
+    summary_.compress += compress;
     return finished;
   }
 
-  /// Calls `act(shard, failures)` for each of the shards asked for that is there.
+  /// Calls `act(shard, entry)` for each of the shards asked for that is there and can be read.
   template <class Act>
   void for_each_present(const Act& act) {
     ShardRecords records(folder_);
     const std::int64_t end = options_.end_shard < 0 ? plan_.shard_count() : options_.end_shard;
     for (const std::int64_t shard : list_shards(folder_)) {
-      if (shard >= options_.first_shard && shard < end) act(shard, records.get(shard).failures);
+      if (shard < options_.first_shard || shard >= end) continue;
+      try {
+        act(shard, records.get(shard));
+      } catch (const InputError& e) {  // one bad file must not stop the rest
+        summary_.damaged[shard] = e.what();
+      }
     }
   }
 
   std::vector<std::int64_t> list_failing_shards() {
     std::vector<std::int64_t> shards;
-    for_each_present([&](std::int64_t shard, const auto& failures) {
-      if (!failures.empty()) shards.push_back(shard);
+    for_each_present([&](std::int64_t shard, const JournalEntry& entry) {
+      if (!entry.failures.empty()) shards.push_back(shard);
     });
     return shards;
   }
 
   void count_failed() {
-    for_each_present([&](std::int64_t, const auto& failures) {
-      for (const auto& [reason, cases] : failures) summary_.failed += cases;
-    });
+    for_each_present(
+        [&](std::int64_t, const JournalEntry& entry) { summary_.failed += count_failures(entry); });
   }
 
   void add_seconds(const SimulationSeconds& seconds) {
@@ -212,7 +236,8 @@ class Run {
   std::atomic<bool>& halt_;
   const ShardSchema schema_;
   Claims claims_;
-  std::mutex mutex_;  // guards summary_ while the team works
+  std::map<std::int64_t, int> rounds_before_;  // shards that were retried before this run began
+  std::mutex mutex_;                           // guards summary_ while the team works
   RunSummary summary_;
 };
 

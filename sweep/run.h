@@ -7,7 +7,7 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +37,7 @@ struct RunProgress {
   std::atomic<std::int64_t> written{0};    // by this run, in published shards
   std::atomic<std::int64_t> elsewhere{0};  // that another runner finished meanwhile
   std::atomic<std::int64_t> failed{0};     // of `written`
+  std::atomic<std::int64_t> retried{0};    // failed cases that were tried again
 };
 
 struct RunSummary {
@@ -46,13 +47,16 @@ struct RunSummary {
   std::int64_t mended = 0, still_failing = 0;
   std::int64_t failed = 0;         // cases without a result in the shards asked for, after this run
   std::vector<std::string> notes;  // for the user: what was moved aside and why
-  SimulationSeconds simulation;    // summed over threads
+  /// Shards that are there but cannot be read, and why; their cases are in no count of failures.
+  std::map<std::int64_t, std::string> damaged;
+  SimulationSeconds simulation;        // summed over threads
   double compress = 0.0, write = 0.0;  // s; write: image and disk, by the writer
   std::uint64_t bytes = 0;
 };
 
-/// Does what is missing of the shards asked for. Once `halt` is true (set by anybody) it drops what
-/// is unfinished, publishes what is whole and returns. Throws EnvironmentError, `halt` set, where
+/// Does what is missing of the shards asked for. The threads share one shard and go on to the
+/// next together, so that few are unfinished at any moment. Once `halt` is true (set by anybody) it
+/// drops those, publishes what is whole and returns. Throws EnvironmentError, `halt` set, where
 /// the folder cannot be written; what was published before stays valid.
 RunSummary run_sweep(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
                      RunProgress& progress, std::atomic<bool>& halt);

@@ -1,7 +1,7 @@
 #include "sweep/sensor_noise.h"
 
 #include "io/config.h"
-#include "io/nearest_name.h"
+#include "sweep/find_channel.h"
 #include "sweep/parameters.h"
 
 namespace strut {
@@ -39,17 +39,6 @@ SensorNoise make_default_noise() {
     }
   }
   return noise;
-}
-
-int find_car_channel(const std::string& name) {
-  std::vector<std::string> names;
-  names.reserve(list_car_channels().size());
-  for (const ChannelInfo& info : list_car_channels()) {
-    if (info.name == name) return static_cast<int>(names.size());
-    names.push_back(info.name);
-  }
-  throw InputError("unknown channel '" + name + "'" + suggest_name(name, names) +
-                   "; channels: " + join_names(names));
 }
 
 void apply_noise(SensorNoise& noise, const std::string& setting) {

@@ -16,9 +16,6 @@ using SensorNoise = std::vector<double>;
 /// time and place have none.
 SensorNoise make_default_noise();
 
-/// Channel with this name. Throws InputError with the nearest known name.
-int find_car_channel(const std::string& name);
-
 /// Applies "channel=sigma". Throws InputError where the text is not that or sigma is not positive.
 void apply_noise(SensorNoise& noise, const std::string& setting);
 

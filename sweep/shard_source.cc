@@ -13,11 +13,6 @@ namespace {
 /// How often the shards in other runners' hands are looked at.
 constexpr std::chrono::milliseconds kPoll{100};
 
-std::int64_t count_cases(const Plan& plan, std::int64_t shard) {
-  const auto [first, last] = plan.shard_range(shard);
-  return last - first;
-}
-
 }  // namespace
 
 ShardSource::ShardSource(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
@@ -34,7 +29,7 @@ void ShardSource::scan(std::int64_t first, std::int64_t end) {
   const std::vector<std::int64_t> there = list_shards(folder_);
   auto present = std::lower_bound(there.begin(), there.end(), first);
   for (std::int64_t shard = first; shard < end; ++shard) {
-    const std::int64_t cases = count_cases(plan_, shard);
+    const std::int64_t cases = plan_.shard_size(shard);
     progress_.cases += cases;
     if (present != there.end() && *present == shard) {
       ++present;
@@ -76,7 +71,11 @@ ShardSource::Taken ShardSource::open_job() {
   while (next_ < to_do_.size()) {
     if (take(to_do_[next_++])) return Taken::kJob;
   }
-  // Whoever held these may have finished, or died.
+  // Whoever held these may have finished, or died. One thread asks for all: a folder on the network
+  // is slow.
+  const auto now = std::chrono::steady_clock::now();
+  if (!elsewhere_.empty() && now < ask_again_) return Taken::kNothingNow;
+  ask_again_ = now + kPoll;
   std::vector<std::int64_t> again;
   again.swap(elsewhere_);
   for (std::size_t i = 0; i < again.size(); ++i) {
@@ -94,7 +93,7 @@ bool ShardSource::take(std::int64_t shard) {
   // Looked at after the claim: a shard is published before its claim is given back.
   if (std::filesystem::exists(folder_.shard(shard))) {
     if (mine) claims_.release(unit);
-    progress_.elsewhere += count_cases(plan_, shard);
+    progress_.elsewhere += plan_.shard_size(shard);
     return false;
   }
   if (!mine) {

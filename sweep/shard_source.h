@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -68,6 +69,7 @@ class ShardSource {
   std::vector<std::int64_t> to_do_;  // from next_ on
   std::size_t next_ = 0;
   std::vector<std::int64_t> elsewhere_;  // in other runners' hands when last asked
+  std::chrono::steady_clock::time_point ask_again_;
   std::shared_ptr<ShardJob> job_;
   std::size_t next_row_ = 0;
 };

@@ -1,7 +1,6 @@
 #include "sweep/shard_store.h"
 
 #include <algorithm>
-#include <charconv>
 #include <system_error>
 
 #include "io/input_error.h"
@@ -12,20 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The number in "000042.h5"; -1 for any other name.
-std::int64_t parse_shard_name(const std::string& name) {
-  const std::size_t dot = name.find('.');
-  if (dot == std::string::npos || name.substr(dot) != ".h5") return -1;
-  std::int64_t shard = -1;
-  const auto parsed = std::from_chars(name.data(), name.data() + dot, shard);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == name.data() + dot;
-  return whole && name == SweepFolder::shard_name(shard) + ".h5" ? shard : -1;
-}
-
-std::string relative_name(const SweepFolder& folder, const fs::path& file) {
-  return file.lexically_relative(folder.root).generic_string();
-}
-
 }  // namespace
 
 std::vector<std::int64_t> list_shards(const SweepFolder& folder) {
@@ -33,8 +18,9 @@ std::vector<std::int64_t> list_shards(const SweepFolder& folder) {
   std::error_code error;
   for (fs::directory_iterator file(folder.shards(), error), end; !error && file != end;
        file.increment(error)) {
-    const std::int64_t shard = parse_shard_name(file->path().filename().string());
-    if (shard >= 0) shards.push_back(shard);
+    const fs::path& path = file->path();
+    const std::int64_t shard = SweepFolder::parse_shard_name(path.stem().string());
+    if (shard >= 0 && path == folder.shard(shard)) shards.push_back(shard);
   }
   if (error) throw EnvironmentError(folder.shards().string() + ": " + error.message());
   std::sort(shards.begin(), shards.end());
@@ -72,12 +58,17 @@ Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
   return mended;
 }
 
+std::string check_place(const std::string& plan_hash, std::int64_t shard,
+                        const std::string& wanted_plan, std::int64_t wanted) {
+  if (plan_hash != wanted_plan) return "belongs to another plan";
+  if (shard != wanted) return "is shard " + std::to_string(shard) + " of the plan";
+  return "";
+}
+
 std::string check_seal(const SweepFolder& folder, const Plan& plan, std::int64_t shard) {
   try {
     const ShardSeal seal = read_shard_seal(folder.shard(shard));
-    if (seal.plan_hash != plan.hash()) return "belongs to another plan";
-    if (seal.shard != shard) return "is shard " + std::to_string(seal.shard) + " of the plan";
-    return "";
+    return check_place(seal.plan_hash, seal.shard, plan.hash(), shard);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -118,15 +109,23 @@ JournalEntry ShardRecords::get(std::int64_t shard) {
 }
 
 JournalEntry ShardRecords::get_file(const fs::path& file) {
-  const auto line = lines_.find(relative_name(folder_, file));
+  const auto line = lines_.find(folder_.name_of(file));
   if (line != lines_.end()) return journal_.entries[line->second];
-  return make_journal_entry(folder_, file, read_shard(file).rows);
+  JournalEntry entry = make_journal_entry(folder_, file, read_shard(file).rows);
+  entry.bytes = fs::file_size(file);
+  return entry;
+}
+
+std::int64_t count_failures(const JournalEntry& entry) {
+  std::int64_t count = 0;
+  for (const auto& [reason, cases] : entry.failures) count += cases;
+  return count;
 }
 
 JournalEntry make_journal_entry(const SweepFolder& folder, const fs::path& file,
                                 const ShardRows& rows) {
   JournalEntry entry;
-  entry.file = relative_name(folder, file);
+  entry.file = folder.name_of(file);
   entry.cases = static_cast<std::int64_t>(rows.size());
   DataDigest digest;
   for (std::size_t row = 0; row < rows.size(); ++row) {

@@ -30,6 +30,11 @@ struct RowOrigin {
 Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
                         std::vector<RowOrigin>* origins = nullptr);
 
+/// Why a file that says to be shard `shard` of the plan with this hash cannot be the `wanted` shard
+/// of the `wanted_plan`; empty where it can.
+std::string check_place(const std::string& plan_hash, std::int64_t shard,
+                        const std::string& wanted_plan, std::int64_t wanted);
+
 /// Why a shard cannot be what the plan asks for, by its seal alone (512 bytes and the size); empty
 /// where nothing speaks against it.
 std::string check_seal(const SweepFolder& folder, const Plan& plan, std::int64_t shard);
@@ -57,6 +62,9 @@ class ShardRecords {
   std::map<std::string, std::size_t> lines_;  // file -> its last entry
   std::int64_t duplicates_ = 0;
 };
+
+/// Cases of an entry that have no result.
+std::int64_t count_failures(const JournalEntry& entry);
 
 /// The journal's line of a shard's rows; time, seconds and runner are left to the caller.
 JournalEntry make_journal_entry(const SweepFolder& folder, const std::filesystem::path& file,

@@ -1,21 +1,12 @@
 #include "sweep/shard_writer.h"
 
-#include <chrono>
 #include <ctime>
 
 #include "io/publish.h"
-#include "io/sha256.h"
+#include "sweep/timer.h"
 
 namespace strut {
 namespace {
-
-using SteadyClock = std::chrono::steady_clock;
-
-std::int64_t count_failures(const JournalEntry& entry) {
-  std::int64_t count = 0;
-  for (const auto& [reason, cases] : entry.failures) count += cases;
-  return count;
-}
 
 /// "2026-11-21T09:30:00Z"
 std::string format_utc(std::time_t time) {
@@ -29,14 +20,12 @@ std::string format_utc(std::time_t time) {
 }  // namespace
 
 ShardWriter::ShardWriter(const SweepFolder& folder, Settings settings, Claims& claims,
-                         std::atomic<bool>& halt, std::atomic<std::int64_t>& written,
-                         std::atomic<std::int64_t>& failed)
+                         std::atomic<bool>& halt, OnPublished on_published)
     : folder_(folder),
       settings_(std::move(settings)),
       claims_(claims),
       halt_(halt),
-      written_(written),
-      failed_(failed),
+      on_published_(std::move(on_published)),
       thread_([this] { work(); }) {}
 
 ShardWriter::~ShardWriter() {
@@ -70,8 +59,8 @@ WriterTotals ShardWriter::finish() {
 void ShardWriter::work() {
   FinishedShard shard;
   while (pop(shard)) {
-    const auto start = SteadyClock::now();
     try {
+      const Timer timer(totals_.seconds);
       write(shard);
     } catch (...) {
       halt_ = true;
@@ -81,7 +70,6 @@ void ShardWriter::work() {
       changed_.notify_all();
       return;
     }
-    totals_.seconds += std::chrono::duration<double>(SteadyClock::now() - start).count();
   }
 }
 
@@ -111,16 +99,13 @@ void ShardWriter::write(FinishedShard& shard) {
   append_journal(folder_.journal(), entry);
   claims_.release(shard.unit);
 
-  written_ += entry.cases;
-  failed_ += count_failures(entry);
-  totals_.cases += entry.cases;
-  totals_.failed += count_failures(entry);
   if (entry.duplicate) {
     ++totals_.duplicates;
   } else {
     ++totals_.shards;
     totals_.bytes += entry.bytes;
   }
+  on_published_(entry);
 }
 
 }  // namespace strut

@@ -8,6 +8,7 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -31,7 +32,7 @@ struct FinishedShard {
 };
 
 struct WriterTotals {
-  std::int64_t shards = 0, cases = 0, failed = 0, duplicates = 0;
+  std::int64_t shards = 0, duplicates = 0;
   std::uint64_t bytes = 0;
   double seconds = 0.0;
 };
@@ -44,10 +45,12 @@ class ShardWriter {
     std::size_t queue_length = 4;
   };
 
-  /// `halt` turns true where writing fails. `written` counts cases as they are published. The
-  /// arguments must outlive it.
+  /// Called from the writer's thread with what the journal was told.
+  using OnPublished = std::function<void(const JournalEntry&)>;
+
+  /// `halt` turns true where writing fails. The references must outlive it.
   ShardWriter(const SweepFolder& folder, Settings settings, Claims& claims, std::atomic<bool>& halt,
-              std::atomic<std::int64_t>& written, std::atomic<std::int64_t>& failed);
+              OnPublished on_published);
   /// As finish(), but for the exception.
   ~ShardWriter();
   ShardWriter(const ShardWriter&) = delete;
@@ -68,8 +71,7 @@ class ShardWriter {
   const Settings settings_;
   Claims& claims_;
   std::atomic<bool>& halt_;
-  std::atomic<std::int64_t>& written_;
-  std::atomic<std::int64_t>& failed_;
+  const OnPublished on_published_;
   WriterTotals totals_;  // the thread's own until it has ended
 
   std::mutex mutex_;

@@ -2,41 +2,26 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "model/vehicle/model_error.h"
+#include "sweep/timer.h"
 
 namespace strut {
 namespace {
 
 constexpr std::array<const char*, kCaseStatusCount> kStatusNames = {
-    "done", "diverged", "out_of_travel", "stalled", "no_equilibrium", "no_event"};
+    "done", "diverged", "out_of_travel", "stalled", "no_equilibrium", "no_event", "impossible"};
 constexpr std::array<const char*, kCaseStatusCount> kStatusReasons = {
     "",
     "a state is no longer finite, or faster than any car",
     "a corner left the travel its loops were closed over",
     "steps cut short by contact events, one upon the other, get nowhere",
     "",
-    "the rear wheels never met the snapshot's line"};
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Adds the time since its making to a sum.
-class Timer {
- public:
-  explicit Timer(double& sum) : sum_(sum), start_(now()) {}
-  ~Timer() { sum_ += now() - start_; }
-  Timer(const Timer&) = delete;
-  Timer& operator=(const Timer&) = delete;
-
- private:
-  double& sum_;
-  double start_;
-};
+    "the rear wheels never met the snapshot's line",
+    ""};
 
 IntegrateOptions make_retry_options(const IntegrateOptions& options, int attempt) {
   IntegrateOptions finer = options;
@@ -143,8 +128,10 @@ std::optional<PreparedCase> CaseSimulator::prepare(std::int64_t case_id, ShardRo
     return preparer_.prepare(plan_.make_case(case_id), plan_.request().snapshot.offset);
   } catch (const ModelError& e) {
     fail(rows, row, CaseStatus::kNoEquilibrium, 0.0, e.what());
-    return std::nullopt;
+  } catch (const std::invalid_argument& e) {  // the road's
+    fail(rows, row, CaseStatus::kImpossible, 0.0, e.what());
   }
+  return std::nullopt;
 }
 
 std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std::int64_t> cases,
@@ -209,7 +196,7 @@ void CaseSimulator::record(const LaneResults& results, int lane, ShardRows& rows
   if (!request.snapshot.on) return;
   rows.event_time[row] = results.event_time[in_lane];
   if (std::isnan(rows.event_time[row])) {
-    fail(rows, row, CaseStatus::kNoEvent, request.base.maneuver.duration,
+    fail(rows, row, CaseStatus::kNoEvent, plan_.make_case(rows.case_id[row]).maneuver.duration,
          kStatusReasons[static_cast<std::size_t>(CaseStatus::kNoEvent)]);
     return;
   }

@@ -21,8 +21,9 @@ enum class CaseStatus : std::int32_t {
   kStalled = 3,        // steps cut short by contact events, one upon the other, get nowhere
   kNoEquilibrium = 4,  // loops that cannot be closed, springs that cannot carry the car
   kNoEvent = 5,        // the car never met the snapshot's line
+  kImpossible = 6,     // values that exclude each other, as flanks longer than their bump
 };
-inline constexpr int kCaseStatusCount = 6;
+inline constexpr int kCaseStatusCount = 7;
 
 /// "done", "diverged", ...: the words of status, journal and documentation.
 const char* get_case_status_name(std::int32_t status);

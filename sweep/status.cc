@@ -1,10 +1,8 @@
 #include "sweep/status.h"
 
 #include <algorithm>
-#include <charconv>
 #include <ctime>
 #include <limits>
-#include <set>
 
 #include "io/input_error.h"
 #include "sweep/shard_store.h"
@@ -30,19 +28,11 @@ double calc_rate(const Journal& journal) {
   return now > first ? static_cast<double>(cases) / static_cast<double>(now - first) : 0.0;
 }
 
-std::int64_t count_cases(const Plan& plan, std::int64_t shard) {
-  const auto [first, last] = plan.shard_range(shard);
-  return last - first;
-}
-
 void add_shard(ShardRecords& records, const Plan& plan, std::int64_t shard, SweepStatus& status) {
   try {
     const JournalEntry entry = records.get(shard);
-    std::int64_t failed = 0;
-    for (const auto& [reason, cases] : entry.failures) {
-      status.failures[reason] += cases;
-      failed += cases;
-    }
+    for (const auto& [reason, cases] : entry.failures) status.failures[reason] += cases;
+    const std::int64_t failed = count_failures(entry);
     status.failed += failed;
     status.done += entry.cases - failed;
     status.bytes += entry.bytes;
@@ -51,15 +41,8 @@ void add_shard(ShardRecords& records, const Plan& plan, std::int64_t shard, Swee
     ++status.shards_present;
   } catch (const InputError& e) {
     status.faults.emplace_back(e.what());
-    status.left += count_cases(plan, shard);
+    status.left += plan.shard_size(shard);
   }
-}
-
-/// The shard of a claim; -1 where the claim is of something else.
-std::int64_t parse_unit(const std::string& unit) {
-  std::int64_t shard = -1;
-  const auto parsed = std::from_chars(unit.data(), unit.data() + unit.size(), shard);
-  return parsed.ec == std::errc() && parsed.ptr == unit.data() + unit.size() ? shard : -1;
 }
 
 }  // namespace
@@ -75,15 +58,15 @@ SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
   std::vector<std::int64_t> shards = list_shards(folder);
   shards.erase(std::lower_bound(shards.begin(), shards.end(), status.shards), shards.end());
   for (const std::int64_t shard : shards) {
-    present += count_cases(plan, shard);
+    present += plan.shard_size(shard);
     add_shard(records, plan, shard, status);
   }
   status.left += status.cases - present;
   for (const ClaimInfo& claim : status.claims) {
-    const std::int64_t shard = parse_unit(claim.unit);
+    const std::int64_t shard = SweepFolder::parse_shard_name(claim.unit);
     const bool open = shard >= 0 && shard < status.shards &&
                       !std::binary_search(shards.begin(), shards.end(), shard);
-    if (open) status.running += count_cases(plan, shard);
+    if (open) status.running += plan.shard_size(shard);
   }
   status.duplicates = records.duplicates();
   status.rate = status.running > 0 ? calc_rate(records.journal()) : 0.0;

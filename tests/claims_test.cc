@@ -149,6 +149,34 @@ TEST_CASE("Runners in threads never hold one unit together", "[io]") {
   CHECK(list_files(folder / "").empty());
 }
 
+TEST_CASE("Threads that share one runner never hold one unit together", "[io]") {
+  const TemporaryFolder folder;
+  constexpr std::size_t kUnits = 200;
+  Claims claims(folder / "", kLongLease);
+  std::array<std::atomic<int>, kUnits> mine{};
+  std::atomic<int> holders{0}, overlaps{0};
+  std::vector<std::thread> threads;
+  threads.reserve(4);
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (std::size_t i = 0; i < kUnits; ++i) {
+        if (claims.claim(std::to_string(i)) == Answer::kMine) ++mine[i];
+        if (claims.may_live("elsewhere.1.0")) ++overlaps;
+        // One that goes from hand to hand.
+        if (claims.claim("shared") != Answer::kMine) continue;
+        if (++holders > 1) ++overlaps;
+        std::this_thread::yield();
+        --holders;
+        claims.release("shared");
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(std::all_of(mine.begin(), mine.end(), [](int count) { return count == 1; }));
+  CHECK(overlaps == 0);
+  CHECK(list_files(folder / "").size() == kUnits + 1);
+}
+
 TEST_CASE("Runners in processes never hold one unit together", "[io]") {
   const TemporaryFolder folder;
   fs::create_directories(folder / "claims");
@@ -309,6 +337,19 @@ TEST_CASE("Claims that say nothing, or nothing true, block nobody", "[io]") {
   folder.write("4", "x.1.0\n");
   CHECK(claims.claim("4") == Answer::kTaken);
   CHECK(wait_until([&] { return claims.claim("4") == Answer::kMine; }));
+}
+
+TEST_CASE("A runner's file cut anywhere is never taken for a dead runner's", "[io]") {
+  const TemporaryFolder folder;
+  Claims claims(folder / "", kLongLease);
+  const std::string text = read_text(folder / ("runner." + claims.runner()));
+  folder.write("1", "half.1.0\n");
+  for (std::size_t size = 0; size <= text.size(); ++size) {
+    folder.write("runner.half.1.0", text.substr(0, size));
+    INFO("'" << text.substr(0, size) << "'");
+    REQUIRE(claims.may_live("half.1.0"));
+    REQUIRE(claims.claim("1") == Answer::kTaken);
+  }
 }
 
 TEST_CASE("The heartbeat goes on where its file was removed", "[io]") {

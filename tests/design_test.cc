@@ -1,21 +1,15 @@
 // `strut design`: what it proposes for the paper's sweep, and how it speaks.
-// Asked for by Boost's own parser, which uses the names it deprecates.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
 #include "sweep/design.h"
 
-#include <sys/wait.h>
-
-#include <array>
-#include <boost/property_tree/json_parser.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdio>
 
 #include "io/csv.h"
 #include "sweep/parameters.h"
 #include "sweep/read_maneuver.h"
 #include "sweep/read_vehicle.h"
-#include "tests/temporary_folder.h"
+#include "tests/parse_json.h"
+#include "tests/run_program.h"
 #include "tests/test_car.h"
 
 namespace strut {
@@ -23,7 +17,8 @@ namespace {
 
 using C = CarChannel;
 using Catch::Matchers::Contains;
-using test::read_text;
+using test::Outcome;
+using test::run_program;
 using test::TemporaryFolder;
 using test::tolerance;
 
@@ -164,11 +159,6 @@ TEST_CASE("A channel without sensor asks for its noise", "[unit]") {
                     Contains("--noise forward_position=SIGMA"));
 }
 
-struct Outcome {
-  int code = -1;
-  std::string out, messages;
-};
-
 /// `strut design` on the paper's sweep.
 Outcome run_design(const TemporaryFolder& folder, const std::string& arguments) {
   const std::string sweep = folder.write(
@@ -181,21 +171,7 @@ rear_damping    = { from = 1980,  to = 1800,  step = -20 }
 [record]
 snapshot = { when = "rear_wheels_on_bump", offset = 0.0, channels = ["body_position_z", "body_velocity_z", "body_acceleration_z", "pitch_angle", "pitch_rate"] }
 )");
-  const std::string messages = folder / "messages";
-  FILE* pipe =
-      ::popen((std::string(STRUT_PROGRAM) + " design " + sweep + " " + arguments + " 2>" + messages)
-                  .c_str(),
-              "r");
-  REQUIRE(pipe != nullptr);
-  Outcome outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.out.append(buffer.data(), n);
-  }
-  const int status = ::pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  outcome.messages = read_text(messages);
-  return outcome;
+  return run_program("design " + sweep + " " + arguments);
 }
 
 TEST_CASE("Design prints bounds, sensors and a proposal", "[io]") {
@@ -214,9 +190,7 @@ TEST_CASE("Design writes strict JSON and the curves as CSV", "[io]") {
   const Outcome outcome =
       run_design(folder, "--json --rate 500 --noise pitch_rate=0.002 --csv " + csv);
   REQUIRE(outcome.code == 0);
-  std::istringstream stream(outcome.out);
-  boost::property_tree::ptree json;
-  boost::property_tree::read_json(stream, json);
+  const test::JsonTree json = test::parse_json(outcome.out);
   CHECK(json.get<double>("base.front_stiffness") == 37750.0);
   CHECK(json.get<double>("noise.pitch_rate") == 0.002);
   CHECK(json.get<double>("snapshot.offset") == 0.0);

@@ -1,13 +1,23 @@
 // A small shard with everything in it: failed cases, NaN, histories.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "io/shard.h"
 
 namespace strut::test {
+
+/// NaN included.
+inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
 
 inline ShardSchema make_example_schema() {
   ShardSchema schema;

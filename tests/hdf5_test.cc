@@ -2,9 +2,10 @@
 
 #include <array>
 #include <catch2/catch.hpp>
-#include <numeric>
+#include <random>
 
 #include "io/file_bytes.h"
+#include "io/hdf5_calls.h"
 #include "tests/limited_file_size.h"
 #include "tests/temporary_folder.h"
 
@@ -148,6 +149,54 @@ TEST_CASE("A file that is missing, foreign or damaged is an input error", "[io]"
   const auto size = std::filesystem::file_size(folder / "run.h5");
   std::filesystem::resize_file(folder / "run.h5", size / 2);
   CHECK_THROWS_WITH(Hdf5Reader(folder / "run.h5"), Contains("run.h5: damaged"));
+}
+
+// Without a seal a reader has only the format's own checksums. Chunks that are not compressed have
+// none: their numbers may change, but nothing else, and no damage may end the program.
+TEST_CASE("A flipped bit anywhere is an error or a number, never a crash", "[io][property]") {
+  const TemporaryFolder folder;
+  write_example(folder / "run.h5");
+  const std::vector<std::byte> good = read_bytes(folder / "run.h5");
+  int found = 0, silent = 0;
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    std::vector<std::byte> image = good;
+    image[at] ^= std::byte{1} << (at % 8);
+    try {
+      const Hdf5Reader file("run.h5", image);
+      const Hdf5Dataset parameters = file.read("/parameters");
+      file.read("/history/time");
+      CHECK(parameters.shape == std::vector<std::size_t>{3, 2});
+      CHECK(parameters.label.unit == kLabel.unit);
+      CHECK(parameters.label.description == kLabel.description);
+      CHECK(parameters.label.names == kLabel.names);
+      CHECK(file.read_attribute("/", "strut_version") == "0.1.0");
+      CHECK(file.read_attribute("/history", "empty").empty());
+      ++silent;
+    } catch (const InputError&) {
+      ++found;
+    }
+  }
+  CHECK(found > 500);
+  CHECK(silent > 0);
+}
+
+// As h5py writes them; the library crashes on damaged ones.
+TEST_CASE("An attribute of variable length is refused", "[io]") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run.h5";
+  write_example(path);
+  {
+    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+    REQUIRE(H5Tset_size(type.id(), H5T_VARIABLE) >= 0);
+    const Hdf5Handle attribute(
+        H5Acreate2(file.id(), "note", type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const char* const text = "a text of its own length";
+    REQUIRE(H5Awrite(attribute.id(), type.id(), &text) >= 0);
+  }
+  const Hdf5Reader reader(path);
+  CHECK(reader.read_attribute("/", "strut_version") == "0.1.0");
+  CHECK_THROWS_WITH(reader.read_attribute("/", "note"), Contains("texts of fixed length"));
 }
 
 TEST_CASE("A target that cannot hold HDF5 is the environment's failure", "[io]") {

@@ -1,13 +1,11 @@
 // `strut plan` as a user meets it: what it prints, the folder it makes, what it refuses.
-// Asked for by Boost's own parser, which uses the names it deprecates.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
-#include <boost/property_tree/json_parser.hpp>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <map>
 
 #include "io/hdf5.h"
 #include "sweep/folder.h"
+#include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/sweep_text.h"
 
@@ -17,7 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using Catch::Matchers::Contains;
-using test::make_grid_text;
 using test::make_sweep_text;
 using test::Outcome;
 using test::read_text;
@@ -67,9 +64,7 @@ TEST_CASE("A dry run prints every layer's counts, shards, time and bytes, and wr
   CHECK_THAT(outcome.out, Contains("time      about") && Contains("estimate"));
   CHECK_THAT(outcome.out, Contains("size      about"));
   const Outcome json = run_program(command + " --dry-run --json");
-  std::istringstream text(json.out);
-  boost::property_tree::ptree tree;
-  boost::property_tree::read_json(text, tree);
+  const test::JsonTree tree = test::parse_json(json.out);
   CHECK(tree.get<int>("cases") == 2000);
   CHECK(tree.get<int>("shards") == 4);
   CHECK(tree.get_child("layers").size() == 10);

@@ -1,8 +1,6 @@
 // A published file is whole or absent, whatever fails or dies.
 #include "io/publish.h"
 
-#include <sys/mount.h>
-
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -17,6 +15,7 @@
 #include "tests/faults/run_worker.h"
 #include "tests/faults/worker_data.h"
 #include "tests/limited_file_size.h"
+#include "tests/small_disk.h"
 #include "tests/temporary_folder.h"
 
 namespace strut {
@@ -209,29 +208,10 @@ TEST_CASE("A missing folder is an error that names the target", "[io]") {
   CHECK_FALSE(sweep.has_leftover());
 }
 
-// A file system of 1 MB that is there as long as the object.
-class SmallDisk {
- public:
-  explicit SmallDisk(const fs::path& folder) : folder_(folder) {
-    fs::create_directories(folder);
-    is_mounted_ = ::mount("strut_test", folder.c_str(), "tmpfs", 0, "size=1m") == 0;
-  }
-  ~SmallDisk() {
-    if (is_mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  bool is_mounted() const { return is_mounted_; }
-
- private:
-  fs::path folder_;
-  bool is_mounted_ = false;
-};
-
 TEST_CASE("A full disk is an error, what is published stays, and more fits once there is room",
           "[io]") {
   const SweepLike sweep;
-  const SmallDisk disk(sweep.root);
+  const test::SmallDisk disk(sweep.root, 1);
   if (!disk.is_mounted()) {
     WARN("skipped: a small file system can be mounted by root only");
     return;

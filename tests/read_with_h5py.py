@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Reads a shard, a merged file and a view as users do, with h5py and h5dump.
+"""Reads a shard, a merged file and a view as users do, with h5py and h5dump, and computes their data
+digest anew, from docs/data_format.md alone.
 
 usage: read_with_h5py.py TEST_PROGRAM
 
@@ -7,6 +8,7 @@ The test program writes them with the bytes that every dataset must have. Exit c
 there.
 """
 
+import hashlib
 import os
 import pathlib
 import shutil
@@ -16,6 +18,7 @@ import tempfile
 
 try:
     import h5py
+    import numpy
 except ImportError:
     print("skipped: no h5py (Debian: python3-h5py)")
     sys.exit(77)
@@ -24,6 +27,31 @@ except ImportError:
 def check(good, what):
     if not good:
         sys.exit(f"failed: {what}")
+
+
+def calc_row_hashes(file):
+    """SHA-256 of each case, step 1 of the data digest."""
+    columns = [("case_id", "<i8"), ("parameters", "<f8"), ("snapshot", "<f8"), ("layer", "<i4"),
+               ("status", "<i4"), ("attempt", "<i4"), ("event_time", "<f8"), ("failure_time", "<f8")]
+    if "history" in file:
+        columns += [("history/" + name.decode(), "<f8") for name in file["history"].attrs["names"]]
+    rows = [b""] * len(file["case_id"])
+    for name, kind in columns:
+        values = file[name][()].astype(kind)
+        if kind == "<f8":
+            values[numpy.isnan(values)] = numpy.frombuffer(bytes.fromhex("000000000000f87f"), "<f8")
+        rows = [row + value.tobytes() for row, value in zip(rows, values)]
+    return [hashlib.sha256(row).digest() for row in rows]
+
+
+def calc_data_digest(file):
+    sums = [0, 0, 0, 0]
+    hashes = calc_row_hashes(file)
+    for row in hashes:
+        words = [int.from_bytes(row[i:i + 8], "little") for i in (0, 8, 16, 24)]
+        sums = [(a + b) % 2**64 for a, b in zip(sums, words)]
+    text = ":".join([str(len(hashes))] + [format(total, "x") for total in sums])
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def check_file(path, folder):
@@ -35,12 +63,14 @@ def check_file(path, folder):
         check([text.decode() for text in file["reason"][()]]
               == (folder / "reason.txt").read_text().split("\n")[:-1], f"{path.name}: reasons")
         snapshot = file["snapshot"]
-        check(list(snapshot.attrs["names"]) == ["pitch_angle", "body_position_z"], "names")
-        check(list(snapshot.attrs["units"]) == ["rad", "m"], "units")
-        check(snapshot.attrs["unit"] == "mixed", "unit")
-        check(file["event_time"].attrs["unit"] == "s", "unit of event_time")
-        check(file.attrs["plan_hash"] == "a" * 64, "plan_hash")
+        check(list(snapshot.attrs["names"].astype(str)) == ["pitch_angle", "body_position_z"], "names")
+        check(list(snapshot.attrs["units"].astype(str)) == ["rad", "m"], "units")
+        check(snapshot.attrs["unit"].decode() == "mixed", "unit")
+        check(file["event_time"].attrs["unit"].decode() == "s", "unit of event_time")
+        check(file.attrs["plan_hash"].decode() == "a" * 64, "plan_hash")
         check(file.attrs["schema_version"] == 1, "schema_version")
+        check(file.attrs["checksum"].decode() == calc_data_digest(file),
+              f"{path.name}: the data digest by the documentation is another one")
 
 
 def check_dump(path):

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "io/claims.h"
 #include "io/journal.h"
 #include "sweep/shard_store.h"
 #include "sweep/status.h"
@@ -143,9 +144,32 @@ TEST_CASE("A shard cut short is moved aside and made again", "[unit][io]") {
 TEST_CASE("Leftovers of a dead runner are removed, a living one's are not", "[unit][io]") {
   const PlannedSweep sweep;
   std::ofstream(sweep.folder().temporary() / "nowhere.1.abc.7") << "half a shard";
-  std::ofstream(sweep.folder().temporary() / "not ours") << "whatever";
+  const Claims living(sweep.folder().claims(), {});
+  const fs::path theirs = sweep.folder().temporary() / (living.runner() + ".0");
+  std::ofstream(theirs) << "half a shard";
   sweep.run();
   CHECK(!fs::exists(sweep.folder().temporary() / "nowhere.1.abc.7"));
+  CHECK(fs::exists(theirs));
+}
+
+TEST_CASE("Claims on finished work that a killed runner left are removed", "[unit][io]") {
+  const PlannedSweep sweep;
+  sweep.run();
+  for (const char* unit : {"000001", "retry-000002"}) {
+    std::ofstream(sweep.folder().claims() / unit) << "nowhere.1.abc\n";
+  }
+  sweep.run();
+  CHECK(count_files(sweep.folder().claims()) == 0);
+}
+
+TEST_CASE("A folder that lost its empty subfolders runs", "[unit][io]") {
+  const PlannedSweep sweep;
+  const SweepFolder& folder = sweep.folder();
+  for (const fs::path& path : {folder.claims(), folder.temporary(), folder.shards()}) {
+    fs::remove(path);
+  }
+  CHECK(sweep.run().shards_written == 6);
+  get_digest(sweep);
 }
 
 SweepText make_unstable() {
@@ -180,6 +204,41 @@ TEST_CASE("What failed is mended by a later resume, in overlays", "[unit]") {
 
   const RunSummary third = sweep.run(2, true);
   CHECK(third.retries_written == 0);
+}
+
+TEST_CASE("A resume tries a case once, however many runners help", "[unit]") {
+  SweepText text = make_unstable();
+  text.integrate = "method = \"rk4\"\nstep = 2e-2\nclosure = \"table\"\n";
+  const PlannedSweep sweep(text);
+  const SweepFolder& folder = sweep.folder();
+  sweep.run(2);
+  RunOptions options = make_options(1);
+  options.retry_failed = true;
+  std::atomic<bool> halt{false};
+  {
+    // The first waits for a shard in other hands; the second meanwhile retries all others.
+    Claims holder(folder.claims(), {});
+    const std::string unit = SweepFolder::shard_name(2);
+    REQUIRE(holder.claim(unit) == Claims::Answer::kMine);
+    fs::remove(folder.shard(2));
+    RunProgress waiting, helping;
+    std::thread first([&] { run_sweep(folder, sweep.plan(), options, waiting, halt); });
+    while (waiting.present < 6) std::this_thread::yield();
+    RunOptions others = options;
+    others.end_shard = 2;
+    CHECK(run_sweep(folder, sweep.plan(), others, helping, halt).retries_written > 0);
+    holder.release(unit);
+    first.join();
+  }
+  int still_failing = 0;
+  for (const std::int64_t shard : list_shards(folder)) {
+    const ShardRows rows = read_mended_shard(folder, shard).rows;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      CHECK(rows.attempt[row] <= 2);
+      still_failing += rows.status[row] != 0 ? 1 : 0;
+    }
+  }
+  CHECK(still_failing > 0);
 }
 
 TEST_CASE("Status counts what is done from the files alone", "[unit]") {

@@ -42,5 +42,15 @@ TEST_CASE("A replaced text leaves every other byte as it is", "[unit][io]") {
   CHECK_THROWS_AS(replace_toml_texts(file, {{"tire", "b"}}), InputError);
 }
 
+TEST_CASE("A text is replaced behind a byte order mark, by any bytes", "[unit][io]") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.toml", "\xef\xbb\xbfname = \"old\"\n");
+  CHECK(replace_toml_texts(file, {{"name", "new"}}) == "\xef\xbb\xbfname = \"new\"\n");
+  std::string all;
+  for (int c = 1; c < 0x80; ++c) all += static_cast<char>(c);
+  folder.write("b.toml", replace_toml_texts(file, {{"name", all}}));
+  CHECK(flatten_toml(folder / "b.toml") == TomlValues{{"name", all}});
+}
+
 }  // namespace
 }  // namespace strut

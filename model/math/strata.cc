@@ -49,6 +49,4 @@ std::vector<std::int64_t> allocate_proportionally(std::int64_t count,
   return quotas;
 }
 
-void sort_numbers(std::vector<std::int64_t>& numbers) { std::sort(numbers.begin(), numbers.end()); }
-
 }  // namespace strut

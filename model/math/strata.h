@@ -5,6 +5,7 @@
 // whole numbers by the largest remainder (Hamilton).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,13 +35,6 @@ std::vector<std::int64_t> allocate_proportionally(std::int64_t count,
 /// exceed the layers' populations. Every sample that fits the quotas is equally likely.
 template <class LayerOf>
 std::vector<std::int64_t> draw_stratified(std::vector<std::int64_t> quotas,
-                                          const Permutation& order, const LayerOf& layer_of);
-
-/// Sorts ascending.
-void sort_numbers(std::vector<std::int64_t>& numbers);
-
-template <class LayerOf>
-std::vector<std::int64_t> draw_stratified(std::vector<std::int64_t> quotas,
                                           const Permutation& order, const LayerOf& layer_of) {
   std::int64_t left = 0;
   for (const std::int64_t quota : quotas) left += quota;
@@ -54,7 +48,7 @@ std::vector<std::int64_t> draw_stratified(std::vector<std::int64_t> quotas,
     --left;
     drawn.push_back(number);
   }
-  sort_numbers(drawn);
+  std::sort(drawn.begin(), drawn.end());
   return drawn;
 }
 

@@ -1,15 +1,15 @@
 // For LD_PRELOAD: writes down, or makes fail, what a program does to the files of one folder.
 //
 //   STRUT_FAULT_FOLDER=/absolute/folder    nothing outside it is touched
-//   STRUT_RECORD=LOG                       append every call that changes a file to LOG
-//   (recording.h) STRUT_FAULT=KIND:N:ERRNO[:MODE]        the N-th call (1, 2, ...) of a kind fails
-//   with that errno;
+//   STRUT_RECORD=LOG                       append every changing call to LOG (recording.h)
+//   STRUT_FAULT=KIND:N:ERRNO[:MODE]        the N-th call of a kind fails with that errno
 //       KIND: open write fsync link rename unlink read
 //       MODE: once (default), forever (that call and all later ones), short (a write takes only
 //       half of its data, all later writes fail), flip (a read succeeds with its first byte
 //       changed)
 //   STRUT_FAULT_FIRED=FILE                 made when the fault happened
 //   STRUT_NO_WALL_CLOCK=1                  reading the wall clock ends the program by SIGABRT
+//   STRUT_CLOCK_SHIFT=SECONDS              the wall clock is off by so much
 //
 // Not seen: calls that libc makes inside itself for stdio's buffers, mmap, copy_file_range,
 // sendfile.
@@ -66,6 +66,7 @@ struct Settings {
   std::string log = get_variable("STRUT_RECORD");
   std::string fired = get_variable("STRUT_FAULT_FIRED");
   bool no_wall_clock = !get_variable("STRUT_NO_WALL_CLOCK").empty();
+  long clock_shift = std::atol(get_variable("STRUT_CLOCK_SHIFT").c_str());
   Fault fault = read_fault();
 };
 
@@ -275,8 +276,13 @@ mode_t get_mode(int flags, va_list arguments) {
   return (flags & (O_CREAT | O_TMPFILE)) != 0 ? static_cast<mode_t>(va_arg(arguments, int)) : 0;
 }
 
-void refuse_wall_clock() {
+// As the settings have it.
+timespec read_wall_clock(clockid_t clock) {
   if (get_settings().no_wall_clock) std::abort();
+  timespec now{};
+  ::syscall(SYS_clock_gettime, clock, &now);
+  now.tv_sec += get_settings().clock_shift;
+  return now;
 }
 
 }  // namespace
@@ -424,22 +430,21 @@ int mkdir(const char* path, mode_t mode) noexcept {
 }
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
-  if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE) refuse_wall_clock();
-  return static_cast<int>(::syscall(SYS_clock_gettime, clock, time));
+  if (clock != CLOCK_REALTIME && clock != CLOCK_REALTIME_COARSE) {
+    return static_cast<int>(::syscall(SYS_clock_gettime, clock, time));
+  }
+  *time = read_wall_clock(clock);
+  return 0;
 }
 
 time_t time(time_t* result) noexcept {
-  refuse_wall_clock();
-  timespec now{};
-  ::syscall(SYS_clock_gettime, CLOCK_REALTIME, &now);
-  if (result != nullptr) *result = now.tv_sec;
-  return now.tv_sec;
+  const time_t now = read_wall_clock(CLOCK_REALTIME).tv_sec;
+  if (result != nullptr) *result = now;
+  return now;
 }
 
 int gettimeofday(timeval* result, void*) noexcept {
-  refuse_wall_clock();
-  timespec now{};
-  ::syscall(SYS_clock_gettime, CLOCK_REALTIME, &now);
+  const timespec now = read_wall_clock(CLOCK_REALTIME);
   result->tv_sec = now.tv_sec;
   result->tv_usec = now.tv_nsec / 1000;
   return 0;

@@ -3,10 +3,10 @@
 //   worker publish TARGET SIZE TEMPORARY OWNER   prints "new" or "present"
 //   worker replace TARGET TEXT                   by AtomicFile
 //   worker append JOURNAL FIRST COUNT            entries "shards/FIRST.h5", ...
-//   worker hold FOLDER UNIT                      prints "mine NAME" or "taken NAME"; holds until
-//   SIGTERM worker contend FOLDER WITNESS ROUNDS         claims unit "u", writes a line to WITNESS
-//   while it
-//                                                holds it, and again; prints how often it did
+//   worker hold FOLDER UNIT                      prints "mine NAME" or "taken NAME", holds it
+//                                                until SIGTERM
+//   worker contend FOLDER WITNESS ROUNDS         claims unit "u", makes WITNESS while it holds it,
+//                                                and again; prints how often it did
 //   worker time                                  reads the wall clock
 // Exit codes: 0 done, 3 EnvironmentError, its message on standard error.
 #include <fcntl.h>
