@@ -1,8 +1,6 @@
 #include "sweep/folder.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdio>
 #include <system_error>
 
 #include "io/input_error.h"
@@ -67,20 +65,6 @@ void check_same(const SweepFolder& folder, const Plan& plan) {
 }
 
 }  // namespace
-
-std::string SweepFolder::shard_name(std::int64_t shard) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(shard));
-  return name;
-}
-
-std::int64_t SweepFolder::parse_shard_name(const std::string& name) {
-  std::int64_t shard = -1;
-  const char* const end = name.data() + name.size();
-  const auto parsed = std::from_chars(name.data(), end, shard);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == end;
-  return whole && name == shard_name(shard) ? shard : -1;
-}
 
 void make_subfolders(const SweepFolder& folder) {
   for (const fs::path& path : list_subfolders(folder)) make_folder(path);

@@ -13,51 +13,6 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-std::vector<std::int64_t> list_shards(const SweepFolder& folder) {
-  std::vector<std::int64_t> shards;
-  std::error_code error;
-  for (fs::directory_iterator file(folder.shards(), error), end; !error && file != end;
-       file.increment(error)) {
-    const fs::path& path = file->path();
-    const std::int64_t shard = SweepFolder::parse_shard_name(path.stem().string());
-    if (shard >= 0 && path == folder.shard(shard)) shards.push_back(shard);
-  }
-  if (error) throw EnvironmentError(folder.shards().string() + ": " + error.message());
-  std::sort(shards.begin(), shards.end());
-  return shards;
-}
-
-int count_retries(const SweepFolder& folder, std::int64_t shard) {
-  int rounds = 0;
-  while (fs::exists(folder.retry(shard, rounds))) ++rounds;
-  return rounds;
-}
-
-Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
-                        std::vector<RowOrigin>* origins) {
-  Shard mended = read_shard(folder.shard(shard));
-  std::map<std::int64_t, std::size_t> row_of;
-  for (std::size_t row = 0; row < mended.rows.size(); ++row) row_of[mended.rows.case_id[row]] = row;
-  std::vector<RowOrigin> from(mended.rows.size());
-  for (std::size_t row = 0; row < from.size(); ++row) from[row] = {-1, row, from.size()};
-  const int rounds = count_retries(folder, shard);
-  for (int round = 0; round < rounds; ++round) {
-    const fs::path file = folder.retry(shard, round);
-    const ShardRows overlay = read_shard(file).rows;
-    for (std::size_t row = 0; row < overlay.size(); ++row) {
-      const auto found = row_of.find(overlay.case_id[row]);
-      if (found == row_of.end()) {
-        throw InputError(file.string() + ": case " + std::to_string(overlay.case_id[row]) +
-                         " is not in shard " + std::to_string(shard));
-      }
-      mended.rows.set_row(found->second, overlay, row);
-      from[found->second] = {round, row, overlay.size()};
-    }
-  }
-  if (origins != nullptr) *origins = std::move(from);
-  return mended;
-}
-
 std::string check_place(const std::string& plan_hash, std::int64_t shard,
                         const std::string& wanted_plan, std::int64_t wanted) {
   if (plan_hash != wanted_plan) return "belongs to another plan";

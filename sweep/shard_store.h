@@ -1,4 +1,4 @@
-// The shards of a sweep folder: which are there, what their cases came to, and what retries mended.
+// The shards of a sweep folder against its plan and its journal.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,6 @@
 #include "sweep/folder.h"
 
 namespace strut {
-
-/// Numbers of the shards that `shards/` holds, ascending, by name alone.
-std::vector<std::int64_t> list_shards(const SweepFolder& folder);
-
-/// Rounds of retries that `retries/` holds for a shard: 0, 1, ... without a gap.
-int count_retries(const SweepFolder& folder, std::int64_t shard);
-
-/// Where a mended row comes from.
-struct RowOrigin {
-  int round = -1;  // -1: the shard itself; else the retry
-  std::size_t row = 0, file_rows = 0;
-};
-
-/// A shard with its rows as the retries left them; `origins`, where given, tells of each row where
-/// it comes from. Throws InputError where a file is damaged.
-Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
-                        std::vector<RowOrigin>* origins = nullptr);
 
 /// Why a file that says to be shard `shard` of the plan with this hash cannot be the `wanted` shard
 /// of the `wanted_plan`; empty where it can.
