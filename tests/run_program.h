@@ -13,7 +13,7 @@
 namespace strut::test {
 
 struct Outcome {
-  int code = -1;
+  int code = -1;  // -1: ended by a signal
   std::string out, messages;
 };
 

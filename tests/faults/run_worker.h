@@ -11,14 +11,9 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/temporary_folder.h"
+#include "tests/run_program.h"
 
 namespace strut::test {
-
-struct WorkerOutcome {
-  int code = -1;  // -1: ended by a signal
-  std::string out, messages;
-};
 
 /// Shell variables that preload the library for `folder`; `more`: STRUT_FAULT=..., quoted.
 inline std::string preload_faults(const std::filesystem::path& folder, const std::string& more) {
@@ -28,21 +23,8 @@ inline std::string preload_faults(const std::filesystem::path& folder, const std
 }
 
 /// `variables`: what stands before the command in a shell.
-inline WorkerOutcome run_worker(const std::string& variables, const std::string& arguments) {
-  const TemporaryFolder folder;
-  const std::string messages = (folder / "messages").string();
-  const std::string command = variables + " exec " STRUT_WORKER " " + arguments + " 2>" + messages;
-  FILE* pipe = ::popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  WorkerOutcome outcome;
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    outcome.out.append(buffer.data(), n);
-  }
-  const int status = ::pclose(pipe);
-  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  outcome.messages = read_text(messages);
-  return outcome;
+inline Outcome run_worker(const std::string& variables, const std::string& arguments) {
+  return run_shell(variables + " exec " STRUT_WORKER " " + arguments);
 }
 
 /// `worker hold FOLDER UNIT` in the background.
