@@ -46,7 +46,8 @@ TEST_CASE("Uniform numbers have the moments of their interval and fill it evenly
     ++bins[static_cast<std::size_t>(u * kBins)];
   }
   double chi2 = 0.0;
-  for (const int n : bins) chi2 += std::pow(n - kCount / kBins, 2) / (kCount / kBins);
+  const double expected = static_cast<double>(kCount) / kBins;
+  for (const int n : bins) chi2 += std::pow(n - expected, 2) / expected;
   // Five standard deviations; 99 degrees of freedom: 99 +- 14.
   CHECK(std::abs(mean - 0.5) < 5.0 * std::sqrt(1.0 / 12.0 / kCount));
   CHECK(std::abs(square - 1.0 / 3.0) < 5.0 * std::sqrt(4.0 / 45.0 / kCount));
