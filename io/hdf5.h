@@ -167,6 +167,9 @@ class Hdf5Reader {
   /// Rows [first, first + count). Reading blocks of whole chunks decompresses each chunk once.
   Hdf5Dataset read_rows(const std::string& name, std::size_t first, std::size_t count) const;
   std::vector<std::int64_t> read_integers(const std::string& name) const;
+  /// As read_rows, of a dataset of integers.
+  std::vector<std::int64_t> read_integer_rows(const std::string& name, std::size_t first,
+                                              std::size_t count) const;
   /// A dataset of texts of fixed length.
   std::vector<std::string> read_texts(const std::string& name) const;
   /// Bytes of each of them.

@@ -62,6 +62,33 @@ void require_class(const fs::path& path, const std::string& name, hid_t dataset,
                     real ? "must hold numbers" : "must hold integers");
 }
 
+struct RowRange {
+  std::size_t first = 0, count = 0;
+};
+
+template <class T>
+std::vector<T> read_range(const fs::path& path, const std::string& name, hid_t dataset,
+                          const RowRange& range) {
+  std::vector<std::size_t> shape = get_shape(path, name, dataset);
+  const std::size_t total = count_elements(path, name, dataset, shape);
+  const bool inside =
+      range.count > 0 && range.first <= shape.front() && range.count <= shape.front() - range.first;
+  check<InputError>(inside, path, name,
+                    "has " + std::to_string(shape.front()) + " rows, asked for " +
+                        std::to_string(range.first) + " to " +
+                        std::to_string(range.first + range.count));
+  const Hdf5Handle stored =
+      hdf5::select_rows<InputError>(path, name, shape, range.first, range.count);
+  std::vector<T> values(total / shape.front() * range.count);
+  shape.front() = range.count;
+  const Hdf5Handle memory = hdf5::select_rows<InputError>(path, name, shape, 0, range.count);
+  const hid_t type = hdf5_type<T> == Hdf5Type::kDouble ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+  check<InputError>(
+      H5Dread(dataset, type, memory.id(), stored.id(), H5P_DEFAULT, values.data()) >= 0, path, name,
+      "damaged");
+  return values;
+}
+
 }  // namespace
 
 Hdf5Reader::Hdf5Reader(const fs::path& path) : path_(path) {
@@ -119,24 +146,20 @@ Hdf5Dataset Hdf5Reader::read(const std::string& name) const {
 Hdf5Dataset Hdf5Reader::read_rows(const std::string& name, std::size_t first,
                                   std::size_t count) const {
   const Hdf5Handle dataset = open_dataset(name);
-  Hdf5Dataset data;
-  data.shape = get_shape(path_, name, dataset.id());
   require_class(path_, name, dataset.id(), true, true);
-  const std::size_t total = count_elements(path_, name, dataset.id(), data.shape);
-  const bool inside =
-      count > 0 && first <= data.shape.front() && count <= data.shape.front() - first;
-  check<InputError>(inside, path_, name,
-                    "has " + std::to_string(data.shape.front()) + " rows, asked for " +
-                        std::to_string(first) + " to " + std::to_string(first + count));
-  const Hdf5Handle stored = hdf5::select_rows<InputError>(path_, name, data.shape, first, count);
-  data.values.resize(total / data.shape.front() * count);
+  Hdf5Dataset data;
+  data.values = read_range<double>(path_, name, dataset.id(), {first, count});
+  data.shape = get_shape(path_, name, dataset.id());
   data.shape.front() = count;
-  const Hdf5Handle memory = hdf5::select_rows<InputError>(path_, name, data.shape, 0, count);
-  check<InputError>(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), stored.id(), H5P_DEFAULT,
-                            data.values.data()) >= 0,
-                    path_, name, "damaged");
   data.label = get_label(path_, name, dataset.id());
   return data;
+}
+
+std::vector<std::int64_t> Hdf5Reader::read_integer_rows(const std::string& name, std::size_t first,
+                                                        std::size_t count) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  require_class(path_, name, dataset.id(), true, false);
+  return read_range<std::int64_t>(path_, name, dataset.id(), {first, count});
 }
 
 std::vector<std::int64_t> Hdf5Reader::read_integers(const std::string& name) const {

@@ -36,27 +36,6 @@ std::vector<ColumnInfo> read_columns(const fs::path& path, const Hdf5Reader& fil
   return columns;
 }
 
-ShardSchema read_schema(const fs::path& path, const Hdf5Reader& file) {
-  ShardSchema schema;
-  schema.parameters = read_columns(path, file, kParametersName);
-  if (file.has(kSnapshotName)) schema.snapshot = read_columns(path, file, kSnapshotName);
-  if (file.has(kHistoryGroup)) {
-    for (const std::string& channel : file.read_attribute_list(kHistoryGroup, "names")) {
-      const Hdf5Label label = file.read_label(kHistoryGroup + ("/" + channel));
-      schema.history.push_back({channel, label.unit, label.description});
-    }
-  }
-  if (!schema.history.empty()) {
-    const std::string name = kHistoryGroup + ("/" + schema.history.front().name);
-    const auto shape = file.read_shape(name);
-    require(shape.size() == 2, path, name, "must have two dimensions");
-    schema.history_samples = shape.back();
-  }
-  schema.history_interval = file.read_number_attribute("/", kHistoryIntervalKey);
-  schema.status_meaning = file.read_attribute("/", kStatusMeaningKey);
-  return schema;
-}
-
 ShardRows read_rows(const fs::path& path, const Hdf5Reader& file, const ShardSchema& schema) {
   ShardRows rows;
   rows.history.resize(schema.history.size());
@@ -97,13 +76,34 @@ ShardProvenance read_provenance(const Hdf5Reader& file) {
 
 }  // namespace
 
+ShardSchema read_shard_schema(const fs::path& path, const Hdf5Reader& file) {
+  check_schema_version(path, file);
+  ShardSchema schema;
+  schema.parameters = read_columns(path, file, kParametersName);
+  if (file.has(kSnapshotName)) schema.snapshot = read_columns(path, file, kSnapshotName);
+  if (file.has(kHistoryGroup)) {
+    for (const std::string& channel : file.read_attribute_list(kHistoryGroup, "names")) {
+      const Hdf5Label label = file.read_label(kHistoryGroup + ("/" + channel));
+      schema.history.push_back({channel, label.unit, label.description});
+    }
+  }
+  if (!schema.history.empty()) {
+    const std::string name = kHistoryGroup + ("/" + schema.history.front().name);
+    const auto shape = file.read_shape(name);
+    require(shape.size() == 2, path, name, "must have two dimensions");
+    schema.history_samples = shape.back();
+  }
+  schema.history_interval = file.read_number_attribute("/", kHistoryIntervalKey);
+  schema.status_meaning = file.read_attribute("/", kStatusMeaningKey);
+  return schema;
+}
+
 Shard read_shard(const fs::path& path) {
   const std::vector<std::byte> bytes = read_shard_bytes(path);
   const ShardSeal seal = check_shard_bytes(path, bytes);
   const Hdf5Reader file(path, bytes);
-  check_schema_version(path, file);
   Shard shard;
-  shard.schema = read_schema(path, file);
+  shard.schema = read_shard_schema(path, file);
   shard.rows = read_rows(path, file, shard.schema);
   shard.provenance = read_provenance(file);
   shard.digest = calc_rows_digest(shard.rows);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,10 @@ void write_shard_attributes(File& file, const std::vector<std::string>& history_
   file.write_attribute("/", kHistoryIntervalKey, history_interval);
   if (!history_names.empty()) file.write_attribute_list(kHistoryGroup, "names", history_names);
 }
+
+/// What the rows of a shard or of a merged file consist of; `path` stands in messages. Throws
+/// InputError where a dataset is missing or misshapen, or the schema version is unknown.
+ShardSchema read_shard_schema(const std::filesystem::path& path, const Hdf5Reader& file);
 
 inline std::vector<std::string> list_names(const std::vector<ColumnInfo>& columns) {
   std::vector<std::string> names;

@@ -11,12 +11,14 @@
 #include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/design.h"
+#include "jobs/evaluate.h"
 #include "jobs/interrupt.h"
 #include "jobs/merge.h"
 #include "jobs/plan.h"
 #include "jobs/run.h"
 #include "jobs/simulate.h"
 #include "jobs/status.h"
+#include "jobs/train.h"
 #include "jobs/verify.h"
 #include "model/kernel/simulation.h"
 
@@ -33,6 +35,8 @@ constexpr Command kCommands[] = {
     {"status", "how far a sweep has come", &strut::run_status},
     {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
     {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
+    {"train", "a network that identifies parameters, from a sweep's cases", &strut::run_train},
+    {"evaluate", "how well a trained network identifies them", &strut::run_evaluate},
     {"design", "which instant, window and sensors identify a sweep's parameters best",
      &strut::run_design},
     {"bench", "measure how fast this machine simulates, and how exactly", &strut::run_bench},

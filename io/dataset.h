@@ -1,0 +1,70 @@
+// The cases of a sweep, wherever they lie: in its folder, in single shards, in a merged file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/shard.h"
+#include "io/sweep_folder.h"
+
+namespace strut {
+
+struct DatasetOptions {
+  bool partial = false;  // take a sweep folder that lacks shards as it is
+};
+
+/// Rows in the order in which the plan runs them, read piece by piece: a piece is a shard, or some
+/// thousand rows of a merged file, and the only one in memory.
+class Dataset {
+ public:
+  /// `paths`: one sweep folder, or one merged file (also a virtual one), or shards, which are put
+  /// in the order of their numbers. A folder's retries are applied; a shard alone is as it is.
+  /// Checks every shard's bytes. Throws InputError that names the file where one is damaged, of
+  /// another plan or with other columns than the first, given twice, or missing.
+  explicit Dataset(const std::vector<std::filesystem::path>& paths,
+                   const DatasetOptions& options = {});
+
+  const ShardSchema& schema() const { return schema_; }
+  const std::string& plan_hash() const { return plan_hash_; }
+  std::size_t row_count() const { return row_count_; }
+
+  std::size_t piece_count() const { return pieces_.size(); }
+  /// Stays until another piece is read. Of a merged file the rows' reasons are empty. Throws
+  /// InputError.
+  const ShardRows& read_piece(std::size_t piece);
+  /// Rows [first, first + count). Throws InputError where there are fewer.
+  ShardRows read(std::size_t first, std::size_t count);
+
+ private:
+  struct Piece {
+    std::filesystem::path file;
+    std::int64_t shard = -1;    // -1: of a merged file
+    std::size_t first_row = 0;  // in the dataset; of a merged file in the file too
+    std::size_t rows = 0;
+  };
+
+  void open_folder(const SweepFolder& folder, bool partial);
+  void open_merged(const std::filesystem::path& path);
+  void open_shards(const std::vector<std::filesystem::path>& paths);
+  void add_shard(const std::filesystem::path& path);
+  void check_same(const std::filesystem::path& path, const std::string& plan_hash,
+                  const ShardSchema& schema);
+  void number_rows();
+
+  ShardSchema schema_;
+  std::string plan_hash_;
+  std::filesystem::path first_file_;  // whose plan and columns are those of all
+  std::size_t row_count_ = 0;
+  std::vector<Piece> pieces_;
+  std::optional<SweepFolder> folder_;
+  std::optional<Hdf5Reader> merged_;
+  std::size_t held_ = 0;  // piece in rows_
+  std::optional<ShardRows> rows_;
+};
+
+}  // namespace strut

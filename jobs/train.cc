@@ -1,0 +1,255 @@
+#include "jobs/train.h"
+
+#include <atomic>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <mutex>
+#include <sstream>
+
+#include "jobs/arguments.h"
+#include "jobs/build_info.h"
+#include "jobs/command.h"
+#include "jobs/evaluate.h"
+#include "jobs/interrupt.h"
+#include "jobs/open_sweep.h"
+#include "jobs/progress.h"
+#include "train/train_network.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostInt = std::numeric_limits<int>::max();
+constexpr std::int64_t kMostInt64 = std::numeric_limits<std::int64_t>::max();
+/// Epochs between two checkpoints.
+constexpr int kCheckpointEpochs = 25;
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut train DATA... -o model.h5 [OPTIONS]",
+      "Trains a network that tells the parameters of a case from its snapshot, by\n"
+      "Levenberg-Marquardt, and judges it by cases that training never saw. DATA is a sweep\n"
+      "folder, shards of one sweep, or a merged file. 70 % of the cases train, 15 % validate,\n"
+      "15 % test. The result does not depend on --threads or --batch, nor on how the cases are\n"
+      "stored.",
+      "  strut run sweep\n  strut train sweep -o model.h5\n"
+      "  strut train sweep -o small.h5 --samples 1000 --hidden 12,8 --seed 3");
+  arguments.add_option("output,o", "FILE", "model to write");
+  arguments.add_option("hidden", "N,N,...", "neurons of the hidden layers; default 27,19,11");
+  arguments.add_option("inputs", "NAME,...",
+                       "channels of the snapshot; default body_position_z,body_velocity_z,\n"
+                       "body_acceleration_z,pitch_angle");
+  arguments.add_option("samples", "N", "use the first N cases; the run order is random");
+  arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
+  arguments.add_option("gram-rows", "N",
+                       "curvature from N rows, others in each epoch, the gradient from all: for\n"
+                       "data beyond 100,000 cases");
+  arguments.add_option("seed", "S", "of the split and the start weights; default 1");
+  arguments.add_option("rule", "RULE", "damping: gain-ratio (default) or trainlm, as MATLAB's");
+  arguments.add_option("epochs", "N", "most steps; default 1000");
+  arguments.add_option("max-failures", "N",
+                       "stop N epochs after the validation minimum; default 6");
+  arguments.add_option("goal", "MSE", "stop at this loss of normalized values; default 0");
+  arguments.add_option("threads", "N", "default: all processors");
+  arguments.add_option("checkpoint", "FILE", "keep the training's state there");
+  arguments.add_switch("resume", "go on from that file, to the same bits");
+  arguments.add_switch("allow-few", "train with fewer equations than weights");
+  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
+  arguments.add_switch("force", "replace FILE where it exists");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) {
+    const auto begin = part.find_first_not_of(' '), end = part.find_last_not_of(' ');
+    parts.push_back(begin == std::string::npos ? "" : part.substr(begin, end - begin + 1));
+  }
+  return parts;
+}
+
+std::vector<int> read_hidden(const Arguments& arguments) {
+  const std::string text = arguments.text("hidden");
+  std::vector<int> sizes;
+  for (const std::string& part : split_list(text)) {
+    int size = 0;
+    const auto result = std::from_chars(part.data(), part.data() + part.size(), size);
+    const bool whole = result.ec == std::errc() && result.ptr == part.data() + part.size();
+    if (!whole || size < 1 || size > NetworkShape::kLargestSize) {
+      throw InputError("--hidden = " + text + ": must be whole numbers in [1, " +
+                       std::to_string(NetworkShape::kLargestSize) + "], as 27,19,11");
+    }
+    sizes.push_back(size);
+  }
+  return sizes;
+}
+
+void read_limits(const Arguments& arguments, LevenbergMarquardtOptions& options) {
+  options.rule = arguments.choice_or("rule", 0, {"gain-ratio", "trainlm"}) == 0
+                     ? DampingRule::kGainRatio
+                     : DampingRule::kTrainlm;
+  options.epochs = static_cast<int>(arguments.integer_or("epochs", options.epochs, 0, kMostInt));
+  options.max_failures =
+      static_cast<int>(arguments.integer_or("max-failures", options.max_failures, 1, kMostInt));
+  options.goal = arguments.number_or("goal", options.goal, at_least(0.0));
+  options.threads = find_threads(arguments);
+}
+
+TrainingRequest read_request(const Arguments& arguments, const fs::path& output) {
+  TrainingRequest request;
+  request.rows.inputs = {"body_position_z", "body_velocity_z", "body_acceleration_z",
+                         "pitch_angle"};
+  if (arguments.has("inputs")) request.rows.inputs = split_list(arguments.text("inputs"));
+  if (arguments.has("hidden")) request.hidden = read_hidden(arguments);
+  request.rows.samples = arguments.integer_or("samples", 0, 1, kMostInt64);
+  request.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMostInt64));
+  request.split.seed = request.seed;
+  request.allow_few = arguments.is_on("allow-few");
+  read_limits(arguments, request.options);
+  request.problem.threads = request.options.threads;
+  request.problem.batch_rows =
+      static_cast<std::size_t>(arguments.integer_or("batch", 4096, 1, 10'000'000));
+  request.problem.gram_rows =
+      static_cast<std::size_t>(arguments.integer_or("gram-rows", 0, 1, kMostInt64));
+  // Where the model goes there is room; the system's folder for such files may be memory.
+  request.store.scratch = fs::absolute(output).parent_path();
+  return request;
+}
+
+fs::path find_output(const Arguments& arguments) {
+  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  fs::path output = arguments.text("output");
+  if (fs::is_directory(output)) {
+    throw InputError("--output = " + output.string() + ": a folder; must be a file");
+  }
+  if (fs::exists(output) && !arguments.is_on("force")) {
+    throw InputError("--output = " + output.string() + ": exists; --force replaces it");
+  }
+  for (const std::string& data : arguments.positional()) {
+    std::error_code ignored;
+    if (fs::equivalent(output, data, ignored)) {
+      throw InputError("--output = " + output.string() + ": is the data");
+    }
+  }
+  return output;
+}
+
+/// Where the training's state is kept; empty: nowhere. A checkpoint that is there is replaced only
+/// by the training that goes on from it.
+fs::path find_checkpoint(const Arguments& arguments) {
+  if (!arguments.has("checkpoint")) {
+    if (arguments.is_on("resume")) throw arguments.usage_error("--resume needs --checkpoint FILE");
+    return {};
+  }
+  fs::path checkpoint = arguments.text("checkpoint");
+  const bool may_replace = arguments.is_on("resume") || arguments.is_on("force");
+  if (fs::exists(checkpoint) && !may_replace) {
+    throw InputError("--checkpoint = " + checkpoint.string() +
+                     ": exists; --resume goes on from it, --force replaces it");
+  }
+  return checkpoint;
+}
+
+/// The line of progress, shared with the thread that prints it.
+class Progress {
+ public:
+  void set(const EpochRecord& record) {
+    const std::scoped_lock lock(mutex_);
+    record_ = record;
+  }
+  std::string line() const {
+    const std::scoped_lock lock(mutex_);
+    char text[128];
+    std::snprintf(text, sizeof text, "epoch %d, loss %.3g, validation %.3g, damping %.1g",
+                  record_.epoch, record_.loss, record_.validation, record_.damping);
+    return text;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  EpochRecord record_;
+};
+
+/// Steps until the training stops; false where a signal came first.
+bool train(Training& training, const fs::path& checkpoint, const std::atomic<bool>& halt) {
+  Progress progress;
+  bool goes_on = true;
+  {
+    const ProgressLine line([&] { return progress.line(); });
+    while (goes_on && !halt) {
+      goes_on = training.step();
+      progress.set(training.record().back());
+      if (!checkpoint.empty() && training.state().epoch % kCheckpointEpochs == 0) {
+        write_checkpoint(checkpoint, training.make_checkpoint());
+      }
+    }
+  }
+  if (!checkpoint.empty()) write_checkpoint(checkpoint, training.make_checkpoint());
+  return !goes_on;
+}
+
+void print(const Training& training, const Model& model, const fs::path& output, bool as_json) {
+  const Evaluation test = evaluate_rows(model, training.data().test);
+  const TrainingRows& data = training.data();
+  const TrainingSummary summary = training.summarize();
+  if (as_json) {
+    Json json = make_json(model, test);
+    json.set("file", output.string())
+        .set("stopped_by", get_name(summary.reason))
+        .set("epochs", summary.last.epoch)
+        .set("best_epoch", summary.best_epoch)
+        .set("best_validation", summary.best_validation)
+        .set("training_cases", static_cast<long>(data.train.row_count()))
+        .set("skipped_cases", static_cast<long>(data.skipped))
+        .set("weights", static_cast<long>(model.weights.size()))
+        .set("seconds", summary.seconds);
+    std::cout << json.dump() << "\n";
+    return;
+  }
+  std::cout << format_count(static_cast<std::int64_t>(data.train.row_count())) << " cases trained, "
+            << format_count(static_cast<std::int64_t>(data.validate.row_count())) << " validated, "
+            << format_count(test.samples) << " tested; " << format_count(data.skipped)
+            << " failed ones left out; " << model.weights.size() << " weights\n"
+            << summary.make_line() << "\n\nerrors of the test part\n";
+  print_table(model, test);
+  std::cout << "\n" << output.string() << "\n";
+}
+
+}  // namespace
+
+int run_train(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  const auto& names = arguments.positional();
+  if (names.empty()) throw arguments.usage_error("DATA: missing");
+  const fs::path output = find_output(arguments), checkpoint = find_checkpoint(arguments);
+  const TrainingRequest request = read_request(arguments, output);
+  DatasetOptions options;
+  options.partial = arguments.is_on("partial");
+  // A limit of file size is a full disk, told as one, not the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  InterruptWatcher watcher;
+  Dataset dataset({names.begin(), names.end()}, options);
+  Training training(dataset, request);
+  if (arguments.is_on("resume")) training.resume(checkpoint, read_checkpoint(checkpoint));
+  if (!train(training, checkpoint, watcher.halt())) {
+    std::cerr << "strut: interrupted; no model is written"
+              << (checkpoint.empty() ? "" : ", --resume goes on from the checkpoint") << "\n";
+    return 128 + watcher.signal();
+  }
+  Model model = training.make_model();
+  const BuildInfo& build = get_build_info();
+  model.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
+  write_model(output, model);
+  print(training, model, output, arguments.is_on("json"));
+  return kExitDone;
+}
+
+}  // namespace strut

@@ -1,0 +1,31 @@
+// What Levenberg-Marquardt asks of a problem: minimize e'e over the weights w.
+#pragma once
+
+#include <cstddef>
+
+namespace strut {
+
+class LeastSquaresProblem {
+ public:
+  virtual ~LeastSquaresProblem() = default;
+
+  virtual std::size_t weight_count() const = 0;
+  /// Length of e; divides e'e where a mean is reported.
+  virtual double residual_count() const = 0;
+
+  /// Writes H = J'J (lower triangle, by columns) and J'e with J = de/dw; returns e'e. A problem
+  /// that samples may let `epoch` choose what it takes for H.
+  virtual double calc_gram(const double* weights, int epoch, double* h, double* gradient) = 0;
+
+  /// e'e, the same bits as calc_gram's.
+  virtual double calc_loss(const double* weights) = 0;
+
+  /// True if calc_second_gradient is there; without it steps are not accelerated.
+  virtual bool has_second_derivative() const { return false; }
+
+  /// Writes J' e", e" = d2e/dt2 along weights + t direction.
+  virtual void calc_second_gradient(const double* /*weights*/, const double* /*direction*/,
+                                    double* /*gradient*/) {}
+};
+
+}  // namespace strut

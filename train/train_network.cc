@@ -1,0 +1,137 @@
+#include "train/train_network.h"
+
+#include <charconv>
+
+#include "io/input_error.h"
+#include "io/nearest_name.h"
+#include "io/shard_layout.h"
+
+namespace strut {
+namespace {
+
+std::string to_text(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string to_text(const std::vector<int>& values) {
+  std::vector<std::string> texts;
+  texts.reserve(values.size());
+  for (const int value : values) texts.push_back(std::to_string(value));
+  return join_names(texts);
+}
+
+NetworkShape make_shape(const TrainingRows& data, const std::vector<int>& hidden) {
+  std::vector<int> sizes = {static_cast<int>(data.inputs.size())};
+  sizes.insert(sizes.end(), hidden.begin(), hidden.end());
+  sizes.push_back(static_cast<int>(data.targets.size()));
+  return NetworkShape(sizes);
+}
+
+void require_equations(const TrainingRows& data, const NetworkShape& shape) {
+  const std::size_t rows = data.train.row_count(), outputs = data.targets.size();
+  if (rows * outputs >= shape.weight_count) return;
+  throw InputError(std::to_string(rows) + " training cases x " + std::to_string(outputs) +
+                   " parameters are " + std::to_string(rows * outputs) +
+                   " equations for the network's " + std::to_string(shape.weight_count) +
+                   " weights: it would learn them by heart; take more cases or a smaller "
+                   "--hidden, or insist with --allow-few");
+}
+
+TrainingRows read_parts(Dataset& dataset, const TrainingRequest& request) {
+  return split_rows(read_usable_rows(dataset, request.rows, request.store), request.split,
+                    request.store);
+}
+
+}  // namespace
+
+Training::Training(Dataset& dataset, const TrainingRequest& request)
+    : request_(request),
+      plan_hash_(dataset.plan_hash()),
+      data_(read_parts(dataset, request)),
+      shape_(make_shape(data_, request.hidden)) {
+  if (!request.allow_few) require_equations(data_, shape_);
+  train_source_ = std::make_unique<StoreSource>(data_.train, data_.input_map, data_.target_map);
+  validate_source_ =
+      std::make_unique<StoreSource>(data_.validate, data_.input_map, data_.target_map);
+  problem_ = std::make_unique<NetworkProblem>(shape_, *train_source_, request.problem);
+  validation_ = std::make_unique<NetworkProblem>(shape_, *validate_source_, request.problem);
+  training_.emplace(*problem_, validation_.get(), request.options);
+  training_->start(make_nguyen_widrow_weights(shape_, {}, request.seed));
+}
+
+void Training::resume(const std::filesystem::path& path, const Checkpoint& checkpoint) {
+  require_same_start(path, checkpoint, describe_start());
+  LevenbergMarquardtState state = checkpoint.state;
+  record_ = checkpoint.record;
+  // What stopped it may be no limit any more. The epoch at which it stopped runs again.
+  if (state.stop != StopReason::kNone && !record_.empty()) record_.pop_back();
+  state.stop = StopReason::kNone;
+  training_->restore(state);
+}
+
+bool Training::step() {
+  const bool goes_on = training_->step();
+  record_.push_back(training_->last_record());
+  return goes_on;
+}
+
+TrainingSummary Training::summarize() const {
+  const LevenbergMarquardtState& s = state();
+  return {s.stop,       s.best_weights,    record_.empty() ? EpochRecord{} : record_.back(),
+          s.best_epoch, s.best_validation, s.trials,
+          s.seconds};
+}
+
+NamedTexts Training::describe_start() const {
+  const LevenbergMarquardtOptions& options = request_.options;
+  NamedTexts texts = {{"plan_hash", plan_hash_},
+                      {"inputs", join_names(list_names(data_.inputs))},
+                      {"parameters", join_names(list_names(data_.targets))},
+                      {"usable_cases", std::to_string(data_.usable)},
+                      {"layers", to_text(shape_.sizes)},
+                      {"seed", std::to_string(request_.seed)},
+                      {"split_seed", std::to_string(request_.split.seed)},
+                      {"split_train", to_text(request_.split.train)},
+                      {"split_validate", to_text(request_.split.validate)},
+                      {"rule", options.rule == DampingRule::kTrainlm ? "trainlm" : "gain-ratio"},
+                      {"accelerate", options.accelerate ? "yes" : "no"},
+                      {"first_damping", to_text(options.first_damping)},
+                      {"gram_rows", std::to_string(request_.problem.gram_rows)},
+                      {"instruction_set", problem_->kernel().isa}};
+  return texts;
+}
+
+Checkpoint Training::make_checkpoint() const { return {describe_start(), state(), record_}; }
+
+Model Training::make_model() const {
+  const LevenbergMarquardtState& s = state();
+  const LevenbergMarquardtOptions& options = request_.options;
+  Model model;
+  model.sizes = shape_.sizes;
+  model.weights = s.best_weights;
+  model.inputs = data_.inputs;
+  model.targets = data_.targets;
+  model.input_map = data_.input_map;
+  model.target_map = data_.target_map;
+  model.plan_hash = plan_hash_;
+  model.samples = request_.rows.samples;
+  model.usable = data_.usable;
+  model.skipped = data_.skipped;
+  model.split = request_.split;
+  model.options = describe_start();
+  const NamedTexts limits = {{"epochs", std::to_string(options.epochs)},
+                             {"max_failures", std::to_string(options.max_failures)},
+                             {"goal", to_text(options.goal)},
+                             {"min_gradient", to_text(options.min_gradient)},
+                             {"max_damping", to_text(options.max_damping)}};
+  model.options.insert(model.options.end(), limits.begin(), limits.end());
+  model.record = record_;
+  model.stop = s.stop;
+  model.best_epoch = s.best_epoch;
+  model.best_validation = s.best_validation;
+  model.seconds = s.seconds;
+  return model;
+}
+
+}  // namespace strut

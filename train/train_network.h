@@ -1,0 +1,65 @@
+// One training from a dataset to a model.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "train/dataset_source.h"
+#include "train/levenberg_marquardt.h"
+#include "train/model_file.h"
+#include "train/network_problem.h"
+
+namespace strut {
+
+struct TrainingRequest {
+  RowChoice rows;
+  std::vector<int> hidden = {27, 19, 11};
+  SplitChoice split;
+  std::uint64_t seed = 1;  // of the start weights (Nguyen-Widrow)
+  bool allow_few = false;  // train with fewer equations than weights
+  LevenbergMarquardtOptions options;
+  NetworkProblemOptions problem;
+  RowStoreOptions store;
+};
+
+class Training {
+ public:
+  /// Reads the dataset. Throws InputError, see read_usable_rows and split_rows, and where the
+  /// training rows give fewer equations (rows x outputs) than the network has weights.
+  Training(Dataset& dataset, const TrainingRequest& request);
+
+  /// Goes on from a checkpoint; limits (epochs, goal, failures, ...) are those of the request.
+  /// `path` stands in messages. Throws InputError where it is one of another training.
+  void resume(const std::filesystem::path& path, const Checkpoint& checkpoint);
+
+  /// Runs one epoch; false once it has stopped.
+  bool step();
+
+  const TrainingRows& data() const { return data_; }
+  const NetworkShape& shape() const { return shape_; }
+  const LevenbergMarquardtState& state() const { return training_->state(); }
+  const std::vector<EpochRecord>& record() const { return record_; }
+  TrainingSummary summarize() const;
+
+  Checkpoint make_checkpoint() const;
+  /// At the validation minimum; without provenance.
+  Model make_model() const;
+
+ private:
+  NamedTexts describe_start() const;
+
+  TrainingRequest request_;
+  std::string plan_hash_;
+  TrainingRows data_;
+  NetworkShape shape_;
+  std::unique_ptr<StoreSource> train_source_, validate_source_;
+  std::unique_ptr<NetworkProblem> problem_, validation_;
+  std::optional<LevenbergMarquardt> training_;
+  std::vector<EpochRecord> record_;
+};
+
+}  // namespace strut
