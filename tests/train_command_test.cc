@@ -47,7 +47,7 @@ const fs::path& get_sweep() {
   static const TemporaryFolder folder;
   static const fs::path sweep = [] {
     const std::string file = folder.write("sweep.toml", make_sweep_text(1)).string();
-    const fs::path made = folder / "sweep";
+    fs::path made = folder / "sweep";
     REQUIRE(run_program("plan " + file + " -o " + made.string()).code == 0);
     REQUIRE(run_program("run " + made.string()).code == 0);
     return made;
