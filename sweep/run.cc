@@ -5,7 +5,7 @@
 
 #include "io/input_error.h"
 #include "sweep/leftovers.h"
-#include "sweep/run_team.h"
+#include "model/parallel/team.h"
 #include "sweep/shard_source.h"
 #include "sweep/shard_store.h"
 #include "sweep/shard_writer.h"
@@ -200,7 +200,7 @@ class Run {
   template <class Act>
   void for_each_present(const Act& act) {
     ShardRecords records(folder_);
-    const std::int64_t end = options_.end_shard < 0 ? plan_.shard_count() : options_.end_shard;
+    const std::int64_t end = options_.find_end_shard(plan_);
     for (const std::int64_t shard : list_shards(folder_)) {
       if (shard < options_.first_shard || shard >= end) continue;
       try {

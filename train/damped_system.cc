@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/parallel/team.h"
+
 namespace strut {
 namespace {
 
@@ -15,12 +17,14 @@ DampedSystem::DampedSystem(std::size_t size, int threads, const TrainKernel& ker
 
 void DampedSystem::copy(const std::vector<double>& h, const std::vector<double>& scale,
                         double damping) {
-#pragma omp parallel for num_threads(threads_) schedule(static, 16)
-  for (std::size_t column = 0; column < size_; ++column) {
-    const std::size_t start = column * size_ + column;
-    std::copy_n(h.data() + start, size_ - column, lower_.data() + start);
-    lower_[start] += damping * scale[column];
-  }
+  share_items(threads_, (size_ + kPanel - 1) / kPanel, [&](std::size_t panel, int) {
+    const std::size_t end = std::min(size_, (panel + 1) * kPanel);
+    for (std::size_t column = panel * kPanel; column < end; ++column) {
+      const std::size_t start = column * size_ + column;
+      std::copy_n(h.data() + start, size_ - column, lower_.data() + start);
+      lower_[start] += damping * scale[column];
+    }
+  });
 }
 
 bool DampedSystem::factor(const std::vector<double>& h, const std::vector<double>& scale,
@@ -32,21 +36,16 @@ bool DampedSystem::factor(const std::vector<double>& h, const std::vector<double
     const std::size_t width = std::min(kPanel, n - k), next = k + width;
     if (!kernel_->factor_diagonal(a + k * n + k, width, n)) return false;
     const std::size_t panels = (n - next + kPanel - 1) / kPanel;
-#pragma omp parallel num_threads(threads_) if (panels > 1)
-    {
-#pragma omp for schedule(static)
-      for (std::size_t p = 0; p < panels; ++p) {
-        const std::size_t row = next + p * kPanel;
-        kernel_->solve_panel(a + k * n + k, width, a + k * n + row, std::min(kPanel, n - row), n);
-      }
-      // The panels shrink to the right: the largest are handed out first.
-#pragma omp for schedule(dynamic, 1)
-      for (std::size_t p = 0; p < panels; ++p) {
-        const std::size_t at = next + p * kPanel;
-        kernel_->update_panel(a + k * n + at, a + k * n + at, a + at * n + at, n - at,
-                              std::min(kPanel, n - at), width, n);
-      }
-    }
+    share_items(threads_, panels, [&](std::size_t p, int) {
+      const std::size_t row = next + p * kPanel;
+      kernel_->solve_panel(a + k * n + k, width, a + k * n + row, std::min(kPanel, n - row), n);
+    });
+    // The panels shrink to the right: the largest are handed out first.
+    share_items(threads_, panels, [&](std::size_t p, int) {
+      const std::size_t at = next + p * kPanel;
+      kernel_->update_panel(a + k * n + at, a + k * n + at, a + at * n + at, n - at,
+                            std::min(kPanel, n - at), width, n);
+    });
   }
   return true;
 }

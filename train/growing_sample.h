@@ -14,8 +14,8 @@
 namespace strut {
 
 struct GrowingSampleOptions {
-  /// Rows of the first sample; 0: as many as give two residuals a weight, fewer of which a network
-  /// fits by heart.
+  /// Rows of the first sample, all of them at most: then this is exact training from the start. 0:
+  /// as many as give two residuals a weight, fewer of which a network fits by heart.
   std::size_t first_rows = 0;
   /// Factor by which a sample grows.
   double growth = 3.0;
@@ -47,6 +47,7 @@ class GrowingSample {
   TrainingSummary run(const EpochCallback& callback = {});
 
   const LevenbergMarquardtState& state() const { return training_.state(); }
+  const EpochRecord& last_record() const { return training_.last_record(); }
   GrowingSampleState save() const { return {training_.state(), rows_}; }
   std::size_t rows() const { return rows_; }
 

@@ -1,12 +1,11 @@
 #include "train/network_problem.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "io/input_error.h"
+#include "model/parallel/team.h"
 
 namespace strut {
 namespace {
@@ -80,10 +79,9 @@ void NetworkProblem::for_each_batch(std::size_t first, std::size_t count, const 
 template <class F>
 void NetworkProblem::for_each_block(const Batch& batch, const F& use) {
   const std::size_t blocks = (batch.rows + kBlockRows - 1) / kBlockRows;
-#pragma omp parallel for num_threads(options_.threads) schedule(static)
-  for (std::size_t b = 0; b < blocks; ++b) {
-    use(b, b * kBlockRows, workspaces_[static_cast<std::size_t>(omp_get_thread_num())]);
-  }
+  share_items(options_.threads, blocks, [&](std::size_t b, int thread) {
+    use(b, b * kBlockRows, workspaces_[static_cast<std::size_t>(thread)]);
+  });
 }
 
 void NetworkProblem::run_block(const double* weights, const Batch& batch, std::size_t first,
@@ -127,9 +125,10 @@ double NetworkProblem::calc_loss(const double* weights) {
   return loss;
 }
 
-/// gradient = J'e, or J'e" along a direction; returns e'e.
-double NetworkProblem::add_gradients(const double* weights, const double* direction,
-                                     double* gradient) {
+/// gradient = J'e, or J'e" along a direction; returns e'e. Calls also(batch) of each batch read.
+template <class F>
+double NetworkProblem::calc_gradients(const double* weights, const double* direction,
+                                      double* gradient, const F& also) {
   const std::size_t count = shape_.weight_count;
   std::fill_n(gradient, count, 0.0);
   double loss = 0.0;
@@ -160,6 +159,7 @@ double NetworkProblem::add_gradients(const double* weights, const double* direct
     }
   };
   for_each_batch(0, rows_, [&](const Batch& batch) {
+    also(batch);
     for (std::size_t done = 0; done < batch.rows; done += kLargestGradientBatch) {
       add_part({batch.first + done, std::min(kLargestGradientBatch, batch.rows - done),
                 batch.inputs + done * static_cast<std::size_t>(shape_.inputs()),
@@ -174,32 +174,20 @@ void NetworkProblem::add_chunk(const double* weights, const Batch& batch, std::s
   const std::size_t rows = std::min(kChunkRows, batch.rows - first);
   const std::size_t blocks = (rows + kBlockRows - 1) / kBlockRows;
   const Block chunk{chunk_activations_.data(), kChunkRows};
-#pragma omp parallel num_threads(options_.threads)
-  {
-#pragma omp for schedule(static)
-    for (std::size_t b = 0; b < blocks; ++b) {
-      const std::size_t column = b * kBlockRows;
-      const Block block{chunk.activations + column, kChunkRows};
-      run_block(weights, batch, first + column, block);
-      kernel_->run_backward(shape_, weights, block, std::min(kBlockRows, rows - column),
-                            chunk_deltas_.data() + column);
-    }
-    std::vector<double>& factors = factors_[static_cast<std::size_t>(omp_get_thread_num())];
-#pragma omp for schedule(dynamic, 1)
-    for (std::size_t t = 0; t < layout_.tiles.size(); ++t) {
-      kernel_->add_tile(shape_, layout_.tiles[t], chunk, chunk_deltas_.data(), blocks * kBlockRows,
-                        factors.data(), sums_.data());
-    }
-  }
-}
-
-void NetworkProblem::add_gram(const double* weights, std::size_t first, std::size_t count) {
-  for_each_batch(first, count, [&](const Batch& batch) {
-    for (std::size_t row = 0; row < batch.rows; row += kChunkRows) add_chunk(weights, batch, row);
+  share_items(options_.threads, blocks, [&](std::size_t b, int) {
+    const std::size_t column = b * kBlockRows;
+    const Block block{chunk.activations + column, kChunkRows};
+    run_block(weights, batch, first + column, block);
+    kernel_->run_backward(shape_, weights, block, std::min(kBlockRows, rows - column),
+                          chunk_deltas_.data() + column);
+  });
+  share_items(options_.threads, layout_.tiles.size(), [&](std::size_t t, int thread) {
+    kernel_->add_tile(shape_, layout_.tiles[t], chunk, chunk_deltas_.data(), blocks * kBlockRows,
+                      factors_[static_cast<std::size_t>(thread)].data(), sums_.data());
   });
 }
 
-double NetworkProblem::calc_gram(const double* weights, int epoch, double* h, double* gradient) {
+void NetworkProblem::start_gram() {
   const auto outputs = static_cast<std::size_t>(shape_.outputs());
   chunk_activations_.resize(shape_.activation_rows * kChunkRows);
   chunk_deltas_.resize((outputs * shape_.delta_rows + 1) * kChunkRows);
@@ -208,27 +196,32 @@ double NetworkProblem::calc_gram(const double* weights, int epoch, double* h, do
     factors.resize(layout_.largest_factors * kSlabRows);
   }
   sums_.assign(layout_.sum_count, 0.0);
+}
 
+double NetworkProblem::calc_gram(const double* weights, int epoch, double* h, double* gradient) {
+  start_gram();
+  const auto add_gram = [&](const Batch& batch) {
+    for (std::size_t row = 0; row < batch.rows; row += kChunkRows) add_chunk(weights, batch, row);
+  };
+  double loss = 0.0;
   const std::size_t wanted = options_.gram_rows;
-  const bool sampled = wanted > 0 && wanted < rows_;
-  if (sampled) {
+  if (wanted > 0 && wanted < rows_) {
     const std::size_t windows = rows_ / wanted;  // the remainder is left out
-    add_gram(weights, static_cast<std::size_t>(epoch) % windows * wanted, wanted);
+    for_each_batch(static_cast<std::size_t>(epoch) % windows * wanted, wanted, add_gram);
     const double factor = static_cast<double>(rows_) / static_cast<double>(wanted);
     for (double& sum : sums_) sum *= factor;
+    loss = calc_gradients(weights, nullptr, gradient, [](const Batch&) {});
   } else {
-    add_gram(weights, 0, rows_);
+    loss = calc_gradients(weights, nullptr, gradient, add_gram);
   }
-#pragma omp parallel for num_threads(options_.threads) schedule(dynamic, 1)
-  for (std::size_t t = 0; t < layout_.tiles.size(); ++t) {
-    store_tile(shape_, layout_.tiles[t], sums_.data(), h);
-  }
-  return add_gradients(weights, nullptr, gradient);
+  share_items(options_.threads, layout_.tiles.size(),
+              [&](std::size_t t, int) { store_tile(shape_, layout_.tiles[t], sums_.data(), h); });
+  return loss;
 }
 
 void NetworkProblem::calc_second_gradient(const double* weights, const double* direction,
                                           double* gradient) {
-  add_gradients(weights, direction, gradient);
+  calc_gradients(weights, direction, gradient, [](const Batch&) {});
 }
 
 void NetworkProblem::calc_row_losses(const double* weights, std::size_t first, std::size_t count,

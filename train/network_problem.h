@@ -84,9 +84,11 @@ class NetworkProblem : public LeastSquaresProblem {
   void run_block(const double* weights, const Batch& batch, std::size_t first, const Block& block);
   double calc_errors(const Batch& batch, std::size_t first, const Block& block,
                      double* errors) const;
-  double add_gradients(const double* weights, const double* direction, double* gradient);
+  template <class F>
+  double calc_gradients(const double* weights, const double* direction, double* gradient,
+                        const F& also);
+  void start_gram();
   void add_chunk(const double* weights, const Batch& batch, std::size_t first);
-  void add_gram(const double* weights, std::size_t first, std::size_t count);
   void calc_row_losses(const double* weights, std::size_t first, std::size_t count,
                        std::vector<double>& losses);
 
