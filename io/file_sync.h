@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "io/input_error.h"
 
@@ -21,7 +22,10 @@ class FileDescriptor {
   explicit FileDescriptor(int number = -1) : number_(number) {}
   ~FileDescriptor();
   FileDescriptor(FileDescriptor&& other) noexcept : number_(other.number_) { other.number_ = -1; }
-  FileDescriptor& operator=(FileDescriptor&&) = delete;
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
 
   int get() const { return number_; }
   bool is_open() const { return number_ >= 0; }

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "io/file_sync.h"
+
 namespace strut {
 
 struct RowStoreOptions {
@@ -21,13 +23,10 @@ struct RowStoreOptions {
 class RowStore {
  public:
   explicit RowStore(std::size_t columns, RowStoreOptions options = {});
-  ~RowStore();
-  RowStore(RowStore&& other) noexcept;
-  RowStore& operator=(RowStore&& other) noexcept;
 
   std::size_t columns() const { return columns_; }
   std::size_t row_count() const { return row_count_; }
-  bool in_memory() const { return file_ < 0; }
+  bool in_memory() const { return !file_.is_open(); }
 
   /// Whole rows.
   void append(std::span<const double> rows);
@@ -43,7 +42,7 @@ class RowStore {
   std::size_t row_count_ = 0;
   std::size_t filed_ = 0;       // rows in the file
   std::vector<double> recent_;  // the rows behind those
-  int file_ = -1;
+  FileDescriptor file_;
 };
 
 /// Calls use(rows, first row, row count) over all rows of a store in pieces.

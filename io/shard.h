@@ -100,6 +100,9 @@ struct ShardSeal {
 /// another.
 ShardSeal read_shard_seal(const std::filesystem::path& path);
 
+/// As above, of the bytes of a file called `path`.
+ShardSeal read_shard_seal(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 /// The user block of `image`, whose first 512 bytes do not count.
 std::string render_shard_seal(const std::string& plan_hash, std::int64_t shard,
                               std::span<const std::byte> image);

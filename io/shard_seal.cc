@@ -84,10 +84,13 @@ ShardSeal read_shard_seal(const fs::path& path) {
   return parse_sized(path, block, size);
 }
 
+ShardSeal read_shard_seal(const fs::path& path, std::span<const std::byte> bytes) {
+  return parse_sized(path, bytes.first(std::min(bytes.size(), kHdf5UserBlock)), bytes.size());
+}
+
 ShardSeal check_shard_bytes(const fs::path& path, std::span<const std::byte> bytes) {
-  const std::size_t block = std::min(bytes.size(), kHdf5UserBlock);
-  ShardSeal seal = parse_sized(path, bytes.first(block), bytes.size());
-  if (to_hex(calc_sha256(bytes.subspan(block))) != seal.sha256) {
+  ShardSeal seal = read_shard_seal(path, bytes);
+  if (to_hex(calc_sha256(bytes.subspan(kHdf5UserBlock))) != seal.sha256) {
     throw InputError(path.string() + ": damaged: its bytes do not have the SHA-256 of its seal");
   }
   return seal;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "io/file_bytes.h"
 #include "io/hdf5_stream.h"
 #include "io/shard_layout.h"
 #include "sweep/shard_store.h"
@@ -28,7 +27,7 @@ struct FileSize {
 };
 
 FileSize read_size(const fs::path& path) {
-  const std::vector<std::byte> bytes = read_bytes(path);
+  const std::vector<std::byte> bytes = read_shard_bytes(path);
   check_shard_bytes(path, bytes);
   const Hdf5Reader file(path, bytes);
   return {file.read_shape("/case_id").front(), file.read_text_length(kReasonName)};

@@ -23,7 +23,11 @@ struct RunOptions {
   int threads = 1;
   std::int64_t first_shard = 0;
   std::int64_t end_shard = -1;  // -1: to the plan's end
-  bool retry_failed = false;    // also what failed, with smaller steps, into overlay shards
+  /// The same, resolved.
+  std::int64_t find_end_shard(const Plan& plan) const {
+    return end_shard < 0 ? plan.shard_count() : end_shard;
+  }
+  bool retry_failed = false;  // also what failed, with smaller steps, into overlay shards
   ClaimOptions claims;
   /// Attributes of every shard; runner, times and counts are added.
   std::vector<std::pair<std::string, std::string>> provenance;

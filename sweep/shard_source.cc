@@ -22,7 +22,7 @@ ShardSource::ShardSource(const SweepFolder& folder, const Plan& plan, const RunO
       claims_(claims),
       progress_(progress),
       schema_(plan.make_schema()) {
-  scan(options.first_shard, options.end_shard < 0 ? plan.shard_count() : options.end_shard);
+  scan(options.first_shard, options.find_end_shard(plan));
 }
 
 void ShardSource::scan(std::int64_t first, std::int64_t end) {

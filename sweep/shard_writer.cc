@@ -95,7 +95,7 @@ void ShardWriter::write(FinishedShard& shard) {
   entry.bytes = image.size();
   entry.duplicate =
       publish(shard.target, image, folder_.temporary(), entry.runner) == Published::kPresent;
-  entry.sha256 = entry.duplicate ? "" : read_shard_seal(shard.target).sha256;
+  entry.sha256 = entry.duplicate ? "" : read_shard_seal(shard.target, image).sha256;
   append_journal(folder_.journal(), entry);
   claims_.release(shard.unit);
 

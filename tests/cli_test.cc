@@ -1,8 +1,5 @@
 // The program as a user meets it: arguments in, exit code, messages and files out.
-// Asked for by Boost's own parser, which uses the names it deprecates.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
 #include <array>
-#include <boost/property_tree/json_parser.hpp>
 #include <catch2/catch.hpp>
 #include <cstdio>
 
@@ -11,6 +8,7 @@
 #include "jobs/bench_cases.h"
 #include "jobs/json.h"
 #include "model/vehicle/channels.h"
+#include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/temporary_folder.h"
 
@@ -125,9 +123,7 @@ TEST_CASE("HDF5 holds the same run as CSV, with parameters and provenance", "[io
   CHECK(reader.read_attribute("/", "integrator") == "abm4");
   CHECK(reader.read_attribute("/", "vehicle") == kSedan);
 
-  std::istringstream text(outcome.out);
-  boost::property_tree::ptree json;
-  boost::property_tree::read_json(text, json);
+  const test::JsonTree json = test::parse_json(outcome.out);
   CHECK(json.get<double>("event_time") == reader.read("/snapshot/event_time").values.front());
   for (const char* name :
        {"body_position_z", "body_velocity_z", "body_acceleration_z", "pitch_angle", "pitch_rate"}) {
@@ -143,9 +139,7 @@ TEST_CASE("Integrators and closures agree on the snapshot", "[io]") {
     const Outcome outcome = run("simulate " + kSedan + " " + kBump + " -o " +
                                 (folder / "run.csv").string() + " --json " + options);
     REQUIRE(outcome.code == 0);
-    std::istringstream text(outcome.out);
-    boost::property_tree::ptree json;
-    boost::property_tree::read_json(text, json);
+    const test::JsonTree json = test::parse_json(outcome.out);
     return json.get<double>("snapshot.body_acceleration_z");
   };
   const double truth = snapshot("--integrator cvode");
@@ -383,8 +377,7 @@ TEST_CASE("The benchmark prints the agreed keys and compares with itself", "[io]
   const Outcome first = run("bench --quick --json");
   REQUIRE(first.code == 0);
   folder.write("old.json", first.out);
-  boost::property_tree::ptree json;
-  boost::property_tree::read_json(file, json);
+  const test::JsonTree json = test::parse_json(first.out);
   for (const char* name : {"double", "lanes", "lanes_tabulated", "fastest"}) {
     const std::string figure = std::string("single_core.") + name;
     const double runs = json.get<double>(figure + ".runs_per_s");
