@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "io/input_error.h"
-#include "sweep/leftovers.h"
 #include "model/parallel/team.h"
+#include "sweep/leftovers.h"
 #include "sweep/shard_source.h"
 #include "sweep/shard_store.h"
 #include "sweep/shard_writer.h"
