@@ -6,8 +6,10 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <span>
 #include <string>
 
+#include "io/file_bytes.h"
 #include "io/file_sync.h"
 
 namespace strut {
@@ -59,6 +61,12 @@ void AtomicFile::commit() {
   }
   committed_ = true;
   flush_folder_of(target_);
+}
+
+void write_text_file(const fs::path& path, const std::string& text) {
+  AtomicFile file(path);
+  write_bytes(file.temporary(), std::as_bytes(std::span<const char>(text)), path);
+  file.commit();
 }
 
 }  // namespace strut

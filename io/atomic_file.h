@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace strut {
 
@@ -28,5 +29,8 @@ class AtomicFile {
   std::filesystem::path temporary_;
   bool committed_ = false;
 };
+
+/// Writes a text file, whole or not at all. Throws EnvironmentError.
+void write_text_file(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace strut

@@ -14,8 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows of a merged file that are held at a time, to whole chunks of the file.
-constexpr std::size_t kPieceRows = 8192;
+/// Most rows of a merged file that are held at a time, to whole chunks of the file, and most
+/// numbers of their histories.
+constexpr std::size_t kPieceRows = 8192, kPieceNumbers = std::size_t{4} << 20;
 
 /// True for a file without the user block that every shard begins with.
 bool is_merged(const fs::path& path) {
@@ -60,7 +61,8 @@ void check_shapes(const fs::path& path, const Hdf5Reader& file, const ShardSchem
 
 }  // namespace
 
-Dataset::Dataset(const std::vector<fs::path>& paths, const DatasetOptions& options) {
+Dataset::Dataset(const std::vector<fs::path>& paths, const DatasetOptions& options)
+    : parts_(options.histories ? ShardParts::kAll : ShardParts::kTables) {
   if (paths.empty()) throw InputError("no data: name a sweep folder, shards, or a merged file");
   for (const fs::path& path : paths) {
     if (!fs::exists(path)) throw InputError(path.string() + ": not found");
@@ -100,10 +102,16 @@ void Dataset::open_merged(const fs::path& path) {
   check_same(path, merged_->read_attribute("/", kPlanHashKey), read_shard_schema(path, *merged_));
   check_shapes(path, *merged_, schema_);
   const std::size_t rows = merged_->read_shape("/case_id").front();
-  const char* const table = schema_.snapshot.empty() ? kParametersName : kSnapshotName;
+  std::string table = schema_.snapshot.empty() ? kParametersName : kSnapshotName;
+  std::size_t most = kPieceRows;
+  if (const ShardSchema read = list_read(); !read.history.empty()) {
+    table = kHistoryGroup + ("/" + read.history.front().name);
+    most = std::clamp<std::size_t>(kPieceNumbers / (read.history.size() * read.history_samples), 1,
+                                   kPieceRows);
+  }
   const std::size_t chunk =
-      std::min(std::max<std::size_t>(merged_->read_chunk_rows(table), 1), kPieceRows);
-  const std::size_t step = kPieceRows / chunk * chunk;
+      std::min(std::max<std::size_t>(merged_->read_chunk_rows(table), 1), most);
+  const std::size_t step = most / chunk * chunk;
   for (std::size_t first = 0; first < rows; first += step) {
     pieces_.push_back({path, -1, first, std::min(step, rows - first)});
   }
@@ -155,14 +163,22 @@ void Dataset::number_rows() {
   }
 }
 
+/// The schema without what is not read.
+ShardSchema Dataset::list_read() const {
+  ShardSchema schema = schema_;
+  if (parts_ == ShardParts::kTables) schema.history.clear();
+  return schema;
+}
+
 const ShardRows& Dataset::read_piece(std::size_t number) {
   if (rows_ && held_ == number) return *rows_;
   const Piece& piece = pieces_.at(number);
   rows_.reset();
   if (merged_) {
-    rows_ = read_merged_rows(*merged_, schema_, piece.first_row, piece.rows);
+    rows_ = read_merged_rows(*merged_, list_read(), piece.first_row, piece.rows);
   } else {
-    Shard shard = folder_ ? read_mended_shard(*folder_, piece.shard) : read_shard(piece.file);
+    Shard shard = folder_ ? read_mended_shard(*folder_, piece.shard, nullptr, parts_)
+                          : read_shard(piece.file, parts_);
     if (shard.rows.size() != piece.rows) {
       throw InputError(piece.file.string() + ": changed while it was read");
     }
@@ -177,7 +193,7 @@ ShardRows Dataset::read(std::size_t first, std::size_t count) {
     throw InputError("rows " + std::to_string(first) + " to " + std::to_string(first + count) +
                      " asked for; there are " + std::to_string(row_count_));
   }
-  ShardRows rows = ShardRows::make(schema_, count);
+  ShardRows rows = ShardRows::make(list_read(), count);
   for (std::size_t piece = 0; piece < pieces_.size(); ++piece) {
     const std::size_t begin = std::max(first, pieces_[piece].first_row);
     const std::size_t end = std::min(first + count, pieces_[piece].first_row + pieces_[piece].rows);

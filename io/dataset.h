@@ -15,7 +15,8 @@
 namespace strut {
 
 struct DatasetOptions {
-  bool partial = false;  // take a sweep folder that lacks shards as it is
+  bool partial = false;    // take a sweep folder that lacks shards as it is
+  bool histories = false;  // read them too; else `history` of rows is empty
 };
 
 /// Rows in the order in which the plan runs them, read piece by piece: a piece is a shard, or some
@@ -55,7 +56,9 @@ class Dataset {
   void check_same(const std::filesystem::path& path, const std::string& plan_hash,
                   const ShardSchema& schema);
   void number_rows();
+  ShardSchema list_read() const;
 
+  ShardParts parts_;
   ShardSchema schema_;
   std::string plan_hash_;
   std::filesystem::path first_file_;  // whose plan and columns are those of all

@@ -98,17 +98,20 @@ ShardSchema read_shard_schema(const fs::path& path, const Hdf5Reader& file) {
   return schema;
 }
 
-Shard read_shard(const fs::path& path) {
+Shard read_shard(const fs::path& path, ShardParts parts) {
   const std::vector<std::byte> bytes = read_shard_bytes(path);
   const ShardSeal seal = check_shard_bytes(path, bytes);
   const Hdf5Reader file(path, bytes);
   Shard shard;
   shard.schema = read_shard_schema(path, file);
-  shard.rows = read_rows(path, file, shard.schema);
+  ShardSchema wanted = shard.schema;
+  if (parts == ShardParts::kTables) wanted.history.clear();
+  shard.rows = read_rows(path, file, wanted);
   shard.provenance = read_provenance(file);
-  shard.digest = calc_rows_digest(shard.rows);
   require(shard.provenance.plan_hash == seal.plan_hash && shard.provenance.shard == seal.shard,
           path, "seal", "names another plan or shard than the file");
+  if (parts == ShardParts::kTables) return shard;
+  shard.digest = calc_rows_digest(shard.rows);
   require(shard.digest.text() == file.read_attribute("/", kChecksumKey), path, kChecksumKey,
           "the rows have another one");
   return shard;

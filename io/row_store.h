@@ -45,13 +45,12 @@ class RowStore {
   FileDescriptor file_;
 };
 
-/// Calls use(rows, first row, row count) over all rows of a store in pieces.
+/// Calls use(rows, first row, row count) over all rows of a store in pieces of `piece_rows`.
 template <class F>
-void for_each_piece(const RowStore& store, const F& use) {
-  constexpr std::size_t kRows = 4096;
+void for_each_piece(const RowStore& store, const F& use, std::size_t piece_rows = 4096) {
   std::vector<double> rows;
-  for (std::size_t first = 0; first < store.row_count(); first += kRows) {
-    const std::size_t count = std::min(kRows, store.row_count() - first);
+  for (std::size_t first = 0; first < store.row_count(); first += piece_rows) {
+    const std::size_t count = std::min(piece_rows, store.row_count() - first);
     rows.resize(count * store.columns());
     store.read(first, count, rows.data());
     use(std::span<const double>(rows), first, count);

@@ -125,8 +125,15 @@ struct Shard {
   DataDigest digest;           // of the rows
 };
 
-/// Reads a file once and checks it in every way. Throws InputError with file and dataset where a
-/// byte or a dataset is missing, damaged or misshapen, or the schema version is unknown.
-Shard read_shard(const std::filesystem::path& path);
+/// Which datasets of a shard are read.
+enum class ShardParts {
+  kAll,
+  kTables,  // all but the histories: `rows.history` stays empty, and the digest that of nothing
+};
+
+/// Reads a file once and checks it in every way; without the histories by the seal's SHA-256, not
+/// by the digest of the rows. Throws InputError with file and dataset where a byte or a dataset is
+/// missing, damaged or misshapen, or the schema version is unknown.
+Shard read_shard(const std::filesystem::path& path, ShardParts parts = ShardParts::kAll);
 
 }  // namespace strut

@@ -50,8 +50,8 @@ int count_retries(const SweepFolder& folder, std::int64_t shard) {
 }
 
 Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
-                        std::vector<RowOrigin>* origins) {
-  Shard mended = read_shard(folder.shard(shard));
+                        std::vector<RowOrigin>* origins, ShardParts parts) {
+  Shard mended = read_shard(folder.shard(shard), parts);
   std::map<std::int64_t, std::size_t> row_of;
   for (std::size_t row = 0; row < mended.rows.size(); ++row) row_of[mended.rows.case_id[row]] = row;
   std::vector<RowOrigin> from(mended.rows.size());
@@ -59,7 +59,7 @@ Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
   const int rounds = count_retries(folder, shard);
   for (int round = 0; round < rounds; ++round) {
     const fs::path file = folder.retry(shard, round);
-    const ShardRows overlay = read_shard(file).rows;
+    const ShardRows overlay = read_shard(file, parts).rows;
     for (std::size_t row = 0; row < overlay.size(); ++row) {
       const auto found = row_of.find(overlay.case_id[row]);
       if (found == row_of.end()) {

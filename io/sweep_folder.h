@@ -63,6 +63,7 @@ struct RowOrigin {
 /// A shard with its rows as the retries left them; `origins`, where given, tells of each row where
 /// it comes from. Throws InputError where a file is damaged.
 Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
-                        std::vector<RowOrigin>* origins = nullptr);
+                        std::vector<RowOrigin>* origins = nullptr,
+                        ShardParts parts = ShardParts::kAll);
 
 }  // namespace strut

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <sstream>
 #include <string_view>
 
@@ -65,13 +66,74 @@ std::string quote(const std::string& text) {
   return quoted + "\"";
 }
 
+TomlValues flatten(const std::filesystem::path& path, const std::string& text) {
+  TomlValues values;
+  add_values(parse_toml(path, text), "", values);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+/// The text with a line of `key` set in a table that does not have it: in an inline table in front
+/// of the others, else below the table's heading, or a new table at the end.
+std::string insert_value(const std::string& text, const toml::table& root, const std::string& key,
+                         const std::string& literal) {
+  const std::size_t dot = key.rfind('.');
+  const std::string line = key.substr(dot + 1) + " = " + literal;
+  if (dot == std::string::npos) return line + "\n" + text;
+  const std::string name = key.substr(0, dot);
+  const toml::node* node = root.at_path(name).node();
+  const toml::table* table = node == nullptr ? nullptr : node->as_table();
+  if (table == nullptr) return text + "\n[" + name + "]\n" + line + "\n";
+  const std::size_t begin = find_place(text, table->source().begin);
+  const std::size_t place = text.find(table->is_inline() ? '{' : '\n', begin);
+  if (place == std::string::npos) return text + "\n" + line + "\n";
+  const std::string inserted = table->is_inline() ? " " + line + "," : line + "\n";
+  return text.substr(0, place + 1) + inserted + text.substr(place + 1);
+}
+
+std::string set_value(const std::filesystem::path& path, const std::string& text,
+                      const std::string& key, const std::string& literal) {
+  const toml::table root = parse_toml(path, text);
+  const toml::node* node = root.at_path(key).node();
+  if (node == nullptr) return insert_value(text, root, key, literal);
+  const std::size_t begin = find_place(text, node->source().begin);
+  return text.substr(0, begin) + literal + text.substr(find_place(text, node->source().end));
+}
+
+/// Layouts of a file are many: what was to be set must be, and nothing else.
+void check_set(const std::filesystem::path& path, const std::string& before,
+               const std::string& after, const TomlValues& literals) {
+  std::map<std::string, std::string> wanted;
+  for (const auto& [key, value] : flatten(path, before)) wanted[key] = value;
+  const std::string probe = "value";
+  for (const auto& [key, literal] : literals) {
+    const auto is_of_key = [&key = key](const auto& value) {
+      return value.first == key || value.first.starts_with(key + "[") ||
+             value.first.starts_with(key + ".");
+    };
+    std::erase_if(wanted, is_of_key);
+    for (const auto& [name, value] : flatten(path, probe + " = " + literal)) {
+      wanted[key + name.substr(probe.size())] = value;
+    }
+  }
+  const TomlValues all(wanted.begin(), wanted.end());
+  if (flatten(path, after) == all) return;
+  throw InputError(path.string() + ": " + literals.front().first +
+                   ": cannot be set there; write it as a key of its own line in its [table]");
+}
+
 }  // namespace
 
 TomlValues flatten_toml(const std::filesystem::path& path) {
-  TomlValues values;
-  add_values(parse_toml(path, read_text_file(path)), "", values);
-  std::sort(values.begin(), values.end());
-  return values;
+  return flatten(path, read_text_file(path));
+}
+
+std::string set_toml_values(const std::filesystem::path& path, const TomlValues& literals) {
+  const std::string before = read_text_file(path);
+  std::string text = before;
+  for (const auto& [key, literal] : literals) text = set_value(path, text, key, literal);
+  if (!literals.empty()) check_set(path, before, text, literals);
+  return text;
 }
 
 std::string replace_toml_texts(const std::filesystem::path& path, const TomlValues& values) {

@@ -1,4 +1,4 @@
-// A TOML file as a list of values, and with single values replaced.
+// A TOML file as a list of values, and with single values replaced or set.
 #pragma once
 
 #include <filesystem>
@@ -21,5 +21,10 @@ TomlValues flatten_toml(const std::filesystem::path& path);
 /// The file's text with the texts at the dotted keys replaced, everything else as it stands. Throws
 /// InputError where the file is missing, not TOML, or has no text there.
 std::string replace_toml_texts(const std::filesystem::path& path, const TomlValues& values);
+
+/// The file's text with the values at the dotted keys set to TOML literals (`"trimmed"`, `-0.2`),
+/// also where there were none; everything else as it stands. Throws InputError where the file is
+/// missing, not TOML, or is written such that a value has no place to be set at.
+std::string set_toml_values(const std::filesystem::path& path, const TomlValues& literals);
 
 }  // namespace strut

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <iostream>
-#include <sstream>
 
 #include "jobs/arguments.h"
 #include "jobs/command.h"
 #include "jobs/design_report.h"
 #include "jobs/interrupt.h"
+#include "jobs/lists.h"
 #include "sweep/find_channel.h"
 
 namespace strut {
@@ -40,15 +40,8 @@ Arguments make_arguments() {
   return arguments;
 }
 
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
-  return parts;
-}
-
 std::vector<std::string> list_or_empty(const Arguments& arguments, const std::string& name) {
-  return arguments.has(name) ? split(arguments.text(name)) : std::vector<std::string>{};
+  return arguments.has(name) ? split_list(arguments.text(name)) : std::vector<std::string>{};
 }
 
 /// Calls `function`; an InputError of it names the option it came from.

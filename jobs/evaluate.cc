@@ -73,6 +73,7 @@ int run_evaluate(const std::vector<std::string>& words) {
   const Model model = read_model(names.front());
   DatasetOptions options;
   options.partial = arguments.is_on("partial");
+  options.histories = model.window.has_value();
   Dataset dataset({names.begin() + 1, names.end()}, options);
   const int own = dataset.plan_hash() == model.plan_hash ? 0 : 1;
   const bool all = arguments.choice_or("part", own, {"test", "all"}) == 1;

@@ -12,12 +12,16 @@
 #include "jobs/command.h"
 #include "jobs/design.h"
 #include "jobs/evaluate.h"
+#include "jobs/export.h"
+#include "jobs/identify.h"
 #include "jobs/interrupt.h"
 #include "jobs/merge.h"
 #include "jobs/plan.h"
+#include "jobs/report.h"
 #include "jobs/run.h"
 #include "jobs/simulate.h"
 #include "jobs/status.h"
+#include "jobs/study.h"
 #include "jobs/train.h"
 #include "jobs/verify.h"
 #include "model/kernel/simulation.h"
@@ -37,8 +41,13 @@ constexpr Command kCommands[] = {
     {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
     {"train", "a network that identifies parameters, from a sweep's cases", &strut::run_train},
     {"evaluate", "how well a trained network identifies them", &strut::run_evaluate},
+    {"identify", "parameters with intervals, from measured data", &strut::run_identify},
+    {"export", "a trained network as ONNX or C source", &strut::run_export},
     {"design", "which instant, window and sensors identify a sweep's parameters best",
      &strut::run_design},
+    {"study", "a table of trainings beside published numbers, with figures and a report",
+     &strut::run_study},
+    {"report", "one HTML file about a study or a sweep", &strut::run_report},
     {"bench", "measure how fast this machine simulates, and how exactly", &strut::run_bench},
 };
 

@@ -74,13 +74,7 @@ RunOptions read_options(const Arguments& arguments, const Plan& plan, bool retri
   read_shards(arguments, plan, options);
   const double lease = arguments.number_or("lease", 30.0, between(1.0, 86400.0, "s"));
   options.claims.lease = std::chrono::milliseconds(std::llround(1e3 * lease));
-  const BuildInfo& build = get_build_info();
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  options.provenance = {{"strut_version", build.version},
-                        {"commit", build.commit},
-                        {"compiler", build.compiler},
-                        {"host", host.data()}};
+  options.provenance = make_run_provenance();
   return options;
 }
 
@@ -189,6 +183,16 @@ int run(const std::string& name, bool retries, const std::vector<std::string>& w
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> make_run_provenance() {
+  const BuildInfo& build = get_build_info();
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return {{"strut_version", build.version},
+          {"commit", build.commit},
+          {"compiler", build.compiler},
+          {"host", host.data()}};
+}
 
 int run_run(const std::vector<std::string>& arguments) { return run("run", false, arguments); }
 

@@ -8,15 +8,17 @@
 #include <iostream>
 #include <limits>
 #include <mutex>
-#include <sstream>
 
 #include "jobs/arguments.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/evaluate.h"
 #include "jobs/interrupt.h"
+#include "jobs/lists.h"
 #include "jobs/open_sweep.h"
+#include "jobs/output_file.h"
 #include "jobs/progress.h"
+#include "jobs/train_noise.h"
 #include "train/train_network.h"
 
 namespace strut {
@@ -32,18 +34,24 @@ constexpr int kCheckpointEpochs = 25;
 Arguments make_arguments() {
   Arguments arguments(
       "strut train DATA... -o model.h5 [OPTIONS]",
-      "Trains a network that tells the parameters of a case from its snapshot, by\n"
-      "Levenberg-Marquardt, and judges it by cases that training never saw. DATA is a sweep\n"
+      "Trains a network that tells the parameters of a case from its snapshot, or from a window "
+      "of\n"
+      "its histories, by Levenberg-Marquardt, and judges it by cases that training never saw. DATA "
+      "is a sweep\n"
       "folder, shards of one sweep, or a merged file. 70 % of the cases train, 15 % validate,\n"
       "15 % test. The result does not depend on --threads or --batch, nor on how the cases are\n"
       "stored.",
       "  strut run sweep\n  strut train sweep -o model.h5\n"
+      "  strut train sweep -o noisy.h5 --noise default --noise pitch_angle=2e-4\n"
+      "  strut train sweep -o window.h5 --window 0.3:2.5 --targets front_stiffness,rear_stiffness\n"
       "  strut train sweep -o small.h5 --samples 1000 --hidden 12,8 --seed 3");
   arguments.add_option("output,o", "FILE", "model to write");
   arguments.add_option("hidden", "N,N,...", "neurons of the hidden layers; default 27,19,11");
   arguments.add_option("inputs", "NAME,...",
                        "channels of the snapshot; default body_position_z,body_velocity_z,\n"
                        "body_acceleration_z,pitch_angle");
+  arguments.add_option("targets", "NAME,...", "parameters to identify; default all of the grid's");
+  add_noise_options(arguments);
   arguments.add_option("samples", "N", "use the first N cases; the run order is random");
   arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
   arguments.add_option("gram-rows", "N",
@@ -63,16 +71,6 @@ Arguments make_arguments() {
   arguments.add_switch("force", "replace FILE where it exists");
   arguments.add_switch("json", "print JSON");
   return arguments;
-}
-
-std::vector<std::string> split_list(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    const auto begin = part.find_first_not_of(' '), end = part.find_last_not_of(' ');
-    parts.push_back(begin == std::string::npos ? "" : part.substr(begin, end - begin + 1));
-  }
-  return parts;
 }
 
 std::vector<int> read_hidden(const Arguments& arguments) {
@@ -107,6 +105,7 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
   request.rows.inputs = {"body_position_z", "body_velocity_z", "body_acceleration_z",
                          "pitch_angle"};
   if (arguments.has("inputs")) request.rows.inputs = split_list(arguments.text("inputs"));
+  if (arguments.has("targets")) request.rows.targets = split_list(arguments.text("targets"));
   if (arguments.has("hidden")) request.hidden = read_hidden(arguments);
   request.rows.samples = arguments.integer_or("samples", 0, 1, kMostInt64);
   request.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMostInt64));
@@ -121,24 +120,6 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
   // Where the model goes there is room; the system's folder for such files may be memory.
   request.store.scratch = fs::absolute(output).parent_path();
   return request;
-}
-
-fs::path find_output(const Arguments& arguments) {
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
-  fs::path output = arguments.text("output");
-  if (fs::is_directory(output)) {
-    throw InputError("--output = " + output.string() + ": a folder; must be a file");
-  }
-  if (fs::exists(output) && !arguments.is_on("force")) {
-    throw InputError("--output = " + output.string() + ": exists; --force replaces it");
-  }
-  for (const std::string& data : arguments.positional()) {
-    std::error_code ignored;
-    if (fs::equivalent(output, data, ignored)) {
-      throw InputError("--output = " + output.string() + ": is the data");
-    }
-  }
-  return output;
 }
 
 /// Where the training's state is kept; empty: nowhere. A checkpoint that is there is replaced only
@@ -195,10 +176,20 @@ bool train(Training& training, const fs::path& checkpoint, const std::atomic<boo
   return !goes_on;
 }
 
+/// Noisy copies of each case; 1 where there is no noise.
+int count_copies(const TrainingRows& data) {
+  if (data.window) return data.window->noise.copies;
+  return data.noise ? data.noise->copies : 1;
+}
+
 void print(const Training& training, const Model& model, const fs::path& output, bool as_json) {
   const Evaluation test = evaluate_rows(model, training.data().test);
   const TrainingRows& data = training.data();
   const TrainingSummary summary = training.summarize();
+  const int copies = count_copies(data);
+  const auto count_cases = [copies](const RowStore& rows) {
+    return static_cast<std::int64_t>(rows.row_count()) / copies;
+  };
   if (as_json) {
     Json json = make_json(model, test);
     json.set("file", output.string())
@@ -206,17 +197,20 @@ void print(const Training& training, const Model& model, const fs::path& output,
         .set("epochs", summary.last.epoch)
         .set("best_epoch", summary.best_epoch)
         .set("best_validation", summary.best_validation)
-        .set("training_cases", static_cast<long>(data.train.row_count()))
+        .set("training_cases", static_cast<long>(count_cases(data.train)))
+        .set("copies", copies)
         .set("skipped_cases", static_cast<long>(data.skipped))
         .set("weights", static_cast<long>(model.weights.size()))
         .set("seconds", summary.seconds);
     std::cout << json.dump() << "\n";
     return;
   }
-  std::cout << format_count(static_cast<std::int64_t>(data.train.row_count())) << " cases trained, "
-            << format_count(static_cast<std::int64_t>(data.validate.row_count())) << " validated, "
-            << format_count(test.samples) << " tested; " << format_count(data.skipped)
-            << " failed ones left out; " << model.weights.size() << " weights\n"
+  std::cout << format_count(count_cases(data.train)) << " cases trained, "
+            << format_count(count_cases(data.validate)) << " validated, "
+            << format_count(count_cases(data.test)) << " tested"
+            << (copies > 1 ? ", each with " + std::to_string(copies) + " draws of noise" : "")
+            << "; " << format_count(data.skipped) << " failed ones left out; "
+            << model.weights.size() << " weights\n"
             << summary.make_line() << "\n\nerrors of the test part\n";
   print_table(model, test);
   std::cout << "\n" << output.string() << "\n";
@@ -229,14 +223,17 @@ int run_train(const std::vector<std::string>& words) {
   if (!arguments.parse(words)) return kExitDone;
   const auto& names = arguments.positional();
   if (names.empty()) throw arguments.usage_error("DATA: missing");
-  const fs::path output = find_output(arguments), checkpoint = find_checkpoint(arguments);
-  const TrainingRequest request = read_request(arguments, output);
+  const fs::path output = find_output_file(arguments, names),
+                 checkpoint = find_checkpoint(arguments);
+  TrainingRequest request = read_request(arguments, output);
   DatasetOptions options;
   options.partial = arguments.is_on("partial");
+  options.histories = arguments.has("window");
   // A limit of file size is a full disk, told as one, not the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
   InterruptWatcher watcher;
   Dataset dataset({names.begin(), names.end()}, options);
+  read_noise_options(arguments, dataset.schema(), request);
   Training training(dataset, request);
   if (arguments.is_on("resume")) training.resume(checkpoint, read_checkpoint(checkpoint));
   if (!train(training, checkpoint, watcher.halt())) {

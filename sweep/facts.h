@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "io/named_texts.h"
 #include "sweep/request.h"
 
 namespace strut {
@@ -13,7 +13,7 @@ namespace strut {
 inline constexpr int kResultsVersion = 1;
 
 /// "name = value" of everything that enters the plan's hash, in order.
-using Facts = std::vector<std::pair<std::string, std::string>>;
+using Facts = NamedTexts;
 
 /// Request, defaults resolved; vehicle and maneuver, every value of their files; the files that
 /// those name, by SHA-256. Names of files, comments and the order of keys have no part in it, but

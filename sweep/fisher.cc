@@ -17,39 +17,48 @@ Eigen::VectorXd calc_scales(const Eigen::MatrixXd& information) {
       [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
 }
 
-/// Variances and rank from F scaled to a unit diagonal, D F D = V diag(l) V': diag(F^-1)_i = D_i^2
-/// sum_k V_ik^2 / l_k. A parameter that takes part in an unresolved direction is free.
-void calc_variances(const Eigen::MatrixXd& information, Bounds& bounds) {
+}  // namespace
+
+InformationInverse invert_information(const Eigen::MatrixXd& information) {
+  constexpr double kPart = 1e-6;  // share of a free direction above rounding
+  const Eigen::Index n = information.rows();
   const Eigen::VectorXd scale = calc_scales(information);
   const Solver solver(scale.asDiagonal() * information * scale.asDiagonal());
-  const Eigen::Index n = information.rows();
   const double least = kLeastInformation * solver.eigenvalues()(n - 1);
-  constexpr double kPart = 1e-6;  // share of a free direction above rounding
-  Eigen::VectorXd variance = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n);
+  InformationInverse result;
+  result.free.resize(static_cast<std::size_t>(n));
+  for (Eigen::Index i = 0; i < n; ++i) result.free[static_cast<std::size_t>(i)] = !(scale(i) > 0.0);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const double value = solver.eigenvalues()(k);
-    const bool resolved = value > least;
-    bounds.rank += resolved ? 1 : 0;
+    if (solver.eigenvalues()(k) > least) {
+      ++result.rank;
+      inverse(k) = 1.0 / solver.eigenvalues()(k);
+      continue;
+    }
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double part = solver.eigenvectors()(i, k);
-      if (resolved) variance(i) += scale(i) * scale(i) * part * part / value;
-      if (!resolved && std::abs(part) > kPart) variance(i) = kInfinity;
+      if (std::abs(solver.eigenvectors()(i, k)) > kPart) {
+        result.free[static_cast<std::size_t>(i)] = true;
+      }
     }
   }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    bounds.bound.push_back(scale(i) > 0.0 ? std::sqrt(variance(i)) : kInfinity);
-  }
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * solver.eigenvectors();
+  result.covariance = scaled * inverse.asDiagonal() * scaled.transpose();
+  return result;
 }
-
-}  // namespace
 
 Bounds calc_bounds(const Eigen::MatrixXd& information) {
   Bounds bounds;
   const Eigen::Index n = information.rows();
+  const InformationInverse inverse = invert_information(information);
+  bounds.rank = inverse.rank;
   bounds.bound.reserve(static_cast<std::size_t>(n));
-  calc_variances(information, bounds);
   double sum = 0.0;
-  for (const double b : bounds.bound) sum += b * b;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const bool free = inverse.free[static_cast<std::size_t>(i)];
+    const double b = free ? kInfinity : std::sqrt(inverse.covariance(i, i));
+    bounds.bound.push_back(b);
+    sum += b * b;
+  }
   bounds.rms = std::sqrt(sum / static_cast<double>(n));
 
   const Solver solver(information);

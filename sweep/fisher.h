@@ -27,6 +27,18 @@ struct Bounds {
   double weakest_bound = 0.0;  // % along it, 1 / sqrt(smallest eigenvalue); infinite where singular
 };
 
+/// F^-1, as far as F has one.
+struct InformationInverse {
+  Eigen::MatrixXd covariance;  // over the resolved directions
+  std::vector<bool> free;      // parameters that take part in a direction F does not resolve
+  int rank = 0;                // directions resolved
+};
+
+/// F^-1 from the eigenvectors of F scaled to a unit diagonal, D F D = V diag(l) V':
+/// F^-1 = D V diag(1 / l) V' D, without the directions whose l is below kLeastInformation of the
+/// largest. F symmetric positive semidefinite, in any units.
+InformationInverse invert_information(const Eigen::MatrixXd& information);
+
 /// Bounds of a symmetric positive semidefinite F by its eigenvectors. The bounds do not depend on
 /// how the parameters are scaled; condition and weakest combination do.
 Bounds calc_bounds(const Eigen::MatrixXd& information);

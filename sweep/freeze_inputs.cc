@@ -1,11 +1,9 @@
 #include "sweep/freeze_inputs.h"
 
 #include <map>
-#include <span>
 
 #include "io/atomic_file.h"
 #include "io/config.h"
-#include "io/file_bytes.h"
 #include "io/toml_text.h"
 #include "sweep/named_files.h"
 
@@ -13,12 +11,6 @@ namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-void write_text(const fs::path& path, const std::string& text) {
-  AtomicFile file(path);
-  write_bytes(file.temporary(), std::as_bytes(std::span<const char>(text)), path);
-  file.commit();
-}
 
 /// Names in the folder of copies, one a file, though two may be called the same.
 class Copies {
@@ -29,14 +21,14 @@ class Copies {
   std::string copy(const fs::path& source) {
     std::string name = choose_name(source);
     if (source.extension() != ".toml") {
-      write_text(folder_ / name, read_text_file(source));
+      write_text_file(folder_ / name, read_text_file(source));
       return name;
     }
     TomlValues changes;
     for (const NamedFile& named : list_named_files(source)) {
       changes.emplace_back(named.key, copy(named.path));
     }
-    write_text(folder_ / name, replace_toml_texts(source, changes));
+    write_text_file(folder_ / name, replace_toml_texts(source, changes));
     return name;
   }
 
@@ -63,8 +55,8 @@ void freeze_inputs(const SweepRequest& request, const SweepFolder& folder) {
   // Two statements: the order of the copies' names must not be the compiler's.
   const std::string vehicle = inside + copies.copy(request.vehicle);
   const std::string maneuver = inside + copies.copy(request.maneuver);
-  write_text(folder.request(),
-             replace_toml_texts(request.path, {{"vehicle", vehicle}, {"maneuver", maneuver}}));
+  write_text_file(folder.request(),
+                  replace_toml_texts(request.path, {{"vehicle", vehicle}, {"maneuver", maneuver}}));
 }
 
 }  // namespace strut

@@ -1,11 +1,13 @@
 #include "sweep/plan_file.h"
 
 #include "io/hdf5.h"
+#include "io/named_texts.h"
 
 namespace strut {
 namespace {
 
 constexpr std::int64_t kSchemaVersion = 1;
+constexpr char kFactsGroup[] = "/facts";
 
 std::string describe_draw(const Plan& plan) {
   const SampleRequest& sample = plan.request().sample;
@@ -17,18 +19,6 @@ std::string describe_shards(const Plan& plan) {
   const std::string cases = std::to_string(plan.request().shard_cases);
   return std::to_string(plan.shard_count()) + "; shard s holds positions [s * " + cases +
          ", (s + 1) * " + cases + ") of the run order";
-}
-
-void write_facts(Hdf5Writer& file, const Facts& facts) {
-  std::vector<std::string> names, values;
-  names.reserve(facts.size());
-  values.reserve(facts.size());
-  for (const auto& [name, value] : facts) {
-    names.push_back(name);
-    values.push_back(value);
-  }
-  file.write("/facts/name", names, {"1", "what the results depend on", {}});
-  file.write("/facts/value", values, {"1", "its value; plan_hash is SHA-256 of all of them", {}});
 }
 
 void write_layers(Hdf5Writer& file, const Plan& plan) {
@@ -54,7 +44,9 @@ void write_plan(const std::filesystem::path& path, const Plan& plan) {
   file.write_attribute("/", "cases", plan.case_count());
   file.write_attribute("/", "draw", describe_draw(plan));
   file.write_attribute("/", "shards", describe_shards(plan));
-  write_facts(file, plan.facts());
+  write_named_texts(
+      file, kFactsGroup, plan.facts(),
+      {"what the results depend on", "its value; plan_hash is SHA-256 of all of them"});
   write_layers(file, plan);
   const std::vector<std::int64_t> drawn = plan.list_drawn();
   if (!drawn.empty()) {
@@ -73,14 +65,7 @@ PlanRecord read_plan(const std::filesystem::path& path) {
   }
   PlanRecord record;
   record.hash = file.read_attribute("/", "plan_hash");
-  const std::vector<std::string> names = file.read_texts("/facts/name");
-  const std::vector<std::string> values = file.read_texts("/facts/value");
-  if (names.size() != values.size()) {
-    throw InputError(path.string() + ": /facts/value: " + std::to_string(values.size()) +
-                     " values; must be " + std::to_string(names.size()));
-  }
-  record.facts.reserve(names.size());
-  for (std::size_t i = 0; i < names.size(); ++i) record.facts.emplace_back(names[i], values[i]);
+  record.facts = read_named_texts(path, file, kFactsGroup);
   if (record.hash != calc_hash(record.facts)) {
     throw InputError(path.string() + ": plan_hash: not that of /facts; the file is damaged");
   }

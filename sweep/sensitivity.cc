@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+#include <utility>
 
 #include "io/config.h"
 #include "model/vehicle/channels.h"
 #include "sweep/line_position.h"
 #include "sweep/parameters.h"
+#include "sweep/run_prepared.h"
 
 namespace strut {
 namespace {
@@ -22,15 +23,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double kLeastRate = 1000.0;  // 1/s
 
 /// One simulation, ready to be asked at any place.
-struct Trajectory {
-  std::shared_ptr<const LaneResults> results;
-  int lane = 0;
+struct Trajectory : LaneRun {
   std::vector<double> offsets;  // ascending
-
-  double get(std::size_t sample, std::size_t channel) const {
-    const auto lanes = at(results->lanes);
-    return results->history[(sample * C::kCount + channel) * lanes + at(lane)];
-  }
 };
 
 /// The cases of a Jacobian: the base, then per parameter +h, -h, +h/2, -h/2.
@@ -89,54 +83,9 @@ std::vector<PreparedCase> prepare_all(const std::vector<Variant>& variants, doub
   return prepared;
 }
 
-/// Cases that share lanes, up to `width`, in order; every case in one group.
-std::vector<std::vector<std::size_t>> group_cases(const std::vector<PreparedCase>& cases,
-                                                  Closure closure, std::size_t width) {
-  std::vector<std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const auto fits = [&](const std::vector<std::size_t>& group) {
-      return group.size() < width && may_share_lanes(cases[group.front()], cases[i], closure);
-    };
-    const auto found = std::find_if(groups.begin(), groups.end(), fits);
-    if (found == groups.end()) {
-      groups.push_back({i});
-    } else {
-      found->push_back(i);
-    }
-  }
-  return groups;
-}
-
-/// All runs, each with its results and lane. Always in lanes, even alone: lanes agree with each
-/// other to the bit, with plain double only to 1e-9, which a difference would magnify.
-std::vector<Trajectory> run_all(const std::vector<PreparedCase>& cases,
-                                const IntegrateRequest& integrate, const SamplePlan& plan) {
-  std::vector<Trajectory> runs(cases.size());
-  if (integrate.solver == Solver::kCvode) {
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      runs[i].results =
-          std::make_shared<LaneResults>(run_cvode(cases[i], integrate.reference, plan));
-    }
-    return runs;
-  }
-  const Kernel& kernel = list_kernels().front();
-  for (const auto& group : group_cases(cases, integrate.options.closure, at(kernel.lanes))) {
-    std::vector<const PreparedCase*> pointers;
-    pointers.reserve(group.size());
-    for (const std::size_t i : group) pointers.push_back(&cases[i]);
-    const auto results = std::make_shared<LaneResults>(kernel.run_lanes(
-        pointers.data(), static_cast<int>(pointers.size()), integrate.options, plan));
-    for (std::size_t lane = 0; lane < group.size(); ++lane) {
-      runs[group[lane]].results = results;
-      runs[group[lane]].lane = static_cast<int>(lane);
-    }
-  }
-  return runs;
-}
-
 void check_run(const Trajectory& run, const std::string& label) {
   const LaneResults& r = *run.results;
-  if (r.status[at(run.lane)] != static_cast<int>(RunStatus::kDone)) {
+  if (run.status() != RunStatus::kDone) {
     throw InputError("the run at " + label +
                      " failed at t = " + format_number(r.failure_time[at(run.lane)]) +
                      " s; a design needs runs that get through: choose another base point");
@@ -275,7 +224,11 @@ Sensitivity calc_sensitivity(const Case& base, const std::vector<Axis>& axes, do
   const double stride = std::max(1.0, std::ceil(kLeastRate / options.rate));
   SamplePlan plan;
   plan.interval = 1.0 / (options.rate * stride);
-  std::vector<Trajectory> runs = run_all(cases, options.integrate, plan);
+  std::vector<Trajectory> runs;
+  runs.reserve(cases.size());
+  for (LaneRun& run : run_prepared(cases, options.integrate, plan)) {
+    runs.push_back({std::move(run), {}});
+  }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     check_run(runs[i], variants[i].label);
     runs[i].offsets = calc_line_positions(cases[i], *runs[i].results, runs[i].lane);

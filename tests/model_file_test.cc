@@ -10,6 +10,7 @@
 #include "tests/example_shard.h"
 #include "tests/limited_file_size.h"
 #include "tests/temporary_folder.h"
+#include "train/checkpoint.h"
 #include "train/network.h"
 
 namespace strut {
@@ -27,6 +28,7 @@ Model make_model() {
   model.targets = {{"front_stiffness", "N/m", "rate"}};
   model.input_map = Normalizer({0.1, 0.5}, {0.2, 0.75});
   model.target_map = Normalizer({35500.0}, {40000.0});
+  model.ci95 = {12.5};
   model.plan_hash = std::string(64, 'a');
   model.samples = 2000;
   model.usable = 1990;
@@ -72,6 +74,7 @@ void check_same(const Model& a, const Model& b) {
   CHECK(a.input_map.high() == b.input_map.high());
   CHECK(a.target_map.low() == b.target_map.low());
   CHECK(a.target_map.high() == b.target_map.high());
+  CHECK(a.ci95 == b.ci95);
   CHECK(a.plan_hash == b.plan_hash);
   CHECK(a.samples == b.samples);
   CHECK(a.usable == b.usable);
@@ -148,6 +151,13 @@ TEST_CASE("What is no model, or one that does not fit itself, is refused", "[io]
   model.target_map = Normalizer({1.0}, {1.0});
   write_model(file, model);
   CHECK_THROWS_WITH(read_model(file), Contains("/targets: bounds"));
+  for (const std::vector<double>& ci95 :
+       {std::vector<double>{}, std::vector<double>{-1.0}, std::vector<double>{std::nan("")}}) {
+    model = make_model();
+    model.ci95 = ci95;
+    write_model(file, model);
+    CHECK_THROWS_WITH(read_model(file), Contains("/ci95: must have a width for each target"));
+  }
   model = make_model();
   model.sizes = {1, 4, 1};
   write_model(file, model);
@@ -169,7 +179,8 @@ TEST_CASE("A flipped bit in a model is an error, or changes nothing", "[io][prop
       const Model model = read_model(folder / "m.h5");
       if (!test::same_bits(model.weights, truth.weights) || model.sizes != truth.sizes ||
           model.input_map.low() != truth.input_map.low() || model.inputs != truth.inputs ||
-          model.split.seed != truth.split.seed || model.options != truth.options) {
+          model.split.seed != truth.split.seed || model.ci95 != truth.ci95 ||
+          model.options != truth.options) {
         ++wrong;
       }
     } catch (const InputError&) {

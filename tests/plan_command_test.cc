@@ -280,7 +280,7 @@ TEST_CASE("The call itself is checked", "[io]") {
 }
 
 TEST_CASE("Every example sweep plans", "[io]") {
-  for (const char* name : {"paper", "paper_fast", "stratified_2000"}) {
+  for (const char* name : {"paper", "paper_fast", "stratified_2000", "window_2000"}) {
     const Outcome outcome =
         run_program("plan " + test::kExampleFolder + "sweeps/" + name + ".toml --dry-run");
     INFO(name << ": " << outcome.messages);

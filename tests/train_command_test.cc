@@ -216,7 +216,7 @@ TEST_CASE("Nothing is overwritten without --force", "[io]") {
   CHECK(read_model(model).sizes == std::vector<int>{4, 6, 4, 2});
   const fs::path shard = get_sweep() / "shards/000000.h5";
   const auto before = read_bytes(shard);
-  CHECK_THAT(train(shard, shard, "--force").messages, Contains("is the data"));
+  CHECK_THAT(train(shard, shard, "--force").messages, Contains("is what is read"));
   CHECK(read_bytes(shard) == before);
 }
 

@@ -12,7 +12,40 @@
 namespace strut {
 namespace {
 
-/// Columns of a table by name.
+/// Appends the usable rows of a piece, at most `most` of them; returns how many are none.
+std::int64_t append_usable(const ShardRows& piece, const FillRow& fill, std::size_t most,
+                           RowStore& rows) {
+  std::vector<double> kept, row;
+  std::int64_t skipped = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < piece.size() && count < most; ++i) {
+    row.clear();
+    if (piece.status[i] == 0) fill(piece, i, row);
+    const bool finite =
+        std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); });
+    if (row.empty() || !finite) {
+      ++skipped;
+      continue;
+    }
+    kept.insert(kept.end(), row.begin(), row.end());
+    ++count;
+  }
+  rows.append(kept);
+  return skipped;
+}
+
+void require_spread(const Normalizer& map, const std::vector<ColumnInfo>& columns, const char* kind,
+                    std::int64_t rows) {
+  const std::size_t at = map.find_constant();
+  if (at == columns.size()) return;
+  throw InputError(std::string(kind) + " '" + columns[at].name + "' is constant, " +
+                   std::to_string(map.low()[at]) + " " + columns[at].unit + ", in all " +
+                   std::to_string(rows) + " training rows: nothing can be learned from it; " +
+                   "leave it out");
+}
+
+}  // namespace
+
 std::vector<std::size_t> find_columns(const std::vector<ColumnInfo>& columns,
                                       const std::vector<std::string>& names, const char* kind) {
   const std::vector<std::string> known = list_names(columns);
@@ -34,77 +67,51 @@ std::vector<std::size_t> find_columns(const std::vector<ColumnInfo>& columns,
   return found;
 }
 
-std::vector<ColumnInfo> take(const std::vector<ColumnInfo>& from,
-                             const std::vector<std::size_t>& columns) {
+std::vector<ColumnInfo> take_columns(const std::vector<ColumnInfo>& from,
+                                     const std::vector<std::size_t>& columns) {
   std::vector<ColumnInfo> taken;
   taken.reserve(columns.size());
   for (const std::size_t column : columns) taken.push_back(from[column]);
   return taken;
 }
 
-/// Appends the usable rows of a piece, at most `most` of them; counts the others.
-void append_usable(const ShardRows& piece, const ShardSchema& schema,
-                   const std::vector<std::size_t>& inputs, const std::vector<std::size_t>& targets,
-                   std::int64_t most, UsableRows& usable) {
-  const std::int64_t before = static_cast<std::int64_t>(usable.rows.row_count());
-  std::vector<double> kept, row;
-  row.reserve(inputs.size() + targets.size());
-  std::int64_t count = 0;
-  for (std::size_t i = 0; i < piece.size() && before + count < most; ++i) {
-    row.clear();
+std::vector<std::size_t> find_targets(const ShardSchema& schema, const RowChoice& choice) {
+  const auto names = choice.targets.empty() ? list_names(schema.parameters) : choice.targets;
+  return find_columns(schema.parameters, names, "parameter");
+}
+
+std::int64_t collect_usable(Dataset& dataset, std::int64_t samples, const FillRow& fill,
+                            RowStore& rows) {
+  const std::size_t all = dataset.row_count();
+  const std::size_t most = samples > 0 ? static_cast<std::size_t>(samples) : all;
+  std::int64_t skipped = 0;
+  for (std::size_t piece = 0; piece < dataset.piece_count() && rows.row_count() < most; ++piece) {
+    skipped += append_usable(dataset.read_piece(piece), fill, most - rows.row_count(), rows);
+  }
+  const std::size_t count = rows.row_count();
+  if (count == 0 || static_cast<std::int64_t>(count) < samples) {
+    throw InputError("the data has " + std::to_string(count) + " usable cases of " +
+                     std::to_string(all) + " (the others failed or hold NaN)" +
+                     (samples > 0 ? "; asked for " + std::to_string(samples) : ""));
+  }
+  return skipped;
+}
+
+UsableRows read_usable_rows(Dataset& dataset, const RowChoice& choice,
+                            const RowStoreOptions& store) {
+  const ShardSchema& schema = dataset.schema();
+  const auto inputs = find_columns(schema.snapshot, choice.inputs, "snapshot channel");
+  const auto targets = find_targets(schema, choice);
+  UsableRows usable{take_columns(schema.snapshot, inputs), take_columns(schema.parameters, targets),
+                    RowStore(inputs.size() + targets.size(), store)};
+  const auto fill = [&](const ShardRows& piece, std::size_t i, std::vector<double>& row) {
     for (const std::size_t c : inputs)
       row.push_back(piece.snapshot[i * schema.snapshot.size() + c]);
     for (const std::size_t c : targets) {
       row.push_back(piece.parameters[i * schema.parameters.size() + c]);
     }
-    const bool finite =
-        std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); });
-    if (piece.status[i] != 0 || !finite) {
-      ++usable.skipped;
-      continue;
-    }
-    kept.insert(kept.end(), row.begin(), row.end());
-    ++count;
-  }
-  usable.rows.append(kept);
-}
-
-void require_spread(const Normalizer& map, const std::vector<ColumnInfo>& columns, const char* kind,
-                    std::int64_t rows) {
-  const std::size_t at = map.find_constant();
-  if (at == columns.size()) return;
-  throw InputError(std::string(kind) + " '" + columns[at].name + "' is constant, " +
-                   std::to_string(map.low()[at]) + " " + columns[at].unit + ", in all " +
-                   std::to_string(rows) + " training rows: nothing can be learned from it; " +
-                   "leave it out");
-}
-
-RowStore make_like(const RowStore& rows, const RowStoreOptions& options) {
-  return RowStore(rows.columns(), options);
-}
-
-}  // namespace
-
-UsableRows read_usable_rows(Dataset& dataset, const RowChoice& choice,
-                            const RowStoreOptions& store) {
-  const ShardSchema& schema = dataset.schema();
-  const auto target_names = choice.targets.empty() ? list_names(schema.parameters) : choice.targets;
-  const auto inputs = find_columns(schema.snapshot, choice.inputs, "snapshot channel");
-  const auto targets = find_columns(schema.parameters, target_names, "parameter");
-  UsableRows usable{take(schema.snapshot, inputs), take(schema.parameters, targets),
-                    RowStore(inputs.size() + targets.size(), store)};
-  const auto all = static_cast<std::int64_t>(dataset.row_count());
-  const std::int64_t most = choice.samples > 0 ? choice.samples : all;
-  for (std::size_t piece = 0; piece < dataset.piece_count(); ++piece) {
-    if (static_cast<std::int64_t>(usable.rows.row_count()) >= most) break;
-    append_usable(dataset.read_piece(piece), schema, inputs, targets, most, usable);
-  }
-  const auto count = static_cast<std::int64_t>(usable.rows.row_count());
-  if (count == 0 || count < choice.samples) {
-    throw InputError("the data has " + std::to_string(count) + " usable cases of " +
-                     std::to_string(all) + " (the others failed or hold NaN)" +
-                     (choice.samples > 0 ? "; asked for " + std::to_string(choice.samples) : ""));
-  }
+  };
+  usable.skipped = collect_usable(dataset, choice.samples, fill, usable.rows);
   return usable;
 }
 
@@ -119,7 +126,7 @@ Split make_split(std::int64_t rows, const SplitChoice& choice) {
 
 RowStore take_part(const RowStore& rows, const Split& split, Part part,
                    const RowStoreOptions& store) {
-  RowStore taken = make_like(rows, store);
+  RowStore taken(rows.columns(), store);
   const std::size_t columns = rows.columns();
   for_each_piece(rows, [&](std::span<const double> values, std::size_t first, std::size_t count) {
     std::vector<double> kept;
@@ -133,30 +140,63 @@ RowStore take_part(const RowStore& rows, const Split& split, Part part,
   return taken;
 }
 
-TrainingRows split_rows(UsableRows usable, const SplitChoice& choice,
-                        const RowStoreOptions& store) {
+RowStore make_noisy_rows(const RowStore& rows, const NoiseModel& noise,
+                         const std::function<bool(std::int64_t)>& takes,
+                         const RowStoreOptions& store) {
+  RowStore made(rows.columns(), store);
+  const std::size_t columns = rows.columns();
+  for (int copy = 0; copy < noise.copies; ++copy) {
+    for_each_piece(rows, [&](std::span<const double> values, std::size_t first, std::size_t count) {
+      std::vector<double> kept;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto number = static_cast<std::int64_t>(first + i);
+        if (!takes(number)) continue;
+        const auto row = values.subspan(i * columns, columns);
+        kept.insert(kept.end(), row.begin(), row.end());
+        const auto own = std::span(kept).last(columns);
+        const NoiseDraw draw(noise, number, copy);
+        for (std::size_t c = 0; c < noise.sigma.size(); ++c) draw.add(c, own.subspan(c, 1));
+      }
+      made.append(kept);
+    });
+  }
+  return made;
+}
+
+void fit_maps(TrainingRows& rows) {
+  Normalizer bounds(rows.train.columns());
+  for_each_piece(rows.train, [&](std::span<const double> values, std::size_t, std::size_t) {
+    bounds.include(values);
+  });
+  const auto cut = static_cast<std::ptrdiff_t>(rows.inputs.size());
+  const std::vector<double>&low = bounds.low(), &high = bounds.high();
+  rows.input_map = Normalizer({low.begin(), low.begin() + cut}, {high.begin(), high.begin() + cut});
+  rows.target_map = Normalizer({low.begin() + cut, low.end()}, {high.begin() + cut, high.end()});
+  const auto trained = static_cast<std::int64_t>(rows.train.row_count());
+  require_spread(rows.input_map, rows.inputs, "input", trained);
+  require_spread(rows.target_map, rows.targets, "parameter", trained);
+}
+
+TrainingRows split_rows(UsableRows usable, const SplitChoice& choice, const RowStoreOptions& store,
+                        const std::optional<NoiseModel>& noise) {
   const auto count = static_cast<std::int64_t>(usable.rows.row_count());
   const Split split = make_split(count, choice);
+  if (noise) noise->validate(usable.inputs);
+  const auto take = [&](Part part) {
+    if (!noise) return take_part(usable.rows, split, part, store);
+    const auto takes = [&](std::int64_t row) { return split.find_part(row) == part; };
+    return make_noisy_rows(usable.rows, *noise, takes, store);
+  };
   TrainingRows parts;
   parts.usable = count;
   parts.skipped = usable.skipped;
-  parts.train = take_part(usable.rows, split, Part::kTrain, store);
-  parts.validate = take_part(usable.rows, split, Part::kValidate, store);
-  parts.test = take_part(usable.rows, split, Part::kTest, store);
-  Normalizer bounds(usable.rows.columns());
-  for_each_piece(parts.train, [&](std::span<const double> values, std::size_t, std::size_t) {
-    bounds.include(values);
-  });
-  const auto cut = static_cast<std::ptrdiff_t>(usable.inputs.size());
-  const std::vector<double>&low = bounds.low(), &high = bounds.high();
-  parts.input_map =
-      Normalizer({low.begin(), low.begin() + cut}, {high.begin(), high.begin() + cut});
-  parts.target_map = Normalizer({low.begin() + cut, low.end()}, {high.begin() + cut, high.end()});
+  parts.noise = noise;
+  parts.train = take(Part::kTrain);
+  parts.validate = take(Part::kValidate);
+  parts.test = take(Part::kTest);
   parts.inputs = std::move(usable.inputs);
   parts.targets = std::move(usable.targets);
-  const std::int64_t trained = split.count(Part::kTrain);
-  require_spread(parts.input_map, parts.inputs, "input", trained);
-  require_spread(parts.target_map, parts.targets, "parameter", trained);
+  fit_maps(parts);
   return parts;
 }
 

@@ -1,16 +1,70 @@
 #include "train/evaluate.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "io/input_error.h"
 #include "io/shard_layout.h"
 #include "train/network.h"
+#include "train/window_rows.h"
 
 namespace strut {
 namespace {
 
-/// Predicted parameters of all rows, and how many lie outside of the model's range.
-RowStore predict(const Model& model, const RowStore& rows, std::int64_t* out_of_range) {
+std::vector<double> read_column(const RowStore& rows, std::size_t column) {
+  std::vector<double> values;
+  values.reserve(rows.row_count());
+  for_each_piece(rows, [&](std::span<const double> piece, std::size_t, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) values.push_back(piece[i * rows.columns() + column]);
+  });
+  return values;
+}
+
+void require_trained_on(const Model& model, const Dataset& dataset, const RowStore& usable) {
+  if (dataset.plan_hash() != model.plan_hash) {
+    throw InputError(
+        "the data is of another plan than the model was trained on, so it has no "
+        "test part of it; --part all takes all cases");
+  }
+  const auto rows = static_cast<std::int64_t>(usable.row_count());
+  if (rows != model.usable) {
+    throw InputError("the model was trained on data with " + std::to_string(model.usable) +
+                     " usable cases, this has " + std::to_string(rows) +
+                     "; its test part cannot be told; --part all takes all cases");
+  }
+}
+
+/// The model's inputs and targets, as noisy as those it was trained on.
+RowStore read_rows(const Model& model, Dataset& dataset, EvaluatedPart part,
+                   const RowStoreOptions& store) {
+  const bool test = part == EvaluatedPart::kTest;
+  RowChoice choice{list_names(model.window ? model.window->channels : model.inputs),
+                   list_names(model.targets)};
+  if (test) choice.samples = model.samples;
+  std::optional<Split> split;
+  const auto takes = [&](std::int64_t row) {
+    return !split || split->find_part(row) == Part::kTest;
+  };
+  const auto take_test = [&](const RowStore& usable) {
+    if (!test) return;
+    require_trained_on(model, dataset, usable);
+    split = make_split(model.usable, model.split);
+  };
+  if (model.window) {
+    const WindowRecords records = read_records_for(*model.window, choice, dataset, store);
+    take_test(records.rows);
+    return make_component_rows(records, *model.window, takes, 1, store);
+  }
+  UsableRows usable = read_usable_rows(dataset, choice, store);
+  take_test(usable.rows);
+  if (model.noise) return make_noisy_rows(usable.rows, *model.noise, takes, store);
+  return split ? take_part(usable.rows, *split, Part::kTest, store) : std::move(usable.rows);
+}
+
+}  // namespace
+
+RowStore predict_rows(const Model& model, const RowStore& rows, std::int64_t* out_of_range) {
   const Predictor predictor(NetworkShape(model.sizes), model.weights);
   const std::size_t n = model.inputs.size(), m = model.targets.size();
   RowStore predicted(m);
@@ -30,35 +84,14 @@ RowStore predict(const Model& model, const RowStore& rows, std::int64_t* out_of_
   return predicted;
 }
 
-std::vector<double> read_column(const RowStore& rows, std::size_t column) {
-  std::vector<double> values;
-  values.reserve(rows.row_count());
-  for_each_piece(rows, [&](std::span<const double> piece, std::size_t, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) values.push_back(piece[i * rows.columns() + column]);
-  });
-  return values;
+RowStore read_test_rows(const Model& model, Dataset& dataset, const RowStoreOptions& store) {
+  return read_rows(model, dataset, EvaluatedPart::kTest, store);
 }
-
-void require_trained_on(const Model& model, const Dataset& dataset, const UsableRows& usable) {
-  if (dataset.plan_hash() != model.plan_hash) {
-    throw InputError(
-        "the data is of another plan than the model was trained on, so it has no "
-        "test part of it; --part all takes all cases");
-  }
-  const auto rows = static_cast<std::int64_t>(usable.rows.row_count());
-  if (rows != model.usable) {
-    throw InputError("the model was trained on data with " + std::to_string(model.usable) +
-                     " usable cases, this has " + std::to_string(rows) +
-                     "; its test part cannot be told; --part all takes all cases");
-  }
-}
-
-}  // namespace
 
 Evaluation evaluate_rows(const Model& model, const RowStore& rows) {
   Evaluation evaluation;
   evaluation.samples = static_cast<std::int64_t>(rows.row_count());
-  const RowStore predicted = predict(model, rows, &evaluation.out_of_range);
+  const RowStore predicted = predict_rows(model, rows, &evaluation.out_of_range);
   evaluation.metrics.reserve(model.targets.size());
   for (std::size_t target = 0; target < model.targets.size(); ++target) {
     const auto reference = read_column(rows, model.inputs.size() + target);
@@ -69,15 +102,7 @@ Evaluation evaluate_rows(const Model& model, const RowStore& rows) {
 
 Evaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
                           const RowStoreOptions& store) {
-  RowChoice choice{list_names(model.inputs), list_names(model.targets)};
-  if (part == EvaluatedPart::kAll) {
-    return evaluate_rows(model, read_usable_rows(dataset, choice, store).rows);
-  }
-  choice.samples = model.samples;
-  const UsableRows usable = read_usable_rows(dataset, choice, store);
-  require_trained_on(model, dataset, usable);
-  const Split split = make_split(model.usable, model.split);
-  return evaluate_rows(model, take_part(usable.rows, split, Part::kTest, store));
+  return evaluate_rows(model, read_rows(model, dataset, part, store));
 }
 
 }  // namespace strut

@@ -21,6 +21,13 @@ struct Evaluation {
   std::int64_t out_of_range = 0;  // samples with an input outside of those trained on
 };
 
+/// Predicted parameters of rows as recorded, the model's inputs before its targets; adds to
+/// `out_of_range` those with an input outside of those trained on.
+RowStore predict_rows(const Model& model, const RowStore& rows, std::int64_t* out_of_range);
+
+/// The rows that the model's training left aside to test it. Throws InputError as evaluate_model.
+RowStore read_test_rows(const Model& model, Dataset& dataset, const RowStoreOptions& store = {});
+
 /// Rows as recorded, the model's inputs before its targets.
 Evaluation evaluate_rows(const Model& model, const RowStore& rows);
 

@@ -1,28 +1,33 @@
-// A trained network as a file, with everything needed to use it, judge it and repeat it; and a
-// training halfway as a file, to go on from.
+// A trained network as a file, with everything needed to use it, judge it and repeat it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "io/named_texts.h"
 #include "io/shard.h"
 #include "train/dataset_source.h"
 #include "train/levenberg_marquardt.h"
+#include "train/noise.h"
 #include "train/normalizer.h"
+#include "train/window_transform.h"
 
 namespace strut {
-
-/// (name, text) in the order of the file.
-using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
 struct Model {
   std::vector<int> sizes;  // inputs, hidden layers, outputs
   std::vector<double> weights;
   std::vector<ColumnInfo> inputs, targets;
   Normalizer input_map{0}, target_map{0};
+  /// Per target half the width of the 95 % interval, in the target's unit, as calc_ci95 finds it
+  /// (train/interval.h); infinite where too few cases were left to tell.
+  std::vector<double> ci95;
+
+  std::optional<NoiseModel> noise;        // that the inputs, channels of a snapshot, carried
+  std::optional<WindowTransform> window;  // from a record to the inputs
 
   // The data.
   std::string plan_hash;
@@ -47,20 +52,5 @@ void write_model(const std::filesystem::path& path, const Model& model);
 /// Throws InputError that names the file and what is wrong: no model, an unknown version, a
 /// checksum or shapes that do not fit. Provenance is not read.
 Model read_model(const std::filesystem::path& path);
-
-/// A training between two epochs.
-struct Checkpoint {
-  /// Everything that decides how it goes on.
-  NamedTexts started_with;
-  LevenbergMarquardtState state;
-  std::vector<EpochRecord> record;
-};
-
-void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
-Checkpoint read_checkpoint(const std::filesystem::path& path);
-
-/// Throws InputError with a line for each fact that is another in `now`.
-void require_same_start(const std::filesystem::path& path, const Checkpoint& checkpoint,
-                        const NamedTexts& now);
 
 }  // namespace strut

@@ -5,6 +5,8 @@
 #include "io/input_error.h"
 #include "io/nearest_name.h"
 #include "io/shard_layout.h"
+#include "train/interval.h"
+#include "train/window_rows.h"
 
 namespace strut {
 namespace {
@@ -39,8 +41,27 @@ void require_equations(const TrainingRows& data, const NetworkShape& shape) {
 }
 
 TrainingRows read_parts(Dataset& dataset, const TrainingRequest& request) {
+  if (request.window) {
+    return make_window_rows(dataset, request.rows, request.split, *request.window,
+                            request.noise.value_or(NoiseModel{}), request.problem.threads,
+                            request.store);
+  }
   return split_rows(read_usable_rows(dataset, request.rows, request.store), request.split,
-                    request.store);
+                    request.store, request.noise);
+}
+
+/// What a window was cut and projected by; all else of it follows from the data.
+NamedTexts describe_window(const WindowTransform& window) {
+  const WindowGrid& grid = window.grid;
+  return {{"window_channels", join_names(list_names(window.channels))},
+          {"window_interval", to_text(grid.interval)},
+          {"window_first_sample", std::to_string(grid.first)},
+          {"window_samples", std::to_string(grid.samples)},
+          {"window_lags", std::to_string(grid.lags)}};
+}
+
+void append(NamedTexts& texts, const NamedTexts& more) {
+  texts.insert(texts.end(), more.begin(), more.end());
 }
 
 }  // namespace
@@ -99,6 +120,11 @@ NamedTexts Training::describe_start() const {
                       {"first_damping", to_text(options.first_damping)},
                       {"gram_rows", std::to_string(request_.problem.gram_rows)},
                       {"instruction_set", problem_->kernel().isa}};
+  if (data_.noise) append(texts, describe_noise(*data_.noise, data_.inputs));
+  if (data_.window) {
+    append(texts, describe_window(*data_.window));
+    append(texts, describe_noise(data_.window->noise, data_.window->channels));
+  }
   return texts;
 }
 
@@ -114,6 +140,9 @@ Model Training::make_model() const {
   model.targets = data_.targets;
   model.input_map = data_.input_map;
   model.target_map = data_.target_map;
+  model.noise = data_.noise;
+  model.window = data_.window;
+  model.ci95 = calc_ci95(model, data_.validate);
   model.plan_hash = plan_hash_;
   model.samples = request_.rows.samples;
   model.usable = data_.usable;
@@ -125,7 +154,7 @@ Model Training::make_model() const {
                              {"goal", to_text(options.goal)},
                              {"min_gradient", to_text(options.min_gradient)},
                              {"max_damping", to_text(options.max_damping)}};
-  model.options.insert(model.options.end(), limits.begin(), limits.end());
+  append(model.options, limits);
   model.record = record_;
   model.stop = s.stop;
   model.best_epoch = s.best_epoch;

@@ -8,15 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "train/checkpoint.h"
 #include "train/dataset_source.h"
 #include "train/levenberg_marquardt.h"
 #include "train/model_file.h"
 #include "train/network_problem.h"
+#include "train/window_records.h"
 
 namespace strut {
 
 struct TrainingRequest {
   RowChoice rows;
+  /// A window of the histories in place of the snapshot; asks for `noise`.
+  std::optional<WindowChoice> window;
+  std::optional<NoiseModel> noise;  // of rows.inputs
   std::vector<int> hidden = {27, 19, 11};
   SplitChoice split;
   std::uint64_t seed = 1;  // of the start weights (Nguyen-Widrow)
@@ -28,7 +33,8 @@ struct TrainingRequest {
 
 class Training {
  public:
-  /// Reads the dataset. Throws InputError, see read_usable_rows and split_rows, and where the
+  /// Reads the dataset, which must have been opened for histories where a window is asked for.
+  /// Throws InputError, see read_usable_rows, split_rows and make_window_rows, and where the
   /// training rows give fewer equations (rows x outputs) than the network has weights.
   Training(Dataset& dataset, const TrainingRequest& request);
 

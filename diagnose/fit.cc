@@ -1,0 +1,227 @@
+#include "diagnose/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "io/input_error.h"
+#include "sweep/fisher.h"
+#include "train/levenberg_marquardt.h"
+
+namespace strut {
+namespace {
+
+/// Weights are (value - start) / scale. Beyond a bound the value stays on it.
+class FitProblem : public LeastSquaresProblem {
+ public:
+  explicit FitProblem(ReadingSimulator& simulator) : simulator_(simulator) {}
+
+  std::size_t weight_count() const override { return simulator_.unknowns().size(); }
+  double residual_count() const override {
+    return static_cast<double>(simulator_.reading_count() + simulator_.prior_count());
+  }
+
+  double calc_gram(const double* weights, int /*epoch*/, double* h, double* gradient) override {
+    const auto n = static_cast<Eigen::Index>(weight_count());
+    const Linearization& at = linearize(weights);
+    if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
+    const Eigen::MatrixXd jacobian = get_free_jacobian(at, weights);
+    Eigen::Map<Eigen::MatrixXd>(h, n, n).noalias() = jacobian.transpose() * jacobian;
+    Eigen::Map<Eigen::VectorXd>(gradient, n).noalias() = jacobian.transpose() * at.residual;
+    return at.residual.squaredNorm();
+  }
+
+  /// Where there is no simulation the loss is infinite: a step that is not taken.
+  double calc_loss(const double* weights) override {
+    const Linearization& at = linearize(weights);
+    return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
+  }
+
+  /// Trial points are linearized at once: most are accepted, and then their Jacobian is there.
+  const Linearization& linearize(const double* weights) {
+    const std::vector<double> values = calc_values(weights);
+    if (values != last_values_) {
+      last_ = simulator_.linearize(values);
+      last_values_ = values;
+    }
+    return last_;
+  }
+
+  std::vector<double> calc_values(const double* weights) const {
+    std::vector<double> values;
+    values.reserve(weight_count());
+    for (std::size_t i = 0; i < weight_count(); ++i) {
+      const Unknown& u = simulator_.unknowns()[i];
+      values.push_back(std::clamp(u.start + weights[i] * u.scale, u.low, u.high));
+    }
+    return values;
+  }
+
+  bool is_beyond(const double* weights, std::size_t i) const {
+    const Unknown& u = simulator_.unknowns()[i];
+    const double value = u.start + weights[i] * u.scale;
+    return value < u.low || value > u.high;
+  }
+
+  /// sqrt(g' H^-1 g) over the unknowns that no bound holds: how far the linear model sees the
+  /// minimum, in standard deviations.
+  double calc_distance(const double* weights) {
+    const Linearization& at = linearize(weights);
+    if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
+    const Eigen::MatrixXd jacobian = get_free_jacobian(at, weights);
+    const Eigen::VectorXd gradient = jacobian.transpose() * at.residual;
+    const InformationInverse inverse = invert_information(jacobian.transpose() * jacobian);
+    return std::sqrt(std::max(0.0, gradient.dot(inverse.covariance * gradient)));
+  }
+
+  /// Brings weights beyond a bound back to it; returns whether the slope would lead inwards from
+  /// one.
+  bool release(std::vector<double>& weights) {
+    const Linearization& at = linearize(weights.data());
+    if (!at.failure.empty()) return false;
+    const Eigen::VectorXd gradient = at.jacobian.transpose() * at.residual;
+    bool inwards = false;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!is_beyond(weights.data(), i)) continue;
+      const Unknown& u = simulator_.unknowns()[i];
+      const bool above = u.start + weights[i] * u.scale > u.high;
+      const double slope = gradient(static_cast<Eigen::Index>(i));
+      if ((above && slope <= 0.0) || (!above && slope >= 0.0)) continue;
+      weights[i] = ((above ? u.high : u.low) - u.start) / u.scale * (1.0 - 1e-12);
+      inwards = true;
+    }
+    return inwards;
+  }
+
+ private:
+  /// Without the columns of what a bound holds.
+  Eigen::MatrixXd get_free_jacobian(const Linearization& at, const double* weights) const {
+    Eigen::MatrixXd jacobian = at.jacobian;
+    for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
+      if (is_beyond(weights, static_cast<std::size_t>(i))) jacobian.col(i).setZero();
+    }
+    return jacobian;
+  }
+
+  ReadingSimulator& simulator_;
+  std::vector<double> last_values_;
+  Linearization last_;
+};
+
+LevenbergMarquardtOptions make_search_options(int iterations, double max_damping) {
+  LevenbergMarquardtOptions search;
+  search.scale = DampingScale::kDiagonal;
+  search.accelerate = false;
+  search.first_damping = 1e-5;  // starts are near: worn springs and dampers, not other cars
+  search.max_damping = max_damping;
+  search.epochs = std::max(0, iterations);
+  search.min_gradient = 0.0;
+  return search;
+}
+
+/// Steps until the minimum is within `near` standard deviations; false where no damping helps any
+/// more.
+bool approach(FitProblem& problem, const FitOptions& options, double near, double max_damping,
+              std::vector<double>& weights, int& iterations) {
+  LevenbergMarquardt search(problem, nullptr,
+                            make_search_options(options.iterations - iterations, max_damping));
+  search.start(weights);
+  while (problem.calc_distance(search.state().weights.data()) > near && search.step()) {
+  }
+  weights = search.state().weights;
+  iterations += search.state().epoch;
+  return search.state().stop != StopReason::kDamping;
+}
+
+/// Approaches the minimum; near it no longer insists: there the loss has kinks, where a contact
+/// event passes a reading, and the linear model's last hundredths of a standard deviation may not
+/// be there.
+std::vector<double> search(FitProblem& problem, const FitOptions& options, FitResult& result) {
+  constexpr int kReleases = 3;
+  constexpr double kNear = 0.01 * kFitTolerance, kPatience = 1e6, kNoPatience = 1e-3;
+  std::vector<double> weights(problem.weight_count(), 0.0);
+  for (int pass = 0; pass <= kReleases; ++pass) {
+    int& iterations = result.iterations;
+    result.at_kink = !approach(problem, options, kFitTolerance, kPatience, weights, iterations);
+    approach(problem, options, kNear, kNoPatience, weights, iterations);
+    if (!problem.release(weights)) break;
+  }
+  return weights;
+}
+
+std::vector<ChannelFit> judge_channels(const ReadingSimulator& simulator,
+                                       const Eigen::VectorXd& residual) {
+  std::vector<ChannelFit> fits;
+  for (std::size_t r = 0; r < simulator.runs().size(); ++r) {
+    const auto& channels = simulator.runs()[r].channels;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      ChannelFit fit{static_cast<int>(r), channels[c].channel};
+      double last = 0.0, products = 0.0;
+      for (std::size_t k = 0; k < simulator.reading_count(); ++k) {
+        const ReadingPlace& place = simulator.readings()[k];
+        if (place.run != r || place.channel != c) continue;
+        const double e = residual(static_cast<Eigen::Index>(k));
+        ++fit.count;
+        fit.chi2 += e * e;
+        products += e * last;
+        last = e;
+      }
+      fit.neighbor_correlation = fit.chi2 > 0.0 ? products / fit.chi2 : 0.0;
+      fits.push_back(fit);
+    }
+  }
+  return fits;
+}
+
+}  // namespace
+
+double FitResult::chi2_per_degree() const {
+  return degrees > 0 ? chi2 / static_cast<double>(degrees) : 0.0;
+}
+
+bool FitResult::is_adequate(double sigmas) const {
+  return chi2 <=
+         static_cast<double>(degrees) + sigmas * std::sqrt(2.0 * static_cast<double>(degrees));
+}
+
+FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
+                         const FitOptions& options) {
+  ReadingSimulator simulator(runs, unknowns, options.linearize);
+  FitProblem problem(simulator);
+  const std::vector<double> start(unknowns.size(), 0.0);
+  const std::string failure = problem.linearize(start.data()).failure;
+  if (!failure.empty()) throw InputError(failure + "; the fit starts there: start it elsewhere");
+
+  FitResult result;
+  result.unknowns = unknowns;
+  const std::vector<double> weights = search(problem, options, result);
+  result.values = problem.calc_values(weights.data());
+  const Linearization& at = problem.linearize(weights.data());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    result.at_bound.push_back(problem.is_beyond(weights.data(), i));
+  }
+  result.uncertainty = calc_uncertainty(at.jacobian.transpose() * at.jacobian, unknowns);
+  result.chi2 = at.residual.squaredNorm();
+  result.degrees = static_cast<long>(simulator.reading_count() + simulator.prior_count()) -
+                   result.uncertainty.rank;
+  result.channels = judge_channels(simulator, at.residual);
+  result.distance = problem.calc_distance(weights.data());
+  result.converged = result.distance < (result.at_kink ? kKinkTolerance : kFitTolerance);
+  result.simulations = simulator.simulation_count();
+  result.outside = static_cast<long>(simulator.outside_count());
+  return result;
+}
+
+Uncertainty calc_fit_bounds(const std::vector<MeasuredRun>& runs,
+                            const std::vector<Unknown>& unknowns, const LinearizeOptions& options) {
+  ReadingSimulator simulator(runs, unknowns, options);
+  std::vector<double> values;
+  values.reserve(unknowns.size());
+  for (const Unknown& u : unknowns) values.push_back(u.start);
+  const Linearization at = simulator.linearize(values);
+  if (!at.failure.empty()) throw InputError(at.failure);
+  return calc_uncertainty(at.jacobian.transpose() * at.jacobian, unknowns);
+}
+
+}  // namespace strut

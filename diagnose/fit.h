@@ -1,0 +1,72 @@
+// Identification by fitting the simulation itself: the unknowns that make the simulated readings
+// agree with the measured ones in the least-squares sense, and how well they are known.
+//
+//   minimize  chi2(p) = sum ((y_sim(t + t0; p) + b - y) / sigma)^2 + sum ((p - mean) / sigma_p)^2
+//
+// by Levenberg-Marquardt (train/levenberg_marquardt.h), one batch of lanes a Jacobian. Equations
+// and measured accuracy: docs/fit.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/linearize.h"
+#include "diagnose/uncertainty.h"
+
+namespace strut {
+
+struct FitOptions {
+  LinearizeOptions linearize;
+  int iterations = 50;  // accepted steps at most
+};
+
+/// How one channel of one run fits.
+struct ChannelFit {
+  int run = 0, channel = 0;  // CarChannel
+  long count = 0;            // readings
+  double chi2 = 0.0;         // their share of chi2
+  /// Correlation of neighboring residuals: within 2 / sqrt(count) of 0 where they are white; else
+  /// the model lacks something, or the noise is not white.
+  double neighbor_correlation = 0.0;
+};
+
+struct FitResult {
+  std::vector<Unknown> unknowns;
+  std::vector<double> values;  // in their units
+  std::vector<bool> at_bound;  // held there by a bound
+  Uncertainty uncertainty;     // at `values`
+  double chi2 = 0.0;           // readings and priors
+  long degrees = 0;            // readings and priors less rank
+  std::vector<ChannelFit> channels;
+  /// How far the linear model still sees the minimum, in standard deviations.
+  double distance = 0.0;
+  /// No step of any length lowers chi2 any more: rounding, or a kink of it, where a contact event
+  /// passes a reading and the linear model holds on one side only.
+  bool at_kink = false;
+  bool converged = false;  // distance below kFitTolerance, at a kink below kKinkTolerance
+  int iterations = 0;
+  long simulations = 0;
+  long outside = 0;  // readings outside of what is simulated, left aside
+
+  double chi2_per_degree() const;
+  /// True where chi2 is what noise alone makes it: within `sigmas` of its expectation.
+  bool is_adequate(double sigmas = 4.0) const;
+};
+
+inline constexpr double kFitTolerance = 0.1, kKinkTolerance = 0.5;
+/// Half width of a 95 % interval in standard deviations of a Gaussian.
+inline constexpr double k95 = 1.959963984540054;
+
+/// Fits. Simulations that fail on the way are steps not taken. Deterministic for any number of
+/// threads. Throws InputError for unusable runs or unknowns, and where the start cannot be
+/// simulated.
+FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
+                         const FitOptions& options = {});
+
+/// The Cramer-Rao bound of such a fit at the unknowns' start; only times, channels and sigmas of
+/// the runs matter, not their readings (make_planned_run). Throws as fit_simulation.
+Uncertainty calc_fit_bounds(const std::vector<MeasuredRun>& runs,
+                            const std::vector<Unknown>& unknowns,
+                            const LinearizeOptions& options = {});
+
+}  // namespace strut

@@ -1,0 +1,86 @@
+// The simulated readings of all runs, and how they react to every unknown.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "diagnose/unknown.h"
+#include "sweep/run_prepared.h"
+
+namespace strut {
+
+/// RK4 1 ms, 4 ms away from the bump, contact events located; corners tabulated, which takes half
+/// the time of closing loops, moves no estimate by 1e-6 sigma, and lets cases of different
+/// hardpoints share lanes.
+inline IntegrateRequest make_fit_integration() {
+  IntegrateRequest request;
+  request.options.closure = Closure::kTable;
+  request.options.step.coarse_step = 4e-3;
+  return request;
+}
+
+struct LinearizeOptions {
+  IntegrateRequest integrate = make_fit_integration();
+  /// 1/s, samples of the simulation between which is interpolated: at 1000 the interpolation of a
+  /// bump at 20 m/s errs by a tenth of a standard deviation of MEMS sensors, at 2000 by 3 %.
+  double rate = 2000.0;
+  /// h of the central differences as a share of the scale. Short, since readings near a contact
+  /// event are kinked in the unknowns: at 1e-4 the speed moves an event across them. Rounding is
+  /// 1e-7.
+  double relative_step = 1e-5;
+  int threads = 1;  // no result depends on it
+};
+
+/// Residuals and their derivatives at one point.
+struct Linearization {
+  std::string failure;  // why there is no simulation here; empty: all runs got through
+  /// (y_sim(t + hit_time) + bias - y_measured) / sigma by run, time and channel; then
+  /// (value - mean) / sigma of every prior.
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;  // by unknowns counted in their scale
+};
+
+/// Which reading a residual is.
+struct ReadingPlace {
+  std::size_t run, time, channel;  // the latter of the run's channels
+};
+
+/// Simulates the runs at given values of the unknowns: the base and the +h and -h of every
+/// parameter together in lockstep lanes. Simulated time is measured time plus hit time; readings
+/// which for a hit time within its bounds would lie outside of the simulation are left aside.
+class ReadingSimulator {
+ public:
+  /// Keeps references to neither. Throws InputError for unusable runs or unknowns.
+  ReadingSimulator(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
+                   const LinearizeOptions& options);
+
+  /// `values` in the unknowns' own units. Deterministic.
+  Linearization linearize(const std::vector<double>& values);
+
+  const std::vector<MeasuredRun>& runs() const { return runs_; }
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  /// Of the first reading_count() residuals.
+  const std::vector<ReadingPlace>& readings() const { return readings_; }
+  std::size_t reading_count() const { return readings_.size(); }
+  std::size_t prior_count() const { return prior_count_; }
+  /// Readings left aside because they lie outside of what is simulated.
+  std::size_t outside_count() const { return outside_count_; }
+  /// Cases simulated so far.
+  long simulation_count() const { return simulation_count_; }
+
+ private:
+  void choose_readings(std::size_t run);
+  std::string simulate(const std::vector<double>& values, std::vector<LaneRun>& results);
+
+  std::vector<MeasuredRun> runs_;
+  std::vector<Unknown> unknowns_;
+  LinearizeOptions options_;
+  std::vector<ReadingPlace> readings_;
+  std::size_t prior_count_ = 0, outside_count_ = 0;
+  long simulation_count_ = 0;
+  std::vector<CasePreparer> preparers_;  // one a run, at the base point's mechanism
+};
+
+}  // namespace strut

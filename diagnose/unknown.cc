@@ -1,0 +1,154 @@
+#include "diagnose/unknown.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/config.h"
+#include "io/input_error.h"
+#include "model/vehicle/channels.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+using C = CarChannel;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAccelerationBias = 0.3;  // m/s^2
+constexpr double kRateBias = 0.02;         // rad/s
+constexpr double kAngleBias = 5e-3;        // rad
+constexpr double kHeightBias = 5e-3;       // m
+constexpr double kDeflectionBias = 2e-3;   // m
+
+const ChannelInfo& get_info(int channel) {
+  return list_car_channels()[static_cast<std::size_t>(channel)];
+}
+
+std::string describe_run(const Unknown& u) {
+  return u.run == kEveryRun ? "" : " of run " + std::to_string(u.run + 1);
+}
+
+}  // namespace
+
+Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name, int run) {
+  const ParameterInfo& info = find_parameter(name);
+  if (name == "duration") {
+    throw InputError("duration: cannot be fitted, it is only how long is simulated");
+  }
+  const Case& setup = runs.at(run == kEveryRun ? 0 : static_cast<std::size_t>(run)).setup;
+  Case probe = setup;
+  info.set(probe, info.get(setup));  // refuses what this maneuver does not have
+  Unknown u;
+  u.name = name;
+  u.unit = info.unit;
+  u.run = run;
+  u.start = info.get(setup);
+  u.low = info.allowed.low;
+  u.high = info.allowed.high;
+  u.scale = u.start != 0.0 ? std::abs(u.start) : 0.5 * (u.high - u.low);
+  return u;
+}
+
+Unknown make_hit_time(int run, const Prior& prior) {
+  Unknown u;
+  u.kind = UnknownKind::kHitTime;
+  u.name = "hit_time";
+  u.unit = "s";
+  u.run = run;
+  u.start = prior.mean;
+  u.scale = prior.sigma;
+  u.low = prior.mean - kHitTimeReach * prior.sigma;
+  u.high = prior.mean + kHitTimeReach * prior.sigma;
+  u.prior = prior;
+  return u;
+}
+
+Unknown make_bias(int run, int channel, const Prior& prior) {
+  const ChannelInfo& info = get_info(channel);
+  Unknown u;
+  u.kind = UnknownKind::kBias;
+  u.name = info.name + "_bias";
+  u.unit = info.unit;
+  u.run = run;
+  u.channel = channel;
+  u.start = prior.mean;
+  u.scale = prior.informs() ? prior.sigma : 1.0;
+  u.low = -kInfinity;
+  u.high = kInfinity;
+  u.prior = prior;
+  return u;
+}
+
+SensorNoise make_default_bias() {
+  SensorNoise bias(C::kCount, 0.0);
+  const auto set = [&](int channel, double sigma) {
+    bias[static_cast<std::size_t>(channel)] = sigma;
+  };
+  for (const int channel :
+       {C::kBodyAccelerationZ, C::kImuAccelerationX, C::kImuAccelerationY, C::kImuAccelerationZ}) {
+    set(channel, kAccelerationBias);
+  }
+  for (const int channel :
+       {C::kPitchRate, C::kRollRate, C::kImuRateX, C::kImuRateY, C::kImuRateZ}) {
+    set(channel, kRateBias);
+  }
+  set(C::kPitchAngle, kAngleBias);
+  set(C::kRollAngle, kAngleBias);
+  set(C::kBodyPositionZ, kHeightBias);
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const int first = C::kCornerBegin + corner * C::kCornerChannels;
+    set(first + C::kWheelAccelerationZ, kAccelerationBias);
+    set(first + C::kSuspensionDeflection, kDeflectionBias);
+  }
+  return bias;
+}
+
+std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
+                                    const NuisanceSigmas& sigmas,
+                                    const std::vector<Unknown>& chosen) {
+  const SensorNoise bias = sigmas.bias.empty() ? make_default_bias() : sigmas.bias;
+  const bool speed_chosen = std::any_of(chosen.begin(), chosen.end(), [](const Unknown& u) {
+    return u.kind == UnknownKind::kParameter && u.name == "speed";
+  });
+  std::vector<Unknown> list;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const int run = static_cast<int>(r);
+    if (sigmas.hit_time > 0.0) list.push_back(make_hit_time(run, {0.0, sigmas.hit_time}));
+    if (sigmas.speed > 0.0 && !speed_chosen) {
+      list.push_back(make_parameter(runs, "speed", run));
+      list.back().prior = {list.back().start, sigmas.speed};
+    }
+    for (const MeasuredChannel& c : runs[r].channels) {
+      const double sigma = bias[static_cast<std::size_t>(c.channel)];
+      if (sigma > 0.0) list.push_back(make_bias(run, c.channel, {0.0, sigma}));
+    }
+  }
+  return list;
+}
+
+void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count) {
+  if (unknowns.empty()) throw InputError("fit: nothing is free");
+  for (const Unknown& u : unknowns) {
+    const auto same = [&](const Unknown& other) {
+      return other.name == u.name &&
+             (other.run == u.run || other.run == kEveryRun || u.run == kEveryRun);
+    };
+    const std::string name = u.name + describe_run(u);
+    if (std::count_if(unknowns.begin(), unknowns.end(), same) > 1) {
+      throw InputError(name + ": free twice; allowed: once");
+    }
+    if (u.run != kEveryRun && (u.run < 0 || static_cast<std::size_t>(u.run) >= run_count)) {
+      throw InputError(name + ": there are " + std::to_string(run_count) + " runs");
+    }
+    if (!(u.start >= u.low && u.start <= u.high)) {
+      throw InputError(name + " = " + format_number(u.start) + ": must start within [" +
+                       format_number(u.low) + ", " + format_number(u.high) + "]");
+    }
+    if (!(u.prior.sigma > 0.0) || !(u.scale > 0.0)) {
+      throw InputError(name + ": sigma " + format_number(u.prior.sigma) +
+                       " of what is known must be > 0");
+    }
+  }
+}
+
+}  // namespace strut

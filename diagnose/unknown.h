@@ -1,0 +1,73 @@
+// What a fit is to find: parameters of car and maneuver, and the nuisances of every measurement.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "diagnose/measured_run.h"
+
+namespace strut {
+
+enum class UnknownKind {
+  kParameter,  // of sweep/parameters.h
+  kHitTime,    // s: simulated time minus the time of the measuring clock
+  kBias,       // what is to be added to a simulated channel, in its unit
+};
+
+/// What is known beforehand: a Gaussian; sigma infinite: nothing.
+struct Prior {
+  double mean = 0.0;
+  double sigma = std::numeric_limits<double>::infinity();
+
+  bool informs() const { return sigma < std::numeric_limits<double>::infinity(); }
+};
+
+inline constexpr int kEveryRun = -1;
+
+struct Unknown {
+  UnknownKind kind = UnknownKind::kParameter;
+  std::string name;     // "front_stiffness", "hit_time", "imu_rate_y_bias"
+  std::string unit;     // "1" if none
+  int run = kEveryRun;  // of which run, counted from 0; or one value for all
+  int channel = 0;      // kBias: the CarChannel
+  double start = 0.0;   // where the search begins
+  double scale = 1.0;   // 100 % of it: its size, or the sigma of its prior where it starts from 0
+  double low = 0.0, high = 0.0;  // bounds
+  Prior prior;
+};
+
+/// A parameter, bounded by what is plausible, starting at the value of the run's setup (kEveryRun:
+/// of the first). Throws InputError with the nearest known name, or where it cannot be fitted.
+Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name,
+                       int run = kEveryRun);
+
+/// Bounds mean +- kHitTimeReach sigma. sigma > 0.
+Unknown make_hit_time(int run, const Prior& prior);
+inline constexpr double kHitTimeReach = 5.0;
+
+/// Without bounds. sigma > 0, may be infinite.
+Unknown make_bias(int run, int channel, const Prior& prior);
+
+/// 1 sigma of what is not known about each run; 0: known.
+struct NuisanceSigmas {
+  double hit_time = 0.005;  // s, a trigger at one frame of a 100 Hz bus
+  double speed = 0.2;       // m/s, a wheel speed sensor and the tire's effective radius
+  SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
+};
+
+/// Bias of sensors, 1 sigma: zero-g offsets 0.3 m/s^2, gyroscopes 0.02 rad/s, angles 5 mrad,
+/// heights 5 mm, suspension deflection 2 mm, velocities and others none (docs/fit.md).
+SensorNoise make_default_bias();
+
+/// Hit time, speed and biases of every run, as far as their sigma is not 0; the speed only where no
+/// unknown of `chosen` is the speed.
+std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
+                                    const NuisanceSigmas& sigmas,
+                                    const std::vector<Unknown>& chosen = {});
+
+/// Throws InputError where one is named twice, belongs to no run, starts out of its bounds, or has
+/// a prior whose sigma is not positive.
+void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count);
+
+}  // namespace strut

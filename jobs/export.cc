@@ -1,0 +1,87 @@
+#include "jobs/export.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "io/atomic_file.h"
+#include "jobs/arguments.h"
+#include "jobs/build_info.h"
+#include "jobs/command.h"
+#include "jobs/output_file.h"
+#include "train/export_header.h"
+#include "train/export_onnx.h"
+#include "train/model_file.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut export MODEL -o model.onnx|model.h|model.c [OPTIONS]",
+      "Writes the network in MODEL for other programs, in the units of its columns: as an ONNX\n"
+      "model, or as C source that needs nothing but tanh, for C99 and C++.",
+      "  strut export model.h5 -o model.onnx\n"
+      "  strut export model.h5 -o strut_identify.h --name sedan");
+  arguments.add_option("output,o", "FILE", "file to write; its name ends in .onnx, .h or .c");
+  arguments.add_option("name", "NAME",
+                       "C: of the function strut_identify_NAME; default: the file's name");
+  arguments.add_switch("float", "ONNX: single precision, for runtimes that know no other");
+  arguments.add_switch("force", "replace FILE where it exists");
+  return arguments;
+}
+
+enum class ExportFormat { kOnnx, kHeader, kSource };
+
+ExportFormat find_format(const fs::path& output) {
+  const std::string extension = output.extension().string();
+  if (extension == ".onnx") return ExportFormat::kOnnx;
+  if (extension == ".h") return ExportFormat::kHeader;
+  if (extension == ".c") return ExportFormat::kSource;
+  throw InputError("--output = " + output.string() + ": the name must end in .onnx, .h or .c");
+}
+
+std::string find_name(const Arguments& arguments, const fs::path& output) {
+  if (!arguments.has("name")) return make_c_name(output.stem().string());
+  std::string name = arguments.text("name");
+  if (name.empty() || name != make_c_name(name)) {
+    throw InputError("--name = " + name + ": must be letters of ASCII, digits and _");
+  }
+  return name;
+}
+
+std::string make_text(const Arguments& arguments, const Model& model, const fs::path& output) {
+  const ExportFormat format = find_format(output);
+  const bool is_onnx = format == ExportFormat::kOnnx;
+  if (is_onnx && arguments.has("name")) throw arguments.usage_error("--name: only for .h and .c");
+  if (!is_onnx && arguments.is_on("float")) throw arguments.usage_error("--float: only for .onnx");
+  if (is_onnx) {
+    const OnnxNumber number = arguments.is_on("float") ? OnnxNumber::kFloat : OnnxNumber::kDouble;
+    const BuildInfo& build = get_build_info();
+    return make_onnx(model, number, {{"strut_version", build.version}, {"commit", build.commit}});
+  }
+  const auto kind = format == ExportFormat::kHeader ? SourceKind::kHeader : SourceKind::kSource;
+  return make_c_source(model, find_name(arguments, output), kind);
+}
+
+}  // namespace
+
+int run_export(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  const auto& names = arguments.positional();
+  if (names.size() != 1) throw arguments.usage_error("expected one MODEL");
+  const fs::path output = find_output_file(arguments, names);
+  const Model model = read_model(names.front());
+  if (model.window) {
+    throw InputError(names.front() +
+                     ": a network over windows of time histories: its inputs are no channels but "
+                     "what is left of a window, so that it cannot be exported alone");
+  }
+  write_text_file(output, make_text(arguments, model, output));
+  std::cout << output.string() << "\n";
+  return kExitDone;
+}
+
+}  // namespace strut

@@ -1,0 +1,49 @@
+// One self-contained HTML page from sections of text, tables and figures: no file, font or script
+// from outside.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace strut {
+
+/// `text` with the characters that HTML gives a meaning replaced.
+std::string escape_html(const std::string& text);
+
+/// Texts by rows. On a page lines of a cell below its first stand smaller.
+struct ReportTable {
+  std::string caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows = {};
+  std::vector<std::string> notes = {};  // below it
+  std::size_t text_columns = 1;         // the first so many are words, the others numbers
+};
+
+struct ReportFigure {
+  std::string svg;  // the whole file; empty: could not be drawn
+  std::string caption;
+};
+
+/// A part of a report. Whoever has something to report fills one of these.
+struct ReportSection {
+  std::string heading;
+  std::vector<std::string> paragraphs = {};
+  std::vector<ReportTable> tables = {};
+  std::vector<ReportFigure> figures = {};
+};
+
+struct ReportPage {
+  std::string title;
+  std::vector<std::string> lead;  // paragraphs below it
+  std::vector<ReportSection> sections;
+  std::string footer;
+};
+
+/// The page, readable in light and dark and on paper. Names inside the figures are made different,
+/// so that several may stand on one page.
+std::string make_html(const ReportPage& page);
+
+/// The table for a terminal, columns aligned.
+std::string make_text(const ReportTable& table);
+
+}  // namespace strut

@@ -1,0 +1,56 @@
+#include "jobs/identify.h"
+
+#include <filesystem>
+
+#include "jobs/arguments.h"
+#include "jobs/command.h"
+#include "jobs/identify_fit.h"
+#include "jobs/identify_result.h"
+#include "jobs/identify_snapshot.h"
+#include "jobs/identify_window.h"
+#include "train/model_file.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut identify MODEL MEASURED... [OPTIONS]\n"
+      "       strut identify VEHICLE.toml MEASURED... --maneuver MANEUVER.toml [OPTIONS]",
+      "Tells the parameters of a car from what was measured, each with its interval of 95 %.\n"
+      "MODEL is a network of `strut train`, MEASURED tables (CSV or HDF5) with a column for each\n"
+      "of its inputs, one snapshot a row. Outside of the range that the network was trained on\n"
+      "there is no value but `-`, and the exit code is 1.\n"
+      "With a VEHICLE the simulation itself is fitted to histories with a column `time` (from the\n"
+      "start of the maneuver); --set then changes a parameter that is known.",
+      "  strut identify model.h5 measured.csv\n"
+      "  strut identify model.h5 drive.csv --event-time 0.632 --noise pitch_angle=2e-4 --json\n"
+      "  strut identify model.h5 --set body_position_z=0.55 --set body_velocity_z=0.02 \\\n"
+      "      --set body_acceleration_z=-0.3 --set pitch_angle=0.008\n"
+      "  strut identify vehicle.toml drive.csv --maneuver bump.toml --window 0.3:2");
+  add_snapshot_options(arguments);
+  add_fit_options(arguments);
+  add_result_options(arguments);
+  return arguments;
+}
+
+}  // namespace
+
+int run_identify(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  const auto& names = arguments.positional();
+  if (names.empty()) throw arguments.usage_error("MODEL: missing");
+  const std::vector<fs::path> files(names.begin() + 1, names.end());
+  if (fs::path(names.front()).extension() == ".toml") {
+    return identify_by_fit(arguments, names.front(), files);
+  }
+  refuse_fit_options(arguments);
+  const Model model = read_model(names.front());
+  return model.window ? identify_by_window(arguments, model, files)
+                      : identify_by_snapshot(arguments, model, files);
+}
+
+}  // namespace strut

@@ -1,0 +1,24 @@
+// Identification by fitting the simulation to measured histories.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "jobs/arguments.h"
+
+namespace strut {
+
+/// --maneuver, --free, --channels, --window, --prior, --no-nuisances, --threads. It also reads
+/// --noise and --set, which it shares with the other ways to identify.
+void add_fit_options(Arguments& arguments);
+
+/// Throws InputError where one of them, which would have no effect elsewhere, is given.
+void refuse_fit_options(const Arguments& arguments);
+
+/// Fits the car in `vehicle` to the histories in `files`, prints and writes. Returns an exit code:
+/// kExitNo where the fit has not converged, or leaves a parameter open or at a bound. Throws
+/// InputError.
+int identify_by_fit(const Arguments& arguments, const std::filesystem::path& vehicle,
+                    const std::vector<std::filesystem::path>& files);
+
+}  // namespace strut

@@ -1,0 +1,73 @@
+#include "jobs/report.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "io/nearest_name.h"
+#include "jobs/arguments.h"
+#include "jobs/command.h"
+#include "jobs/interrupt.h"
+#include "jobs/report_sweep.h"
+#include "jobs/study_report.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a report made, and what it could not.
+struct Written {
+  fs::path file;
+  std::vector<std::string> notes;
+};
+
+Written report_study(const fs::path& root) {
+  const StudyFolder folder{root.lexically_normal()};
+  return {folder.report(), write_study_output(folder, open_study_folder(folder)).notes};
+}
+
+Written report_sweep(const fs::path& root) {
+  const SweepFolder folder{root.lexically_normal()};
+  return {folder.root / "report.html", write_sweep_report(folder)};
+}
+
+/// A kind of folder, told by a file that only it has.
+struct ReportKind {
+  const char* name;
+  const char* file;
+  Written (*write)(const fs::path& root);
+};
+
+constexpr ReportKind kKinds[] = {{"study", "study.toml", &report_study},
+                                 {"sweep", "plan.h5", &report_sweep}};
+
+const ReportKind& find_kind(const fs::path& root) {
+  std::vector<std::string> kinds;
+  for (const ReportKind& kind : kKinds) {
+    if (fs::exists(root / kind.file)) return kind;
+    kinds.push_back(std::string("a ") + kind.name + " (" + kind.file + ")");
+  }
+  throw InputError(root.string() + ": nothing to report on; must be the folder of " +
+                   join_names(kinds));
+}
+
+}  // namespace
+
+int run_report(const std::vector<std::string>& words) {
+  Arguments arguments("strut report DIR",
+                      "Writes DIR/report.html, one file that needs no other, about the study or "
+                      "the sweep in DIR, from what\nis there: nothing is simulated or trained.",
+                      "  strut report study\n  strut report sweep");
+  if (!arguments.parse(words)) return kExitDone;
+  const auto& names = arguments.positional();
+  if (names.size() != 1) {
+    throw arguments.usage_error(std::to_string(names.size()) + " folders; expected DIR");
+  }
+  const fs::path root = names.front();
+  const Written written = find_kind(root).write(root);
+  for (const std::string& note : written.notes) std::cerr << "strut: " << note << "\n";
+  std::cout << written.file.string() << "\n";
+  return kExitDone;
+}
+
+}  // namespace strut

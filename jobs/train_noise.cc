@@ -1,0 +1,138 @@
+#include "jobs/train_noise.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "diagnose/unknown.h"
+#include "io/nearest_name.h"
+#include "io/shard_layout.h"
+#include "sweep/find_channel.h"
+#include "sweep/parameters.h"
+#include "sweep/sensor_noise.h"
+
+namespace strut {
+namespace {
+
+/// Copies of each case: enough that fitting their noise by heart costs more weights than there are.
+constexpr int kCopies = 8, kMostCopies = 10'000;
+/// s, 1 sigma of when the bump is hit.
+constexpr double kHitTime = 0.005;
+
+double read_time(const std::string& option, const std::string& text) {
+  double value = 0.0;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (result.ec == std::errc() && result.ptr == text.data() + text.size()) return value;
+  throw InputError("--window = " + option + ": must be FROM:TO in s, as 0.3:2.5");
+}
+
+WindowChoice read_window(const Arguments& arguments) {
+  const std::string text = arguments.text("window");
+  const std::size_t colon = text.find(':');
+  WindowChoice window;
+  window.from = read_time(text, text.substr(0, colon));
+  window.to = read_time(text, colon == std::string::npos ? "" : text.substr(colon + 1));
+  window.reach = arguments.number_or("align", window.reach, between(0.0, 10.0, "s"));
+  window.components = static_cast<int>(
+      arguments.integer_or("components", window.components, 1, NetworkShape::kLargestSize));
+  return window;
+}
+
+std::size_t find_input(const std::string& option, const std::vector<std::string>& inputs,
+                       const std::string& name) {
+  const auto at = std::find(inputs.begin(), inputs.end(), name);
+  if (at != inputs.end()) return static_cast<std::size_t>(at - inputs.begin());
+  throw InputError("--" + option + ": '" + name + "' is no input" + suggest_name(name, inputs) +
+                   "; they are: " + join_names(inputs));
+}
+
+/// Values of CHANNEL=SIGMA in place of those of `values`.
+void apply_settings(const Arguments& arguments, const std::string& option,
+                    const std::vector<std::string>& inputs, std::vector<double>& values) {
+  for (const std::string& setting : arguments.list(option)) {
+    if (setting == "default") continue;
+    const auto [name, sigma] = parse_setting(setting);
+    values[find_input(option, inputs, name)] = sigma;
+  }
+}
+
+std::vector<double> take_channels(const SensorNoise& all, const std::vector<std::string>& inputs) {
+  std::vector<double> taken;
+  taken.reserve(inputs.size());
+  for (const std::string& name : inputs) {
+    taken.push_back(all[static_cast<std::size_t>(find_car_channel(name))]);
+  }
+  return taken;
+}
+
+void require_noise(const std::vector<std::string>& inputs, const std::vector<double>& sigma) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (sigma[i] != 0.0) continue;
+    throw InputError("--noise: no sensor of " + inputs[i] + " is known; give --noise " + inputs[i] +
+                     "=SIGMA");
+  }
+}
+
+NoiseModel read_noise_model(const Arguments& arguments, const std::vector<std::string>& inputs,
+                            bool of_window, std::uint64_t seed) {
+  NoiseModel noise;
+  noise.sigma = take_channels(make_default_noise(), inputs);
+  apply_settings(arguments, "noise", inputs, noise.sigma);
+  require_noise(inputs, noise.sigma);
+  noise.bias = of_window ? take_channels(make_default_bias(), inputs)
+                         : std::vector<double>(inputs.size(), 0.0);
+  apply_settings(arguments, "bias", inputs, noise.bias);
+  if (of_window) {
+    noise.hit_time = arguments.number_or("hit-time-sigma", kHitTime, between(0.0, 1.0, "s"));
+  }
+  noise.copies = static_cast<int>(arguments.integer_or("copies", kCopies, 1, kMostCopies));
+  noise.seed = seed;
+  return noise;
+}
+
+void require_alone(const Arguments& arguments, const char* option, const char* needs) {
+  if (arguments.has(option)) {
+    throw arguments.usage_error("--" + std::string(option) + " needs " + needs);
+  }
+}
+
+}  // namespace
+
+void add_noise_options(Arguments& arguments) {
+  arguments.add_option("window", "FROM:TO",
+                       "train on the histories between these times [s], with noise, in place of\n"
+                       "the snapshot; --inputs are channels of the histories then, by default all");
+  arguments.add_list("noise", "CHANNEL=SIGMA",
+                     "train with noise: 1 sigma per sample, repeatable; others, and with\n"
+                     "--noise default all: those of `strut design`");
+  arguments.add_list(
+      "bias", "CHANNEL=SIGMA",
+      "1 sigma of a sensor's constant bias, repeatable; in a window by default that\n"
+      "of docs/fit.md, in a snapshot none");
+  arguments.add_option("hit-time-sigma", "S",
+                       "1 sigma of the time at which the bump is hit; default 0.005");
+  arguments.add_option("align", "S",
+                       "records are shifted by up to S to agree with a reference; default 0.05");
+  arguments.add_option("components", "N", "most numbers that a window is reduced to; default 24");
+  arguments.add_option("copies", "N", "noisy copies of each case; default 8");
+}
+
+void read_noise_options(const Arguments& arguments, const ShardSchema& schema,
+                        TrainingRequest& request) {
+  const bool of_window = arguments.has("window");
+  if (of_window) {
+    request.window = read_window(arguments);
+    if (!arguments.has("inputs")) request.rows.inputs = list_names(schema.history);
+  } else {
+    for (const char* option : {"hit-time-sigma", "align", "components"}) {
+      require_alone(arguments, option, "--window FROM:TO");
+    }
+    if (!arguments.has("noise")) {
+      for (const char* option : {"bias", "copies"}) require_alone(arguments, option, "--noise");
+      return;
+    }
+  }
+  // What the data does not have is told by those who read it.
+  request.noise = read_noise_model(arguments, request.rows.inputs, of_window, request.seed);
+}
+
+}  // namespace strut

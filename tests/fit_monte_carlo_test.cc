@@ -1,0 +1,61 @@
+// What a fit says about its own errors, against the errors it makes.
+
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/fit_case.h"
+
+namespace strut {
+namespace {
+
+/// A worn car with everything unknown drawn from what is known of it, measured with noise.
+struct Trial {
+  Case truth;
+  test::Distortion distortion;
+};
+
+Trial draw(std::uint64_t seed) {
+  Trial trial{test::make_paper_case(), {}};
+  const double losses[] = {4500.0, 180.0, 4500.0, 180.0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::string& name = test::suspension_names()[i];
+    const double value = get_parameter(trial.truth, name) - losses[i] * calc_uniform(seed, 10, i);
+    set_parameter(trial.truth, name, value);
+  }
+  set_parameter(trial.truth, "speed", 20.0 + 0.2 * test::calc_normal(seed, 11, 0));
+  trial.truth.maneuver.duration = 1.3;
+  trial.distortion = {0.005 * test::calc_normal(seed, 11, 1), 0.3 * test::calc_normal(seed, 11, 2),
+                      0.02 * test::calc_normal(seed, 11, 3), 1.0, seed};
+  return trial;
+}
+
+TEST_CASE("The errors of fits are those that their covariance tells", "[statistical][slow]") {
+  constexpr int kTrials = 24;
+  double distance = 0.0, chi2 = 0.0;  // e' C^-1 e of the four parameters
+  int covered = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    const Trial trial = draw(100 + static_cast<std::uint64_t>(i));
+    const std::vector<MeasuredRun> runs{
+        test::measure(test::make_known_case(), trial.truth, trial.distortion)};
+    const FitResult fit = fit_simulation(runs, test::make_all_unknowns(runs));
+    INFO("trial " << i);
+    REQUIRE(fit.converged);
+    Eigen::Vector4d error;
+    for (int p = 0; p < 4; ++p) {
+      const auto at = static_cast<std::size_t>(p);
+      error(p) = fit.values[at] - get_parameter(trial.truth, fit.unknowns[at].name);
+      covered += std::abs(error(p)) < k95 * fit.uncertainty.sigma[at] ? 1 : 0;
+    }
+    const Eigen::Matrix4d covariance = fit.uncertainty.covariance.topLeftCorner(4, 4);
+    distance += error.dot(covariance.inverse() * error);
+    chi2 += fit.chi2_per_degree();
+  }
+  // Sums of 96 squares of standard normal numbers: 96 +- 4 sqrt(192); coverage 91 - 4 sqrt(4.6).
+  CHECK(distance == Approx(4.0 * kTrials).margin(4.0 * std::sqrt(8.0 * kTrials)));
+  CHECK(covered >= 82);
+  CHECK(chi2 / kTrials == Approx(1.0).margin(4.0 * std::sqrt(2.0 / 500.0 / kTrials)));
+}
+
+}  // namespace
+}  // namespace strut

@@ -1,0 +1,425 @@
+// strut study and strut report as a user meets them.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "jobs/study_results.h"
+#include "tests/parse_json.h"
+#include "tests/run_program.h"
+#include "train/model_file.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::JsonTree;
+using test::Outcome;
+using test::run_program;
+using test::run_shell;
+using test::TemporaryFolder;
+namespace fs = std::filesystem;
+
+constexpr char kSweep[] = R"(
+[grid]
+front_stiffness = { from = 40000, to = 35500, step = -500 }
+rear_stiffness  = { from = 35000, to = 30500, step = -500 }
+[sample]
+strata = 5
+[integrate]
+closure = "table"
+step = 4e-3
+[record]
+snapshot = { when = "rear_wheels_on_bump", channels = ["body_position_z", "body_velocity_z", "body_acceleration_z", "pitch_angle"] }
+[shards]
+cases = 32
+)";
+
+constexpr char kStudy[] = R"(
+title     = "Small <study>"
+sweep     = "sweep.toml"
+published = "published.toml"
+preload = ["free_length", "trimmed"]
+samples = [90, 70]
+seeds   = 2
+[networks]
+small = [4]
+wide  = [6, 3]
+[inputs]
+four = ["body_position_z", "body_velocity_z", "body_acceleration_z", "pitch_angle"]
+two  = ["body_position_z", "pitch_angle"]
+[best_instant]
+trimmed = -0.5
+[training]
+epochs = 12
+)";
+
+constexpr char kPublished[] = R"(
+source = "Somebody"
+remarks = ["A remark."]
+[cells.small_90_four]
+table = "Table 1"
+front_stiffness = { MAE = 100.0, MAPE = 0.3, RMSE = 150.0, R2 = 0.99 }
+[cells.small_90_two]
+table = "Table 2"
+rear_stiffness = { MAE = 0.001 }
+)";
+
+/// Files of a study in a folder of their own.
+class StudyFiles {
+ public:
+  StudyFiles() {
+    const std::string examples = STRUT_SOURCE_DIR "/examples";
+    files_.write("sweep.toml", "vehicle = \"" + examples +
+                                   "/vehicles/paper_sedan.toml\"\nmaneuver = \"" + examples +
+                                   "/maneuvers/bump_20mps.toml\"\n" + kSweep);
+    files_.write("published.toml", kPublished);
+    files_.write("study.toml", kStudy);
+  }
+
+  fs::path operator/(const std::string& name) const { return files_ / name; }
+
+  /// The study with texts replaced, as study2.toml.
+  std::string change(const std::string& from, const std::string& to) const {
+    std::string text = kStudy;
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    return files_.write("study2.toml", text).string();
+  }
+
+  Outcome run_file(const std::string& study, const std::string& folder,
+                   const std::string& options = "") const {
+    return run_program("study " + study + " -o " + (files_ / folder).string() + " " + options);
+  }
+  Outcome run(const std::string& options = "", const std::string& folder = "made") const {
+    return run_file((files_ / "study.toml").string(), folder, options);
+  }
+
+ private:
+  TemporaryFolder files_;
+};
+
+/// A study that has run, made once; tests that change it take a copy.
+const StudyFiles& get_study() {
+  static const StudyFiles files;
+  static const bool made = [] {
+    const Outcome outcome = files.run("--threads 2");
+    INFO(outcome.messages);
+    REQUIRE(outcome.code == 0);
+    return true;
+  }();
+  REQUIRE(made);
+  return files;
+}
+
+std::map<std::string, std::string> read_folder(const fs::path& root) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    if (entry.is_regular_file()) {
+      files[entry.path().lexically_relative(root).string()] = test::read_text(entry.path());
+    }
+  }
+  return files;
+}
+
+JsonTree read_results(const fs::path& root) {
+  return test::parse_json(test::read_text(root / "results.json"));
+}
+
+TEST_CASE("A study's numbers are those that evaluate gives of its models", "[io][slow]") {
+  const fs::path root = get_study() / "made";
+  const JsonTree results = read_results(root);
+  // Two preloads: two networks x two counts, the other inputs; the best instant with both inputs.
+  CHECK(results.get_child("cells").size() == 2 * 5 + 2);
+  for (const auto& [no_key, cell] : results.get_child("cells")) {
+    const std::string sweep = (root / "sweeps" / cell.get<std::string>("sweep")).string();
+    std::map<std::string, std::vector<double>> maes;
+    for (const auto& [none, training] : cell.get_child("trainings")) {
+      const std::string model = (root / training.get<std::string>("model")).string();
+      const JsonTree evaluated =
+          test::parse_json(run_program("evaluate " + model + " " + sweep + " --json").out);
+      CHECK(evaluated.get_child("parameters") == training.get_child("parameters"));
+      CHECK(evaluated.get<int>("samples") == training.get<int>("samples"));
+      for (const auto& [name, metrics] : training.get_child("parameters")) {
+        maes[name].push_back(metrics.get<double>("MAE"));
+      }
+    }
+    for (const auto& [name, values] : maes) {
+      REQUIRE(values.size() == 2);
+      const JsonTree& mae = cell.get_child("parameters." + name + ".MAE");
+      CHECK(mae.get<double>("median") == Approx(0.5 * (values[0] + values[1])).epsilon(1e-14));
+      CHECK(mae.get<double>("low") == std::min(values[0], values[1]));
+      CHECK(mae.get<double>("high") == std::max(values[0], values[1]));
+    }
+  }
+}
+
+TEST_CASE("A study's ratios are of its medians over the published numbers", "[io][slow]") {
+  const JsonTree results = read_results(get_study() / "made");
+  int compared = 0;
+  for (const auto& [no_key, cell] : results.get_child("cells")) {
+    if (cell.get<std::string>("key") != "small_90_four" || cell.get<bool>("best_instant")) continue;
+    const JsonTree& mape = cell.get_child("parameters.front_stiffness.MAPE");
+    CHECK(mape.get<double>("published") == 0.3);
+    CHECK(mape.get<double>("ratio") == Approx(mape.get<double>("median") / 0.3).epsilon(1e-14));
+    CHECK(cell.get_child("parameters.rear_stiffness.MAPE").count("published") == 0);
+    ++compared;
+  }
+  CHECK(compared == 2);
+  for (const auto& [no_key, summary] : results.get_child("summary")) {
+    CHECK(summary.get<int>("errors") == 4);
+    CHECK(summary.get<int>("errors_held") <= 3);  // nobody reaches a tenth of 0.001 N/m
+    CHECK(summary.get<std::string>("largest_ratio_at") == "small_90_two rear_stiffness MAE");
+    CHECK(summary.get<int>("R2") == 10);
+  }
+}
+
+TEST_CASE("tables.csv has a line for every number of results.json", "[io][slow]") {
+  const fs::path root = get_study() / "made";
+  std::istringstream stream(test::read_text(root / "tables.csv"));
+  std::map<std::string, std::string> medians;
+  std::string line;
+  std::getline(stream, line);
+  CHECK(line ==
+        "preload,offset_m,network,samples,inputs,parameter,metric,unit,seeds,median,low,high,"
+        "published,ratio");
+  while (std::getline(stream, line)) {
+    std::vector<std::string> cells;
+    std::istringstream parts(line);
+    for (std::string part; std::getline(parts, part, ',');) cells.push_back(part);
+    REQUIRE(cells.size() >= 12);
+    medians[cells[0] + cells[1] + cells[2] + "_" + cells[3] + "_" + cells[4] + cells[5] +
+            cells[6]] = cells[9];
+  }
+  std::size_t numbers = 0;
+  const JsonTree results = read_results(root);
+  for (const auto& [no_key, cell] : results.get_child("cells")) {
+    for (const auto& [parameter, metrics] : cell.get_child("parameters")) {
+      for (const auto& [metric, spread] : metrics) {
+        const std::string key = cell.get<std::string>("preload") + cell.get<std::string>("offset") +
+                                cell.get<std::string>("key") + parameter + metric;
+        CHECK(medians.at(key) == spread.get<std::string>("median"));
+        ++numbers;
+      }
+    }
+  }
+  CHECK(numbers == medians.size());
+  CHECK(numbers == 12 * 2 * 5);
+}
+
+TEST_CASE("Each preload and instant has a plan of its own", "[io][slow]") {
+  const JsonTree sweeps = read_results(get_study() / "made").get_child("sweeps");
+  std::map<std::string, int> hashes;
+  for (const auto& [name, sweep] : sweeps) ++hashes[sweep.get<std::string>("plan_hash")];
+  CHECK(sweeps.size() == 5);
+  CHECK(hashes.size() == 5);
+  CHECK(sweeps.get<double>("trimmed_90_best.offset") == -0.5);
+  CHECK(sweeps.get<double>("trimmed_90.offset") == 0.0);
+  CHECK(sweeps.get<int>("free_length_70.cases") == 70);
+  const auto read = [&](const std::string& name) {
+    return test::read_text(get_study() / ("made/sweeps/" + name + "/request/paper_sedan_" +
+                                          name.substr(0, name.find("_90")) + ".toml"));
+  };
+  CHECK_THAT(read("trimmed_90"), Contains("preload = \"trimmed\""));
+  CHECK_THAT(read("free_length_90"), Contains("preload = \"free_length\""));
+}
+
+TEST_CASE("A study that is done does nothing twice and repeats its bytes", "[io][slow]") {
+  const fs::path root = get_study() / "made";
+  const auto before = read_folder(root);
+  const Outcome again = get_study().run("--threads 1");
+  CHECK(again.code == 0);
+  CHECK_THAT(again.messages, Contains("0 networks trained") && Contains("24 were there already"));
+  CHECK(read_folder(root) == before);
+  CHECK(run_program("report " + root.string()).code == 0);
+  CHECK(read_folder(root) == before);
+}
+
+/// results.json without what a clock says.
+std::string drop_seconds(const fs::path& root) {
+  return std::regex_replace(test::read_text(root / "results.json"),
+                            std::regex("\"seconds\": [-+.e0-9]+"), "");
+}
+
+TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow]") {
+  const StudyFiles& files = get_study();
+  // SIGINT as soon as three models are there.
+  const std::string folder = (files / "stopped").string();
+  const Outcome stopped = run_shell(
+      "bash -c '" STRUT_PROGRAM " study " + (files / "study.toml").string() + " -o " + folder +
+      " --threads 1 & while [ $(ls " + folder +
+      "/models 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.002; done; kill -INT $!; wait $!'");
+  CHECK(stopped.code == 130);
+  CHECK_THAT(stopped.messages, Contains("the same command goes on"));
+  CHECK_FALSE(fs::exists(files / "stopped/results.json"));
+  const Outcome resumed = files.run("--threads 1", "stopped");
+  CHECK(resumed.code == 0);
+  CHECK_THAT(resumed.messages, !Contains(", 0 were there already"));
+  CHECK(drop_seconds(files / "stopped") == drop_seconds(files / "made"));
+}
+
+TEST_CASE("A model of other options or a damaged one is trained anew", "[io][slow]") {
+  const StudyFiles& files = get_study();
+  const fs::path root = files / "copy", models = root / "models";
+  fs::remove_all(root);
+  fs::copy(files / "made", root, fs::copy_options::recursive);
+  const fs::path other = models / "trimmed_small_70_four_seed1.h5",
+                 damaged = models / "trimmed_small_70_four_seed2.h5";
+  const std::string before = test::read_text(other);
+  fs::copy_file(models / "trimmed_small_70_four_seed2.h5", other,
+                fs::copy_options::overwrite_existing);
+  std::ofstream(damaged) << "no model";
+  const Outcome outcome = files.run("", "copy");
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.messages, Contains("2 networks trained, 22 were there already") ||
+                                   Contains("2 networks trained in"));
+  CHECK_THAT(outcome.messages, Contains("seed1.h5: trained anew") && Contains("seed = 2, not 1"));
+  CHECK_THAT(outcome.messages, Contains("seed2.h5: trained anew"));
+  CHECK(drop_seconds(root) == drop_seconds(files / "made"));
+}
+
+TEST_CASE("A folder of another study or of none is refused", "[io][slow]") {
+  const StudyFiles& files = get_study();
+  const auto before = read_folder(files / "made");
+  const Outcome other = files.run_file(files.change("epochs = 12", "epochs = 13"), "made");
+  CHECK(other.code == 2);
+  CHECK_THAT(other.messages,
+             Contains("of another study") && Contains("training.epochs: was 12, is 13"));
+  CHECK(read_folder(files / "made") == before);
+  fs::create_directory(files / "full");
+  std::ofstream(files / "full" / "letter.txt") << "dear";
+  const Outcome full = files.run("", "full");
+  CHECK(full.code == 2);
+  CHECK_THAT(full.messages, Contains("letter.txt"));
+  const Outcome none = run_program("report " + (files / "full").string());
+  CHECK(none.code == 2);
+  CHECK_THAT(none.messages, Contains("nothing to report on") && Contains("study.toml"));
+}
+
+TEST_CASE("Wrong words and numbers of a study file are told", "[io]") {
+  const StudyFiles files;
+  struct Fault {
+    const char *from, *to, *said;
+  };
+  const Fault faults[] = {
+      {"seeds   = 2", "seads = 2", "did you mean 'seeds'"},
+      {"seeds   = 2", "seeds = 0", "seeds = 0"},
+      {"\"trimmed\"]", "\"trimed\"]", "did you mean 'trimmed'"},
+      {"[90, 70]", "[90, 101]", "101 is more than the sweep's grid has; must lie in [1, 100]"},
+      {"[90, 70]", "[90, 90]", "twice"},
+      {"[90, 70]", "[90.5]", "whole numbers"},
+      {"[4]", "[0]", "networks.small"},
+      {"\"pitch_angle\"]\n[best", "\"pitch_angel\"]\n[best", "did you mean 'pitch_angle'"},
+      {"[training]", "[main]\nnetwork = \"smal\"\n[training]", "did you mean 'small'"},
+      {"[training]", "[main]\nsamples = 80\n[training]", "main.samples"},
+      {"epochs = 12", "epoch = 12", "did you mean 'epochs'"},
+      {"trimmed = -0.5", "trimmed = \"best\"", "design"},
+      {"small = [4]", "little = [4]", "cells.small_90_four: no cell of the study"},
+  };
+  for (const Fault& fault : faults) {
+    const Outcome outcome = files.run_file(files.change(fault.from, fault.to), "never");
+    INFO(fault.to);
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.messages, Contains(fault.said));
+    CHECK_FALSE(fs::exists(files / "never"));
+  }
+}
+
+constexpr char kCheckHtml[] = R"py(
+import html.parser, re, sys
+VOID = {"meta", "br", "hr", "img", "link"}
+class Checker(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__(); self.open = []; self.ids = set(); self.pictures = 0
+    def handle_starttag(self, tag, attributes):
+        if tag == "svg": self.pictures += 1
+        for name, value in attributes:
+            if name in ("src", "href", "xlink:href", "data", "action"):
+                assert value.startswith("#"), value
+            if name == "id":
+                assert value not in self.ids, value
+                self.ids.add(value)
+        assert tag not in ("script", "link", "iframe", "img"), tag
+        if tag not in VOID: self.open.append(tag)
+    def handle_startendtag(self, tag, attributes):
+        self.handle_starttag(tag, attributes)
+        if tag not in VOID: self.open.pop()
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, (tag, self.open)
+        self.open.pop()
+text = open(sys.argv[1], encoding="utf-8").read()
+checker = Checker(); checker.feed(text); checker.close()
+assert not checker.open, checker.open
+assert not re.search(r"@import|url\((?!#)", text)
+for link in re.findall(r"(?:https?:)?//[^\s\"'<>]+", text):
+    assert link.startswith("http://www.w3.org/"), link  # names of XML's vocabularies
+print(checker.pictures)
+)py";
+
+Outcome check_html(const StudyFiles& files, const fs::path& page) {
+  std::ofstream(files / "check.py") << kCheckHtml;
+  return run_shell("python3 " + (files / "check.py").string() + " " + page.string());
+}
+
+TEST_CASE("A study's report is one well-formed page that needs no other file", "[io][slow]") {
+  const StudyFiles& files = get_study();
+  const fs::path page = files / "made/report.html";
+  const Outcome checked = check_html(files, page);
+  INFO(checked.messages);
+  CHECK(checked.code == 0);
+  CHECK(checked.out == "10\n");  // five figures for each preload
+  const std::string text = test::read_text(page);
+  CHECK_THAT(text, Contains("Small &lt;study&gt;") && !Contains("Small <study>"));
+  CHECK_THAT(text, Contains("A remark.") && Contains("Somebody"));
+  const JsonTree results = read_results(files / "made");
+  for (const auto& [name, sweep] : results.get_child("sweeps")) {
+    CHECK_THAT(text, Contains(sweep.get<std::string>("plan_hash")));
+  }
+}
+
+TEST_CASE("Without gnuplot a study and its report say that figures are left out", "[io][slow]") {
+  const StudyFiles& files = get_study();
+  const fs::path root = files / "bare";
+  fs::remove_all(root);
+  fs::copy(files / "made", root, fs::copy_options::recursive);
+  const Outcome outcome = run_shell("PATH=" + (files / "nothing").string() +
+                                    " " STRUT_PROGRAM " report " + root.string());
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.messages, Contains("gnuplot cannot be started") && Contains("left out"));
+  const Outcome checked = check_html(files, root / "report.html");
+  INFO(checked.messages);
+  CHECK(checked.out == "0\n");
+  CHECK_THAT(test::read_text(root / "report.html"), Contains("Left out, gnuplot is not there"));
+}
+
+TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]") {
+  const StudyFiles& files = get_study();
+  const fs::path root = files / "sweep_copy";
+  fs::remove_all(root);
+  fs::copy(files / "made/sweeps/trimmed_90", root, fs::copy_options::recursive);
+  REQUIRE(run_program("report " + root.string()).code == 0);
+  const Outcome checked = check_html(files, root / "report.html");
+  INFO(checked.messages);
+  CHECK(checked.out == "4\n");  // a figure for each channel
+  const std::string text = test::read_text(root / "report.html");
+  CHECK_THAT(text, Contains("90 of 90 cases") && Contains("No case failed.") &&
+                       Contains("Layers by front_stiffness") && Contains("body_velocity_z"));
+  CHECK(run_program("verify " + root.string()).code == 0);
+}
+
+TEST_CASE("The median of an even number of seeds is the mean of the middle two", "[unit]") {
+  const Spread odd = calc_spread({3.0, 1.0, 2.0}), even = calc_spread({4.0, 1.0, 3.0, 2.0});
+  CHECK(odd.median == 2.0);
+  CHECK(even.median == 2.5);
+  CHECK(even.low == 1.0);
+  CHECK(even.high == 4.0);
+  CHECK(calc_spread({5.0}).median == 5.0);
+  CHECK_THROWS_AS(calc_spread({}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace strut
