@@ -90,8 +90,8 @@ void write_shards(const fs::path& folder, std::int64_t cases, int threads) {
 }
 
 double now() {
-  using namespace std::chrono;
-  return duration<double>(steady_clock::now().time_since_epoch()).count();
+  using Clock = std::chrono::steady_clock;
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
 /// Trains, and prints how long that took and how much memory; true where it stayed in the limit.

@@ -34,13 +34,11 @@ constexpr int kCheckpointEpochs = 25;
 Arguments make_arguments() {
   Arguments arguments(
       "strut train DATA... -o model.h5 [OPTIONS]",
-      "Trains a network that tells the parameters of a case from its snapshot, or from a window "
-      "of\n"
-      "its histories, by Levenberg-Marquardt, and judges it by cases that training never saw. DATA "
-      "is a sweep\n"
-      "folder, shards of one sweep, or a merged file. 70 % of the cases train, 15 % validate,\n"
-      "15 % test. The result does not depend on --threads or --batch, nor on how the cases are\n"
-      "stored.",
+      "Trains a network that tells the parameters of a case from its snapshot, or from a window\n"
+      "of its histories, by Levenberg-Marquardt, and judges it by cases that training never saw.\n"
+      "DATA is a sweep folder, shards of one sweep, or a merged file. 70 % of the cases train,\n"
+      "15 % validate, 15 % test. The result does not depend on --threads or --batch, nor on how\n"
+      "the cases are stored.",
       "  strut run sweep\n  strut train sweep -o model.h5\n"
       "  strut train sweep -o noisy.h5 --noise default --noise pitch_angle=2e-4\n"
       "  strut train sweep -o window.h5 --window 0.3:2.5 --targets front_stiffness,rear_stiffness\n"
@@ -54,6 +52,9 @@ Arguments make_arguments() {
   add_noise_options(arguments);
   arguments.add_option("samples", "N", "use the first N cases; the run order is random");
   arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
+  arguments.add_switch("growing",
+                       "start on few cases and take more, at last all, as soon as a step's gain\n"
+                       "is no longer told from chance: for data beyond some 10,000 cases");
   arguments.add_option("gram-rows", "N",
                        "curvature from N rows, others in each epoch, the gradient from all: for\n"
                        "data beyond 100,000 cases");
@@ -112,6 +113,7 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
   request.split.seed = request.seed;
   request.allow_few = arguments.is_on("allow-few");
   read_limits(arguments, request.options);
+  if (arguments.is_on("growing")) request.growing = GrowingSampleOptions{};
   request.problem.threads = request.options.threads;
   request.problem.batch_rows =
       static_cast<std::size_t>(arguments.integer_or("batch", 4096, 1, 10'000'000));
@@ -141,21 +143,24 @@ fs::path find_checkpoint(const Arguments& arguments) {
 /// The line of progress, shared with the thread that prints it.
 class Progress {
  public:
-  void set(const EpochRecord& record) {
+  void set(const EpochRecord& record, std::size_t rows) {
     const std::scoped_lock lock(mutex_);
     record_ = record;
+    rows_ = rows;
   }
   std::string line() const {
     const std::scoped_lock lock(mutex_);
+    if (rows_ == 0) return "first epoch";
     char text[128];
     std::snprintf(text, sizeof text, "epoch %d, loss %.3g, validation %.3g, damping %.1g",
                   record_.epoch, record_.loss, record_.validation, record_.damping);
-    return text;
+    return text + (", " + format_count(static_cast<std::int64_t>(rows_))) + " rows";
   }
 
  private:
   mutable std::mutex mutex_;
   EpochRecord record_;
+  std::size_t rows_ = 0;
 };
 
 /// Steps until the training stops; false where a signal came first.
@@ -166,7 +171,7 @@ bool train(Training& training, const fs::path& checkpoint, const std::atomic<boo
     const ProgressLine line([&] { return progress.line(); });
     while (goes_on && !halt) {
       goes_on = training.step();
-      progress.set(training.record().back());
+      progress.set(training.record().back(), training.rows());
       if (!checkpoint.empty() && training.state().epoch % kCheckpointEpochs == 0) {
         write_checkpoint(checkpoint, training.make_checkpoint());
       }

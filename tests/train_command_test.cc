@@ -107,6 +107,9 @@ TEST_CASE("Weights depend neither on how cases are stored nor on batches or thre
   CHECK(train_weights(view) == weights);
   CHECK(train_weights(sweep, "--seed 2") != weights);
   CHECK(train_weights(sweep, "--rule trainlm") != weights);
+  const std::vector<double> grown = train_weights(sweep, "--growing --threads 1");
+  CHECK(grown != weights);
+  CHECK(train_weights(sweep, "--growing --threads 2 --batch 30") == grown);
   // The first samples are the first shards' rows.
   CHECK(train_weights(sweep + "/shards/000000.h5 " + sweep + "/shards/000001.h5") ==
         train_weights(sweep, "--samples 120"));
@@ -115,12 +118,12 @@ TEST_CASE("Weights depend neither on how cases are stored nor on batches or thre
 TEST_CASE("A resumed training is the uninterrupted one bit for bit", "[io][property][slow]") {
   const TemporaryFolder folder;
   const std::string sweep = get_sweep().string(), keep = (folder / "keep.h5").string();
-  const std::string rule = GENERATE("gain-ratio", "trainlm");
-  const std::string common = " --rule " + rule + " --max-failures 1000 ";
+  const std::string rule = GENERATE("--rule gain-ratio", "--rule trainlm", "--growing");
+  const std::string common = " " + rule + " --max-failures 1000 ";
   REQUIRE(train(sweep, folder / "whole.h5", common).code == 0);
   const std::string begin = "train " + sweep + " --hidden 6,4" + common;
   REQUIRE(
-      run_program(begin + "-o " + (folder / "a.h5").string() + " --epochs 7 --checkpoint " + keep)
+      run_program(begin + "-o " + (folder / "a.h5").string() + " --epochs 4 --checkpoint " + keep)
           .code == 0);
   const std::string resume = " --resume --checkpoint " + keep;
   REQUIRE(train(sweep, folder / "b.h5", common + resume).code == 0);

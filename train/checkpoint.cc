@@ -11,10 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr TrainingFileKind kKind = {"strut checkpoint", 1};
+constexpr TrainingFileKind kKind = {"strut checkpoint", 2};
 
 std::string calc_checksum(const Checkpoint& checkpoint) {
-  const LevenbergMarquardtState& state = checkpoint.state;
+  const LevenbergMarquardtState& state = checkpoint.state.training;
   Checksum sum;
   sum.add(state.weights);
   sum.add(state.best_weights);
@@ -22,7 +22,8 @@ std::string calc_checksum(const Checkpoint& checkpoint) {
   sum.add(std::vector<double>{state.damping, state.growth, state.validation, state.best_validation,
                               state.seconds});
   sum.add(std::vector<std::int64_t>{state.epoch, state.best_epoch, state.failures, state.trials,
-                                    static_cast<std::int64_t>(state.stop)});
+                                    static_cast<std::int64_t>(state.stop),
+                                    static_cast<std::int64_t>(checkpoint.state.rows)});
   sum.add(checkpoint.record);
   sum.add(checkpoint.started_with);
   return sum.finish();
@@ -31,7 +32,7 @@ std::string calc_checksum(const Checkpoint& checkpoint) {
 }  // namespace
 
 void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
-  const LevenbergMarquardtState& state = checkpoint.state;
+  const LevenbergMarquardtState& state = checkpoint.state.training;
   Hdf5Writer file(path);
   file.write("/weights", state.weights, {"1", "at this epoch", {}});
   file.write("/best_weights", state.best_weights, {"1", "at the validation minimum", {}});
@@ -50,6 +51,7 @@ void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
   file.write_attribute("/", "failures", std::int64_t{state.failures});
   file.write_attribute("/", "trials", std::int64_t{state.trials});
   file.write_attribute("/", "stop", static_cast<std::int64_t>(state.stop));
+  file.write_attribute("/", "rows", static_cast<std::int64_t>(checkpoint.state.rows));
   file.write_attribute("/", kChecksumKey, calc_checksum(checkpoint));
   file.commit();
 }
@@ -58,7 +60,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
   const Hdf5Reader file(path);
   check_kind(path, file, kKind);
   Checkpoint checkpoint;
-  LevenbergMarquardtState& state = checkpoint.state;
+  LevenbergMarquardtState& state = checkpoint.state.training;
   state.weights = file.read("/weights").values;
   state.best_weights = file.read("/best_weights").values;
   state.scale = file.read("/scale").values;
@@ -74,6 +76,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
   state.failures = read_int(file, "failures");
   state.trials = static_cast<long>(file.read_integer_attribute("/", "trials"));
   state.stop = read_stop(path, file);
+  checkpoint.state.rows = static_cast<std::size_t>(file.read_integer_attribute("/", "rows"));
   check_sum(path, file, calc_checksum(checkpoint));
   return checkpoint;
 }

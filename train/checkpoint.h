@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/named_texts.h"
-#include "train/levenberg_marquardt.h"
+#include "train/growing_sample.h"
 
 namespace strut {
 
@@ -13,7 +13,7 @@ namespace strut {
 struct Checkpoint {
   /// Everything that decides how it goes on.
   NamedTexts started_with;
-  LevenbergMarquardtState state;
+  GrowingSampleState state;
   std::vector<EpochRecord> record;
 };
 

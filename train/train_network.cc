@@ -60,6 +60,21 @@ NamedTexts describe_window(const WindowTransform& window) {
           {"window_lags", std::to_string(grid.lags)}};
 }
 
+/// Exact training is that on a sample which begins with all rows.
+GrowingSampleOptions choose_sample(const TrainingRequest& request, const TrainingRows& data) {
+  if (request.growing) return *request.growing;
+  GrowingSampleOptions all;
+  all.first_rows = data.train.row_count();
+  return all;
+}
+
+std::string describe_sample(const std::optional<GrowingSampleOptions>& growing) {
+  if (!growing) return "all rows";
+  const std::string first =
+      growing->first_rows > 0 ? std::to_string(growing->first_rows) : std::string("2 a weight");
+  return "first " + first + ", grows by " + to_text(growing->growth);
+}
+
 void append(NamedTexts& texts, const NamedTexts& more) {
   texts.insert(texts.end(), more.begin(), more.end());
 }
@@ -77,23 +92,25 @@ Training::Training(Dataset& dataset, const TrainingRequest& request)
       std::make_unique<StoreSource>(data_.validate, data_.input_map, data_.target_map);
   problem_ = std::make_unique<NetworkProblem>(shape_, *train_source_, request.problem);
   validation_ = std::make_unique<NetworkProblem>(shape_, *validate_source_, request.problem);
-  training_.emplace(*problem_, validation_.get(), request.options);
+  training_.emplace(*problem_, validation_.get(), request.options, choose_sample(request, data_));
   training_->start(make_nguyen_widrow_weights(shape_, {}, request.seed));
 }
 
 void Training::resume(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   require_same_start(path, checkpoint, describe_start());
-  LevenbergMarquardtState state = checkpoint.state;
+  GrowingSampleState state = checkpoint.state;
   record_ = checkpoint.record;
-  // What stopped it may be no limit any more. The epoch at which it stopped runs again.
-  if (state.stop != StopReason::kNone && !record_.empty()) record_.pop_back();
-  state.stop = StopReason::kNone;
+  // What stopped it may be no limit any more.
+  state.training.stop = StopReason::kNone;
   training_->restore(state);
 }
 
 bool Training::step() {
   const bool goes_on = training_->step();
-  record_.push_back(training_->last_record());
+  const EpochRecord& last = training_->last_record();
+  // An epoch at which training stopped runs again: after resuming, and on a larger sample.
+  if (!record_.empty() && record_.back().epoch == last.epoch) record_.pop_back();
+  record_.push_back(last);
   return goes_on;
 }
 
@@ -118,6 +135,7 @@ NamedTexts Training::describe_start() const {
                       {"rule", options.rule == DampingRule::kTrainlm ? "trainlm" : "gain-ratio"},
                       {"accelerate", options.accelerate ? "yes" : "no"},
                       {"first_damping", to_text(options.first_damping)},
+                      {"sample", describe_sample(request_.growing)},
                       {"gram_rows", std::to_string(request_.problem.gram_rows)},
                       {"instruction_set", problem_->kernel().isa}};
   if (data_.noise) append(texts, describe_noise(*data_.noise, data_.inputs));
@@ -128,7 +146,9 @@ NamedTexts Training::describe_start() const {
   return texts;
 }
 
-Checkpoint Training::make_checkpoint() const { return {describe_start(), state(), record_}; }
+Checkpoint Training::make_checkpoint() const {
+  return {describe_start(), training_->save(), record_};
+}
 
 Model Training::make_model() const {
   const LevenbergMarquardtState& s = state();

@@ -10,7 +10,7 @@
 
 #include "train/checkpoint.h"
 #include "train/dataset_source.h"
-#include "train/levenberg_marquardt.h"
+#include "train/growing_sample.h"
 #include "train/model_file.h"
 #include "train/network_problem.h"
 #include "train/window_records.h"
@@ -27,6 +27,8 @@ struct TrainingRequest {
   std::uint64_t seed = 1;  // of the start weights (Nguyen-Widrow)
   bool allow_few = false;  // train with fewer equations than weights
   LevenbergMarquardtOptions options;
+  /// First epochs on a sample of the rows; without, every epoch takes all.
+  std::optional<GrowingSampleOptions> growing;
   NetworkProblemOptions problem;
   RowStoreOptions store;
 };
@@ -49,6 +51,8 @@ class Training {
   const NetworkShape& shape() const { return shape_; }
   const LevenbergMarquardtState& state() const { return training_->state(); }
   const std::vector<EpochRecord>& record() const { return record_; }
+  /// Rows of the sample at hand.
+  std::size_t rows() const { return training_->rows(); }
   TrainingSummary summarize() const;
 
   Checkpoint make_checkpoint() const;
@@ -64,7 +68,7 @@ class Training {
   NetworkShape shape_;
   std::unique_ptr<StoreSource> train_source_, validate_source_;
   std::unique_ptr<NetworkProblem> problem_, validation_;
-  std::optional<LevenbergMarquardt> training_;
+  std::optional<GrowingSample> training_;
   std::vector<EpochRecord> record_;
 };
 
