@@ -109,6 +109,23 @@ class FitProblem : public LeastSquaresProblem {
   Linearization last_;
 };
 
+std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
+  std::vector<double> values;
+  values.reserve(unknowns.size());
+  for (const Unknown& u : unknowns) values.push_back(u.start);
+  return values;
+}
+
+/// Weights where the search begins: the unknowns' own start, the measuring clocks set.
+std::vector<double> make_start(ReadingSimulator& simulator) {
+  std::vector<double> weights = simulator.align(list_starts(simulator.unknowns()));
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const Unknown& u = simulator.unknowns()[i];
+    weights[i] = (weights[i] - u.start) / u.scale;
+  }
+  return weights;
+}
+
 LevenbergMarquardtOptions make_search_options(int iterations, double max_damping) {
   LevenbergMarquardtOptions search;
   search.scale = DampingScale::kDiagonal;
@@ -137,10 +154,10 @@ bool approach(FitProblem& problem, const FitOptions& options, double near, doubl
 /// Approaches the minimum; near it no longer insists: there the loss has kinks, where a contact
 /// event passes a reading, and the linear model's last hundredths of a standard deviation may not
 /// be there.
-std::vector<double> search(FitProblem& problem, const FitOptions& options, FitResult& result) {
+std::vector<double> search(FitProblem& problem, const FitOptions& options,
+                           std::vector<double> weights, FitResult& result) {
   constexpr int kReleases = 3;
   constexpr double kNear = 0.01 * kFitTolerance, kPatience = 1e6, kNoPatience = 1e-3;
-  std::vector<double> weights(problem.weight_count(), 0.0);
   for (int pass = 0; pass <= kReleases; ++pass) {
     int& iterations = result.iterations;
     result.at_kink = !approach(problem, options, kFitTolerance, kPatience, weights, iterations);
@@ -174,34 +191,17 @@ std::vector<ChannelFit> judge_channels(const ReadingSimulator& simulator,
   return fits;
 }
 
-}  // namespace
-
-double FitResult::chi2_per_degree() const {
-  return degrees > 0 ? chi2 / static_cast<double>(degrees) : 0.0;
-}
-
-bool FitResult::is_adequate(double sigmas) const {
-  return chi2 <=
-         static_cast<double>(degrees) + sigmas * std::sqrt(2.0 * static_cast<double>(degrees));
-}
-
-FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
-                         const FitOptions& options) {
-  ReadingSimulator simulator(runs, unknowns, options.linearize);
-  FitProblem problem(simulator);
-  const std::vector<double> start(unknowns.size(), 0.0);
-  const std::string failure = problem.linearize(start.data()).failure;
-  if (!failure.empty()) throw InputError(failure + "; the fit starts there: start it elsewhere");
-
-  FitResult result;
-  result.unknowns = unknowns;
-  const std::vector<double> weights = search(problem, options, result);
+/// The result at the end of the search.
+void describe(const ReadingSimulator& simulator, FitProblem& problem,
+              const std::vector<double>& weights, FitResult& result) {
+  result.unknowns = simulator.unknowns();
   result.values = problem.calc_values(weights.data());
   const Linearization& at = problem.linearize(weights.data());
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+  result.at_bound.reserve(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
     result.at_bound.push_back(problem.is_beyond(weights.data(), i));
   }
-  result.uncertainty = calc_uncertainty(at.jacobian.transpose() * at.jacobian, unknowns);
+  result.uncertainty = calc_uncertainty(at.jacobian.transpose() * at.jacobian, result.unknowns);
   result.chi2 = at.residual.squaredNorm();
   result.degrees = static_cast<long>(simulator.reading_count() + simulator.prior_count()) -
                    result.uncertainty.rank;
@@ -210,16 +210,36 @@ FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector
   result.converged = result.distance < (result.at_kink ? kKinkTolerance : kFitTolerance);
   result.simulations = simulator.simulation_count();
   result.outside = static_cast<long>(simulator.outside_count());
+}
+
+}  // namespace
+
+double FitResult::chi2_per_degree() const {
+  return degrees > 0 ? chi2 / static_cast<double>(degrees) : 0.0;
+}
+
+double FitResult::calc_excess() const {
+  const auto expected = static_cast<double>(degrees);
+  return degrees > 0 ? (chi2 - expected) / std::sqrt(2.0 * expected) : 0.0;
+}
+
+FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
+                         const FitOptions& options) {
+  ReadingSimulator simulator(runs, unknowns, options.linearize);
+  FitProblem problem(simulator);
+  const std::vector<double> start = make_start(simulator);
+  const std::string failure = problem.linearize(start.data()).failure;
+  if (!failure.empty()) throw InputError(failure + "; the fit starts there: start it elsewhere");
+  FitResult result;
+  const std::vector<double> weights = search(problem, options, start, result);
+  describe(simulator, problem, weights, result);
   return result;
 }
 
 Uncertainty calc_fit_bounds(const std::vector<MeasuredRun>& runs,
                             const std::vector<Unknown>& unknowns, const LinearizeOptions& options) {
   ReadingSimulator simulator(runs, unknowns, options);
-  std::vector<double> values;
-  values.reserve(unknowns.size());
-  for (const Unknown& u : unknowns) values.push_back(u.start);
-  const Linearization at = simulator.linearize(values);
+  const Linearization at = simulator.linearize(list_starts(unknowns));
   if (!at.failure.empty()) throw InputError(at.failure);
   return calc_uncertainty(at.jacobian.transpose() * at.jacobian, unknowns);
 }

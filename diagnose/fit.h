@@ -15,6 +15,12 @@
 
 namespace strut {
 
+/// Distances from the minimum, in standard deviations. An estimate that is off by d of them has a
+/// root mean square error sqrt(1 + d^2) times as large: by 0.5 % more, at a kink 12 %.
+inline constexpr double kFitTolerance = 0.1, kKinkTolerance = 0.5;
+/// Standard deviations by which chi2 may miss its expectation.
+inline constexpr double kFitSigmas = 4.0;
+
 struct FitOptions {
   LinearizeOptions linearize;
   int iterations = 50;  // accepted steps at most
@@ -40,8 +46,8 @@ struct FitResult {
   std::vector<ChannelFit> channels;
   /// How far the linear model still sees the minimum, in standard deviations.
   double distance = 0.0;
-  /// No step of any length lowers chi2 any more: rounding, or a kink of it, where a contact event
-  /// passes a reading and the linear model holds on one side only.
+  /// No step of any length lowers chi2 any more: a kink of it, where a contact event passes a
+  /// reading and the linear model holds on one side only.
   bool at_kink = false;
   bool converged = false;  // distance below kFitTolerance, at a kink below kKinkTolerance
   int iterations = 0;
@@ -49,13 +55,12 @@ struct FitResult {
   long outside = 0;  // readings outside of what is simulated, left aside
 
   double chi2_per_degree() const;
-  /// True where chi2 is what noise alone makes it: within `sigmas` of its expectation.
-  bool is_adequate(double sigmas = 4.0) const;
+  /// Standard deviations by which chi2 exceeds its expectation, the degrees of freedom.
+  double calc_excess() const;
+  /// chi2 is not larger, not smaller than noise alone makes it.
+  bool is_adequate() const { return calc_excess() <= kFitSigmas; }
+  bool is_quiet() const { return calc_excess() < -kFitSigmas; }
 };
-
-inline constexpr double kFitTolerance = 0.1, kKinkTolerance = 0.5;
-/// Half width of a 95 % interval in standard deviations of a Gaussian.
-inline constexpr double k95 = 1.959963984540054;
 
 /// Fits. Simulations that fail on the way are steps not taken. Deterministic for any number of
 /// threads. Throws InputError for unusable runs or unknowns, and where the start cannot be

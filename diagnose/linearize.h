@@ -59,6 +59,10 @@ class ReadingSimulator {
   /// `values` in the unknowns' own units. Deterministic.
   Linearization linearize(const std::vector<double>& values);
 
+  /// `values` with the hit time of each run where its readings fit best (run_readings.h); as they
+  /// are where they cannot be simulated. One simulation a run.
+  std::vector<double> align(const std::vector<double>& values);
+
   const std::vector<MeasuredRun>& runs() const { return runs_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Of the first reading_count() residuals.
@@ -72,7 +76,8 @@ class ReadingSimulator {
 
  private:
   void choose_readings(std::size_t run);
-  std::string simulate(const std::vector<double>& values, std::vector<LaneRun>& results);
+  std::string simulate(const std::vector<double>& values, const std::vector<Unknown>& varied,
+                       std::vector<LaneRun>& results);
 
   std::vector<MeasuredRun> runs_;
   std::vector<Unknown> unknowns_;

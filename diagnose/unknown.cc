@@ -14,11 +14,6 @@ namespace {
 using C = CarChannel;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kAccelerationBias = 0.3;  // m/s^2
-constexpr double kRateBias = 0.02;         // rad/s
-constexpr double kAngleBias = 5e-3;        // rad
-constexpr double kHeightBias = 5e-3;       // m
-constexpr double kDeflectionBias = 2e-3;   // m
 
 const ChannelInfo& get_info(int channel) {
   return list_car_channels()[static_cast<std::size_t>(channel)];
@@ -77,30 +72,6 @@ Unknown make_bias(int run, int channel, const Prior& prior) {
   u.high = kInfinity;
   u.prior = prior;
   return u;
-}
-
-SensorNoise make_default_bias() {
-  SensorNoise bias(C::kCount, 0.0);
-  const auto set = [&](int channel, double sigma) {
-    bias[static_cast<std::size_t>(channel)] = sigma;
-  };
-  for (const int channel :
-       {C::kBodyAccelerationZ, C::kImuAccelerationX, C::kImuAccelerationY, C::kImuAccelerationZ}) {
-    set(channel, kAccelerationBias);
-  }
-  for (const int channel :
-       {C::kPitchRate, C::kRollRate, C::kImuRateX, C::kImuRateY, C::kImuRateZ}) {
-    set(channel, kRateBias);
-  }
-  set(C::kPitchAngle, kAngleBias);
-  set(C::kRollAngle, kAngleBias);
-  set(C::kBodyPositionZ, kHeightBias);
-  for (int corner = 0; corner < kCorners; ++corner) {
-    const int first = C::kCornerBegin + corner * C::kCornerChannels;
-    set(first + C::kWheelAccelerationZ, kAccelerationBias);
-    set(first + C::kSuspensionDeflection, kDeflectionBias);
-  }
-  return bias;
 }
 
 std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,

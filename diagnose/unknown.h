@@ -56,10 +56,6 @@ struct NuisanceSigmas {
   SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
 };
 
-/// Bias of sensors, 1 sigma: zero-g offsets 0.3 m/s^2, gyroscopes 0.02 rad/s, angles 5 mrad,
-/// heights 5 mm, suspension deflection 2 mm, velocities and others none (docs/fit.md).
-SensorNoise make_default_bias();
-
 /// Hit time, speed and biases of every run, as far as their sigma is not 0; the speed only where no
 /// unknown of `chosen` is the speed.
 std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,

@@ -35,6 +35,8 @@ Range any_number(const std::string& unit = "");
 
 /// The shortest decimal text that reads back as the same double.
 std::string format_number(double value);
+/// Six significant digits, for numbers in messages that were computed.
+std::string format_rounded(double value);
 
 /// The whole file. Throws InputError where it is missing, EnvironmentError where it cannot be read.
 std::string read_text_file(const std::filesystem::path& path);

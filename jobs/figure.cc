@@ -103,6 +103,11 @@ std::string quote_figure_text(const std::string& text) {
   return quoted + "' noenhanced";
 }
 
+std::string make_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 bool has_gnuplot() { return run_gnuplot("--version", {"/dev/null", "/dev/null"}) == 0; }
 
 void draw_figure(const fs::path& folder, const Figure& figure) {

@@ -11,7 +11,7 @@ struct Figure {
   std::string name;               // of its files
   int width = 900, height = 560;  // px
   std::string
-      commands;  // gnuplot's; terminal and palette are set, data come as add_data names them
+      commands;  // gnuplot's; terminal and palette are set, data come as make_data names them
 };
 
 /// Colors that the color-blind can tell apart (M. Okabe, K. Ito, 2008): line types 1 to 6 of every
@@ -24,6 +24,9 @@ inline constexpr const char* kFigureColors[] = {"#0072B2", "#D55E00", "#009E73",
 std::string make_data(const std::string& name, const std::vector<std::vector<double>>& rows);
 /// A text for a script, in quotes.
 std::string quote_figure_text(const std::string& text);
+
+/// A name as people write it: "body_position_z" -> "body position z"
+std::string make_words(std::string name);
 
 /// Whether a program gnuplot can be started.
 bool has_gnuplot();

@@ -20,11 +20,15 @@ Arguments make_arguments() {
       "strut identify MODEL MEASURED... [OPTIONS]\n"
       "       strut identify VEHICLE.toml MEASURED... --maneuver MANEUVER.toml [OPTIONS]",
       "Tells the parameters of a car from what was measured, each with its interval of 95 %.\n"
-      "MODEL is a network of `strut train`, MEASURED tables (CSV or HDF5) with a column for each\n"
-      "of its inputs, one snapshot a row. Outside of the range that the network was trained on\n"
-      "there is no value but `-`, and the exit code is 1.\n"
-      "With a VEHICLE the simulation itself is fitted to histories with a column `time` (from the\n"
-      "start of the maneuver); --set then changes a parameter that is known.",
+      "  snapshot  MODEL is a network of `strut train`, MEASURED tables (CSV or HDF5) with a\n"
+      "            column for each of its inputs, one snapshot a row.\n"
+      "  window    MODEL is one of `strut train --window`, MEASURED histories with a column "
+      "`time`\n"
+      "            and one for each of its channels.\n"
+      "  fit       The simulation of VEHICLE is fitted to histories with a column `time` [s] from\n"
+      "            the start of the maneuver, and the --channels.\n"
+      "Outside of the range that a network was trained on there is no value but `-`. The exit\n"
+      "code is 1 there, and where a fit has not converged, leaves a parameter open or at a bound.",
       "  strut identify model.h5 measured.csv\n"
       "  strut identify model.h5 drive.csv --event-time 0.632 --noise pitch_angle=2e-4 --json\n"
       "  strut identify model.h5 --set body_position_z=0.55 --set body_velocity_z=0.02 \\\n"

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "diagnose/fit.h"
 #include "io/measurement.h"
@@ -24,8 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr char kTime[] = "time";
 constexpr char kForVehicle[] = ": allowed with VEHICLE.toml only";
-/// Beyond, the search would begin in a neighboring valley: a bump's flank passes in 10 ms.
-constexpr double kMostHitSigma = 0.02;  // s
 
 /// Calls `function`; an InputError of it names the option it came from.
 template <class Function>
@@ -83,13 +82,37 @@ std::pair<double, double> read_window(const Arguments& arguments) {
   return {from, to};
 }
 
-MeasuredRun read_run(const Arguments& arguments, const fs::path& file, const Case& setup,
-                     const std::vector<int>& channels, const SensorNoise& noise) {
+/// Time and channels of one file, in their units.
+Measurement read_history(const fs::path& file, const std::vector<int>& channels) {
+  std::vector<ColumnInfo> columns = {{kTime, "s", ""}};
   MeasurementRequest request{{kTime}, {}, MeasuredPart::kHistory};
   for (const int c : channels) {
-    request.required.push_back(list_car_channels()[static_cast<std::size_t>(c)].name);
+    const ChannelInfo& info = list_car_channels()[static_cast<std::size_t>(c)];
+    columns.push_back({info.name, info.unit, info.description});
+    request.required.push_back(info.name);
   }
-  const Measurement measurement = read_measurement(file, request);
+  Measurement measurement = read_measurement(file, request);
+  require_units(measurement, columns);
+  return measurement;
+}
+
+/// A sensor that works has noise; a simulation whose channel rests has none.
+void tell_constant(const MeasuredRun& run) {
+  for (const MeasuredChannel& c : run.channels) {
+    const double first = c.values.front();
+    const bool constant = std::all_of(c.values.begin(), c.values.end(),
+                                      [first](double value) { return value == first; });
+    if (!constant || c.values.size() < 2) continue;
+    std::cerr << "strut: " << run.name << ": "
+              << list_car_channels()[static_cast<std::size_t>(c.channel)].name << " is "
+              << format_number(first) << " in all " << c.values.size()
+              << " readings: does its sensor work?\n";
+  }
+}
+
+MeasuredRun read_run(const Arguments& arguments, const fs::path& file, const Case& setup,
+                     const std::vector<int>& channels, const SensorNoise& noise) {
+  const Measurement measurement = read_history(file, channels);
   MeasuredRun run{file.string(), setup, measurement.values(kTime), {}};
   for (const int c : channels) {
     const auto at = static_cast<std::size_t>(c);
@@ -101,6 +124,7 @@ MeasuredRun read_run(const Arguments& arguments, const fs::path& file, const Cas
     cut_window(run, from, to);
   }
   if (run.times.empty()) throw InputError("--window: no sample of " + run.name + " lies in it");
+  tell_constant(run);
   return run;
 }
 
@@ -155,10 +179,6 @@ std::pair<std::string, Prior> parse_prior(const std::string& setting) {
   const Prior prior{parse_number(setting.substr(equals + 1, comma - equals - 1), "--prior: mean"),
                     parse_number(setting.substr(comma + 1), "--prior: sigma")};
   if (!(prior.sigma > 0.0)) throw InputError("--prior: '" + setting + "': sigma must be > 0");
-  if (name == "hit_time" && prior.sigma > kMostHitSigma) {
-    throw InputError("--prior: '" + setting + "': sigma must be at most " +
-                     format_number(kMostHitSigma) + " s: a fit needs a start near the truth");
-  }
   return {name, prior};
 }
 
@@ -186,21 +206,43 @@ void apply_prior(std::vector<Unknown>& unknowns, const std::string& setting) {
                    suggest_name(name, names));
 }
 
+void require_fit_arguments(const Arguments& arguments, const fs::path& vehicle,
+                           const std::vector<fs::path>& files) {
+  if (arguments.has("event-time")) {
+    throw InputError("--event-time: allowed with a model's snapshot only");
+  }
+  if (arguments.is_on("extrapolate")) throw InputError("--extrapolate: allowed with a model only");
+  if (find_rig_kind(vehicle)) {
+    throw InputError(vehicle.string() + ": is a rig; identify fits cars only");
+  }
+  if (files.empty()) throw arguments.usage_error("MEASURED: missing");
+  if (!arguments.has("maneuver")) throw arguments.usage_error("--maneuver: missing");
+}
+
+/// Where --output goes, so that a fit is not made in vain; none without that option.
+std::optional<fs::path> find_table_file(const Arguments& arguments) {
+  if (!arguments.has("output")) return std::nullopt;
+  std::vector<std::string> inputs = arguments.positional();
+  for (const std::string& maneuver : arguments.list("maneuver")) inputs.push_back(maneuver);
+  return find_output_file(arguments, inputs);
+}
+
 }  // namespace
 
 void add_fit_options(Arguments& arguments) {
   arguments.add_list("maneuver", "FILE",
-                     "VEHICLE: what was driven; one for all measured files or, repeated, one each");
-  arguments.add_option(
-      "free", "NAME,...",
-      "VEHICLE: parameters to find (default: stiffness and damping of both axles)");
+                     "fit: what was driven; one for all measured files or, repeated, one\n"
+                     "each");
+  arguments.add_option("free", "NAME,...",
+                       "fit: parameters to find (default: stiffness and damping of both axles)");
   arguments.add_option("channels", "NAME,...",
-                       "VEHICLE: columns to fit (default imu_acceleration_z,imu_rate_y)");
-  arguments.add_option("window", "FROM:TO", "VEHICLE: only what was measured in between [s]");
+                       "fit: columns to compare (default imu_acceleration_z,imu_rate_y)");
+  arguments.add_option("window", "FROM:TO", "fit: only what was measured in between [s]");
   arguments.add_list("prior", "NAME=MEAN,SIGMA",
-                     "VEHICLE: what is known of a free parameter, speed, hit_time or CHANNEL_bias");
-  arguments.add_switch("no-nuisances", "VEHICLE: hit time, speed and sensors' biases are exact");
-  arguments.add_option("threads", "N", "VEHICLE: threads (default 1)");
+                     "fit: what is known of a free parameter, speed, hit_time or\n"
+                     "CHANNEL_bias");
+  arguments.add_switch("no-nuisances", "fit: hit time, speed and sensors' biases are exact");
+  arguments.add_option("threads", "N", "fit: threads (default 1)");
 }
 
 void refuse_fit_options(const Arguments& arguments) {
@@ -213,16 +255,8 @@ void refuse_fit_options(const Arguments& arguments) {
 
 int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
                     const std::vector<fs::path>& files) {
-  if (arguments.has("event-time") || arguments.is_on("extrapolate")) {
-    throw InputError(arguments.has("event-time")
-                         ? "--event-time: allowed with a model's snapshot only"
-                         : "--extrapolate: allowed with a model only");
-  }
-  if (find_rig_kind(vehicle)) {
-    throw InputError(vehicle.string() + ": is a rig; identify fits cars only");
-  }
-  if (files.empty()) throw arguments.usage_error("MEASURED: missing");
-  if (!arguments.has("maneuver")) throw arguments.usage_error("--maneuver: missing");
+  require_fit_arguments(arguments, vehicle, files);
+  const std::optional<fs::path> output = find_table_file(arguments);
   const std::vector<MeasuredRun> runs = read_runs(arguments, vehicle, files);
   std::vector<Unknown> unknowns = make_free(arguments, runs);
   const std::size_t parameter_count = unknowns.size();
@@ -235,15 +269,14 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   const FitResult fit = fit_simulation(runs, unknowns, options);
 
   const IdentifiedRow row = make_fit_row(fit, parameter_count);
-  if (arguments.has("output")) {
-    write_identified_csv(find_output_file(arguments, arguments.positional()), {row});
-  }
+  if (output) write_identified_csv(*output, {row});
   if (arguments.is_on("json")) {
     std::cout << make_fit_json(fit, runs, parameter_count).dump() << "\n";
   } else {
     print_fit(fit, runs, parameter_count);
   }
-  return fit.converged && row.in_range() ? kExitDone : kExitNo;
+  const bool held = std::find(fit.at_bound.begin(), fit.at_bound.end(), true) != fit.at_bound.end();
+  return fit.converged && row.in_range() && !held ? kExitDone : kExitNo;
 }
 
 }  // namespace strut

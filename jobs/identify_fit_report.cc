@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "io/config.h"
+#include "train/interval.h"
 
 namespace strut {
 namespace {
@@ -18,7 +19,7 @@ IdentifiedParameter make_estimate(const FitResult& fit, std::size_t i) {
   p.unit = fit.unknowns[i].unit;
   p.value = fit.values[i];
   const bool known = fit.uncertainty.identifiable[i];
-  p.half_width = known ? k95 * fit.uncertainty.sigma[i] : kInfinity;
+  p.half_width = known ? kNormal95 * fit.uncertainty.sigma[i] : kInfinity;
   p.in_range = known && !fit.at_bound[i];
   return p;
 }
@@ -55,14 +56,24 @@ Json make_nuisances_json(const FitResult& fit, const std::vector<MeasuredRun>& r
   return list;
 }
 
+const std::string& get_file_name(const std::vector<MeasuredRun>& runs, const ChannelFit& c) {
+  return runs[static_cast<std::size_t>(c.run)].name;
+}
+
+const std::string& get_channel_name(const ChannelFit& c) {
+  return list_car_channels()[static_cast<std::size_t>(c.channel)].name;
+}
+
+double calc_chi2_per_reading(const ChannelFit& c) { return c.chi2 / static_cast<double>(c.count); }
+
 Json make_channels_json(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
   Json list = Json::array();
   for (const ChannelFit& c : fit.channels) {
     Json json = Json::object();
-    json.set("file", runs[static_cast<std::size_t>(c.run)].name)
-        .set("channel", list_car_channels()[static_cast<std::size_t>(c.channel)].name)
+    json.set("file", get_file_name(runs, c))
+        .set("channel", get_channel_name(c))
         .set("readings", c.count)
-        .set("chi2_per_reading", c.chi2 / static_cast<double>(c.count))
+        .set("chi2_per_reading", calc_chi2_per_reading(c))
         .set("neighbor_correlation", c.neighbor_correlation);
     list.push(json);
   }
@@ -95,16 +106,34 @@ void tell_quality(const FitResult& fit) {
             << fit.degrees << " degrees), " << fit.iterations << " iterations, " << fit.simulations
             << " simulations\n";
   if (fit.outside > 0) {
-    std::cerr << "strut: " << fit.outside
-              << " readings left aside: outside of the simulated time for some possible hit time\n";
+    std::cerr
+        << "strut: " << fit.outside
+        << " readings left aside: before the maneuver or after its duration for some possible "
+           "hit time\n";
   }
   if (!fit.converged) {
     std::cerr << "strut: not converged: the minimum is some " << format_short(fit.distance)
-              << " standard deviations away; start nearer (--set)\n";
+              << " standard deviations away; either the model does not fit at all, or it needs a "
+                 "nearer start (--set, --prior)\n";
+  } else if (fit.at_kink) {
+    std::cerr << "strut: ends at a kink of chi2, where a contact event passes a reading, some "
+              << format_short(fit.distance) << " standard deviations from the minimum\n";
   }
-  if (!fit.is_adequate()) {
-    std::cerr << "strut: the residuals are larger than the noise: the model lacks something or the "
-                 "noise is larger (--noise); the intervals are too narrow\n";
+}
+
+/// Whether the noise is what it is said to be.
+void tell_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
+  if (fit.is_quiet()) {
+    std::cerr << "strut: the residuals are smaller than the noise, which seems to be smaller than "
+                 "assumed (--noise); the intervals are too wide\n";
+  }
+  if (fit.is_adequate()) return;
+  std::cerr << "strut: the residuals are larger than the noise: the model lacks something or the "
+               "noise is larger (--noise); the intervals are too narrow\n";
+  for (const ChannelFit& c : fit.channels) {
+    std::cerr << "strut:   " << get_file_name(runs, c) << ": " << get_channel_name(c) << ": chi2 "
+              << format_short(calc_chi2_per_reading(c)) << " per reading, neighboring residuals "
+              << "correlate by " << format_short(c.neighbor_correlation) << "\n";
   }
 }
 
@@ -112,7 +141,9 @@ void tell_open(const FitResult& fit) {
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
     if (!fit.at_bound[i]) continue;
     std::cerr << "strut: " << fit.unknowns[i].name << " = " << format_number(fit.values[i]) << " "
-              << fit.unknowns[i].unit << ": held by its bound\n";
+              << fit.unknowns[i].unit << ": held by its bound"
+              << (fit.unknowns[i].prior.informs() ? ", beyond what --prior says of it" : "")
+              << "\n";
   }
   for (const NullDirection& d : fit.uncertainty.null_directions) {
     std::cerr << "strut: not identifiable: " << describe_direction(d, fit.unknowns)
@@ -137,6 +168,7 @@ Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
   Json json = make_identified_json({make_fit_row(fit, parameter_count)});
   json.set("converged", fit.converged)
       .set("distance", fit.distance)
+      .set("at_kink", fit.at_kink)
       .set("chi2_per_dof", fit.chi2_per_degree())
       .set("dof", fit.degrees)
       .set("adequate", fit.is_adequate())
@@ -162,6 +194,7 @@ void print_fit(const FitResult& fit, const std::vector<MeasuredRun>& runs,
   }
   print_identified({table});
   tell_quality(fit);
+  tell_noise(fit, runs);
   tell_open(fit);
 }
 

@@ -10,7 +10,7 @@ namespace strut {
 /// where the parameter is not identifiable.
 IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count);
 
-/// The row's JSON and: converged, distance, chi2_per_dof, dof, adequate, nuisances by run,
+/// The row's JSON and: converged, distance, at_kink, chi2_per_dof, dof, adequate, nuisances by run,
 /// channels, not_identifiable, correlation, iterations, simulations, left_aside. The first
 /// `parameter_count` unknowns are the parameters.
 Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,

@@ -20,10 +20,16 @@ constexpr std::size_t kMostTold = 10;
 double get_low(const IdentifiedParameter& p) { return p.value - p.half_width; }
 double get_high(const IdentifiedParameter& p) { return p.value + p.half_width; }
 
-/// Decimals that show two digits of the half width.
-int count_decimals(double half_width) {
-  if (!std::isfinite(half_width) || half_width <= 0.0) return 6;
-  return std::clamp(1 - static_cast<int>(std::floor(std::log10(half_width))), 0, 12);
+/// Decimals that show so many digits of a number.
+int count_decimals(double value, int digits) {
+  if (!std::isfinite(value) || value == 0.0) return 6;
+  return std::clamp(digits - 1 - static_cast<int>(std::floor(std::log10(std::abs(value)))), 0, 12);
+}
+
+/// As many as show two digits of the half width; without one, six of the value.
+int count_decimals(const IdentifiedParameter& p) {
+  const bool known = std::isfinite(p.half_width) && p.half_width > 0.0;
+  return known ? count_decimals(p.half_width, 2) : count_decimals(p.value, 6);
 }
 
 /// "-" where it is not told.
@@ -34,8 +40,12 @@ std::string format_fixed(double value, int decimals) {
   return text;
 }
 
-std::string format_width(double half_width) {
-  return format_fixed(half_width, count_decimals(half_width));
+std::string format_value(const IdentifiedParameter& p) {
+  return format_fixed(p.value, count_decimals(p));
+}
+
+std::string format_width(const IdentifiedParameter& p) {
+  return format_fixed(p.half_width, count_decimals(p));
 }
 
 Json make_row_json(const IdentifiedRow& row) {
@@ -72,13 +82,18 @@ bool are_in_range(const std::vector<IdentifiedRow>& rows) {
 }
 
 void print_one(const IdentifiedRow& row) {
-  std::printf("%-28s%16s%14s  %-12s%s\n", "parameter", "value", "+-", "unit",
-              row.in_range() ? "" : "in range");
+  std::size_t longest = 26;
+  for (const IdentifiedParameter& p : row.parameters) longest = std::max(longest, p.name.size());
+  const int width = static_cast<int>(longest) + 2;
+  const auto print = [&](const std::string& name, const std::string& value, const std::string& half,
+                         const std::string& unit, const char* in_range) {
+    std::printf("%-*s%16s%14s  ", width, name.c_str(), value.c_str(), half.c_str());
+    row.in_range() ? std::printf("%s\n", unit.c_str())
+                   : std::printf("%-12s%s\n", unit.c_str(), in_range);
+  };
+  print("parameter", "value", "+-", "unit", "in range");
   for (const IdentifiedParameter& p : row.parameters) {
-    const int decimals = count_decimals(p.half_width);
-    std::printf("%-28s%16s%14s  %-12s%s\n", p.name.c_str(), format_fixed(p.value, decimals).c_str(),
-                format_width(p.half_width).c_str(), p.unit.c_str(),
-                row.in_range() ? "" : (p.in_range ? "yes" : "no"));
+    print(p.name, format_value(p), format_width(p), p.unit, p.in_range ? "yes" : "no");
   }
 }
 
@@ -95,8 +110,7 @@ void print_many(const std::vector<IdentifiedRow>& rows) {
   for (const IdentifiedRow& row : rows) {
     std::printf("%-*s", place, row.place.c_str());
     for (const IdentifiedParameter& p : row.parameters) {
-      std::printf("%26s%12s", format_fixed(p.value, count_decimals(p.half_width)).c_str(),
-                  format_width(p.half_width).c_str());
+      std::printf("%26s%12s", format_value(p).c_str(), format_width(p).c_str());
     }
     std::printf("  %s\n", row.in_range() ? "yes" : "no");
   }

@@ -9,14 +9,12 @@
 #include "io/nearest_name.h"
 #include "io/shard_layout.h"
 #include "sweep/parameters.h"
+#include "train/interval.h"
 
 namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Standard deviations of a normal distribution that hold 95 %.
-constexpr double kNormal95 = 1.959963984540054;
 
 constexpr char kTime[] = "time";
 
@@ -196,13 +194,17 @@ IdentifiedRow identify_snapshot(const Model& model, const Identifier& identifier
 }
 
 void add_snapshot_options(Arguments& arguments) {
-  arguments.add_list("set", "CHANNEL=VALUE", "one snapshot from the command line, repeatable");
-  arguments.add_option("event-time", "T",
-                       "the instant [s] of a snapshot in a time history: between its two samples,\n"
-                       "on the straight line");
+  arguments.add_list("set", "NAME=VALUE",
+                     "snapshot: an input of the model, instead of a file;\n"
+                     "fit: a parameter, known or, if free, where the search starts; repeatable");
   arguments.add_list("noise", "CHANNEL=SIGMA",
-                     "1 sigma of a sensor's noise, which widens the intervals, repeatable");
-  arguments.add_switch("extrapolate", "give values outside of the range trained on, too");
+                     "1 sigma of a sensor's white noise, repeatable; snapshot: widens the\n"
+                     "intervals (default 0); fit: weighs the readings (default: of MEMS sensors)");
+  arguments.add_option("event-time", "T",
+                       "snapshot: the instant [s] of it in a time history: between its two\n"
+                       "samples, on the straight line");
+  arguments.add_switch("extrapolate",
+                       "snapshot, window: give values outside of the range trained on, too");
 }
 
 int identify_by_snapshot(const Arguments& arguments, const Model& model,

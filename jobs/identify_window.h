@@ -21,8 +21,8 @@ struct MeasuredRecord {
 /// Columns `time` and the window's channels of a file, on a grid of the window's interval: as they
 /// are where they were sampled so, else by Lagrange's polynomials through the six samples around
 /// each instant. A window that is not aligned is cut at its own times. Throws InputError that names
-/// the file and row where times do not ascend, samples lie too far apart, a unit is another, or the
-/// record is too short.
+/// the file, and the row where times do not ascend or samples lie too far apart; or where the rate
+/// is below the model's, a unit is another, or the record is too short.
 MeasuredRecord read_record(const WindowTransform& window, const std::filesystem::path& file);
 
 /// What a record tells. Outside of what the network was trained on are a component beyond its range

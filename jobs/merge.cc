@@ -10,6 +10,7 @@
 #include "jobs/interrupt.h"
 #include "jobs/json.h"
 #include "jobs/open_sweep.h"
+#include "jobs/output_file.h"
 #include "jobs/progress.h"
 #include "sweep/merge.h"
 
@@ -22,9 +23,10 @@ Arguments make_arguments() {
   Arguments arguments(
       "strut merge DIR -o dataset.h5 [OPTIONS]",
       "Writes the cases of all shards of the sweep in DIR to one HDF5 file for other tools: the\n"
-      "datasets of a shard, in the order of the plan, retried cases in their place. Ends with code "
-      "2\n"
-      "and writes nothing where a shard is missing or damaged; cases that failed are rows of NaN.",
+      "datasets of a shard, in the order of the plan, retried cases in their place. Where a shard\n"
+      "is missing or damaged, the exit code is 2 and nothing is written; cases that failed are "
+      "rows\n"
+      "of NaN.",
       "  strut merge sweep -o dataset.h5\n"
       "  strut merge sweep -o view.h5 --virtual");
   arguments.add_option("output,o", "FILE", "file to write");
@@ -49,14 +51,7 @@ bool is_own(const SweepFolder& folder, const fs::path& output) {
 
 /// `folder`: the sweep, of which nothing may be replaced.
 fs::path find_output(const Arguments& arguments, const SweepFolder& folder) {
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
-  fs::path output = arguments.text("output");
-  if (fs::exists(output) && !arguments.is_on("force")) {
-    throw InputError("--output = " + output.string() + ": exists; --force replaces it");
-  }
-  if (fs::is_directory(output)) {
-    throw InputError("--output = " + output.string() + ": a folder; must be a file");
-  }
+  fs::path output = find_output_file(arguments, {});
   if (is_own(folder, output)) {
     throw InputError("--output = " + output.string() +
                      ": the sweep's own; must be another file or folder");

@@ -2,66 +2,77 @@
 // of the simulation, each beside the Cramer-Rao bound of the same measurement.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "jobs/json.h"
-#include "sweep/request.h"
-#include "train/training_table.h"
+#include "jobs/noise_trainings.h"
 
 namespace strut {
 
-struct NoiseStudyRequest {
-  std::vector<double> scales;   // of the default noise (sweep/sensor_noise.h), ascending
-  double from = 0.0, to = 0.0;  // s, the window
-  int copies = 8;               // noisy copies of each case that a network trains on
-  int fits = 40;                // records to which the simulation is fitted, at each scale
-  double hit_time = 0.005;      // s, 1 sigma, of a window's records
+/// Numbers of one parameter at one scale, in its unit: bounds are 1 sigma, root mean square over
+/// test cases, as the errors are.
+struct SnapshotErrors {
+  double bound = 0.0, network = 0.0;
 };
-
-/// The data: a sweep of snapshots, whose grid has nothing but what is identified, and one of
-/// histories, which may also vary the speed, a nuisance.
-struct NoiseStudyData {
-  SweepRequest snapshot, window;
-  std::filesystem::path snapshot_data, window_data;  // what `strut run` made of them
-  std::vector<std::string> inputs;                   // of the snapshot
+struct WindowErrors {
+  double bound = 0.0, network = 0.0, fit = 0.0;
 };
-
-/// Numbers of one parameter at one scale, in its unit: bounds are 1 sigma, errors root mean square
-/// over cases that training never saw.
 struct NoiseErrors {
-  double snapshot_bound = 0.0, snapshot_network = 0.0;
-  double window_bound = 0.0, window_network = 0.0, window_fit = 0.0;
+  std::vector<SnapshotErrors> snapshots;  // by preloads
+  WindowErrors window;
 };
 
 struct NoisePoint {
   double scale = 1.0;
   std::vector<NoiseErrors> errors;  // per parameter
+  std::size_t converged = 0;        // of the fits
   double chi2_per_degree = 0.0;     // of the fits, mean
   double fit_seconds = 0.0;         // s of each, mean
 };
 
-struct NoiseStudy {
-  std::vector<ColumnInfo> parameters;
-  std::vector<double>
-      spread;  // standard deviation over the cases: the error of who knows only them
-  int fits = 0;
-  std::vector<NoisePoint> points;  // as the request's scales
+/// A sensor, with its noise at scale 1.
+struct NoiseSensor {
+  std::string channel, unit;
+  double sigma = 0.0, bias = 0.0;  // 1 sigma of a sample, of a record
+  bool in_window = false;          // else in the snapshot
 };
 
-/// The trainings that calc_noise_study reads the models of: `like` with each noise.
-std::vector<TableTraining> list_noise_trainings(const NoiseStudyRequest& request,
-                                                const NoiseStudyData& data,
-                                                const TrainingRequest& like);
+struct NoiseStudy {
+  std::vector<ColumnInfo> parameters;
+  std::vector<std::string> preloads;  // of the snapshots
+  std::string window_preload;
+  std::vector<NoiseSensor> sensors;
+  double rate = 0.0, from = 0.0, to = 0.0, hit_time = 0.0;  // 1/s, s; of the windows
+  int copies = 0;
+  /// Standard deviation of each parameter over the cases: the error of who knows only their grid.
+  std::vector<double> spread;
+  /// Per parameter, largest over smallest bound among the test cases: by preloads, of the window.
+  std::vector<std::vector<double>> snapshot_variation;
+  std::vector<double> window_variation;
+  std::size_t fits = 0;            // at each scale
+  std::vector<NoisePoint> points;  // ascending in scale
+};
 
-/// Evaluates the models in `models`, fits, and computes the bounds, at the middle of the grids.
-/// False once `halt` is true. The result does not depend on `threads`. Throws InputError.
-bool calc_noise_study(const NoiseStudyRequest& request, const NoiseStudyData& data,
-                      const std::filesystem::path& models, int threads, NoiseStudy& study,
-                      std::atomic<bool>& halt);
+/// Evaluates the models in `models` and reads the bounds and fits in `limits`. Throws InputError
+/// where one of them is missing or damaged.
+NoiseStudy read_noise_study(const NoiseStudyRequest& request, const NoiseStudyData& data,
+                            const std::filesystem::path& models,
+                            const std::filesystem::path& limits);
+
+/// The point with the scale nearest to 1: real sensors.
+const NoisePoint& find_real_point(const NoiseStudy& study);
+
+/// Largest ratios to the window's bound over the parameters.
+struct WindowRatios {
+  double network = 0.0, fit = 0.0;
+};
+WindowRatios calc_window_ratios(const NoisePoint& point);
 
 Json make_json(const NoiseStudy& study);
+
+/// One line a number, units beside it.
+std::string make_csv(const NoiseStudy& study);
 
 }  // namespace strut

@@ -1,17 +1,19 @@
 #include "jobs/study.h"
 
-#include <csignal>
 #include <iostream>
 
 #include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
 #include "jobs/machine.h"
+#include "jobs/noise_limits.h"
+#include "jobs/noise_report.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
 #include "jobs/run.h"
 #include "jobs/study_report.h"
 #include "jobs/study_tables.h"
+#include "jobs/study_trainings.h"
 #include "sweep/run.h"
 #include "train/training_table.h"
 
@@ -24,7 +26,8 @@ Arguments make_arguments() {
       "Simulates, trains and evaluates a table of networks: cases with each preload, numbers of\n"
       "cases, networks, inputs and seeds (every key: docs/studies.md). Prints the errors beside\n"
       "published ones and writes DIR/report.html, results.json, tables.csv, figures, models and\n"
-      "sweeps. Running it again does only what is missing; Ctrl-C stops it cleanly.",
+      "sweeps; with a [noise] section also what sensor noise does to it. Running it again does "
+      "only what is missing; Ctrl-C stops it cleanly.",
       "  strut study examples/studies/paper_quick.toml -o study\n"
       "  strut study examples/studies/paper.toml -o study --threads 2");
   arguments.add_option("output,o", "DIR", "folder of the study");
@@ -34,11 +37,10 @@ Arguments make_arguments() {
   return arguments;
 }
 
-/// Simulates what the sweep of a cell lacks; false where a signal came.
-bool run_study_sweep(const StudyFolder& folder, const StudyRequest& request, const StudyCell& cell,
-                     int threads, std::atomic<bool>& halt) {
-  const Plan plan = plan_study_sweep(folder, request, cell);
-  const std::string name = make_sweep_name(request, cell);
+/// Simulates what a sweep lacks; false where a signal came.
+bool run_study_sweep(const SweepFolder& folder, const Plan& plan, int threads,
+                     std::atomic<bool>& halt) {
+  const std::string name = folder.root.filename().string();
   RunOptions options;
   options.kernel = &list_kernels().front();
   options.threads = threads;
@@ -51,11 +53,11 @@ bool run_study_sweep(const StudyFolder& folder, const StudyRequest& request, con
       return name + ": " + format_count(progress.present + progress.simulated) + "/" +
              format_count(plan.case_count()) + " cases simulated";
     });
-    summary = run_sweep(folder.sweep(name), plan, options, progress, halt);
+    summary = run_sweep(folder, plan, options, progress, halt);
   }
   for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
   for (const auto& [shard, what] : summary.damaged) {
-    throw InputError(what + "; `strut verify " + folder.sweep(name).root.string() +
+    throw InputError(what + "; `strut verify " + folder.root.string() +
                      " --quarantine` moves it aside, then run this again");
   }
   if (summary.failed > 0) {
@@ -63,24 +65,6 @@ bool run_study_sweep(const StudyFolder& folder, const StudyRequest& request, con
               << " cases failed and are left out\n";
   }
   return !halt;
-}
-
-TableTraining make_training(const StudyFolder& folder, const StudyRequest& request,
-                            const StudyCell& cell, int seed) {
-  TableTraining training;
-  training.name = make_model_name(request, cell, seed);
-  training.data = folder.sweep(make_sweep_name(request, cell)).root;
-  training.cases = request.samples[cell.samples];
-  TrainingRequest& r = training.request;
-  r.rows.inputs = request.inputs[cell.inputs].channels;
-  r.hidden = request.networks[cell.network].hidden;
-  r.split = request.split;
-  r.seed = r.split.seed = static_cast<std::uint64_t>(seed);
-  r.options = request.options;
-  r.options.threads = 1;
-  r.problem.threads = 1;
-  r.store.scratch = folder.models();
-  return training;
 }
 
 std::string describe_progress(const TrainingTableProgress& progress, double start) {
@@ -97,12 +81,7 @@ std::string describe_progress(const TrainingTableProgress& progress, double star
 /// Trains what is missing; false where a signal came.
 bool train_all(const StudyFolder& folder, const StudyRequest& request, int threads,
                std::atomic<bool>& halt) {
-  std::vector<TableTraining> trainings;
-  for (const StudyCell& cell : list_cells(request)) {
-    for (int seed = 1; seed <= request.seeds; ++seed) {
-      trainings.push_back(make_training(folder, request, cell, seed));
-    }
-  }
+  const std::vector<TableTraining> trainings = list_study_trainings(folder, request);
   const BuildInfo& build = get_build_info();
   const TrainingTableOptions options{
       folder.models(), threads, {{"strut_version", build.version}, {"commit", build.commit}}};
@@ -119,12 +98,41 @@ bool train_all(const StudyFolder& folder, const StudyRequest& request, int threa
   return !summary.stopped;
 }
 
+/// Bounds and fits of the noise section; false where a signal came.
+bool fit_all(const StudyFolder& folder, const StudyRequest& request, int threads,
+             std::atomic<bool>& halt) {
+  const NoiseStudyData data = open_noise_data(folder, request);
+  NoiseLimitsProgress progress;
+  std::vector<std::string> notes;
+  bool whole = false;
+  {
+    const ProgressLine line([&] {
+      return "noise: " + std::to_string(progress.done) + "/" + std::to_string(progress.total) +
+             " bounds and fits";
+    });
+    whole =
+        update_noise_limits(*request.noise, data, folder.noise(), threads, progress, notes, halt);
+  }
+  for (const std::string& note : notes) std::cerr << "strut: " << note << "\n";
+  return whole;
+}
+
+bool simulate_all(const StudyFolder& folder, const StudyRequest& request, int threads,
+                  std::atomic<bool>& halt) {
+  for (const auto& [name, cell] : list_study_sweeps(request)) {
+    const Plan plan = plan_study_sweep(folder, request, cell);
+    if (!run_study_sweep(folder.sweep(name), plan, threads, halt)) return false;
+  }
+  if (!request.noise) return true;
+  const Plan plan = plan_window_sweep(folder, request);
+  return run_study_sweep(get_window_sweep(folder, request), plan, threads, halt);
+}
+
 bool work(const StudyFolder& folder, const StudyRequest& request, int threads,
           std::atomic<bool>& halt) {
-  for (const auto& [name, cell] : list_study_sweeps(request)) {
-    if (!run_study_sweep(folder, request, cell, threads, halt)) return false;
-  }
-  return train_all(folder, request, threads, halt);
+  return simulate_all(folder, request, threads, halt) &&
+         train_all(folder, request, threads, halt) &&
+         (!request.noise || fit_all(folder, request, threads, halt));
 }
 
 void print_tables(const StudyRequest& request, const StudyResults& results) {
@@ -134,7 +142,13 @@ void print_tables(const StudyRequest& request, const StudyResults& results) {
     }
   }
   for (const std::string& remark : request.published.remarks) std::cout << remark << "\n";
+  if (results.noise) {
+    for (const ReportTable& table : make_noise_tables(*results.noise)) {
+      std::cout << make_text(table) << "\n";
+    }
+  }
   for (const StudySummary& s : summarize(request, results)) std::cout << make_line(s) << "\n";
+  if (results.noise) std::cout << make_noise_line(*results.noise) << "\n";
 }
 
 }  // namespace
@@ -149,8 +163,6 @@ int run_study(const std::vector<std::string>& words) {
   if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
   const StudyRequest asked = read_study(names.front());
   const int threads = find_threads(arguments);
-  // A limit of file size is a full disk, told as one, not the end of the program.
-  std::signal(SIGXFSZ, SIG_IGN);
   InterruptWatcher watcher;
   const StudyFolder folder = make_study_folder(arguments.text("output"), asked);
   const StudyRequest request = open_study_folder(folder);

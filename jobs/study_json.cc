@@ -120,6 +120,7 @@ Json make_json(const StudyRequest& request, const StudyResults& results) {
       .set("summary", make_summaries(request, results))
       .set("sweeps", sweeps)
       .set("cells", cells);
+  if (results.noise) json.set("noise", make_json(*results.noise));
   return json;
 }
 

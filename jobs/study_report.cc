@@ -6,6 +6,7 @@
 #include "io/atomic_file.h"
 #include "io/config.h"
 #include "io/nearest_name.h"
+#include "jobs/noise_report.h"
 #include "jobs/progress.h"
 #include "jobs/report_figures.h"
 #include "jobs/study_figures.h"
@@ -174,16 +175,15 @@ ReportSection make_limits() {
   return {"Limits",
           {"Training, validation and test cases come from one simulation: the errors say how well "
            "its way back can be learned, not how well a real car is identified.",
-           "No noise: sensors are exact here. How much noise an instant leaves room for is told by "
-           "the Cramer-Rao bound, `strut design`.",
+           "No noise but where it is told: in the tables of networks sensors are exact. How much "
+           "noise an instant leaves room for is told by the Cramer-Rao bound, `strut design`.",
            "Every grid parameter is known to lie within its grid; speed, bump and load are known "
            "exactly. Beyond the grid a network extrapolates."}};
 }
 
 }  // namespace
 
-StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& request,
-                               const std::vector<ReportSection>& extra) {
+StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& request) {
   StudyOutput output{read_results(folder, request), {}};
   write_text_file(folder.results(), make_json(request, output.results).dump() + "\n");
   write_text_file(folder.tables(), make_csv(request, output.results));
@@ -197,7 +197,11 @@ StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& re
   for (std::size_t p = 0; p < request.preloads.size(); ++p) {
     page.sections.push_back(make_preload(folder, request, output.results, p, drawer));
   }
-  page.sections.insert(page.sections.end(), extra.begin(), extra.end());
+  if (const auto& noise = output.results.noise) {
+    page.lead.push_back(make_noise_line(*noise));
+    page.sections.push_back(make_noise_section(*noise, drawer));
+    write_text_file(folder.noise_table(), make_csv(*noise));
+  }
   if (!request.published.source.empty()) page.sections.push_back(make_published(request));
   page.sections.push_back(make_settings(request, output.results));
   page.sections.push_back(make_limits());

@@ -6,7 +6,7 @@
 
 #include "io/config.h"
 #include "io/nearest_name.h"
-#include "sweep/request.h"
+#include "sweep/plan.h"
 #include "train/network.h"
 
 namespace strut {
@@ -143,15 +143,17 @@ void read_training(const Table& table, StudyRequest& request) {
   throw table.error("train", "and validate must leave a part of 1 to test");
 }
 
-void check_samples(const Table& root, const StudyRequest& request, const SweepRequest& sweep) {
+/// Told here, before a folder is made: whoever corrects the file may then take the same folder.
+void check_samples(const Table& root, const StudyRequest& request, SweepRequest sweep) {
   check_different(root, "samples", request.samples);
-  if (sweep.sample.method != SampleMethod::kGrid) return;
   for (const std::int64_t samples : request.samples) {
-    if (samples <= sweep.grid.size()) continue;
-    throw root.error("samples", std::to_string(samples) +
-                                    " is more than the sweep's grid has; "
-                                    "must lie in [1, " +
-                                    std::to_string(sweep.grid.size()) + "]");
+    sweep.sample.count = samples;
+    try {
+      const Plan plan(sweep);
+      make_split(samples, request.split);
+    } catch (const InputError& e) {
+      throw root.error("samples", std::to_string(samples) + ": " + e.what());
+    }
   }
 }
 
@@ -210,13 +212,18 @@ StudyRequest read_study(const std::filesystem::path& path) {
   const SweepRequest sweep = read_request(request.sweep);
   request.preloads = read_preloads(root);
   request.samples = read_whole_numbers(root, "samples", kWholeLimit);
-  check_samples(root, request, sweep);
   request.seeds = static_cast<int>(root.integer_or("seeds", request.seeds, 1, kMostSeeds));
   request.networks = read_networks(root.table("networks"));
   request.inputs = read_inputs(root.table("inputs"), sweep);
   if (const auto best = root.find_table("best_instant")) read_best_instant(*best, request.preloads);
   if (const auto main = root.find_table("main")) read_main(*main, request);
   if (const auto training = root.find_table("training")) read_training(*training, request);
+  check_samples(root, request, sweep);
+  if (const auto noise = root.find_table("noise")) {
+    request.noise =
+        read_noise_request(*noise, {sweep, request.inputs[request.main_inputs].channels,
+                                    list_names_of(request.networks), request.main_network});
+  }
   if (root.has("published")) {
     request.published_path = root.file("published");
     request.published = read_published(request.published_path);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/noise_request.h"
 #include "train/dataset_source.h"
 #include "train/levenberg_marquardt.h"
 #include "train/metrics.h"
@@ -74,6 +75,8 @@ struct StudyRequest {
 
   // Of which inputs and instants are compared; the tables of networks take these inputs.
   std::size_t main_network = 0, main_samples = 0, main_inputs = 0;
+
+  std::optional<NoiseStudyRequest> noise;
 };
 
 /// Reads `studies/*.toml` (docs/studies.md lists every key). Throws InputError with file, line,

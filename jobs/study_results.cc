@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "jobs/study_trainings.h"
 #include "sweep/folder.h"
 #include "train/evaluate.h"
 
@@ -66,6 +67,12 @@ std::int64_t count_failed(Dataset& dataset) {
     failed += std::count_if(status.begin(), status.end(), [](int s) { return s != 0; });
   }
   return failed;
+}
+
+SweepFacts read_sweep_facts(const SweepFolder& folder, Dataset& dataset) {
+  const Plan plan = open_sweep_folder(folder);
+  return {folder.root.filename().string(), plan.hash(), plan.case_count(), count_failed(dataset),
+          plan.request().snapshot.offset};
 }
 
 /// A number, and where it is.
@@ -151,11 +158,9 @@ StudyResults read_results(const StudyFolder& folder, const StudyRequest& request
   std::map<std::string, double> offsets;
   for (const auto& [name, cell] : list_study_sweeps(request)) {
     const SweepFolder sweep = folder.sweep(name);
-    const Plan plan = open_sweep_folder(sweep);
     auto dataset = std::make_unique<Dataset>(std::vector<std::filesystem::path>{sweep.root});
-    offsets[name] = plan.request().snapshot.offset;
-    results.sweeps.push_back(
-        {name, plan.hash(), plan.case_count(), count_failed(*dataset), offsets[name]});
+    results.sweeps.push_back(read_sweep_facts(sweep, *dataset));
+    offsets[name] = results.sweeps.back().offset;
     datasets[name] = std::move(dataset);
   }
   const std::vector<StudyCell> cells = list_cells(request);
@@ -164,6 +169,13 @@ StudyResults read_results(const StudyFolder& folder, const StudyRequest& request
     const std::string sweep = make_sweep_name(request, cell);
     results.cells.push_back(read_cell(folder, request, cell, *datasets.at(sweep)));
     results.cells.back().offset = offsets.at(sweep);
+  }
+  if (request.noise) {
+    const SweepFolder windows = get_window_sweep(folder, request);
+    Dataset dataset({windows.root});
+    results.sweeps.push_back(read_sweep_facts(windows, dataset));
+    results.noise = read_noise_study(*request.noise, open_noise_data(folder, request),
+                                     folder.models(), folder.noise());
   }
   return results;
 }

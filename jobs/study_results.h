@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "jobs/json.h"
+#include "jobs/noise_study.h"
 #include "jobs/study_folder.h"
 #include "train/metrics.h"
 #include "train/model_file.h"
@@ -49,9 +51,11 @@ struct SweepFacts {
 struct StudyResults {
   std::vector<SweepFacts> sweeps;
   std::vector<CellResult> cells;
+  std::optional<NoiseStudy> noise;
 };
 
-/// Evaluates every model of the study. Throws InputError where one is missing or damaged.
+/// Evaluates every model of the study and reads the bounds and fits of its noise section. Throws
+/// InputError where one is missing or damaged.
 StudyResults read_results(const StudyFolder& folder, const StudyRequest& request);
 
 /// Published number of a cell's parameter, `metric` of kMetrics; NaN: none. Published are numbers

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <charconv>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -234,8 +233,6 @@ int run_train(const std::vector<std::string>& words) {
   DatasetOptions options;
   options.partial = arguments.is_on("partial");
   options.histories = arguments.has("window");
-  // A limit of file size is a full disk, told as one, not the end of the program.
-  std::signal(SIGXFSZ, SIG_IGN);
   InterruptWatcher watcher;
   Dataset dataset({names.begin(), names.end()}, options);
   read_noise_options(arguments, dataset.schema(), request);

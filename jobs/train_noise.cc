@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 
-#include "diagnose/unknown.h"
 #include "io/nearest_name.h"
 #include "io/shard_layout.h"
 #include "sweep/find_channel.h"
@@ -45,12 +44,20 @@ std::size_t find_input(const std::string& option, const std::vector<std::string>
                    "; they are: " + join_names(inputs));
 }
 
+std::pair<std::string, double> read_setting(const std::string& option, const std::string& setting) {
+  try {
+    return parse_setting(setting);
+  } catch (const InputError& e) {
+    throw InputError("--" + option + " " + e.what());
+  }
+}
+
 /// Values of CHANNEL=SIGMA in place of those of `values`.
 void apply_settings(const Arguments& arguments, const std::string& option,
                     const std::vector<std::string>& inputs, std::vector<double>& values) {
   for (const std::string& setting : arguments.list(option)) {
     if (setting == "default") continue;
-    const auto [name, sigma] = parse_setting(setting);
+    const auto [name, sigma] = read_setting(option, setting);
     values[find_input(option, inputs, name)] = sigma;
   }
 }
@@ -64,9 +71,15 @@ std::vector<double> take_channels(const SensorNoise& all, const std::vector<std:
   return taken;
 }
 
-void require_noise(const std::vector<std::string>& inputs, const std::vector<double>& sigma) {
+void require_noise(const Arguments& arguments, const std::vector<std::string>& inputs,
+                   const std::vector<double>& sigma) {
+  const std::vector<std::string> settings = arguments.list("noise");
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (sigma[i] != 0.0) continue;
+    const auto gives = [&](const std::string& setting) {
+      return setting.starts_with(inputs[i] + "=");
+    };
+    // What the option gives is judged with its unit, by NoiseModel::validate.
+    if (sigma[i] != 0.0 || std::any_of(settings.begin(), settings.end(), gives)) continue;
     throw InputError("--noise: no sensor of " + inputs[i] + " is known; give --noise " + inputs[i] +
                      "=SIGMA");
   }
@@ -77,7 +90,7 @@ NoiseModel read_noise_model(const Arguments& arguments, const std::vector<std::s
   NoiseModel noise;
   noise.sigma = take_channels(make_default_noise(), inputs);
   apply_settings(arguments, "noise", inputs, noise.sigma);
-  require_noise(inputs, noise.sigma);
+  require_noise(arguments, inputs, noise.sigma);
   noise.bias = of_window ? take_channels(make_default_bias(), inputs)
                          : std::vector<double>(inputs.size(), 0.0);
   apply_settings(arguments, "bias", inputs, noise.bias);
@@ -104,10 +117,9 @@ void add_noise_options(Arguments& arguments) {
   arguments.add_list("noise", "CHANNEL=SIGMA",
                      "train with noise: 1 sigma per sample, repeatable; others, and with\n"
                      "--noise default all: those of `strut design`");
-  arguments.add_list(
-      "bias", "CHANNEL=SIGMA",
-      "1 sigma of a sensor's constant bias, repeatable; in a window by default that\n"
-      "of docs/fit.md, in a snapshot none");
+  arguments.add_list("bias", "CHANNEL=SIGMA",
+                     "1 sigma of a sensor's constant bias, repeatable; by default that of\n"
+                     "docs/window.md in a window, none in a snapshot");
   arguments.add_option("hit-time-sigma", "S",
                        "1 sigma of the time at which the bump is hit; default 0.005");
   arguments.add_option("align", "S",

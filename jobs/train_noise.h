@@ -12,8 +12,8 @@ void add_noise_options(Arguments& arguments);
 
 /// Sets window and noise of a request as the options say, for data of this schema; with a window
 /// and no --inputs, all channels of the histories are its inputs. Noise that no option gives is
-/// that of sweep/sensor_noise.h, a window's bias kBiasShare of it. Throws InputError that names the
-/// option.
+/// that of sweep/sensor_noise.h, a window's bias too; a snapshot has no bias by default. Throws
+/// InputError that names the option.
 void read_noise_options(const Arguments& arguments, const ShardSchema& schema,
                         TrainingRequest& request);
 

@@ -1,4 +1,5 @@
-// What sensors of a car can see: one standard deviation of white noise per channel and sample.
+// What sensors of a car can see: one standard deviation of white noise per channel and sample, and
+// of the constant bias of a record.
 #pragma once
 
 #include <string>
@@ -15,6 +16,11 @@ using SensorNoise = std::vector<double>;
 /// wheel speed (docs/identifiability.md gives each with its reason). Forces, tire deflections,
 /// time and place have none.
 SensorNoise make_default_noise();
+
+/// 1 sigma of a sensor's bias, which is one unknown number in all of a record: accelerometers
+/// 0.3 m/s^2, gyroscopes 0.02 rad/s, angles 5 mrad, heights 5 mm, suspension deflection 2 mm,
+/// others none (docs/fit.md gives each with its reason).
+SensorNoise make_default_bias();
 
 /// Applies "channel=sigma". Throws InputError where the text is not that or sigma is not positive.
 void apply_noise(SensorNoise& noise, const std::string& setting);

@@ -1,12 +1,8 @@
 // strut export: what other compilers and other runtimes make of it.
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
-#include <sstream>
 
-#include "io/config.h"
 #include "tests/run_program.h"
 #include "tests/test_model.h"
 #include "train/export_header.h"
@@ -22,131 +18,7 @@ using test::run_shell;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
 
-constexpr char kWarnings[] = " -Wall -Wextra -Wpedantic -Werror ";
-
-/// Reads rows of inputs, writes the mask and the outputs of each with 17 digits.
-std::string make_driver(const std::string& include, int inputs, int outputs) {
-  std::ostringstream text;
-  text << include << "#include <stdio.h>\nint main(void) {\n  double in[" << inputs << "], out["
-       << outputs << "];\n  int i, mask;\n  for (;;) {\n    for (i = 0; i < " << inputs
-       << "; ++i) if (scanf(\"%lf\", &in[i]) != 1) return 0;\n"
-       << "    mask = strut_identify_car(in, out);\n    printf(\"%d\", mask);\n"
-       << "    for (i = 0; i < " << outputs << "; ++i) printf(\" %.17g\", out[i]);\n"
-       << "    printf(\"\\n\");\n  }\n}\n";
-  return text.str();
-}
-
-std::string to_lines(const std::vector<double>& rows, std::size_t columns) {
-  std::string text;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    text += format_number(rows[i]) + ((i + 1) % columns == 0 ? "\n" : " ");
-  }
-  return text;
-}
-
-/// The mask that the model asks for.
-int find_mask(const Model& model, const double* in, const double* out) {
-  int mask = 0;
-  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    if (calc_excess(in[i], model.input_map.low()[i], model.input_map.high()[i]) != 0.0) mask |= 1;
-  }
-  for (std::size_t t = 0; t < model.targets.size(); ++t) {
-    if (!is_parameter_in_range(model, t, out[t], model.ci95[t])) mask |= 2;
-  }
-  return mask;
-}
-
-/// Answers of a compiled program against the library's.
-void check_program(const Model& model, const std::string& program, const TemporaryFolder& folder) {
-  const std::size_t n = model.inputs.size(), m = model.targets.size(), count = 2000;
-  const std::vector<double> rows = test::draw_inputs(model, count, 1.2);
-  folder.write("rows", to_lines(rows, n));
-  std::istringstream answers(run_shell(program + " < " + (folder / "rows").string()).out);
-  const Identifier identifier(model);
-  std::vector<double> values(m);
-  double worst = 0.0;
-  int masks = 0, wrong = 0;
-  for (std::size_t row = 0; row < count; ++row) {
-    const double* in = rows.data() + row * n;
-    identifier.identify(in, values.data());
-    int mask = -1;
-    answers >> mask;
-    if (mask != find_mask(model, in, values.data())) ++wrong;
-    masks |= 1 << mask;
-    for (std::size_t t = 0; t < m; ++t) {
-      double value = std::nan("");
-      answers >> value;
-      const double range = model.target_map.high()[t] - model.target_map.low()[t];
-      const double error = std::abs(value - values[t]) / range;
-      worst = error <= worst ? worst : error;  // a NaN stays
-    }
-  }
-  REQUIRE(answers);
-  CHECK(wrong == 0);
-  CHECK((masks & 3) == 3);  // both within and outside were tried
-  // Sums of some ten terms of order one, tanh good to an ulp or two.
-  CHECK(worst < 1e-13);
-}
-
-TEST_CASE("An exported header gives the network's answers in C and in C++", "[reference]") {
-  const TemporaryFolder folder;
-  const Model model =
-      test::make_random_model(GENERATE(std::vector<int>{4, 9, 7, 2}, std::vector<int>{2, 1}));
-  folder.write("car.h", make_c_source(model, "car", SourceKind::kHeader));
-  // Twice: the guard is tested too.
-  const std::string driver = make_driver("#include \"car.h\"\n#include \"car.h\"\n",
-                                         model.sizes.front(), model.sizes.back());
-  const auto compiler =
-      GENERATE(std::string("cc -std=c99"), std::string("cc -std=c11"),
-               std::string("c++ -x c++ -std=c++11"), std::string("c++ -x c++ -std=c++20"));
-  const std::string source = folder.write("main.c", driver), program = folder / "program";
-  const Outcome compiled = run_shell(compiler + kWarnings + source + " -o " + program + " -lm");
-  INFO(compiler << "\n" << compiled.messages);
-  REQUIRE(compiled.code == 0);
-  check_program(model, program, folder);
-}
-
-TEST_CASE("An exported C source links to a program that declares its function", "[reference]") {
-  const TemporaryFolder folder;
-  const Model model = test::make_random_model();
-  const std::string unit = folder.write("car.c", make_c_source(model, "car", SourceKind::kSource));
-  const std::string driver = folder.write(
-      "main.c", make_driver("int strut_identify_car(const double in[4], double out[2]);\n", 4, 2));
-  const std::string program = folder / "program";
-  const Outcome compiled = run_shell(std::string("cc -std=c99") + kWarnings + unit + " " + driver +
-                                     " -o " + program + " -lm");
-  INFO(compiled.messages);
-  REQUIRE(compiled.code == 0);
-  check_program(model, program, folder);
-}
-
-TEST_CASE("Names, units and infinite intervals survive the C source", "[reference]") {
-  const TemporaryFolder folder;
-  Model model = test::make_random_model();
-  model.inputs[0].name = "a\"b\\c?\?/ */";
-  model.inputs[1].unit =
-      "\xc2\xb0"
-      "C";  // degrees Celsius
-  model.ci95[1] = std::numeric_limits<double>::infinity();
-  model.plan_hash = "*/ #error";
-  folder.write("car.h", make_c_source(model, "car", SourceKind::kHeader));
-  const std::string source = folder.write("main.c", R"(#include "car.h"
-#include <stdio.h>
-int main(void) {
-  printf("%s|%s|%g|%.17g|%.17g", strut_car_input_names()[0], strut_car_input_units()[1],
-         strut_car_output_ci95()[1], strut_car_input_low()[3], strut_car_output_high()[1]);
-  return 0;
-}
-)");
-  const std::string program = folder / "program";
-  const Outcome compiled =
-      run_shell(std::string("cc -std=c99") + kWarnings + source + " -o " + program + " -lm");
-  INFO(compiled.messages);
-  REQUIRE(compiled.code == 0);
-  CHECK(run_shell(program).out ==
-        "a\"b\\c?\?/ */|\xc2\xb0"
-        "C|inf|-0.0078499999999999993|1980");
-}
+constexpr char kWarnings[] = " -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror ";
 
 /// A model file and what export makes of it.
 struct Desk {
@@ -184,6 +56,25 @@ TEST_CASE("export writes what the file's name asks for, and nothing over another
   CHECK(desk.export_to("-o " + desk.file("none/y.h")).code == 3);  // no such folder
   CHECK(run_program("export -o " + desk.file("y.h")).code == 2);
   CHECK(!fs::exists(desk.file("y.h")));
+}
+
+TEST_CASE("export refuses a network over windows, whose inputs are no channels", "[io]") {
+  const Desk desk;
+  Model model = test::make_random_model();
+  WindowTransform window;
+  window.channels = {{"imu_rate_y", "rad/s", "pitch rate"}};
+  window.noise = {{1e-3}, {0.02}};
+  window.grid = {0.005, 0, 5, 0};
+  window.mean.assign(5, 0.0);
+  window.basis.assign(4 * 5, 0.0);  // a component for each of the network's inputs
+  for (std::size_t k = 0; k < 4; ++k) window.basis[6 * k] = 1.0;
+  model.window = window;
+  write_model(desk.file("window.h5"), model);
+  const std::string file = desk.file(GENERATE("w.onnx", "w.h", "w.c"));
+  const Outcome outcome = run_program("export " + desk.file("window.h5") + " -o " + file);
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains("window.h5: a network over windows"));
+  CHECK(!fs::exists(file));
 }
 
 /// The block of the guide that begins with ```LANGUAGE.

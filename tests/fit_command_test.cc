@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "io/config.h"
+#include "io/csv.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 
@@ -76,6 +78,11 @@ TEST_CASE("identify by a fit refuses wrong input", "[io]") {
   const std::string other = folder.write("other.csv", "time,imu_rate_y\n0.5,0\n");
   const std::string empty =
       folder.write("nan.csv", "time,imu_acceleration_z,imu_rate_y\n0.5,nan,0\n");
+  const std::string rows = "0.5,9.8,0\n0.6,9.8,0\n", names = "time,imu_acceleration_z,imu_rate_y\n";
+  const std::string late = folder.write("late.csv", names + "100.5,9.8,0\n101,9.8,0\n");
+  const std::string unit = folder.write("unit.csv", names + "# units: s,g,rad/s\n" + rows);
+  const std::string clock = folder.write("clock.csv", names + "# units: ms,,\n" + rows);
+  const std::string taken = folder.write("taken.csv", "mine");
   const std::pair<std::string, std::string> cases[] = {
       {"identify " + kVehicle + " " + good, "--maneuver: missing"},
       {"identify " + kExamples + "/rigs/quarter_car.toml " + good + " --maneuver " + kManeuver,
@@ -91,7 +98,14 @@ TEST_CASE("identify by a fit refuses wrong input", "[io]") {
       {fit(good) + " --window 2:3", "no sample"},
       {fit(good) + " --prior sped=20,1", "did you mean 'speed'"},
       {fit(good) + " --prior speed=20", "NAME=MEAN,SIGMA"},
-      {fit(good) + " --prior hit_time=0,0.5", "at most 0.02 s"},
+      {fit(good) + " --prior hit_time=0,0", "sigma must be > 0"},
+      {fit(late), "time runs from 100.5 to 101 s, the maneuver from 0 to 3 s"},
+      {fit(unit), "unit.csv: imu_acceleration_z is in g; must be in m/s^2"},
+      {fit(clock), "clock.csv: time is in ms; must be in s"},
+      {fit(good) + " -o " + good + " --force", "is what is read"},
+      {fit(good) + " -o " + taken, "taken.csv: exists; --force replaces it"},
+      {"identify " + kVehicle + " " + good + " --maneuver " + other + " --force -o " + other,
+       "is what is read"},
       {fit(good) + " --set front_stiffness=1000", "cannot carry the car"},
       {fit(good + " " + good) + " --maneuver " + kManeuver + " --maneuver " + kManeuver,
        "one for all, or one for each"}};
@@ -101,6 +115,37 @@ TEST_CASE("identify by a fit refuses wrong input", "[io]") {
     CHECK(outcome.code == 2);
     CHECK_THAT(outcome.messages, Contains(message));
   }
+  CHECK(test::read_text(taken) == "mine");
+}
+
+TEST_CASE("identify by a fit tells what is amiss with a record", "[io]") {
+  const test::TemporaryFolder folder;
+  std::string dead = "time,imu_acceleration_z,imu_rate_y\n", late = dead;
+  const CsvTable table = read_csv(simulate(folder, "run.csv"));
+  const auto& times = table.column("time").values;
+  const auto& accelerations = table.column("imu_acceleration_z").values;
+  const auto& rates = table.column("imu_rate_y").values;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::string time = format_number(times[i]), rate = format_number(rates[i]) + "\n";
+    dead += time + ",9.81," + rate;
+    late += format_number(times[i] + 0.04) + "," + format_number(accelerations[i]) + "," + rate;
+  }
+  const test::Outcome stuck =
+      run_program(fit(folder.write("dead.csv", dead)) + " --window 0.3:1.5");
+  CHECK(stuck.code == 1);
+  CHECK_THAT(stuck.messages,
+             Contains("imu_acceleration_z is 9.81 in all 241 readings: does its sensor work?") &&
+                 Contains("residuals are larger than the noise") &&
+                 Contains("dead.csv: imu_acceleration_z: chi2 "));
+  // 8 sigma of the clock off: its bound is no answer, and a wider one is.
+  const std::string shifted = fit(folder.write("late.csv", late)) + " --window 0.3:1.5";
+  const test::Outcome held = run_program(shifted);
+  CHECK(held.code == 1);
+  CHECK_THAT(held.messages, Contains("hit_time = -0.025 s: held by its bound"));
+  const test::Outcome wider = run_program(shifted + " --prior hit_time=0,0.03");
+  CHECK(wider.code == 0);
+  CHECK_THAT(wider.messages, Contains("the residuals are smaller than the noise"));
+  CHECK_THAT(wider.out, Contains("hit_time") && Contains("-0.0400"));
 }
 
 }  // namespace

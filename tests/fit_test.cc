@@ -256,6 +256,18 @@ TEST_CASE("A bound holds a parameter and lets the others go", "[property]") {
   CHECK(fit_simulation(runs, unknowns).values[0] == Approx(40000.0).epsilon(tolerance(1e-3)));
 }
 
+TEST_CASE("On a bound derivatives are taken from inside", "[property]") {
+  const Case base = test::make_bump_case();
+  const std::vector<MeasuredRun> runs{test::measure(base, base, {})};
+  const std::vector<Unknown> unknowns{make_parameter(runs, "front_damping")};
+  REQUIRE(unknowns[0].low == 0.0);
+  ReadingSimulator simulator(runs, unknowns, {});
+  const Linearization on = simulator.linearize({0.0}), near = simulator.linearize({1.0});
+  REQUIRE(on.failure.empty());
+  // The slope changes little over 1 N s/m of 1980.
+  CHECK((on.jacobian - near.jacobian).norm() < tolerance(0.02) * near.jacobian.norm());
+}
+
 TEST_CASE("A bound that the search runs into on its way lets go again", "[property]") {
   const Case truth = test::make_bump_case();
   Case far = truth;
@@ -293,6 +305,67 @@ TEST_CASE("A far start arrives where a near one does", "[property]") {
   }
 }
 
+TEST_CASE("A clock that is off by more than the bump lasts is set before the search",
+          "[property]") {
+  Case truth = test::make_bump_case();
+  set_parameter(truth, "speed", 19.8);
+  // Without a look at other hit times the search ends in another valley.
+  const double off = GENERATE(-0.0097, 0.09, -0.09);
+  const std::vector<MeasuredRun> runs{
+      test::measure(test::make_known_case(), truth, {off, 0.3, -0.02, 1.0, 2})};
+  std::vector<Unknown> unknowns = test::make_suspension(runs);
+  const double sigma = std::abs(off) < 0.025 ? 0.005 : 0.025;
+  for (Unknown& u : make_nuisances(runs, {sigma, 0.2, {}}, unknowns)) unknowns.push_back(u);
+  const FitResult fit = fit_simulation(runs, unknowns);
+  CHECK(fit.converged);
+  CHECK(fit.is_adequate());
+  CHECK(fit.values[4] == Approx(off).margin(5.0 * fit.uncertainty.sigma[4]));
+  CHECK(fit.values[0] == Approx(40000.0).margin(5.0 * fit.uncertainty.sigma[0]));
+}
+
+TEST_CASE("Clocks are set to the step tried next to the truth, whatever the bias", "[property]") {
+  const Case base = test::make_bump_case();
+  MeasuredRun run = test::measure(base, base, {0.0067, 1.0, -0.1, 1.0, 3});
+  cut_window(run, 0.3, 0.5);  // ends on the first pulse, so that its mean is not that of rest
+  NuisanceSigmas sigmas;
+  sigmas.bias.assign(C::kCount, 0.0);
+  sigmas.bias[at(C::kImuAccelerationZ)] = 1.0;
+  sigmas.bias[at(C::kImuRateY)] = 0.1;
+  const std::vector<Unknown> unknowns = make_nuisances({run}, sigmas);
+  REQUIRE(unknowns[0].name == "hit_time");
+  std::vector<double> start;
+  start.reserve(unknowns.size());
+  for (const Unknown& u : unknowns) start.push_back(u.start);
+  const auto align = [&](const MeasuredRun& r) {
+    return ReadingSimulator({r}, unknowns, {}).align(start)[0];
+  };
+  CHECK(align(run) == Approx(0.0067).margin(tolerance(0.51e-3)));
+  // Readings that tell nothing leave what was known before.
+  for (MeasuredChannel& c : run.channels) c.sigma *= 1e6;
+  CHECK(align(run) == 0.0);
+}
+
+TEST_CASE("Only what was measured during the maneuver is compared", "[unit]") {
+  const Case base = test::make_bump_case();  // 1.3 s
+  const MeasuredRun run = test::measure(base, base, {});
+  MeasuredRun longer = run;
+  for (int i = 1; i <= 1000; ++i) {
+    longer.times.push_back(run.times.back() + i);
+    for (MeasuredChannel& c : longer.channels) c.values.push_back(0.0);
+  }
+  const std::vector<Unknown> unknowns{make_parameter({run}, "front_damping")};
+  const ReadingSimulator shorter({run}, unknowns, {}), simulator({longer}, unknowns, {});
+  CHECK(simulator.reading_count() == shorter.reading_count());
+  CHECK(simulator.outside_count() == shorter.outside_count() + 2000);
+  // A known offset of the clock counts.
+  for (double& t : longer.times) t += 100.0;
+  const std::vector<Unknown> late{make_hit_time(0, {-100.0, 0.001})};
+  CHECK(ReadingSimulator({longer}, late, {}).outside_count() < 2010);
+  CHECK_THROWS_WITH(
+      ReadingSimulator({longer}, unknowns, {}),
+      Contains("truth: time runs from 100 to 1101.3 s, the maneuver from 0 to 1.3 s"));
+}
+
 TEST_CASE("A simulation that cannot be is told, not thrown, and no start", "[unit]") {
   const Case base = test::make_bump_case();
   const MeasuredRun run = test::measure(base, base, {});
@@ -324,6 +397,10 @@ TEST_CASE("Residuals that are not white show it", "[property]") {
   const std::vector<Unknown> unknowns{make_parameter({white}, "front_damping")};
   const FitResult good = fit_simulation({white}, unknowns), bad = fit_simulation({wrong}, unknowns);
   CHECK(good.is_adequate());
+  CHECK_FALSE(good.is_quiet());
+  MeasuredRun quiet = white;
+  for (MeasuredChannel& c : quiet.channels) c.sigma *= 2.0;
+  CHECK(fit_simulation({quiet}, unknowns).is_quiet());
   CHECK_FALSE(bad.is_adequate());
   const double limit = 4.0 / std::sqrt(static_cast<double>(good.channels[1].count));
   CHECK(std::abs(good.channels[1].neighbor_correlation) < limit);

@@ -10,6 +10,7 @@
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/test_model.h"
+#include "train/interval.h"
 
 namespace strut {
 namespace {
@@ -19,8 +20,6 @@ using test::Outcome;
 using test::run_program;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
-
-constexpr double kNormal95 = 1.959963984540054;
 
 TEST_CASE("An identifier's Jacobian is that of differences", "[property]") {
   const Model model = test::make_random_model(

@@ -1,5 +1,6 @@
 #include "train/model_file.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <random>
@@ -191,6 +192,21 @@ TEST_CASE("A flipped bit in a model is an error, or changes nothing", "[io][prop
   }
   CHECK(wrong == 0);
   CHECK(found > 100);
+}
+
+TEST_CASE("The intervals of a model are under its checksum", "[io]") {
+  const TemporaryFolder folder;
+  const Model model = make_model();
+  write_model(folder / "m.h5", model);
+  const std::vector<std::byte> good = read_bytes(folder / "m.h5");
+  const double number = model.ci95[0];
+  const auto* const begin = reinterpret_cast<const std::byte*>(&number);
+  std::vector<std::byte> image = good;
+  const auto at = std::search(image.begin(), image.end(), begin, begin + sizeof number);
+  REQUIRE(at != image.end());
+  *at ^= std::byte{1};  // an ulp
+  write_bytes(folder / "m.h5", image, "m.h5");
+  CHECK_THROWS_WITH(read_model(folder / "m.h5"), Contains("checksum"));
 }
 
 TEST_CASE("A model meets a full disk and leaves what was there", "[io]") {

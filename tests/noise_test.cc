@@ -6,6 +6,7 @@
 #include <set>
 
 #include "io/input_error.h"
+#include "sweep/sensor_noise.h"
 #include "tests/test_car.h"
 #include "train/dataset_source.h"
 
@@ -89,6 +90,22 @@ TEST_CASE("Noise that is none is refused by channel and value", "[unit]") {
   check({{1.0}, {0.0}}, "each of the 2 channels");
   check({{1.0, 1.0}, {0.0, 0.0}, -1.0}, "hit time");
   check({{1.0, 1.0}, {0.0, 0.0}, 0.0, 0}, "copies = 0");
+}
+
+TEST_CASE("What has a bias by default has noise, and a bias larger than it", "[unit]") {
+  const SensorNoise noise = make_default_noise(), bias = make_default_bias();
+  int biased = 0;
+  for (std::size_t c = 0; c < bias.size(); ++c) {
+    if (bias[c] == 0.0) continue;
+    ++biased;
+    INFO(list_car_channels()[c].name);
+    CHECK(noise[c] > 0.0);
+    CHECK(bias[c] > noise[c]);
+  }
+  CHECK(biased == 12 + 2 * kCorners);
+  // Data sheets: offsets of 20 to 60 mg, 0.5 to 3 deg/s.
+  CHECK(bias[CarChannel::kImuAccelerationZ] == Approx(9.81 * 0.04).margin(9.81 * 0.02));
+  CHECK(bias[CarChannel::kImuRateY] == Approx(0.0305).margin(0.0218));
 }
 
 TEST_CASE("Noisy copies of a snapshot stay in the part of their case", "[property]") {

@@ -49,6 +49,20 @@ TEST_CASE("A shifted sine is that of the shifted time to sixth order", "[propert
   CHECK(calc_sine_error(0.1) / calc_sine_error(0.05) == Approx(64.0).epsilon(0.1));
 }
 
+TEST_CASE("White noise read between samples has the variance of the weights", "[statistical]") {
+  CHECK(calc_shift_gain(0.0) == 1.0);
+  CHECK(calc_shift_gain(0.3) == Approx(calc_shift_gain(0.7)));
+  const double u = GENERATE(0.2, 0.5);
+  const NoiseModel noise{{1.0}, {0.0}};
+  std::vector<double> signal(60000), between(signal.size() - 10);
+  NoiseDraw(noise, 1, 0).add(0, signal);
+  read_shifted(signal, 3.0 + u, between);
+  double squares = 0.0;
+  for (const double y : between) squares += y * y / static_cast<double>(between.size());
+  // Standard error of a variance sqrt(2 / n), less than doubled by the correlation; five of them.
+  CHECK(calc_shift_gain(u) == Approx(squares).epsilon(10.0 * std::sqrt(2.0 / 60000.0)));
+}
+
 TEST_CASE("A shift by whole samples copies and one beyond the signal is refused", "[unit]") {
   const std::vector<double> signal = {0, 1, 4, 9, 16, 25, 36, 49};
   std::vector<double> window(3);
@@ -237,13 +251,12 @@ TEST_CASE("Copies of a record stay in the part of their case and differ", "[prop
   CHECK(seen.size() == 60);
 }
 
-TEST_CASE("What a noisy record leaves over is noise alone", "[statistical]") {
+TEST_CASE("What a noisy record leaves over is noise alone, wherever samples lie", "[statistical]") {
   Pulses pulses(60);
   const TrainingRows rows = make_rows(pulses, 1);
-  // Reading between samples smooths white noise: its variance falls to between 1 and 0.63 (at half
-  // a sample), on average over shifts to 0.80.
-  CHECK(rows.window->leftover_mean == Approx(0.80).margin(0.06));
-  CHECK(rows.window->leftover_deviation < 0.2);
+  // 232 degrees of freedom: 0.093, more where reading between samples correlates them; 126 records.
+  CHECK(rows.window->leftover_mean == Approx(1.0).margin(0.04));
+  CHECK(rows.window->leftover_deviation < 0.13);
 }
 
 TEST_CASE("A window that does not fit its data is refused", "[unit]") {
@@ -258,6 +271,7 @@ TEST_CASE("A window that does not fit its data is refused", "[unit]") {
   check(both, {0.1, 1.0}, "--window = 0.1:1: must begin before it ends and lie in [0.17, 1.83] s");
   check(both, {0.5, 2.0}, "--window = 0.5:2");
   check(both, {1.0, 0.5}, "begin before it ends");
+  check(both, {0.5, 1.0, 1.0}, "the histories, 2 s, have no room between the 1.12 s");
   check({{"imu_acceleration_z", "pitch_angle"}, {}}, {0.4, 1.0},
         "no history channel 'pitch_angle'");
   check({{"imu_acceleration_z", "imu_rate_y"}, {"mass"}}, {0.4, 1.0}, "no parameter 'mass'");

@@ -35,6 +35,12 @@ void require_trained_on(const Model& model, const Dataset& dataset, const RowSto
   }
 }
 
+/// The noise of the training, drawn anew for other cases: draws belong to row numbers.
+NoiseModel choose_noise(NoiseModel noise, const Model& model, const Dataset& dataset) {
+  if (dataset.plan_hash() != model.plan_hash) ++noise.seed;
+  return noise;
+}
+
 /// The model's inputs and targets, as noisy as those it was trained on.
 RowStore read_rows(const Model& model, Dataset& dataset, EvaluatedPart part,
                    const RowStoreOptions& store) {
@@ -54,11 +60,15 @@ RowStore read_rows(const Model& model, Dataset& dataset, EvaluatedPart part,
   if (model.window) {
     const WindowRecords records = read_records_for(*model.window, choice, dataset, store);
     take_test(records.rows);
-    return make_component_rows(records, *model.window, takes, 1, store);
+    WindowTransform window = *model.window;
+    window.noise = choose_noise(window.noise, model, dataset);
+    return make_component_rows(records, window, takes, 1, store);
   }
   UsableRows usable = read_usable_rows(dataset, choice, store);
   take_test(usable.rows);
-  if (model.noise) return make_noisy_rows(usable.rows, *model.noise, takes, store);
+  if (model.noise) {
+    return make_noisy_rows(usable.rows, choose_noise(*model.noise, model, dataset), takes, store);
+  }
   return split ? take_part(usable.rows, *split, Part::kTest, store) : std::move(usable.rows);
 }
 

@@ -12,6 +12,8 @@ namespace strut {
 
 /// Probability with which an interval holds the true value.
 inline constexpr double kCoverage = 0.95;
+/// Half width of such an interval in standard deviations of a normal distribution.
+inline constexpr double kNormal95 = 1.959963984540054;
 
 /// The ceil((n + 1) coverage)-th smallest of n absolute errors, which keeps the promise
 /// P(|error of a new case| <= width) >= coverage for any distribution, as long as the new case is

@@ -15,6 +15,10 @@ namespace {
 /// Room for rounding of times that are whole numbers of samples, in samples.
 constexpr double kRounding = 1e-6;
 
+double calc_last_time(const ShardSchema& schema) {
+  return static_cast<double>(schema.history_samples - 1) * schema.history_interval;
+}
+
 void require_histories(const ShardSchema& schema) {
   if (!schema.history.empty()) return;
   throw InputError(
@@ -41,11 +45,18 @@ WindowGrid make_window_grid(const ShardSchema& schema, const WindowChoice& choic
   const auto low = static_cast<double>(beyond);
   const double high =
       static_cast<double>(schema.history_samples) - 1.0 - static_cast<double>(beyond);
+  const std::string sides =
+      format_rounded(low * interval) + " s that aligning and hit times take on both sides";
+  if (high <= low) {
+    throw InputError("--window, --align, --hit-time-sigma: the histories, " +
+                     format_rounded(calc_last_time(schema)) + " s, have no room between the " +
+                     sides);
+  }
   if (!(first >= low && last <= high && last > first)) {
-    throw InputError("--window = " + format_number(choice.from) + ":" + format_number(choice.to) +
-                     ": must begin before it ends and lie in [" + format_number(low * interval) +
-                     ", " + format_number(high * interval) + "] s, the histories but for " +
-                     format_number(low * interval) + " s on both sides for aligning and hit times");
+    throw InputError("--window = " + format_rounded(choice.from) + ":" + format_rounded(choice.to) +
+                     ": must begin before it ends and lie in [" + format_rounded(low * interval) +
+                     ", " + format_rounded(high * interval) + "] s, the histories but for the " +
+                     sides);
   }
   grid.first = static_cast<std::int64_t>(first);
   grid.samples = static_cast<std::size_t>(last - first) + 1;

@@ -18,6 +18,12 @@ std::array<double, ShiftStencil::kSamples> calc_shift_weights(double u) {
   return weights;
 }
 
+double calc_shift_gain(double u) {
+  double gain = 0.0;
+  for (const double weight : calc_shift_weights(u)) gain += weight * weight;
+  return gain;
+}
+
 void read_shifted(std::span<const double> from, double begin, std::span<double> to) {
   const double whole = std::floor(begin);
   const double last = whole + static_cast<double>(to.size()) + 2.0;

@@ -1,14 +1,21 @@
 #include "train/window_transform.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "io/input_error.h"
 #include "train/window_shift.h"
 
 namespace strut {
 namespace {
+
+using ConstMap = Eigen::Map<const Eigen::ArrayXd>;
+using MutableMap = Eigen::Map<Eigen::ArrayXd>;
+
+ConstMap map_values(const double* first, std::size_t count) {
+  return {first, static_cast<Eigen::Index>(count)};
+}
 
 /// Squared distance of a record's window at `begin` from the reference, without the reference's own
 /// square, which is the same everywhere.
@@ -17,16 +24,11 @@ double calc_distance(const WindowTransform& transform, const RecordView& record,
   const std::size_t n = transform.grid.samples;
   double distance = 0.0;
   for (std::size_t c = 0; c < transform.channels.size(); ++c) {
-    const double* const y = record.channel(c).data() + begin;
-    const double* const reference = transform.reference.data() + c * n;
+    const ConstMap y = map_values(record.channel(c).data() + begin, n);
+    const ConstMap reference = map_values(transform.reference.data() + c * n, n);
     // Of the differences from the first sample, which leaves more digits than y itself does.
-    double sum = 0.0, squares = 0.0, product = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double x = y[i] - y[0];
-      sum += x;
-      squares += x * x;
-      product += x * reference[i];
-    }
+    const auto x = y - y(0);
+    const double sum = x.sum(), squares = x.square().sum(), product = (x * reference).sum();
     const double sigma = transform.noise.sigma[c];
     const double spread = squares - sum * sum / static_cast<double>(n);
     distance += spread / (sigma * sigma) - 2.0 * product / sigma;
@@ -35,17 +37,11 @@ double calc_distance(const WindowTransform& transform, const RecordView& record,
 }
 
 void whiten(double sigma, double bias, std::span<double> window) {
+  MutableMap y(window.data(), static_cast<Eigen::Index>(window.size()));
   const auto n = static_cast<double>(window.size());
-  double sum = 0.0;
-  for (const double y : window) sum += y;
   const double q = 1.0 - 1.0 / std::sqrt(1.0 + n * (bias / sigma) * (bias / sigma));
-  for (double& y : window) y = (y - q * sum / n) / sigma;
-}
-
-double dot(const double* a, const double* b, std::size_t count) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) sum += a[i] * b[i];
-  return sum;
+  const double mean = y.mean();
+  y = (y - q * mean) / sigma;
 }
 
 }  // namespace
@@ -92,10 +88,11 @@ void read_white_window(const WindowTransform& transform, const RecordView& recor
 WindowReading project_window(const WindowTransform& transform, std::span<double> window,
                              std::span<double> components) {
   const std::size_t size = transform.window_size();
-  for (std::size_t i = 0; i < size; ++i) window[i] -= transform.mean[i];
-  double left = dot(window.data(), window.data(), size);
+  MutableMap x(window.data(), static_cast<Eigen::Index>(size));
+  x -= map_values(transform.mean.data(), size);
+  double left = x.square().sum();
   for (std::size_t k = 0; k < transform.components(); ++k) {
-    components[k] = dot(transform.basis.data() + k * size, window.data(), size);
+    components[k] = (map_values(transform.basis.data() + k * size, size) * x).sum();
     left -= components[k] * components[k];
   }
   const auto free = static_cast<double>(size - transform.components());
@@ -109,6 +106,9 @@ WindowReading read_components(const WindowTransform& transform, const RecordView
   read_white_window(transform, record, place.begin, window);
   WindowReading reading = project_window(transform, window, components);
   reading.place = place;
+  if (transform.grid.lags > 0) {
+    reading.leftover /= calc_shift_gain(place.begin - std::floor(place.begin));
+  }
   return reading;
 }
 

@@ -42,8 +42,9 @@ struct WindowTransform {
   std::vector<double> reference;  // what records are aligned to; empty: nothing
   std::vector<double> mean;
   std::vector<double> basis;  // orthonormal directions, one after the other
-  /// What the directions leave over of a record, per degree of freedom (1: noise alone): mean and
-  /// standard deviation over noisy training records.
+  /// What the directions leave over of a record, per degree of freedom and over what reading
+  /// between samples leaves of white noise (1: noise alone): mean and standard deviation over noisy
+  /// training records.
   double leftover_mean = 1.0, leftover_deviation = 0.0;
 
   std::size_t window_size() const { return channels.size() * grid.samples; }
