@@ -12,6 +12,7 @@
 
 #include "io/atomic_file.h"
 #include "io/nearest_name.h"
+#include "io/parse_number.h"
 
 namespace strut {
 
@@ -103,9 +104,7 @@ class CsvReader {
       const std::string name(strip_quotes(cell));
       if (name.empty()) throw error("a column has no name");
       if (!seen.insert(name).second) throw error("column '" + name + "' stands there twice");
-      double number = 0.0;
-      const auto result = std::from_chars(name.data(), name.data() + name.size(), number);
-      if (result.ec == std::errc() && result.ptr == name.data() + name.size()) {
+      if (parse_number<double>(name)) {
         throw error("column name expected, number " + name + " found");
       }
       table_.columns.push_back({name, "", {}});
@@ -134,10 +133,8 @@ class CsvReader {
 
   double parse_cell(std::string_view cell, const std::string& column) const {
     const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
-    const char* end = digits.data() + digits.size();
-    double value = 0.0;
-    const auto result = std::from_chars(digits.data(), end, value);
-    if (result.ec == std::errc() && result.ptr == end && std::isfinite(value)) return value;
+    const auto value = parse_number<double>(digits);
+    if (value && std::isfinite(*value)) return *value;
     throw error(column + " = '" + std::string(cell) + "': must be a finite number");
   }
 

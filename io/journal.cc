@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "io/file_sync.h"
+#include "io/parse_number.h"
 #include "io/sha256.h"
 
 namespace strut {
@@ -65,8 +66,9 @@ std::string write_number(Number value) {
 
 template <typename Number>
 bool read_number(std::string_view text, Number& value) {
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  return result.ec == std::errc{} && result.ptr == text.data() + text.size();
+  const auto parsed = parse_number<Number>(text);
+  value = parsed.value_or(Number{});
+  return parsed.has_value();
 }
 
 std::string calc_check(std::string_view text) {

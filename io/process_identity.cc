@@ -4,12 +4,12 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <filesystem>
 #include <sstream>
 
 #include "io/file_sync.h"
+#include "io/parse_number.h"
 
 namespace strut {
 
@@ -81,10 +81,8 @@ ProcessIdentity find_own_identity() {
 
 Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own) {
   if (!share_process_ids(process, own)) return Life::kUnknown;
-  pid_t number = 0;
-  const char* end = process.process.data() + process.process.size();
-  const auto parsed = std::from_chars(process.process.data(), end, number);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || number <= 0) return Life::kUnknown;
+  const pid_t number = parse_number<pid_t>(process.process).value_or(0);
+  if (number <= 0) return Life::kUnknown;
   if (::kill(number, 0) != 0 && errno == ESRCH) return Life::kGone;
   const ProcessState state = read_process_state(process.process);
   // /proc may hide other users' processes; a runner's file may be half written.

@@ -1,12 +1,12 @@
 #include "io/sweep_folder.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <map>
 #include <system_error>
 
 #include "io/input_error.h"
+#include "io/parse_number.h"
 
 namespace strut {
 namespace {
@@ -22,11 +22,8 @@ std::string SweepFolder::shard_name(std::int64_t shard) {
 }
 
 std::int64_t SweepFolder::parse_shard_name(const std::string& name) {
-  std::int64_t shard = -1;
-  const char* const end = name.data() + name.size();
-  const auto parsed = std::from_chars(name.data(), end, shard);
-  const bool whole = parsed.ec == std::errc() && parsed.ptr == end;
-  return whole && name == shard_name(shard) ? shard : -1;
+  const auto shard = parse_number<std::int64_t>(name);
+  return shard && name == shard_name(*shard) ? *shard : -1;
 }
 
 std::vector<std::int64_t> list_shards(const SweepFolder& folder) {

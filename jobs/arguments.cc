@@ -1,9 +1,9 @@
 #include "jobs/arguments.h"
 
-#include <charconv>
 #include <iostream>
 
 #include "io/nearest_name.h"
+#include "io/parse_number.h"
 
 namespace strut {
 namespace {
@@ -94,11 +94,8 @@ std::vector<std::string> Arguments::list(const std::string& name) const {
 double Arguments::number_or(const std::string& name, double fallback, const Range& allowed) const {
   if (!has(name)) return fallback;
   const std::string digits = text(name);
-  const char* end = digits.data() + digits.size();
-  double value = 0.0;
-  const auto result = std::from_chars(digits.data(), end, value);
-  const bool is_number = result.ec == std::errc() && result.ptr == end;
-  if (is_number && allowed.contains(value)) return value;
+  const auto value = parse_number<double>(digits);
+  if (value && allowed.contains(*value)) return *value;
   throw InputError("--" + name + " = " + digits + ": " + allowed.describe());
 }
 
@@ -106,11 +103,8 @@ std::int64_t Arguments::integer_or(const std::string& name, std::int64_t fallbac
                                    std::int64_t high) const {
   if (!has(name)) return fallback;
   const std::string digits = text(name);
-  const char* end = digits.data() + digits.size();
-  std::int64_t value = 0;
-  const auto result = std::from_chars(digits.data(), end, value);
-  const bool is_integer = result.ec == std::errc() && result.ptr == end;
-  if (is_integer && value >= low && value <= high) return value;
+  const auto value = parse_number<std::int64_t>(digits);
+  if (value && *value >= low && *value <= high) return *value;
   throw InputError("--" + name + " = " + digits + ": must be a whole number in [" +
                    std::to_string(low) + ", " + std::to_string(high) + "]");
 }

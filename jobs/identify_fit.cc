@@ -1,7 +1,6 @@
 #include "jobs/identify_fit.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "diagnose/fit.h"
 #include "io/measurement.h"
 #include "io/nearest_name.h"
+#include "io/parse_number.h"
 #include "jobs/command.h"
 #include "jobs/identify_fit_report.h"
 #include "jobs/lists.h"
@@ -36,12 +36,9 @@ auto name_option(const std::string& option, const Function& function) {
   }
 }
 
-double parse_number(const std::string& text, const std::string& what) {
-  double value = 0.0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec == std::errc() && result.ptr == text.data() + text.size() && std::isfinite(value)) {
-    return value;
-  }
+double read_number(const std::string& text, const std::string& what) {
+  const auto value = parse_number<double>(text);
+  if (value && std::isfinite(*value)) return *value;
   throw InputError(what + " = '" + text + "': must be a number");
 }
 
@@ -76,8 +73,8 @@ std::pair<double, double> read_window(const Arguments& arguments) {
   const std::string text = arguments.text("window");
   const auto colon = text.find(':');
   if (colon == std::string::npos) throw InputError("--window = " + text + ": must be FROM:TO");
-  const double from = parse_number(text.substr(0, colon), "--window: FROM");
-  const double to = parse_number(text.substr(colon + 1), "--window: TO");
+  const double from = read_number(text.substr(0, colon), "--window: FROM");
+  const double to = read_number(text.substr(colon + 1), "--window: TO");
   if (!(from < to)) throw InputError("--window = " + text + ": FROM must be below TO");
   return {from, to};
 }
@@ -176,8 +173,8 @@ std::pair<std::string, Prior> parse_prior(const std::string& setting) {
     throw InputError("--prior: '" + setting + "': must be NAME=MEAN,SIGMA, as speed=20,0.1");
   }
   const std::string name = setting.substr(0, equals);
-  const Prior prior{parse_number(setting.substr(equals + 1, comma - equals - 1), "--prior: mean"),
-                    parse_number(setting.substr(comma + 1), "--prior: sigma")};
+  const Prior prior{read_number(setting.substr(equals + 1, comma - equals - 1), "--prior: mean"),
+                    read_number(setting.substr(comma + 1), "--prior: sigma")};
   if (!(prior.sigma > 0.0)) throw InputError("--prior: '" + setting + "': sigma must be > 0");
   return {name, prior};
 }

@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
+#include "io/parse_number.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
@@ -50,10 +50,7 @@ void read_shards(const Arguments& arguments, const Plan& plan, RunOptions& optio
   const std::string text = arguments.text("shards");
   const std::size_t colon = text.find(':');
   const auto parse = [&](const std::string& number, std::int64_t fallback) {
-    if (number.empty()) return fallback;
-    std::int64_t value = -1;
-    const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
-    return parsed.ptr == number.data() + number.size() ? value : -1;
+    return number.empty() ? fallback : parse_number<std::int64_t>(number).value_or(-1);
   };
   const std::int64_t first = parse(text.substr(0, colon), 0);
   const std::int64_t end =

@@ -1,13 +1,13 @@
 #include "jobs/train.h"
 
 #include <atomic>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <mutex>
 
+#include "io/parse_number.h"
 #include "jobs/arguments.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
@@ -77,14 +77,12 @@ std::vector<int> read_hidden(const Arguments& arguments) {
   const std::string text = arguments.text("hidden");
   std::vector<int> sizes;
   for (const std::string& part : split_list(text)) {
-    int size = 0;
-    const auto result = std::from_chars(part.data(), part.data() + part.size(), size);
-    const bool whole = result.ec == std::errc() && result.ptr == part.data() + part.size();
-    if (!whole || size < 1 || size > NetworkShape::kLargestSize) {
+    const auto size = parse_number<int>(part);
+    if (!size || *size < 1 || *size > NetworkShape::kLargestSize) {
       throw InputError("--hidden = " + text + ": must be whole numbers in [1, " +
                        std::to_string(NetworkShape::kLargestSize) + "], as 27,19,11");
     }
-    sizes.push_back(size);
+    sizes.push_back(*size);
   }
   return sizes;
 }

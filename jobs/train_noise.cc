@@ -1,9 +1,9 @@
 #include "jobs/train_noise.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "io/nearest_name.h"
+#include "io/parse_number.h"
 #include "io/shard_layout.h"
 #include "sweep/find_channel.h"
 #include "sweep/parameters.h"
@@ -18,9 +18,7 @@ constexpr int kCopies = 8, kMostCopies = 10'000;
 constexpr double kHitTime = 0.005;
 
 double read_time(const std::string& option, const std::string& text) {
-  double value = 0.0;
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (result.ec == std::errc() && result.ptr == text.data() + text.size()) return value;
+  if (const auto value = parse_number<double>(text)) return *value;
   throw InputError("--window = " + option + ": must be FROM:TO in s, as 0.3:2.5");
 }
 

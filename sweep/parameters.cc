@@ -1,10 +1,10 @@
 #include "sweep/parameters.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "io/nearest_name.h"
+#include "io/parse_number.h"
 
 namespace strut {
 
@@ -269,13 +269,8 @@ std::pair<std::string, double> parse_setting(const std::string& setting) {
     throw InputError("'" + setting + "': must be name=value, for example front_stiffness=38000");
   }
   const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
-  const char* end = text.data() + text.size();
-  double value = 0.0;
-  const auto result = std::from_chars(text.data(), end, value);
-  if (result.ec != std::errc() || result.ptr != end) {
-    throw InputError(name + " = '" + text + "': must be a number");
-  }
-  return {name, value};
+  if (const auto value = parse_number<double>(text)) return {name, *value};
+  throw InputError(name + " = '" + text + "': must be a number");
 }
 
 void apply_setting(Case& c, const std::string& setting) {
