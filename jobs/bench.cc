@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "jobs/arguments.h"
-#include "jobs/bench_report.h"
+#include "jobs/bench/find_example.h"
+#include "jobs/bench/report.h"
 #include "jobs/command.h"
-#include "jobs/find_example.h"
 #include "jobs/machine.h"
 #include "jobs/open_sweep.h"
 

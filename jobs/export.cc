@@ -8,8 +8,8 @@
 #include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/output_file.h"
-#include "train/export_header.h"
-#include "train/export_onnx.h"
+#include "train/export/header.h"
+#include "train/export/onnx.h"
 #include "train/model_file.h"
 
 namespace strut {

@@ -4,10 +4,10 @@
 
 #include "jobs/arguments.h"
 #include "jobs/command.h"
-#include "jobs/identify_fit.h"
-#include "jobs/identify_result.h"
-#include "jobs/identify_snapshot.h"
-#include "jobs/identify_window.h"
+#include "jobs/identify/fit.h"
+#include "jobs/identify/result.h"
+#include "jobs/identify/snapshot.h"
+#include "jobs/identify/window.h"
 #include "train/model_file.h"
 
 namespace strut {

@@ -7,8 +7,8 @@
 #include <ctime>
 
 #include "io/config.h"
+#include "jobs/bench/step_check.h"
 #include "jobs/load_case.h"
-#include "jobs/step_check.h"
 #include "sweep/simulate_cases.h"
 
 namespace strut {

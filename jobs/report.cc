@@ -7,8 +7,8 @@
 #include "jobs/arguments.h"
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
-#include "jobs/report_sweep.h"
-#include "jobs/study_report.h"
+#include "jobs/report/sweep.h"
+#include "jobs/study/report.h"
 
 namespace strut {
 namespace {

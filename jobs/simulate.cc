@@ -9,12 +9,12 @@
 #include <iostream>
 
 #include "jobs/arguments.h"
+#include "jobs/bench/step_check.h"
 #include "jobs/command.h"
 #include "jobs/json.h"
-#include "jobs/kinematics.h"
 #include "jobs/run_file.h"
-#include "jobs/simulate_rig.h"
-#include "jobs/step_check.h"
+#include "jobs/simulate/kinematics.h"
+#include "jobs/simulate/rig.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
 

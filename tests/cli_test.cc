@@ -5,7 +5,7 @@
 
 #include "io/csv.h"
 #include "io/hdf5.h"
-#include "jobs/bench_cases.h"
+#include "jobs/bench/cases.h"
 #include "jobs/json.h"
 #include "model/vehicle/channels.h"
 #include "tests/parse_json.h"

@@ -8,7 +8,7 @@
 #include "io/config.h"
 #include "tests/run_program.h"
 #include "tests/test_model.h"
-#include "train/export_header.h"
+#include "train/export/header.h"
 
 namespace strut {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "tests/run_program.h"
 #include "tests/test_model.h"
-#include "train/export_header.h"
-#include "train/export_onnx.h"
+#include "train/export/header.h"
+#include "train/export/onnx.h"
 
 namespace strut {
 namespace {

@@ -6,7 +6,7 @@
 #include "io/config.h"
 #include "io/csv.h"
 #include "io/hdf5.h"
-#include "jobs/identify_snapshot.h"
+#include "jobs/identify/snapshot.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/test_model.h"

@@ -1,14 +1,13 @@
 // Recorded windows, as `strut identify` meets them.
-#include "jobs/identify_window.h"
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "io/csv.h"
 #include "io/shard_layout.h"
+#include "jobs/identify/window.h"
 #include "tests/window_sweep.h"
 #include "train/model_file.h"
-#include "train/window_rows.h"
+#include "train/window/rows.h"
 
 namespace strut {
 namespace {

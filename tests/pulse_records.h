@@ -12,7 +12,7 @@
 #include "model/math/random.h"
 #include "tests/example_shard.h"
 #include "tests/temporary_folder.h"
-#include "train/window_records.h"
+#include "train/window/records.h"
 
 namespace strut::test {
 

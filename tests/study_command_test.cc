@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "jobs/study_results.h"
+#include "jobs/study/results.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/study_files.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "io/toml_text.h"
-#include "jobs/figure.h"
-#include "jobs/html.h"
+#include "jobs/report/figure.h"
+#include "jobs/report/html.h"
 #include "tests/temporary_folder.h"
 #include "tests/test_sweep.h"
 #include "train/training_table.h"

@@ -9,8 +9,8 @@
 #include "io/input_error.h"
 #include "tests/pulse_records.h"
 #include "tests/test_car.h"
-#include "train/window_rows.h"
-#include "train/window_shift.h"
+#include "train/window/rows.h"
+#include "train/window/shift.h"
 
 namespace strut {
 namespace {

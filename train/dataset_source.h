@@ -14,7 +14,7 @@
 #include "train/normalizer.h"
 #include "train/row_source.h"
 #include "train/split.h"
-#include "train/window_transform.h"
+#include "train/window/transform.h"
 
 namespace strut {
 

@@ -7,7 +7,7 @@
 #include "io/input_error.h"
 #include "io/shard_layout.h"
 #include "train/network.h"
-#include "train/window_rows.h"
+#include "train/window/rows.h"
 
 namespace strut {
 namespace {

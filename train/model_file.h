@@ -13,7 +13,7 @@
 #include "train/levenberg_marquardt.h"
 #include "train/noise.h"
 #include "train/normalizer.h"
-#include "train/window_transform.h"
+#include "train/window/transform.h"
 
 namespace strut {
 

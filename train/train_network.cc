@@ -6,7 +6,7 @@
 #include "io/nearest_name.h"
 #include "io/shard_layout.h"
 #include "train/interval.h"
-#include "train/window_rows.h"
+#include "train/window/rows.h"
 
 namespace strut {
 namespace {

@@ -13,7 +13,7 @@
 #include "train/growing_sample.h"
 #include "train/model_file.h"
 #include "train/network_problem.h"
-#include "train/window_records.h"
+#include "train/window/records.h"
 
 namespace strut {
 

@@ -1,13 +1,12 @@
 # strut_room(NAME [SUBFOLDERS a b ...] [EXCLUDE file ...] [LINK lib ...])
 #
-# Makes strut::NAME, the library of one room: the .cc files of this folder, or of its SUBFOLDERS.
+# Makes strut::NAME, the library of one room: the .cc files of this folder and of its SUBFOLDERS.
 # A room without sources is its headers and what it links.
 function(strut_room name)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SUBFOLDERS;EXCLUDE;LINK")
-  set(patterns *.cc)
-  if(room_SUBFOLDERS)
-    list(TRANSFORM room_SUBFOLDERS APPEND /*.cc OUTPUT_VARIABLE patterns)
-  endif()
+  set(patterns ${room_SUBFOLDERS})
+  list(TRANSFORM patterns APPEND /*.cc)
+  list(APPEND patterns *.cc)
   list(TRANSFORM patterns PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   file(GLOB sources CONFIGURE_DEPENDS ${patterns})
   list(TRANSFORM room_EXCLUDE PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)

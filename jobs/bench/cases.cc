@@ -1,0 +1,139 @@
+#include "jobs/bench/cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "jobs/machine.h"
+#include "jobs/run_file.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+/// The paper's grid, from new to most degraded.
+struct Axis {
+  const char* name;
+  double from, to;
+};
+constexpr Axis kAxes[] = {{"front_stiffness", 40000.0, 35500.0},
+                          {"front_damping", 1980.0, 1800.0},
+                          {"rear_stiffness", 35000.0, 30500.0},
+                          {"rear_damping", 1980.0, 1800.0}};
+/// Additive recurrence with irrational steps: every case differs in every parameter.
+constexpr double kSteps[] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
+                             0.5385972572236101};
+
+SamplePlan make_reference_plan() {
+  SamplePlan plan;
+  plan.interval = 1.0 / kBenchRate;
+  return plan;
+}
+
+/// The body's acceleration in one lane, every 1 / kBenchRate.
+std::vector<double> get_acceleration(const LaneResults& results, std::size_t lane) {
+  std::vector<double> values;
+  const auto lanes = static_cast<std::size_t>(results.lanes);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(results.sample_count); ++i) {
+    values.push_back(
+        results.history[(i * CarChannel::kCount + CarChannel::kBodyAccelerationZ) * lanes + lane]);
+  }
+  return values;
+}
+
+/// rms(values - reference) / rms(reference).
+double calc_relative_error(const std::vector<double>& values,
+                           const std::vector<double>& reference) {
+  double difference = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    difference += square(values[i] - reference[i]);
+    size += square(reference[i]);
+  }
+  return std::sqrt(difference / size);
+}
+
+}  // namespace
+
+BenchCases make_bench_cases(const CaseSource& source, int count) {
+  BenchCases bench;
+  Case c = load_case(source);
+  bench.duration = c.maneuver.duration;
+  CasePreparer preparer;  // makes the mechanism once, as a sweep does
+  bench.cases.push_back(prepare_case(source, c, preparer));
+  const double start = now();
+  for (int i = 1; i < count; ++i) {
+    for (std::size_t p = 0; p < std::size(kAxes); ++p) {
+      const double share = std::fmod(i * kSteps[p], 1.0);
+      set_parameter(c, kAxes[p].name, kAxes[p].from + share * (kAxes[p].to - kAxes[p].from));
+    }
+    bench.cases.push_back(prepare_case(source, c, preparer));
+  }
+  bench.seconds_to_prepare = (now() - start) / std::max(1, count - 1);
+  for (const PreparedCase& prepared : bench.cases) {
+    const LaneResults reference = run_cvode(prepared, {}, make_reference_plan());
+    bench.acceleration.push_back(get_acceleration(reference, 0));
+  }
+  return bench;
+}
+
+LaneResults run_cases(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting,
+                      const SamplePlan& plan) {
+  if (!setting.in_lanes) return kernel.run_scalar(bench.cases[0], setting.options, plan);
+  std::vector<const PreparedCase*> pointers;
+  for (const PreparedCase& c : bench.cases) pointers.push_back(&c);
+  return kernel.run_lanes(pointers.data(), static_cast<int>(pointers.size()), setting.options,
+                          plan);
+}
+
+double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting) {
+  const LaneResults results = run_cases(bench, kernel, setting, make_reference_plan());
+  for (const int status : results.status) {
+    if (status != 0) return std::numeric_limits<double>::infinity();
+  }
+  double worst = 0.0;
+  const std::size_t count = setting.in_lanes ? bench.cases.size() : 1;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const double error =
+        calc_relative_error(get_acceleration(results, lane), bench.acceleration[lane]);
+    // A NaN counts as worse, and stays, since no comparison with it is true.
+    if (std::isnan(error) || error > worst) worst = error;
+  }
+  return worst;
+}
+
+std::vector<BenchSetting> list_standard_settings() {
+  IntegrateOptions newton, table;
+  newton.step.step = table.step.step = 1e-3;
+  table.closure = Closure::kTable;
+  const std::string rest = ", exponential spin, events located";
+  return {{"double", "rk4 1 ms, newton" + rest, newton, false},
+          {"lanes", "rk4 1 ms, newton" + rest, newton},
+          {"lanes_tabulated", "rk4 1 ms, table" + rest, table}};
+}
+
+std::vector<BenchSetting> list_fast_settings(bool quick) {
+  std::vector<double> steps = {0.5e-3, 0.75e-3, 1e-3, 1.25e-3, 1.5e-3, 2e-3, 2.5e-3};
+  std::vector<double> coarse_steps = {0.0, 4e-3, 6e-3, 8e-3};
+  if (quick) steps = {1e-3, 1.5e-3, 2e-3}, coarse_steps = {0.0, 6e-3};
+  std::vector<BenchSetting> settings;
+  for (const double step : steps) {
+    for (const double coarse : coarse_steps) {
+      for (const Stepper stepper : {Stepper::kRk4, Stepper::kAbm4}) {
+        for (const bool events : {true, false}) {
+          IntegrateOptions options;
+          options.step = {stepper, step, events, coarse};
+          options.closure = Closure::kTable;
+          std::string text = std::string(stepper == Stepper::kRk4 ? "rk4 " : "abm4 ") +
+                             format_number(1e3 * step) + " ms";
+          if (coarse > 0.0) text += " (" + format_number(1e3 * coarse) + " ms off the bump)";
+          text += std::string(", table, exponential spin, ") +
+                  (events ? "events located" : "events not located");
+          settings.push_back({"candidate", text, options});
+        }
+      }
+    }
+  }
+  return settings;
+}
+
+}  // namespace strut

@@ -1,0 +1,28 @@
+#include "jobs/bench/find_example.h"
+
+#include <system_error>
+
+#include "io/input_error.h"
+
+namespace strut {
+
+namespace fs = std::filesystem;
+
+fs::path find_example(const fs::path& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (fs::path folder : {fs::current_path(error), program.parent_path()}) {
+    for (; !folder.empty(); folder = folder.parent_path()) {
+      for (const char* place : {"examples", "share/strut/examples"}) {
+        fs::path candidate = folder / place / name;
+        if (fs::exists(candidate, error)) return candidate;
+      }
+      if (folder == folder.root_path()) break;
+    }
+  }
+  throw InputError("examples/" + name.string() +
+                   ": not found above the working directory or the program; name a vehicle and a "
+                   "maneuver");
+}
+
+}  // namespace strut

@@ -1,0 +1,157 @@
+#include "jobs/bench/report.h"
+
+// Asked for by Boost's own parser, which uses the names it deprecates.
+#define BOOST_BIND_GLOBAL_PLACEHOLDERS
+#include <boost/property_tree/json_parser.hpp>
+#include <cstdio>
+#include <ostream>
+
+#include "io/input_error.h"
+
+namespace strut {
+namespace {
+
+Json make_json(const BenchResult& result) {
+  Json single = Json::object();
+  for (const Figure& f : result.single_core) {
+    Json figure = Json::object()
+                      .set("runs_per_s", f.runs_per_s)
+                      .set("real_time_factor", f.real_time_factor)
+                      .set("setting", f.setting.text)
+                      .set("body_acceleration_rms_relative", f.error)
+                      .set("share_of_peak", result.share_of_peak(f))
+                      .set("spin_control", f.spin_control);
+    if (f.setting.label == "lanes") {
+      figure.set("speedup_over_double", result.speedup_over_double(f));
+    }
+    single.set(f.setting.label, figure);
+  }
+  Json threads = Json::array();
+  for (const ThreadFigure& t : result.threads) {
+    threads.push(Json::object()
+                     .set("threads", t.threads)
+                     .set("runs_per_s", t.runs_per_s)
+                     .set("spin_control", t.spin_control));
+  }
+  return Json::object()
+      .set("single_core", single)
+      .set("threads", threads)
+      .set("accuracy",
+           Json::object().set("body_acceleration_rms_relative", result.single_core.back().error))
+      .set("flops_per_rhs", result.newton.arithmetic)
+      .set("flops_per_rhs_tabulated", result.table.arithmetic)
+      .set("transcendentals_per_rhs", result.newton.transcendental)
+      .set("share_of_peak", result.share_of_peak(result.figure("lanes")))
+      .set("peak_flops_per_s", result.peak)
+      .set("bytes_per_case", result.pipeline.bytes_per_case)
+      .set("seconds_to_prepare_case", result.seconds_to_prepare)
+      .set("pipeline", make_json(result.pipeline))
+      .set("machine", make_json(result.machine));
+}
+
+template <class... Values>
+void print_line(std::ostream& stream, const char* format, Values... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, format, values...);
+  stream << line << "\n";
+}
+
+}  // namespace
+
+void print_table(std::ostream& stream, const BenchResult& result,
+                 const std::vector<FigureRatio>& ratios) {
+  const Machine& machine = result.machine;
+  print_line(stream, "%s, %d cores, %s, %s, %s\n", machine.cpu.c_str(), machine.cores,
+             machine.isa.c_str(), machine.compiler.c_str(), machine.commit.c_str());
+  print_line(stream, "%-16s %10s %9s %12s %12s %8s %6s  %s", "one core", "runs/s", "x double",
+             "x real time", "error [1]", "of peak", "spin", "setting");
+  for (const Figure& f : result.single_core) {
+    print_line(stream, "%-16s %10.1f %9.2f %12.1f %12.2e %7.1f%% %6.2f  %s",
+               f.setting.label.c_str(), f.runs_per_s, result.speedup_over_double(f),
+               f.real_time_factor, f.error, 100.0 * result.share_of_peak(f), f.spin_control,
+               f.setting.text.c_str());
+  }
+  print_line(stream, "\n%-16s %10s %12s %19s", "threads", "runs/s", "speedup",
+             "spin of one thread");
+  for (const ThreadFigure& t : result.threads) {
+    print_line(stream, "%-16d %10.1f %12.2f %19.2f", t.threads, t.runs_per_s,
+               t.runs_per_s / result.threads.front().runs_per_s, t.spin_control);
+  }
+  print_line(
+      stream,
+      "\nerror: body acceleration, rms over the run, relative to CVODE at 1e-12; worst lane");
+  print_line(stream, "spin: a fixed loop timed beside, 1 on this machine when nobody else uses it");
+  print_line(stream,
+             "right-hand side: %ld operations closed by Newton, %ld tabulated; %ld, %ld calls of "
+             "sin, cos, atan, exp",
+             result.newton.arithmetic, result.table.arithmetic, result.newton.transcendental,
+             result.table.transcendental);
+  print_line(stream,
+             "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above",
+             1e-9 * result.peak, 1e3 * result.seconds_to_prepare);
+  print_pipeline(stream, result.pipeline);
+  if (ratios.empty()) return;
+  print_line(stream, "\n%-16s %10s", "new / old", "ratio");
+  for (const FigureRatio& r : ratios) print_line(stream, "%-16s %10.3f", r.name.c_str(), r.ratio);
+}
+
+void print_json(std::ostream& stream, const BenchResult& result,
+                const std::vector<FigureRatio>& ratios) {
+  Json json = make_json(result);
+  if (!ratios.empty()) {
+    Json members = Json::object();
+    for (const FigureRatio& r : ratios) members.set(r.name, r.ratio);
+    json.set("ratios", members);
+  }
+  stream << json.dump() << "\n";
+}
+
+Baseline read_baseline(const std::string& path) {
+  Baseline baseline;
+  try {
+    boost::property_tree::read_json(path, baseline);
+  } catch (const boost::property_tree::json_parser_error& e) {
+    throw InputError("--baseline = " + path + ": " + e.message() +
+                     "; must be a file written by strut bench --json");
+  }
+  if (!baseline.get_child_optional("single_core")) {
+    throw InputError("--baseline = " + path +
+                     ": no \"single_core\" in it; must be a file written by strut bench --json");
+  }
+  return baseline;
+}
+
+std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& baseline) {
+  std::vector<FigureRatio> ratios;
+  const auto add = [&](const std::string& name, const boost::optional<double>& old, double value) {
+    if (old && *old > 0.0) ratios.push_back({name, value / *old});
+  };
+  for (const Figure& f : result.single_core) {
+    add(f.setting.label,
+        baseline.get_optional<double>("single_core." + f.setting.label + ".runs_per_s"),
+        f.runs_per_s);
+  }
+  const auto threads = baseline.get_child_optional("threads");
+  for (const ThreadFigure& t : result.threads) {
+    if (!threads) break;
+    for (const auto& [key, old] : *threads) {
+      if (old.get("threads", 0) != t.threads) continue;
+      add(std::to_string(t.threads) + " threads", old.get_optional<double>("runs_per_s"),
+          t.runs_per_s);
+    }
+  }
+  const auto runs = baseline.get_child_optional("pipeline.runs");
+  for (const PipelineFigure& f : result.pipeline.figures) {
+    if (!runs) break;
+    for (const auto& [key, old] : *runs) {
+      if (old.get("isa", "") != f.isa || old.get("threads", 0) != f.threads) continue;
+      add("sweep, " + f.isa + ", " + std::to_string(f.threads) + " threads",
+          old.get_optional<double>("runs_per_s"), f.runs_per_s);
+    }
+  }
+  add("flops_per_rhs", baseline.get_optional<double>("flops_per_rhs"),
+      static_cast<double>(result.newton.arithmetic));
+  return ratios;
+}
+
+}  // namespace strut

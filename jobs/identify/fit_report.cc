@@ -1,0 +1,201 @@
+#include "jobs/identify/fit_report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <limits>
+
+#include "io/config.h"
+#include "train/interval.h"
+
+namespace strut {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+IdentifiedParameter make_estimate(const FitResult& fit, std::size_t i) {
+  IdentifiedParameter p;
+  p.name = fit.unknowns[i].name;
+  p.unit = fit.unknowns[i].unit;
+  p.value = fit.values[i];
+  const bool known = fit.uncertainty.identifiable[i];
+  p.half_width = known ? kNormal95 * fit.uncertainty.sigma[i] : kInfinity;
+  p.in_range = known && !fit.at_bound[i];
+  return p;
+}
+
+std::string format_short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+const std::string& get_run_name(const FitResult& fit, const std::vector<MeasuredRun>& runs,
+                                std::size_t i) {
+  static const std::string kEvery = "all";
+  const int run = fit.unknowns[i].run;
+  return run == kEveryRun ? kEvery : runs[static_cast<std::size_t>(run)].name;
+}
+
+Json make_nuisances_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
+                         std::size_t first) {
+  Json list = Json::array();
+  for (std::size_t i = first; i < fit.unknowns.size(); ++i) {
+    const IdentifiedParameter p = make_estimate(fit, i);
+    Json bounds = Json::array();
+    bounds.push(p.value - p.half_width);
+    bounds.push(p.value + p.half_width);
+    Json json = Json::object();
+    json.set("file", get_run_name(fit, runs, i))
+        .set("name", p.name)
+        .set("value", p.value)
+        .set("ci95", bounds)
+        .set("unit", p.unit);
+    list.push(json);
+  }
+  return list;
+}
+
+const std::string& get_file_name(const std::vector<MeasuredRun>& runs, const ChannelFit& c) {
+  return runs[static_cast<std::size_t>(c.run)].name;
+}
+
+const std::string& get_channel_name(const ChannelFit& c) {
+  return list_car_channels()[static_cast<std::size_t>(c.channel)].name;
+}
+
+double calc_chi2_per_reading(const ChannelFit& c) { return c.chi2 / static_cast<double>(c.count); }
+
+Json make_channels_json(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
+  Json list = Json::array();
+  for (const ChannelFit& c : fit.channels) {
+    Json json = Json::object();
+    json.set("file", get_file_name(runs, c))
+        .set("channel", get_channel_name(c))
+        .set("readings", c.count)
+        .set("chi2_per_reading", calc_chi2_per_reading(c))
+        .set("neighbor_correlation", c.neighbor_correlation);
+    list.push(json);
+  }
+  return list;
+}
+
+Json make_directions_json(const FitResult& fit) {
+  Json list = Json::array();
+  for (const NullDirection& d : fit.uncertainty.null_directions) {
+    Json json = Json::object();
+    json.set("combination", describe_direction(d, fit.unknowns))
+        .set("sigma_percent", 100.0 * d.sigma);
+    list.push(json);
+  }
+  return list;
+}
+
+Json make_correlation_json(const FitResult& fit, std::size_t count) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < count; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < count; ++j) row.push(fit.uncertainty.calc_correlation(i, j));
+    rows.push(row);
+  }
+  return rows;
+}
+
+void tell_quality(const FitResult& fit) {
+  std::cerr << "strut: chi2 per degree of freedom " << format_short(fit.chi2_per_degree()) << " ("
+            << fit.degrees << " degrees), " << fit.iterations << " iterations, " << fit.simulations
+            << " simulations\n";
+  if (fit.outside > 0) {
+    std::cerr
+        << "strut: " << fit.outside
+        << " readings left aside: before the maneuver or after its duration for some possible "
+           "hit time\n";
+  }
+  if (!fit.converged) {
+    std::cerr << "strut: not converged: the minimum is some " << format_short(fit.distance)
+              << " standard deviations away; either the model does not fit at all, or it needs a "
+                 "nearer start (--set, --prior)\n";
+  } else if (fit.at_kink) {
+    std::cerr << "strut: ends at a kink of chi2, where a contact event passes a reading, some "
+              << format_short(fit.distance) << " standard deviations from the minimum\n";
+  }
+}
+
+/// Whether the noise is what it is said to be.
+void tell_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
+  if (fit.is_quiet()) {
+    std::cerr << "strut: the residuals are smaller than the noise, which seems to be smaller than "
+                 "assumed (--noise); the intervals are too wide\n";
+  }
+  if (fit.is_adequate()) return;
+  std::cerr << "strut: the residuals are larger than the noise: the model lacks something or the "
+               "noise is larger (--noise); the intervals are too narrow\n";
+  for (const ChannelFit& c : fit.channels) {
+    std::cerr << "strut:   " << get_file_name(runs, c) << ": " << get_channel_name(c) << ": chi2 "
+              << format_short(calc_chi2_per_reading(c)) << " per reading, neighboring residuals "
+              << "correlate by " << format_short(c.neighbor_correlation) << "\n";
+  }
+}
+
+void tell_open(const FitResult& fit) {
+  for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
+    if (!fit.at_bound[i]) continue;
+    std::cerr << "strut: " << fit.unknowns[i].name << " = " << format_number(fit.values[i]) << " "
+              << fit.unknowns[i].unit << ": held by its bound"
+              << (fit.unknowns[i].prior.informs() ? ", beyond what --prior says of it" : "")
+              << "\n";
+  }
+  for (const NullDirection& d : fit.uncertainty.null_directions) {
+    std::cerr << "strut: not identifiable: " << describe_direction(d, fit.unknowns)
+              << (std::isfinite(d.sigma)
+                      ? ", known to " + format_short(100.0 * d.sigma) + " % (1 sigma) only"
+                      : ", which moves no reading")
+              << "\n";
+  }
+}
+
+}  // namespace
+
+IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count) {
+  IdentifiedRow row;
+  row.parameters.reserve(parameter_count);
+  for (std::size_t i = 0; i < parameter_count; ++i) row.parameters.push_back(make_estimate(fit, i));
+  return row;
+}
+
+Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
+                   std::size_t parameter_count) {
+  Json json = make_identified_json({make_fit_row(fit, parameter_count)});
+  json.set("converged", fit.converged)
+      .set("distance", fit.distance)
+      .set("at_kink", fit.at_kink)
+      .set("chi2_per_dof", fit.chi2_per_degree())
+      .set("dof", fit.degrees)
+      .set("adequate", fit.is_adequate())
+      .set("nuisances", make_nuisances_json(fit, runs, parameter_count))
+      .set("channels", make_channels_json(fit, runs))
+      .set("not_identifiable", make_directions_json(fit))
+      .set("correlation", make_correlation_json(fit, parameter_count))
+      .set("iterations", fit.iterations)
+      .set("simulations", fit.simulations)
+      .set("left_aside", fit.outside);
+  return json;
+}
+
+void print_fit(const FitResult& fit, const std::vector<MeasuredRun>& runs,
+               std::size_t parameter_count) {
+  IdentifiedRow table;
+  table.parameters.reserve(fit.unknowns.size());
+  for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
+    IdentifiedParameter p = make_estimate(fit, i);
+    p.in_range = true;  // a fit has no range trained on; what is amiss is told below
+    if (i >= parameter_count && runs.size() > 1) p.name += " of " + get_run_name(fit, runs, i);
+    table.parameters.push_back(std::move(p));
+  }
+  print_identified({table});
+  tell_quality(fit);
+  tell_noise(fit, runs);
+  tell_open(fit);
+}
+
+}  // namespace strut

@@ -1,0 +1,230 @@
+#include "jobs/report/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "io/atomic_file.h"
+#include "io/dataset.h"
+#include "jobs/progress.h"
+#include "jobs/report/figures.h"
+#include "jobs/report/html.h"
+#include "sweep/folder.h"
+#include "sweep/status.h"
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kBins = 10;
+/// Values that a figure is made of; beyond, every n-th case.
+constexpr std::size_t kMostCases = 200000;
+
+/// Finished cases with a snapshot, by rows: parameters, then snapshot.
+struct Cases {
+  std::vector<ColumnInfo> parameters, channels;
+  std::vector<std::vector<double>> rows;
+  std::size_t step = 1;  // every so many-th
+};
+
+Cases read_cases(const SweepFolder& folder) {
+  Dataset dataset({folder.root}, {.partial = true});
+  const ShardSchema& schema = dataset.schema();
+  Cases cases{schema.parameters, schema.snapshot, {}, 1};
+  cases.step = 1 + dataset.row_count() / kMostCases;
+  const std::size_t p = schema.parameters.size(), s = schema.snapshot.size();
+  std::size_t number = 0;
+  for (std::size_t piece = 0; piece < dataset.piece_count(); ++piece) {
+    const ShardRows& rows = dataset.read_piece(piece);
+    for (std::size_t i = 0; i < rows.size(); ++i, ++number) {
+      if (rows.status[i] != 0 || number % cases.step != 0) continue;
+      const double* parameters = rows.parameters.data() + i * p;
+      const double* snapshot = rows.snapshot.data() + i * s;
+      std::vector<double> row(parameters, parameters + p);
+      row.insert(row.end(), snapshot, snapshot + s);
+      if (std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) {
+        cases.rows.push_back(std::move(row));
+      }
+    }
+  }
+  return cases;
+}
+
+std::string round(double value, const char* format = "%.6g") {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::vector<double> sort_column(const Cases& cases, std::size_t column) {
+  std::vector<double> values;
+  values.reserve(cases.rows.size());
+  for (const auto& row : cases.rows) values.push_back(row[column]);
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+double find_quantile(const std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::llround(place))];
+}
+
+ReportTable make_channel_table(const Cases& cases) {
+  ReportTable table{"Snapshot, finished cases",
+                    {"channel", "unit", "smallest", "5 %", "median", "95 %", "largest"},
+                    {},
+                    {},
+                    2};
+  for (std::size_t c = 0; c < cases.channels.size(); ++c) {
+    const auto values = sort_column(cases, cases.parameters.size() + c);
+    table.rows.push_back({cases.channels[c].name, cases.channels[c].unit, round(values.front()),
+                          round(find_quantile(values, 0.05)), round(find_quantile(values, 0.5)),
+                          round(find_quantile(values, 0.95)), round(values.back())});
+  }
+  return table;
+}
+
+/// A channel against one parameter: per bin of the parameter center, 5 %, median, 95 %.
+std::vector<std::vector<double>> calc_bands(const Cases& cases, std::size_t parameter,
+                                            std::size_t column) {
+  const auto range = sort_column(cases, parameter);
+  const double low = range.front(), width = (range.back() - low) / static_cast<double>(kBins);
+  std::vector<std::vector<double>> bins(kBins);
+  for (const auto& row : cases.rows) {
+    const double place = width > 0.0 ? (row[parameter] - low) / width : 0.0;
+    bins[std::min(kBins - 1, static_cast<std::size_t>(place))].push_back(row[column]);
+  }
+  std::vector<std::vector<double>> bands;
+  for (std::size_t b = 0; b < kBins; ++b) {
+    if (bins[b].empty()) continue;
+    std::sort(bins[b].begin(), bins[b].end());
+    bands.push_back({low + width * (static_cast<double>(b) + 0.5), find_quantile(bins[b], 0.05),
+                     find_quantile(bins[b], 0.5), find_quantile(bins[b], 0.95)});
+  }
+  return bands;
+}
+
+Figure draw_channel(const Cases& cases, std::size_t channel) {
+  const std::size_t count = cases.parameters.size(), rows = (count + 1) / 2;
+  Figure figure{"channel_" + cases.channels[channel].name, 1000, static_cast<int>(300 * rows), ""};
+  std::string& text = figure.commands;
+  text =
+      "set multiplot layout " + std::to_string(rows) +
+      ",2\nunset key\nset grid\nset xtics font ',10'\nset format y '%.4g'\n" + "set ylabel " +
+      quote_figure_text(cases.channels[channel].name + " [" + cases.channels[channel].unit + "]") +
+      " font ',11'\n";
+  for (std::size_t p = 0; p < count; ++p) {
+    const std::string block = "$band" + std::to_string(p);
+    text += make_data(block.substr(1), calc_bands(cases, p, count + channel)) + "set xlabel " +
+            quote_figure_text(cases.parameters[p].name + " [" + cases.parameters[p].unit + "]") +
+            "\nplot " + block + " using 1:2:4 with filledcurves linetype 6 fillstyle solid 0.5, " +
+            block + " using 1:3 with linespoints linetype 1 pointtype 7 pointsize 0.5\n";
+  }
+  text += "unset multiplot\n";
+  return figure;
+}
+
+ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const SweepStatus& s) {
+  ReportTable table{"Progress", {"what", "value"}, {}, {}, 2};
+  table.rows = {
+      {"plan", plan.hash()},
+      {"data digest", s.digest.text()},
+      {"cases", format_count(s.cases)},
+      {"done", format_count(s.done)},
+      {"failed", format_count(s.failed)},
+      {"left", format_count(s.left)},
+      {"shards", format_count(s.shards_present) + " of " + format_count(s.shards) + " of up to " +
+                     std::to_string(plan.request().shard_cases) + " cases"},
+      {"size", format_bytes(static_cast<double>(s.bytes))}};
+  const auto simulated = static_cast<double>(s.done + s.failed);
+  if (simulated > 0.0 && s.simulation_seconds > 0.0) {
+    table.rows.push_back({"simulation", format_duration(s.simulation_seconds) + " of one thread, " +
+                                            round(1e3 * s.simulation_seconds / simulated, "%.3g") +
+                                            " ms a case"});
+  }
+  ReportSection section{"Cases", {}, {table}};
+  if (!s.complete()) {
+    section.paragraphs.push_back("Not complete: `strut run " + folder.root.string() + "` goes on.");
+  }
+  for (const std::string& fault : s.faults) section.paragraphs.push_back(fault);
+  return section;
+}
+
+ReportTable make_layer_table(const Plan& plan) {
+  ReportTable table{"Layers by " + plan.request().sample.by,
+                    {"layer", "from", "to", "cases", "drawn"},
+                    {},
+                    {},
+                    0};
+  for (const Layer& layer : plan.layers()) {
+    table.rows.push_back({std::to_string(table.rows.size() + 1), round(layer.lower),
+                          round(layer.upper), format_count(layer.population),
+                          format_count(layer.drawn)});
+  }
+  return table;
+}
+
+ReportTable make_fact_table(const Plan& plan) {
+  ReportTable table{"Everything that changes a result", {"key", "value"}, {}, {}, 2};
+  for (const auto& [name, value] : plan.facts()) table.rows.push_back({name, value});
+  return table;
+}
+
+ReportSection make_failures(const SweepStatus& status) {
+  ReportSection section{"Failures", {}};
+  if (status.failures.empty()) {
+    section.paragraphs = {"No case failed."};
+    return section;
+  }
+  ReportTable table{"Failed cases", {"reason", "cases"}, {}};
+  for (const auto& [reason, count] : status.failures) {
+    table.rows.push_back({reason, format_count(count)});
+  }
+  section.tables.push_back(table);
+  return section;
+}
+
+ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
+  ReportSection section{"Snapshots", {}};
+  if (cases.rows.empty() || cases.channels.empty()) {
+    section.paragraphs = {"No finished case has one."};
+    return section;
+  }
+  if (cases.step > 1) {
+    section.paragraphs = {"From every " + std::to_string(cases.step) + "th case."};
+  }
+  section.tables.push_back(make_channel_table(cases));
+  for (std::size_t c = 0; c < cases.channels.size(); ++c) {
+    section.figures.push_back(drawer.draw(
+        draw_channel(cases, c), "How " + cases.channels[c].name + " (" +
+                                    cases.channels[c].description +
+                                    ") changes with each parameter, whatever the others are: "
+                                    "median, and the band of 5 to 95 % of the cases."));
+  }
+  return section;
+}
+
+}  // namespace
+
+std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
+  const Plan plan = open_sweep_folder(folder);
+  const SweepStatus status = read_status(folder, plan);
+  const FigureDrawer drawer(folder.root / "figures");
+  ReportPage page;
+  page.title = "Sweep " + folder.root.filename().string();
+  page.lead = {format_count(status.done) + " of " + format_count(status.cases) + " cases of " +
+               plan.request().base.vehicle.name + " are simulated, " + format_count(status.failed) +
+               " failed."};
+  page.sections = {make_progress(folder, plan, status),
+                   {"Layers", {}, {make_layer_table(plan)}},
+                   make_failures(status)};
+  if (status.shards_present > 0 && plan.request().snapshot.on) {
+    page.sections.push_back(make_snapshots(read_cases(folder), drawer));
+  }
+  page.sections.push_back({"Plan", {}, {make_fact_table(plan)}});
+  page.footer = make_report_footer();
+  write_text_file(folder.root / "report.html", make_html(page));
+  return drawer.note().empty() ? std::vector<std::string>{}
+                               : std::vector<std::string>{drawer.note()};
+}
+
+}  // namespace strut

@@ -1,0 +1,89 @@
+#include "jobs/simulate/rig.h"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+
+#include "jobs/command.h"
+#include "jobs/run_file.h"
+#include "model/integrate/rig_system.h"
+#include "sweep/parameters.h"
+#include "sweep/read_rig.h"
+
+namespace strut {
+namespace {
+
+RigSpec load_rig(const CaseSource& source) {
+  RigSpec rig = read_rig(source.vehicle);
+  for (const std::string& setting : source.settings) {
+    const auto [name, value] = parse_setting(setting);
+    set_rig_parameter(rig, name, value);
+  }
+  return rig;
+}
+
+/// Its step, if a shorter one gets through; else exit code 1 is the answer.
+int explain_failure(const SimulateOptions& options, const RigSpec& rig, const RigManeuver& maneuver,
+                    const SamplePlan& plan, double failure_time) {
+  const std::string at = format_number(failure_time) + " s";
+  StepOptions shorter = options.integrate.step;
+  shorter.step *= kRetryFraction;
+  if (simulate_rig(rig, maneuver.inputs, shorter, plan).status[0] == 0) {
+    throw InputError("--step = " + format_number(options.integrate.step.step) +
+                     " s: " + options.source.vehicle.string() + " in " +
+                     options.source.maneuver.string() + " diverged at t = " + at + "; a step of " +
+                     format_number(shorter.step) + " s runs through");
+  }
+  std::cerr << "strut simulate: the run failed at t = " << at
+            << ": the motion is no longer finite, nor with a step of "
+            << format_number(shorter.step) << " s; nothing was written\n";
+  return kExitNo;
+}
+
+void describe_run(const SimulateOptions& options, const RigSpec& rig, RigKind kind,
+                  RunRecord& run) {
+  for (const RigParameterInfo& p : list_rig_parameters(kind)) {
+    run.parameters.push_back({p.name, p.unit, p.description, rig.*p.field});
+  }
+  const StepOptions& step = options.integrate.step;
+  run.provenance = describe_program(options.source);
+  run.provenance.insert(run.provenance.end(),
+                        {{"integrator", options.integrator_name()},
+                         {"step", format_number(step.step) + " s"},
+                         {"events", step.locate_events ? "located" : "not located"},
+                         {"event_count", std::to_string(run.results.event_count)}});
+}
+
+}  // namespace
+
+int run_rig(const SimulateOptions& options, RigKind kind) {
+  if (options.integrator == kCvode) {
+    throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
+  }
+  const RunFormat format = find_run_format(options.output);
+  const RigSpec rig = load_rig(options.source);
+  const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, kind);
+  check_rate(options.rate, maneuver.duration);
+  SamplePlan plan;
+  plan.duration = maneuver.duration;
+  plan.interval = 1.0 / options.rate;
+
+  RunRecord run;
+  run.channels = &list_rig_channels(kind);
+  const auto start = std::chrono::steady_clock::now();
+  run.results = simulate_rig(rig, maneuver.inputs, options.integrate.step, plan);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (run.results.status[0] != 0) {
+    return explain_failure(options, rig, maneuver, plan, run.results.failure_time[0]);
+  }
+  describe_run(options, rig, kind, run);
+  write_run(options.output, format, run);
+  char line[160];
+  std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s\n",
+                run.results.sample_count, run.channels->size(), maneuver.duration, seconds);
+  std::cerr << options.output.string() << line;
+  return kExitDone;
+}
+
+}  // namespace strut

@@ -1,0 +1,203 @@
+#include "jobs/study/folder.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "io/atomic_file.h"
+#include "io/config.h"
+#include "io/toml_text.h"
+#include "sweep/design.h"
+#include "sweep/facts.h"
+#include "sweep/folder.h"
+#include "sweep/freeze_inputs.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kSweepKey[] = "sweep", kPublishedKey[] = "published",
+               kWindowKey[] = "noise.window_sweep";
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
+}
+
+void add_sweep_facts(const std::string& key, const fs::path& sweep, Facts& facts) {
+  for (const auto& [name, value] : list_facts(read_request(sweep))) {
+    facts.emplace_back(key + "." + name, value);
+  }
+}
+
+/// Everything that tells one study from another; names of files have no part in it.
+Facts list_study_facts(const StudyRequest& request) {
+  Facts facts;
+  for (const auto& [key, value] : flatten_toml(request.path)) {
+    if (key != kSweepKey && key != kPublishedKey && key != kWindowKey) {
+      facts.emplace_back(key, value);
+    }
+  }
+  add_sweep_facts(kSweepKey, request.sweep, facts);
+  if (request.noise) add_sweep_facts(kWindowKey, request.noise->sweep, facts);
+  if (request.published_path.empty()) return facts;
+  for (const auto& [key, value] : flatten_toml(request.published_path)) {
+    facts.emplace_back(std::string(kPublishedKey) + "." + key, value);
+  }
+  return facts;
+}
+
+void check_free(const StudyFolder& folder) {
+  if (!fs::exists(folder.root)) return;
+  if (!fs::is_directory(folder.root)) {
+    throw InputError(folder.root.string() + ": a file; must be a new or empty folder");
+  }
+  for (const auto& entry : fs::directory_iterator(folder.root)) {
+    const std::string name = entry.path().filename().string();
+    // The rest of a start that was stopped.
+    if (name == "base" || name == "window_base" || name.starts_with("published.toml") ||
+        name.starts_with("study.toml")) {
+      continue;
+    }
+    throw InputError(folder.root.string() + ": not a study (no study.toml), but it holds '" + name +
+                     "'; must be a new or empty folder");
+  }
+}
+
+void check_same(const StudyFolder& folder, const StudyRequest& request) {
+  const StudyRequest there = open_study_folder(folder);
+  const auto changes = compare_facts(list_study_facts(there), list_study_facts(request));
+  if (changes.empty()) return;
+  std::string text = folder.root.string() + ": of another study than " + request.path.string() +
+                     "; allowed: the same, or another folder. Changed:";
+  for (const std::string& line : changes) text += "\n  " + line;
+  throw InputError(text);
+}
+
+/// Copies a sweep and every file it names; a new start takes the place of one that was stopped.
+std::string freeze_sweep(const StudyFolder& folder, const fs::path& sweep, const SweepFolder& to) {
+  make_folder(to.inputs());
+  freeze_inputs(read_request(sweep), to);
+  return to.request().lexically_relative(folder.root).generic_string();
+}
+
+/// A study reads its copies, so that a later report or run needs no file outside.
+void freeze(const StudyFolder& folder, const StudyRequest& request) {
+  TomlValues files = {{kSweepKey, freeze_sweep(folder, request.sweep, folder.base())}};
+  if (request.noise) {
+    files.emplace_back(kWindowKey,
+                       freeze_sweep(folder, request.noise->sweep, folder.window_base()));
+  }
+  if (!request.published_path.empty()) {
+    write_text_file(folder.published(), read_text_file(request.published_path));
+    files.emplace_back(kPublishedKey, folder.published().filename().string());
+  }
+  write_text_file(folder.study(), replace_toml_texts(request.path, files));
+}
+
+std::string quote(const std::string& text) { return "\"" + text + "\""; }
+
+/// A base sweep's vehicle with another preload; its path from the base sweep's request.
+std::string make_vehicle(const SweepFolder& base, const std::string& preload) {
+  const fs::path vehicle = read_request(base.request()).vehicle;
+  const fs::path made = vehicle.parent_path() / (vehicle.stem().string() + "_" + preload + ".toml");
+  write_text_file(made, set_toml_values(vehicle, {{"spring.preload", quote(preload)}}));
+  return made.lexically_relative(base.root).generic_string();
+}
+
+/// The instant that tells most about the parameters, by the least mean square Cramer-Rao bound.
+double find_best_offset(const SweepRequest& request) {
+  SensitivityOptions options;
+  options.integrate = make_accurate(request.integrate);
+  const Sensitivity s = calc_sensitivity(make_base_point(request, {}, {}), request.grid.axes(),
+                                         request.snapshot.offset, options);
+  const Design design = calc_design(s, request.snapshot.channels, make_default_noise());
+  return s.instants[design.best.front().instants.front()].offset;
+}
+
+/// The request of a cell's sweep, beside the base sweep's.
+fs::path make_request(const StudyFolder& folder, const StudyRequest& request,
+                      const StudyCell& cell) {
+  const StudyPreload& preload = request.preloads[cell.preload];
+  const fs::path base = folder.base().request();
+  fs::path made = base.parent_path() / (make_sweep_name(request, cell) + ".toml");
+  TomlValues values = {{"vehicle", quote(make_vehicle(folder.base(), preload.name))},
+                       {"sample.count", std::to_string(request.samples[cell.samples])}};
+  write_text_file(made, set_toml_values(base, values));
+  if (!cell.best_instant) return made;
+  const double offset =
+      preload.best_offset ? *preload.best_offset : find_best_offset(read_request(made));
+  values.emplace_back("record.snapshot.offset", format_number(offset));
+  write_text_file(made, set_toml_values(base, values));
+  return made;
+}
+
+fs::path make_window_request(const StudyFolder& folder, const StudyRequest& request) {
+  const SweepFolder base = folder.window_base();
+  const std::string vehicle = quote(make_vehicle(base, request.preloads.back().name));
+  fs::path made =
+      base.root / (get_window_sweep(folder, request).root.filename().string() + ".toml");
+  write_text_file(made, set_toml_values(base.request(), {{"vehicle", vehicle}}));
+  return made;
+}
+
+/// Plans what `make` writes the request of, where `sweep` is not planned yet.
+template <class Make>
+Plan plan_once(const SweepFolder& sweep, const Make& make) {
+  if (!fs::exists(sweep.plan())) make_sweep_folder(sweep.root, Plan(read_request(make())));
+  return open_sweep_folder(sweep);
+}
+
+}  // namespace
+
+StudyFolder make_study_folder(const fs::path& root, const StudyRequest& request) {
+  StudyFolder folder{root.lexically_normal()};
+  if (fs::exists(folder.study())) {
+    check_same(folder, request);
+  } else {
+    check_free(folder);
+    freeze(folder, request);
+  }
+  make_folder(folder.root / "sweeps");
+  make_folder(folder.models());
+  make_folder(folder.figures());
+  if (request.noise) make_folder(folder.noise());
+  return folder;
+}
+
+StudyRequest open_study_folder(const StudyFolder& folder) {
+  if (!fs::exists(folder.study())) {
+    throw InputError(folder.root.string() +
+                     ": not a study: no study.toml; `strut study STUDY.toml -o DIR` makes one");
+  }
+  return read_study(folder.study());
+}
+
+Plan plan_study_sweep(const StudyFolder& folder, const StudyRequest& request,
+                      const StudyCell& cell) {
+  return plan_once(folder.sweep(make_sweep_name(request, cell)),
+                   [&] { return make_request(folder, request, cell); });
+}
+
+SweepFolder get_window_sweep(const StudyFolder& folder, const StudyRequest& request) {
+  return folder.sweep(request.preloads.back().name + "_window");
+}
+
+Plan plan_window_sweep(const StudyFolder& folder, const StudyRequest& request) {
+  return plan_once(get_window_sweep(folder, request),
+                   [&] { return make_window_request(folder, request); });
+}
+
+std::vector<std::pair<std::string, StudyCell>> list_study_sweeps(const StudyRequest& request) {
+  std::vector<std::pair<std::string, StudyCell>> sweeps;
+  for (const StudyCell& cell : list_cells(request)) {
+    const std::string name = make_sweep_name(request, cell);
+    const bool known = std::any_of(sweeps.begin(), sweeps.end(),
+                                   [&](const auto& sweep) { return sweep.first == name; });
+    if (!known) sweeps.emplace_back(name, cell);
+  }
+  return sweeps;
+}
+
+}  // namespace strut

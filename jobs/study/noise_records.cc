@@ -1,0 +1,114 @@
+#include "jobs/study/noise_records.h"
+
+#include <algorithm>
+#include <string>
+
+#include "diagnose/linearize.h"
+#include "sweep/design.h"
+#include "sweep/parameters.h"
+#include "train/split.h"
+#include "train/window/records.h"
+
+namespace strut {
+namespace {
+
+std::vector<std::int64_t> choose_cases(const NoiseStudyRequest& request, const SplitChoice& choice,
+                                       std::size_t usable) {
+  const Split split = make_split(static_cast<std::int64_t>(usable), choice);
+  const auto count = static_cast<std::size_t>(request.fits);
+  std::vector<std::int64_t> rows;
+  rows.reserve(count);
+  for (std::int64_t row = 0; row < split.size() && rows.size() < count; ++row) {
+    if (split.find_part(row) == Part::kTest) rows.push_back(row);
+  }
+  return rows;
+}
+
+/// `values`: of the axes.
+Case make_setup(const SweepRequest& sweep, std::span<const double> values) {
+  Case setup = make_base_point(sweep, {}, {});
+  for (std::size_t a = 0; a < values.size(); ++a) {
+    set_parameter(setup, sweep.grid.axes()[a].name, values[a]);
+  }
+  return setup;
+}
+
+/// The last columns of a row.
+std::span<const double> take_end(std::span<const double> row, std::size_t count) {
+  return row.subspan(row.size() - count);
+}
+
+/// Cases of rows whose last columns are the values of the axes.
+std::vector<TestCase> make_cases(const NoiseStudyRequest& request, const NoiseStudyData& data,
+                                 const SweepRequest& sweep, const RowStore& rows) {
+  std::vector<TestCase> cases;
+  std::vector<double> row(rows.columns());
+  for (const std::int64_t number : choose_cases(request, data.like.split, rows.row_count())) {
+    rows.read(static_cast<std::size_t>(number), 1, row.data());
+    cases.push_back({number, make_setup(sweep, take_end(row, sweep.grid.axes().size()))});
+  }
+  return cases;
+}
+
+/// What a record holds before noise: a fourth of the step and four times the samples that a fit
+/// takes (docs/fit.md measures what that leaves: a hundredth of the noise of real sensors).
+Eigen::VectorXd simulate_readings(const MeasuredRun& run, const std::string& parameter) {
+  LinearizeOptions options;
+  options.integrate.options.step.step /= 4.0;
+  options.integrate.options.step.coarse_step = 0.0;
+  options.rate *= 4.0;
+  // Any unknown will do: what is wanted are the residuals of readings that are zero.
+  ReadingSimulator simulator({run}, {make_parameter({run}, parameter)}, options);
+  const Linearization at = simulator.linearize({get_parameter(run.setup, parameter)});
+  if (!at.failure.empty()) throw InputError(run.name + ": " + at.failure);
+  return at.residual;
+}
+
+}  // namespace
+
+std::vector<TestCase> list_test_cases(const NoiseStudyRequest& request, const NoiseStudyData& data,
+                                      const NoiseSnapshots& snapshots) {
+  Dataset dataset({snapshots.data});
+  const UsableRows usable =
+      read_usable_rows(dataset, {data.inputs, list_axes(snapshots.sweep)}, data.like.store);
+  return make_cases(request, data, snapshots.sweep, usable.rows);
+}
+
+std::vector<TestCase> list_window_cases(const NoiseStudyRequest& request,
+                                        const NoiseStudyData& data) {
+  const NoiseModel noise = make_window_noise(request, list_history_channels(data.window), 1.0);
+  Dataset dataset({data.window_data}, {.histories = true});
+  const std::size_t spare = count_spare(dataset.schema(), noise);
+  const WindowGrid grid = make_window_grid(dataset.schema(), request.window, spare);
+  const WindowRecords records =
+      read_window_records(dataset, {list_history_channels(data.window), list_axes(data.window)},
+                          grid, spare, data.like.store);
+  return make_cases(request, data, data.window, records.rows);
+}
+
+MeasuredRun draw_record(const NoiseStudyRequest& request, const NoiseStudyData& data, double scale,
+                        const TestCase& test) {
+  const NoiseModel noise = *make_window_training(request, data, scale).request.noise;
+  const NoiseDraw draw(noise, test.number, 0);
+  MeasuredRun run = make_planned_run(test.setup, make_default_noise(), data.window.history.rate,
+                                     request.window.from, request.window.to);
+  run.channels.clear();  // those of the histories, in their order
+  for (std::size_t c = 0; c < noise.sigma.size(); ++c) {
+    run.channels.push_back({data.window.history.channels[c], noise.sigma[c],
+                            std::vector<double>(run.times.size(), 0.0)});
+  }
+  run.name = "case " + std::to_string(test.number);
+  const std::vector<double> times = run.times;
+  for (double& time : run.times) time -= draw.calc_hit_time();
+  const Eigen::VectorXd residuals = simulate_readings(run, list_axes(data.window).front());
+  run.times = times;
+  run.setup = make_base_point(data.window, {}, {});
+  Eigen::Index next = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    for (MeasuredChannel& c : run.channels) c.values[i] = c.sigma * residuals(next++);
+  }
+  for (std::size_t c = 0; c < run.channels.size(); ++c) draw.add(c, run.channels[c].values);
+  return run;
+}
+
+}  // namespace strut

@@ -1,0 +1,207 @@
+#include "jobs/study/noise_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "io/config.h"
+#include "jobs/study/noise_figure.h"
+
+namespace strut {
+namespace {
+
+std::string print(const char* format, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// Three digits.
+std::string round(double value) {
+  return print("%.3g", value).find('e') == std::string::npos || std::abs(value) < 1.0
+             ? print("%.3g", value)
+             : print("%.0f", std::stod(print("%.3g", value)));
+}
+
+std::vector<std::string> make_header(const NoiseStudy& study) {
+  std::vector<std::string> header = {"noise"};
+  for (const std::string& preload : study.preloads) {
+    header.push_back(preload + ": bound");
+    header.emplace_back("network");
+  }
+  for (const char* name : {"window: bound", "network", "/ bound", "fit", "/ bound"}) {
+    header.emplace_back(name);
+  }
+  return header;
+}
+
+std::vector<std::string> make_row(const NoisePoint& point, const NoiseErrors& errors) {
+  std::vector<std::string> row = {format_number(point.scale)};
+  for (const SnapshotErrors& snapshot : errors.snapshots) {
+    row.push_back(round(snapshot.bound));
+    row.push_back(round(snapshot.network));
+  }
+  const WindowErrors& window = errors.window;
+  row.insert(row.end(), {round(window.bound), round(window.network),
+                         print("%.2f", window.network / window.bound), round(window.fit),
+                         print("%.2f", window.fit / window.bound)});
+  return row;
+}
+
+ReportTable make_sensor_table(const NoiseStudy& study) {
+  ReportTable table{"Sensors at noise 1, 1 sigma",
+                    {"channel", "of", "unit", "each sample", "bias of a record"},
+                    {},
+                    {},
+                    3};
+  for (const NoiseSensor& sensor : study.sensors) {
+    table.rows.push_back({sensor.channel, sensor.in_window ? "window" : "snapshot", sensor.unit,
+                          round(sensor.sigma), sensor.bias > 0.0 ? round(sensor.bias) : ""});
+  }
+  table.notes = {
+      "Accelerometers and gyroscopes of the MEMS class: 75 to 160 ug/sqrt(Hz) and 0.003 to 0.014 "
+      "deg/s/sqrt(Hz) over some 250 Hz, zero offsets of 20 to 60 mg and 0.5 to 3 deg/s (data "
+      "sheets "
+      "of ICM-42688, ICM-20602, BMI160, BMI270, BMI088). Height as of a laser sensor, velocity "
+      "integrated and corrected by it, pitch angle of a fused attitude: assumptions. White noise "
+      "is "
+      "scaled; biases, hit time and speed are not."};
+  return table;
+}
+
+ReportTable make_fit_table(const NoiseStudy& study) {
+  ReportTable table{"Fits of the simulation to windows",
+                    {"noise", "fits", "converged", "chi2 per degree of freedom", "s each"},
+                    {},
+                    {},
+                    0};
+  for (const NoisePoint& point : study.points) {
+    table.rows.push_back({format_number(point.scale), std::to_string(study.fits),
+                          std::to_string(point.converged), print("%.4f", point.chi2_per_degree),
+                          print("%.2g", point.fit_seconds)});
+  }
+  table.notes = {
+      "chi2 above 1 where noise is far below that of real sensors: there the steps of the "
+      "simulation, finer in the records than in the fit, are no longer small against it."};
+  return table;
+}
+
+double find_largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+/// "23 to 92 %": `get` of the errors of each parameter against the spread of the grid.
+template <class Get>
+std::string describe_shares(const NoiseStudy& study, const Get& get) {
+  const NoisePoint& point = find_real_point(study);
+  std::vector<double> shares;
+  shares.reserve(point.errors.size());
+  for (std::size_t p = 0; p < point.errors.size(); ++p) {
+    shares.push_back(100.0 * get(point.errors[p]) / study.spread[p]);
+  }
+  const auto [low, high] = std::minmax_element(shares.begin(), shares.end());
+  const auto describe = [](double share) { return print(share < 9.95 ? "%.2g" : "%.0f", share); };
+  return describe(*low) + " to " + describe(*high) + " %";
+}
+
+std::string describe_measurements(const NoiseStudy& study) {
+  return "The tables above are without noise. Here every network is trained and tested with it: " +
+         std::to_string(study.copies) +
+         " noisy copies of each case. A snapshot is the main inputs at the sweep's own instant, "
+         "with "
+         "each preload. A window is what the sensors on the body record at " +
+         format_number(study.rate) + " Hz from " + format_number(study.from) + " to " +
+         format_number(study.to) + " s (preload " + study.window_preload +
+         "); of it hit time (1 sigma " + format_number(1e3 * study.hit_time) +
+         " ms), speed and the sensors' biases are unknown, too. Noise 1 is that of real sensors; "
+         "other rows scale it.";
+}
+
+std::string describe_bounds(const NoiseStudy& study) {
+  double snapshot = 0.0;
+  for (const auto& variation : study.snapshot_variation) {
+    snapshot = std::max(snapshot, find_largest(variation));
+  }
+  const std::string cases = std::to_string(study.fits);
+  return "Bound: the Cramer-Rao bound, 1 sigma of the best estimate without bias from the sensors "
+         "alone. Over the test cases it varies by a factor of up to " +
+         print("%.2f", snapshot) + " for snapshots and " +
+         print("%.2f", find_largest(study.window_variation)) +
+         " for windows, so the tables hold its root mean square over " + cases +
+         " test cases, as errors are root mean squares. A network knows more, the grid that its "
+         "cases come from: where the bound is beyond the grid's spread it says the middle, errs by "
+         "the spread and has learned nothing. Where the cases stand on levels of a grid and the "
+         "bound is below their distance, it rounds to the nearest level and errs less than the "
+         "bound.";
+}
+
+std::string describe_result(const NoiseStudy& study) {
+  const NoisePoint& point = find_real_point(study);
+  const WindowRatios ratios = calc_window_ratios(point);
+  std::string text = "At noise " + format_number(point.scale) +
+                     " a network that sees one snapshot errs, against the spread of the grid, by ";
+  for (std::size_t i = 0; i < study.preloads.size(); ++i) {
+    text += (i == 0 ? "" : " and by ") +
+            describe_shares(study, [i](const auto& e) { return e.snapshots[i].network; }) +
+            " with preload " + study.preloads[i];
+  }
+  return text +
+         ", depending on the parameter; 100 % is what is known without any sensor. From a window "
+         "it errs by " +
+         describe_shares(study, [](const auto& e) { return e.window.network; }) +
+         ". That is at most " + print("%.2f", ratios.network) +
+         " times the bound; the fitted simulation reaches " + print("%.2f", ratios.fit) +
+         " times at most (worst parameter; 1 sigma of a ratio of " + std::to_string(study.fits) +
+         " fits is " + print("%.0f", 100.0 / std::sqrt(2.0 * static_cast<double>(study.fits))) +
+         " %).";
+}
+
+}  // namespace
+
+std::vector<ReportTable> make_noise_tables(const NoiseStudy& study) {
+  std::vector<ReportTable> tables;
+  tables.reserve(study.parameters.size());
+  for (std::size_t p = 0; p < study.parameters.size(); ++p) {
+    const ColumnInfo& parameter = study.parameters[p];
+    ReportTable table;
+    table.caption = "Errors of " + parameter.name + " [" + parameter.unit +
+                    "] with sensor noise; spread of the grid " + round(study.spread[p]);
+    table.header = make_header(study);
+    for (const NoisePoint& point : study.points) {
+      table.rows.push_back(make_row(point, point.errors[p]));
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+std::string make_noise_line(const NoiseStudy& study) {
+  const NoisePoint& point = find_real_point(study);
+  const WindowRatios ratios = calc_window_ratios(point);
+  double least = 1e300;
+  for (std::size_t p = 0; p < point.errors.size(); ++p) {
+    for (const SnapshotErrors& snapshot : point.errors[p].snapshots) {
+      least = std::min(least, snapshot.network / point.errors[p].window.network);
+    }
+  }
+  return "noise " + format_number(point.scale) + ": from a window the network errs by at most " +
+         print("%.2f", ratios.network) + ", the fit by at most " + print("%.2f", ratios.fit) +
+         " times the Cramer-Rao bound (" + std::to_string(study.fits) +
+         " fits); from one snapshot at least " + print("%.2g", least) +
+         " times as much as from the window";
+}
+
+ReportSection make_noise_section(const NoiseStudy& study, const FigureDrawer& drawer) {
+  ReportSection section;
+  section.heading = "Sensor noise";
+  section.paragraphs = {describe_measurements(study), describe_result(study),
+                        describe_bounds(study)};
+  section.tables = make_noise_tables(study);
+  section.tables.push_back(make_fit_table(study));
+  section.tables.push_back(make_sensor_table(study));
+  const StudyFigure figure = make_noise_figure(study);
+  section.figures = {drawer.draw(figure.figure, figure.caption)};
+  return section;
+}
+
+}  // namespace strut

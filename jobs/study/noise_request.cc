@@ -1,0 +1,144 @@
+#include "jobs/study/noise_request.h"
+
+#include <algorithm>
+
+#include "diagnose/unknown.h"
+#include "io/nearest_name.h"
+#include "sweep/find_channel.h"
+#include "sweep/plan.h"
+
+namespace strut {
+namespace {
+
+constexpr int kMostCopies = 1000, kMostFits = 100'000;
+constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
+constexpr char kSpeed[] = "speed";
+
+std::vector<double> scale_noise(const std::vector<std::string>& channels, const SensorNoise& noise,
+                                double scale) {
+  std::vector<double> values;
+  values.reserve(channels.size());
+  for (const std::string& name : channels) {
+    values.push_back(scale * noise[static_cast<std::size_t>(find_car_channel(name))]);
+  }
+  return values;
+}
+
+std::vector<double> read_scales(const Table& table) {
+  std::vector<double> scales = table.numbers("scales", between(kLeastScale, kMostScale));
+  const bool ascend =
+      std::adjacent_find(scales.begin(), scales.end(), std::greater_equal<>()) == scales.end();
+  if (scales.empty() || !ascend) {
+    throw table.error("scales", "must name at least one factor of the default noise, ascending");
+  }
+  return scales;
+}
+
+void read_window(const Table& table, NoiseStudyRequest& request) {
+  const std::vector<double> window = table.numbers("window");
+  if (window.size() != 2) throw table.error("window", "must be two times, [from, to] in s");
+  request.window.from = window[0];
+  request.window.to = window[1];
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What is identified must vary in both, and a window's fit knows no nuisance but the speed.
+void check_grids(const Table& table, const SweepRequest& first, const SweepRequest& second) {
+  const std::vector<std::string> wanted = list_axes(first), there = list_axes(second);
+  for (const std::string& name : wanted) {
+    if (has(there, name)) continue;
+    throw table.error("window_sweep", "its grid lacks " + name + ", which is to be identified");
+  }
+  for (const std::string& name : there) {
+    if (has(wanted, name) || name == kSpeed) continue;
+    throw table.error("window_sweep", "its grid varies " + name + "; may vary " +
+                                          join_names(wanted) + " and the speed alone");
+  }
+}
+
+void check_sensors(const Table& table, const std::string& key,
+                   const std::vector<std::string>& channels) {
+  const std::vector<double> noise = scale_noise(channels, make_default_noise(), 1.0);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (noise[c] > 0.0) continue;
+    throw table.error(key, "no sensor of " + channels[c] +
+                               " is known; channels with one: docs/identifiability.md");
+  }
+}
+
+void check_window(const Table& table, const NoiseStudyRequest& request, const SweepRequest& sweep) {
+  const ShardSchema schema = Plan(sweep).make_schema();
+  const NoiseModel noise = make_window_noise(request, list_history_channels(sweep), 1.0);
+  try {
+    make_window_grid(schema, request.window, count_spare(schema, noise));
+  } catch (const InputError& e) {
+    throw table.error("window", e.what());
+  }
+}
+
+}  // namespace
+
+NoiseStudyRequest read_noise_request(const Table& table, const NoiseSurroundings& around) {
+  NoiseStudyRequest request;
+  request.sweep = table.file("window_sweep");
+  read_window(table, request);
+  request.scales = read_scales(table);
+  request.copies = static_cast<int>(table.integer_or("copies", request.copies, 1, kMostCopies));
+  request.fits = static_cast<int>(table.integer_or("fits", request.fits, 1, kMostFits));
+  request.hit_time = table.number_or("hit_time", request.hit_time, between(1e-6, 1.0, "s"));
+  request.network = static_cast<std::size_t>(
+      table.choice_or("network", static_cast<int>(around.main_network), around.networks));
+  const SweepRequest sweep = read_request(request.sweep);
+  if (sweep.history.channels.empty() || sweep.history.rate <= 0.0) {
+    throw table.error("window_sweep", "records no histories; must have [record] history");
+  }
+  check_grids(table, around.sweep, sweep);
+  check_sensors(table, "window_sweep", list_history_channels(sweep));
+  check_sensors(table, "main inputs", around.inputs);
+  if (around.inputs.size() < around.sweep.grid.axes().size()) {
+    throw table.error("needs at least as many main inputs as parameters are identified, " +
+                      std::to_string(around.sweep.grid.axes().size()));
+  }
+  check_window(table, request, sweep);
+  return request;
+}
+
+std::vector<std::string> list_axes(const SweepRequest& sweep) {
+  std::vector<std::string> names;
+  names.reserve(sweep.grid.axes().size());
+  for (const Axis& axis : sweep.grid.axes()) names.push_back(axis.name);
+  return names;
+}
+
+std::vector<std::string> list_history_channels(const SweepRequest& sweep) {
+  std::vector<std::string> names;
+  names.reserve(sweep.history.channels.size());
+  for (const int channel : sweep.history.channels) {
+    names.push_back(list_car_channels()[static_cast<std::size_t>(channel)].name);
+  }
+  return names;
+}
+
+NoiseModel make_snapshot_noise(const NoiseStudyRequest& request,
+                               const std::vector<std::string>& channels, double scale) {
+  NoiseModel noise;
+  noise.copies = request.copies;
+  noise.sigma = scale_noise(channels, make_default_noise(), scale);
+  noise.bias.assign(channels.size(), 0.0);
+  return noise;
+}
+
+NoiseModel make_window_noise(const NoiseStudyRequest& request,
+                             const std::vector<std::string>& channels, double scale) {
+  NoiseModel noise;
+  noise.copies = request.copies;
+  noise.sigma = scale_noise(channels, make_default_noise(), scale);
+  noise.bias = scale_noise(channels, make_default_bias(), 1.0);
+  noise.hit_time = request.hit_time;
+  return noise;
+}
+
+}  // namespace strut

@@ -1,0 +1,213 @@
+#include "jobs/study/report.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "io/atomic_file.h"
+#include "io/config.h"
+#include "io/nearest_name.h"
+#include "jobs/progress.h"
+#include "jobs/report/figures.h"
+#include "jobs/study/figures.h"
+#include "jobs/study/noise_report.h"
+#include "jobs/study/tables.h"
+#include "sweep/folder.h"
+
+namespace strut {
+namespace {
+
+std::string round(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
+}
+
+ReportSection make_summary(const StudyRequest& request, const StudyResults& results) {
+  ReportSection section;
+  section.heading = "Result";
+  ReportTable table;
+  table.caption =
+      "Medians over seeds against the aim: errors at most a tenth of the published "
+      "ones, 1 - R2 at most 1e-4";
+  table.header = {"preload",  "what",   "largest at", "within the aim",
+                  "smallest", "median", "largest"};
+  table.text_columns = 3;
+  for (const StudySummary& s : summarize(request, results)) {
+    const auto count = [](std::size_t held, std::size_t all) {
+      return std::to_string(held) + " of " + std::to_string(all);
+    };
+    if (s.errors > 0) {
+      table.rows.push_back({s.preload, "ratio", s.largest_at, count(s.errors_held, s.errors),
+                            round(s.smallest_ratio), round(s.median_ratio),
+                            round(s.largest_ratio)});
+    }
+    table.rows.push_back({s.preload, "1 - R2", s.largest_gap_at, count(s.gaps_held, s.gaps),
+                          round(s.smallest_gap), round(s.median_gap), round(s.largest_gap)});
+  }
+  table.notes = {
+      "Ratio: our median over the published number. MAE, MAPE and RMSE of every cell "
+      "with a published number count, at the sweep's own instant."};
+  section.tables.push_back(table);
+  return section;
+}
+
+std::string describe_grid(const SweepRequest& sweep) {
+  std::string text;
+  for (const Axis& axis : sweep.grid.axes()) {
+    const double to = axis.from + axis.step * static_cast<double>(axis.count - 1);
+    text += (text.empty() ? "" : ", ") + axis.name + " " + format_number(axis.from) + " to " +
+            format_number(to);
+    if (sweep.sample.method == SampleMethod::kGrid) {
+      text += " in " + std::to_string(axis.count) + " levels";
+    }
+  }
+  return text;
+}
+
+std::string describe_seeds(const StudyRequest& request) {
+  if (request.seeds == 1) return "Every setting is trained once.";
+  return "Every setting is trained " + std::to_string(request.seeds) +
+         " times, each with its own split and start weights; a table gives the median, with the "
+         "smallest and the largest below it.";
+}
+
+ReportSection make_method(const StudyFolder& folder, const StudyRequest& request) {
+  const SweepRequest sweep = read_request(folder.base().request());
+  ReportSection section;
+  section.heading = "What was done";
+  char shares[160];
+  std::snprintf(shares, sizeof shares,
+                "%.4g %% of the cases train, %.4g %% validate, the rest tests",
+                100.0 * request.split.train, 100.0 * request.split.validate);
+  section.paragraphs = {
+      "Cars with every combination of worn springs and dampers drawn from a grid (" +
+          describe_grid(sweep) + ") were simulated over a bump: " + sweep.base.vehicle.name +
+          ". A snapshot of the body's motion, taken as the rear wheels pass the bump, is all that "
+          "a "
+          "network sees; it is to say which springs and dampers the car has.",
+      "Preload free_length: the springs' free length is as of the new car, so worn springs sag, "
+      "and "
+      "the height at rest tells of them. Preload trimmed: each car stands at the same height, and "
+      "only its motion tells.",
+      std::string("Networks are trained by Levenberg-Marquardt. ") + shares +
+          ". A training keeps the weights of its best validation; the errors below are those of "
+          "the "
+          "test cases, which it never saw. " +
+          describe_seeds(request),
+      "ME is the largest absolute error, MAE the mean absolute one, MAPE the mean absolute "
+      "percentage, RMSE the root mean square, R2 the coefficient of determination."};
+  section.paragraphs.insert(section.paragraphs.end(), request.notes.begin(), request.notes.end());
+  return section;
+}
+
+ReportSection make_preload(const StudyFolder& folder, const StudyRequest& request,
+                           const StudyResults& results, std::size_t preload,
+                           const FigureDrawer& drawer) {
+  ReportSection section;
+  section.heading = "Preload " + request.preloads[preload].name;
+  section.tables = make_study_tables(request, results, preload, TableDetail::kSpread);
+  for (const StudyFigure& f : make_study_figures(folder, request, results, preload)) {
+    section.figures.push_back(drawer.draw(f.figure, f.caption));
+  }
+  return section;
+}
+
+ReportSection make_published(const StudyRequest& request) {
+  ReportSection section{"Published numbers", {request.published.source}};
+  section.paragraphs.insert(section.paragraphs.end(), request.published.remarks.begin(),
+                            request.published.remarks.end());
+  return section;
+}
+
+ReportTable make_sweep_table(const StudyResults& results) {
+  ReportTable table{
+      "Sweeps", {"sweep", "plan", "cases", "failed", "snapshot offset [m]"}, {}, {}, 2};
+  for (const SweepFacts& sweep : results.sweeps) {
+    table.rows.push_back({sweep.name, sweep.plan_hash, std::to_string(sweep.cases),
+                          std::to_string(sweep.failed), format_number(sweep.offset)});
+  }
+  return table;
+}
+
+ReportTable make_option_table(const StudyRequest& request) {
+  const LevenbergMarquardtOptions& o = request.options;
+  ReportTable table{"Training", {"setting", "value"}, {}, {}, 2};
+  table.rows = {{"seeds", "1 to " + std::to_string(request.seeds)},
+                {"damping", o.rule == DampingRule::kTrainlm ? "trainlm" : "gain ratio"},
+                {"most epochs", std::to_string(o.epochs)},
+                {"epochs without a new validation minimum", std::to_string(o.max_failures)},
+                {"goal: loss of normalized values", format_number(o.goal)},
+                {"share of training cases", format_number(request.split.train)},
+                {"share of validation cases", format_number(request.split.validate)}};
+  for (const StudyInputs& inputs : request.inputs) {
+    table.rows.push_back({"inputs '" + inputs.name + "'", join_names(inputs.channels)});
+  }
+  return table;
+}
+
+/// How long the trainings took, and why they ended.
+ReportTable make_time_table(const StudyRequest& request, const StudyResults& results) {
+  ReportTable table{"Trainings", {"preload", "cell", "stopped by", "epochs", "s each"}, {}, {}, 3};
+  for (const CellResult& cell : results.cells) {
+    std::vector<double> epochs, seconds;
+    for (const SeedResult& seed : cell.seeds) {
+      epochs.push_back(seed.epochs);
+      seconds.push_back(seed.seconds);
+    }
+    const Spread e = calc_spread(epochs);
+    table.rows.push_back({request.preloads[cell.cell.preload].name,
+                          cell.key + (cell.cell.best_instant ? ", best instant" : ""),
+                          get_name(cell.seeds.front().stop),
+                          format_number(e.low) + " .. " + format_number(e.high),
+                          round(calc_spread(seconds).median)});
+  }
+  return table;
+}
+
+ReportSection make_settings(const StudyRequest& request, const StudyResults& results) {
+  ReportSection section{"Settings", {}};
+  section.tables = {make_option_table(request), make_sweep_table(results),
+                    make_time_table(request, results)};
+  return section;
+}
+
+ReportSection make_limits() {
+  return {"Limits",
+          {"Training, validation and test cases come from one simulation: the errors say how well "
+           "its way back can be learned, not how well a real car is identified.",
+           "No noise but where it is told: in the tables of networks sensors are exact. How much "
+           "noise an instant leaves room for is told by the Cramer-Rao bound, `strut design`.",
+           "Every grid parameter is known to lie within its grid; speed, bump and load are known "
+           "exactly. Beyond the grid a network extrapolates."}};
+}
+
+}  // namespace
+
+StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& request) {
+  StudyOutput output{read_results(folder, request), {}};
+  write_text_file(folder.results(), make_json(request, output.results).dump() + "\n");
+  write_text_file(folder.tables(), make_csv(request, output.results));
+  const FigureDrawer drawer(folder.figures());
+  if (!drawer.note().empty()) output.notes.push_back(drawer.note());
+  ReportPage page;
+  page.title = request.title;
+  for (const StudySummary& s : summarize(request, output.results))
+    page.lead.push_back(make_line(s));
+  page.sections = {make_summary(request, output.results), make_method(folder, request)};
+  for (std::size_t p = 0; p < request.preloads.size(); ++p) {
+    page.sections.push_back(make_preload(folder, request, output.results, p, drawer));
+  }
+  if (const auto& noise = output.results.noise) {
+    page.lead.push_back(make_noise_line(*noise));
+    page.sections.push_back(make_noise_section(*noise, drawer));
+    write_text_file(folder.noise_table(), make_csv(*noise));
+  }
+  if (!request.published.source.empty()) page.sections.push_back(make_published(request));
+  page.sections.push_back(make_settings(request, output.results));
+  page.sections.push_back(make_limits());
+  page.footer = make_report_footer();
+  write_text_file(folder.report(), make_html(page));
+  return output;
+}
+
+}  // namespace strut

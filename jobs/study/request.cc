@@ -1,0 +1,277 @@
+#include "jobs/study/request.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/config.h"
+#include "io/nearest_name.h"
+#include "sweep/plan.h"
+#include "train/network.h"
+
+namespace strut {
+namespace {
+
+constexpr std::int64_t kMostInt64 = std::numeric_limits<std::int64_t>::max();
+constexpr int kMostInt = std::numeric_limits<int>::max();
+constexpr int kMostSeeds = 1000;
+constexpr double kWholeLimit = 9e15;  // whole numbers that a double counts
+const std::vector<std::string> kPreloadNames = {"free_length", "trimmed"};
+const std::vector<std::string> kRules = {"gain-ratio", "trainlm"};  // DampingRule
+
+template <class T>
+void check_different(const Table& table, const std::string& key, std::vector<T> values) {
+  if (values.empty()) throw table.error(key, "must name at least one");
+  std::sort(values.begin(), values.end());
+  if (std::adjacent_find(values.begin(), values.end()) == values.end()) return;
+  throw table.error(key, "one of them twice; allowed: once");
+}
+
+std::vector<std::int64_t> read_whole_numbers(const Table& table, const std::string& key,
+                                             double most) {
+  std::vector<std::int64_t> values;
+  for (const double value : table.numbers(key, between(1.0, most))) {
+    if (value != std::floor(value)) throw table.error(key, "must be whole numbers");
+    values.push_back(static_cast<std::int64_t>(value));
+  }
+  return values;
+}
+
+/// What names files and columns of tables.
+void check_name(const Table& table, const std::string& name) {
+  const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  });
+  if (!plain || name.empty()) throw table.error(name, "must be a name of letters and digits");
+}
+
+std::vector<StudyNetwork> read_networks(const Table& table) {
+  std::vector<StudyNetwork> networks;
+  for (const std::string& name : table.keys()) {
+    check_name(table, name);
+    StudyNetwork network{name, {}};
+    for (const std::int64_t size : read_whole_numbers(table, name, NetworkShape::kLargestSize)) {
+      network.hidden.push_back(static_cast<int>(size));
+    }
+    networks.push_back(network);
+  }
+  if (networks.empty()) throw table.error("no network; for example DNN3 = [27, 19, 11]");
+  return networks;
+}
+
+std::vector<std::string> list_channels(const SweepRequest& sweep) {
+  std::vector<std::string> names;
+  names.reserve(sweep.snapshot.channels.size());
+  for (const int channel : sweep.snapshot.channels) {
+    names.push_back(list_car_channels()[static_cast<std::size_t>(channel)].name);
+  }
+  return names;
+}
+
+std::vector<StudyInputs> read_inputs(const Table& table, const SweepRequest& sweep) {
+  const std::vector<std::string> known = list_channels(sweep);
+  std::vector<StudyInputs> inputs;
+  for (const std::string& name : table.keys()) {
+    check_name(table, name);
+    inputs.push_back({name, table.texts(name)});
+    check_different(table, name, inputs.back().channels);
+    for (const std::string& channel : inputs.back().channels) {
+      if (std::find(known.begin(), known.end(), channel) != known.end()) continue;
+      throw table.error(name, "'" + channel + "': not in the sweep's snapshot" +
+                                  suggest_name(channel, known) + "; it has " + join_names(known));
+    }
+  }
+  if (inputs.empty()) throw table.error("no inputs; for example four = [\"body_position_z\", ...]");
+  return inputs;
+}
+
+std::vector<StudyPreload> read_preloads(const Table& root) {
+  std::vector<StudyPreload> preloads;
+  const std::vector<std::string> names = root.texts("preload");
+  check_different(root, "preload", names);
+  for (const std::string& name : names) {
+    if (std::find(kPreloadNames.begin(), kPreloadNames.end(), name) == kPreloadNames.end()) {
+      throw root.error("preload", "'" + name + "'" + suggest_name(name, kPreloadNames) +
+                                      "; allowed: " + join_names(kPreloadNames));
+    }
+    preloads.push_back({name, false, {}});
+  }
+  return preloads;
+}
+
+void read_best_instant(const Table& table, std::vector<StudyPreload>& preloads) {
+  for (StudyPreload& preload : preloads) {
+    if (!table.has(preload.name)) continue;
+    preload.has_best = true;
+    if (table.is_text(preload.name)) {
+      table.choice(preload.name, {"design"});
+    } else {
+      preload.best_offset = table.number(preload.name, between(-1000.0, 1000.0, "m"));
+    }
+  }
+}
+
+template <class Item>
+std::vector<std::string> list_names_of(const std::vector<Item>& items) {
+  std::vector<std::string> names;
+  names.reserve(items.size());
+  for (const Item& item : items) names.push_back(item.name);
+  return names;
+}
+
+void read_main(const Table& table, StudyRequest& request) {
+  request.main_network =
+      static_cast<std::size_t>(table.choice_or("network", 0, list_names_of(request.networks)));
+  request.main_inputs =
+      static_cast<std::size_t>(table.choice_or("inputs", 0, list_names_of(request.inputs)));
+  const std::int64_t wanted = table.integer_or("samples", request.samples.front(), 1, kMostInt64);
+  const auto found = std::find(request.samples.begin(), request.samples.end(), wanted);
+  if (found == request.samples.end()) throw table.error("samples", "not one of samples");
+  request.main_samples = static_cast<std::size_t>(found - request.samples.begin());
+}
+
+void read_training(const Table& table, StudyRequest& request) {
+  LevenbergMarquardtOptions& o = request.options;
+  o.rule = static_cast<DampingRule>(table.choice_or("rule", 0, kRules));
+  o.epochs = static_cast<int>(table.integer_or("epochs", o.epochs, 1, kMostInt));
+  o.max_failures = static_cast<int>(table.integer_or("max_failures", o.max_failures, 1, kMostInt));
+  o.goal = table.number_or("goal", o.goal, at_least(0.0));
+  SplitChoice& split = request.split;
+  split.train = table.number_or("train", split.train, between(0.01, 0.98));
+  split.validate = table.number_or("validate", split.validate, between(0.01, 0.98));
+  if (split.train + split.validate < 1.0) return;
+  throw table.error("train", "and validate must leave a part of 1 to test");
+}
+
+/// Told here, before a folder is made: whoever corrects the file may then take the same folder.
+void check_samples(const Table& root, const StudyRequest& request, SweepRequest sweep) {
+  check_different(root, "samples", request.samples);
+  for (const std::int64_t samples : request.samples) {
+    sweep.sample.count = samples;
+    try {
+      const Plan plan(sweep);
+      make_split(samples, request.split);
+    } catch (const InputError& e) {
+      throw root.error("samples", std::to_string(samples) + ": " + e.what());
+    }
+  }
+}
+
+PublishedCell read_published_cell(const Table& table) {
+  PublishedCell cell;
+  cell.table = table.text_or("table", "");
+  for (const std::string& parameter : table.keys()) {
+    if (parameter == "table") continue;
+    const Table values = table.table(parameter);
+    for (const MetricInfo& metric : kMetrics) {
+      if (values.has(metric.name)) {
+        cell.parameters[parameter][metric.name] = values.number(metric.name, at_least(0.0));
+      }
+    }
+  }
+  return cell;
+}
+
+PublishedNumbers read_published(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  PublishedNumbers numbers;
+  numbers.source = root.text("source");
+  if (root.has("remarks")) numbers.remarks = root.texts("remarks");
+  const Table cells = root.table("cells");
+  for (const std::string& key : cells.keys()) {
+    numbers.cells[key] = read_published_cell(cells.table(key));
+  }
+  document.check_all_read();
+  return numbers;
+}
+
+/// Numbers of a cell that the study does not have would be forgotten in silence.
+void check_published(const StudyRequest& request) {
+  std::vector<std::string> keys;
+  for (const StudyCell& cell : list_cells(request)) keys.push_back(make_key(request, cell));
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  for (const auto& [key, cell] : request.published.cells) {
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+    throw InputError(request.published_path.string() + ": cells." + key + ": no cell of the study" +
+                     suggest_name(key, keys) + "; cells: " + join_names(keys));
+  }
+}
+
+}  // namespace
+
+StudyRequest read_study(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  StudyRequest request;
+  request.path = path;
+  request.title = root.text_or("title", path.stem().string());
+  if (root.has("notes")) request.notes = root.texts("notes");
+  request.sweep = root.file("sweep");
+  const SweepRequest sweep = read_request(request.sweep);
+  request.preloads = read_preloads(root);
+  request.samples = read_whole_numbers(root, "samples", kWholeLimit);
+  request.seeds = static_cast<int>(root.integer_or("seeds", request.seeds, 1, kMostSeeds));
+  request.networks = read_networks(root.table("networks"));
+  request.inputs = read_inputs(root.table("inputs"), sweep);
+  if (const auto best = root.find_table("best_instant")) read_best_instant(*best, request.preloads);
+  if (const auto main = root.find_table("main")) read_main(*main, request);
+  if (const auto training = root.find_table("training")) read_training(*training, request);
+  check_samples(root, request, sweep);
+  if (const auto noise = root.find_table("noise")) {
+    request.noise =
+        read_noise_request(*noise, {sweep, request.inputs[request.main_inputs].channels,
+                                    list_names_of(request.networks), request.main_network});
+  }
+  if (root.has("published")) {
+    request.published_path = root.file("published");
+    request.published = read_published(request.published_path);
+  }
+  document.check_all_read();
+  check_published(request);
+  return request;
+}
+
+std::vector<StudyCell> list_cells(const StudyRequest& request) {
+  std::vector<StudyCell> cells;
+  const std::size_t networks = request.networks.size(), inputs = request.inputs.size();
+  cells.reserve(request.preloads.size() * (request.samples.size() * networks + 2 * inputs));
+  for (std::size_t p = 0; p < request.preloads.size(); ++p) {
+    for (std::size_t s = 0; s < request.samples.size(); ++s) {
+      for (std::size_t n = 0; n < networks; ++n) cells.push_back({p, s, n, request.main_inputs});
+    }
+    const StudyCell main{p, request.main_samples, request.main_network, request.main_inputs};
+    for (std::size_t i = 0; i < inputs; ++i) {
+      if (i == main.inputs) continue;
+      cells.push_back({p, main.samples, main.network, i});
+    }
+    if (!request.preloads[p].has_best) continue;
+    for (std::size_t i = 0; i < inputs; ++i) {
+      cells.push_back({p, main.samples, main.network, i, true});
+    }
+  }
+  return cells;
+}
+
+bool is_main(const StudyRequest& request, const StudyCell& cell) {
+  return cell.samples == request.main_samples && cell.network == request.main_network &&
+         cell.inputs == request.main_inputs && !cell.best_instant;
+}
+
+std::string make_key(const StudyRequest& request, const StudyCell& cell) {
+  return request.networks[cell.network].name + "_" + std::to_string(request.samples[cell.samples]) +
+         "_" + request.inputs[cell.inputs].name;
+}
+
+std::string make_sweep_name(const StudyRequest& request, const StudyCell& cell) {
+  return request.preloads[cell.preload].name + "_" + std::to_string(request.samples[cell.samples]) +
+         (cell.best_instant ? "_best" : "");
+}
+
+std::string make_model_name(const StudyRequest& request, const StudyCell& cell, int seed) {
+  return request.preloads[cell.preload].name + "_" + make_key(request, cell) +
+         (cell.best_instant ? "_best" : "") + "_seed" + std::to_string(seed);
+}
+
+}  // namespace strut

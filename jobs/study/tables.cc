@@ -1,0 +1,145 @@
+#include "jobs/study/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "io/config.h"
+#include "jobs/progress.h"
+
+namespace strut {
+namespace {
+
+std::string round(double value, const char* format = "%.2g") {
+  if (std::isnan(value)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string round_spread(const Spread& s, TableDetail detail) {
+  std::string median = round(s.median);
+  if (detail == TableDetail::kMedian || s.low == s.high) return median;
+  return median + "\n" + round(s.low) + " .. " + round(s.high);
+}
+
+/// 1 - R2, whose bounds change places.
+Spread calc_gap(const Spread& r2) { return {1.0 - r2.median, 1.0 - r2.high, 1.0 - r2.low}; }
+
+/// Which metrics the tables show, in the paper's order.
+constexpr std::size_t kShown[] = {1, 2, 3};  // MAE, MAPE, RMSE of kMetrics
+
+std::vector<std::string> make_header(const std::string& first, bool published) {
+  std::vector<std::string> header = {first, "parameter", "unit"};
+  for (const std::size_t m : kShown) {
+    header.push_back(std::string(kMetrics[m].name) + (kMetrics[m].name[2] == 'P' ? " %" : ""));
+    if (!published) continue;
+    header.emplace_back("paper");
+    header.emplace_back("ratio");
+  }
+  header.emplace_back("1 - R2");
+  if (published) header.emplace_back("paper");
+  return header;
+}
+
+void add_rows(const StudyRequest& request, const CellResult& cell, const std::string& label,
+              TableDetail detail, ReportTable& table) {
+  const bool published = !request.published.cells.empty();
+  for (std::size_t p = 0; p < cell.parameters.size(); ++p) {
+    std::vector<std::string> row = {p == 0 ? label : "", cell.parameters[p].name,
+                                    cell.parameters[p].unit};
+    for (const std::size_t m : kShown) {
+      const Spread& spread = cell.spread[p][m];
+      row.push_back(round_spread(spread, detail));
+      if (!published) continue;
+      row.push_back(round(find_published(request, cell, p, m), "%g"));
+      row.push_back(round(spread.median / find_published(request, cell, p, m)));
+    }
+    row.push_back(round_spread(calc_gap(cell.spread[p][kR2]), detail));
+    if (published) row.push_back(round(1.0 - find_published(request, cell, p, kR2), "%.1g"));
+    table.rows.push_back(row);
+  }
+}
+
+std::string list_sizes(const StudyNetwork& network) {
+  std::string text;
+  for (const int size : network.hidden) text += (text.empty() ? "" : ", ") + std::to_string(size);
+  return network.name + " (" + text + ")";
+}
+
+/// "as Table 2 of the paper" where a cell of the table has a published number.
+std::string name_published(const StudyRequest& request, const std::string& key) {
+  const auto found = request.published.cells.find(key);
+  if (found == request.published.cells.end() || found->second.table.empty()) return "";
+  return ", beside " + found->second.table + " of the paper";
+}
+
+std::string describe_seeds(const StudyRequest& request) {
+  return request.seeds == 1 ? "one training each"
+                            : "medians over " + std::to_string(request.seeds) + " trainings";
+}
+
+ReportTable make_network_table(const StudyRequest& request, const StudyResults& results,
+                               std::size_t preload, std::size_t samples, TableDetail detail) {
+  ReportTable table;
+  table.text_columns = 3;
+  table.header = make_header("network", !request.published.cells.empty());
+  for (const CellResult& cell : results.cells) {
+    const StudyCell& c = cell.cell;
+    const bool here = c.preload == preload && c.samples == samples &&
+                      c.inputs == request.main_inputs && !c.best_instant;
+    if (!here) continue;
+    if (table.caption.empty()) {
+      table.caption = format_count(request.samples[samples]) + " cases, preload " +
+                      request.preloads[preload].name + name_published(request, cell.key) + "; " +
+                      describe_seeds(request);
+    }
+    add_rows(request, cell, list_sizes(request.networks[c.network]), detail, table);
+  }
+  return table;
+}
+
+ReportTable make_input_table(const StudyRequest& request, const StudyResults& results,
+                             std::size_t preload, TableDetail detail) {
+  ReportTable table;
+  table.text_columns = 3;
+  table.header = make_header("inputs", !request.published.cells.empty());
+  std::string published;
+  for (const CellResult& cell : results.cells) {
+    const StudyCell& c = cell.cell;
+    const bool here = c.preload == preload && c.samples == request.main_samples &&
+                      c.network == request.main_network;
+    if (!here) continue;
+    add_rows(request, cell, describe_inputs(request, cell), detail, table);
+    if (c.inputs != request.main_inputs) published = name_published(request, cell.key);
+  }
+  table.caption = "Inputs and instants, preload " + request.preloads[preload].name + ", " +
+                  list_sizes(request.networks[request.main_network]) + ", " +
+                  format_count(request.samples[request.main_samples]) + " cases" + published +
+                  "; " + describe_seeds(request);
+  return table;
+}
+
+}  // namespace
+
+std::string describe_inputs(const StudyRequest& request, const CellResult& cell) {
+  std::string text = request.inputs[cell.cell.inputs].name + " inputs";
+  if (cell.cell.best_instant) {
+    text += ", snapshot at " + round(cell.offset, "%.4g") + " m";
+  }
+  return text;
+}
+
+std::vector<ReportTable> make_study_tables(const StudyRequest& request, const StudyResults& results,
+                                           std::size_t preload, TableDetail detail) {
+  std::vector<ReportTable> tables;
+  for (std::size_t s = 0; s < request.samples.size(); ++s) {
+    tables.push_back(make_network_table(request, results, preload, s, detail));
+  }
+  if (request.inputs.size() > 1 || request.preloads[preload].has_best) {
+    tables.push_back(make_input_table(request, results, preload, detail));
+  }
+  return tables;
+}
+
+}  // namespace strut
