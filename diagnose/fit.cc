@@ -15,7 +15,7 @@ namespace {
 /// Weights are (value - start) / scale. Beyond a bound the value stays on it.
 class FitProblem : public LeastSquaresProblem {
  public:
-  explicit FitProblem(ReadingSimulator& simulator) : simulator_(simulator) {}
+  explicit FitProblem(ReadingModel& simulator) : simulator_(simulator) {}
 
   std::size_t weight_count() const override { return simulator_.unknowns().size(); }
   double residual_count() const override {
@@ -34,7 +34,8 @@ class FitProblem : public LeastSquaresProblem {
 
   /// Where there is no simulation the loss is infinite: a step that is not taken.
   double calc_loss(const double* weights) override {
-    const Linearization& at = linearize(weights);
+    const std::vector<double> values = calc_values(weights);
+    const Linearization at = values == last_values_ ? last_ : simulator_.evaluate(values);
     return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
   }
 
@@ -75,6 +76,14 @@ class FitProblem : public LeastSquaresProblem {
     return std::sqrt(std::max(0.0, gradient.dot(inverse.covariance * gradient)));
   }
 
+  /// How much larger standard deviations are by what the model leaves beyond noise.
+  double calc_widening(const double* weights) {
+    const Linearization& at = linearize(weights);
+    const double degrees = residual_count() - static_cast<double>(weight_count());
+    if (!at.failure.empty() || !(degrees > 0.0)) return 1.0;
+    return std::sqrt(std::max(1.0, at.residual.squaredNorm() / degrees));
+  }
+
   /// Brings weights beyond a bound back to it; returns whether the slope would lead inwards from
   /// one.
   bool release(std::vector<double>& weights) {
@@ -104,7 +113,7 @@ class FitProblem : public LeastSquaresProblem {
     return jacobian;
   }
 
-  ReadingSimulator& simulator_;
+  ReadingModel& simulator_;
   std::vector<double> last_values_;
   Linearization last_;
 };
@@ -117,8 +126,9 @@ std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
 }
 
 /// Weights where the search begins: the unknowns' own start, the measuring clocks set.
-std::vector<double> make_start(ReadingSimulator& simulator) {
-  std::vector<double> weights = simulator.align(list_starts(simulator.unknowns()));
+std::vector<double> make_start(ReadingModel& simulator, const FitOptions& options) {
+  std::vector<double> weights =
+      simulator.align(options.start.empty() ? list_starts(simulator.unknowns()) : options.start);
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const Unknown& u = simulator.unknowns()[i];
     weights[i] = (weights[i] - u.start) / u.scale;
@@ -126,25 +136,32 @@ std::vector<double> make_start(ReadingSimulator& simulator) {
   return weights;
 }
 
-LevenbergMarquardtOptions make_search_options(int iterations, double max_damping) {
+LevenbergMarquardtOptions make_search_options(int iterations, double first_damping,
+                                              double max_damping) {
   LevenbergMarquardtOptions search;
   search.scale = DampingScale::kDiagonal;
   search.accelerate = false;
-  search.first_damping = 1e-5;  // starts are near: worn springs and dampers, not other cars
+  search.first_damping = first_damping;
   search.max_damping = max_damping;
   search.epochs = std::max(0, iterations);
   search.min_gradient = 0.0;
   return search;
 }
 
-/// Steps until the minimum is within `near` standard deviations; false where no damping helps any
+/// Steps until the minimum is within `near` standard deviations (`widened`: of those that what the
+/// model leaves widens); false where no damping helps any
 /// more.
-bool approach(FitProblem& problem, const FitOptions& options, double near, double max_damping,
-              std::vector<double>& weights, int& iterations) {
-  LevenbergMarquardt search(problem, nullptr,
-                            make_search_options(options.iterations - iterations, max_damping));
+bool approach(FitProblem& problem, const FitOptions& options, double near, bool widened,
+              double max_damping, std::vector<double>& weights, int& iterations) {
+  LevenbergMarquardt search(
+      problem, nullptr,
+      make_search_options(options.iterations - iterations, options.first_damping, max_damping));
   search.start(weights);
-  while (problem.calc_distance(search.state().weights.data()) > near && search.step()) {
+  const auto is_far = [&] {
+    const double* at = search.state().weights.data();
+    return problem.calc_distance(at) > near * (widened ? problem.calc_widening(at) : 1.0);
+  };
+  while (is_far() && search.step()) {
   }
   weights = search.state().weights;
   iterations += search.state().epoch;
@@ -160,20 +177,21 @@ std::vector<double> search(FitProblem& problem, const FitOptions& options,
   constexpr double kNear = 0.01 * kFitTolerance, kPatience = 1e6, kNoPatience = 1e-3;
   for (int pass = 0; pass <= kReleases; ++pass) {
     int& iterations = result.iterations;
-    result.at_kink = !approach(problem, options, kFitTolerance, kPatience, weights, iterations);
-    approach(problem, options, kNear, kNoPatience, weights, iterations);
+    result.at_kink =
+        !approach(problem, options, kFitTolerance, true, kPatience, weights, iterations);
+    approach(problem, options, kNear, false, kNoPatience, weights, iterations);
     if (!problem.release(weights)) break;
   }
   return weights;
 }
 
-std::vector<ChannelFit> judge_channels(const ReadingSimulator& simulator,
+std::vector<ChannelFit> judge_channels(const ReadingModel& simulator,
                                        const Eigen::VectorXd& residual) {
   std::vector<ChannelFit> fits;
-  for (std::size_t r = 0; r < simulator.runs().size(); ++r) {
-    const auto& channels = simulator.runs()[r].channels;
+  for (std::size_t r = 0; r < simulator.channels().size(); ++r) {
+    const std::vector<int>& channels = simulator.channels()[r];
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      ChannelFit fit{static_cast<int>(r), channels[c].channel};
+      ChannelFit fit{static_cast<int>(r), channels[c]};
       double last = 0.0, products = 0.0;
       for (std::size_t k = 0; k < simulator.reading_count(); ++k) {
         const ReadingPlace& place = simulator.readings()[k];
@@ -191,8 +209,19 @@ std::vector<ChannelFit> judge_channels(const ReadingSimulator& simulator,
   return fits;
 }
 
+Uncertainty calc_widened(const ReadingModel& simulator, const Linearization& at,
+                         const FitResult& result) {
+  const auto readings = static_cast<Eigen::Index>(simulator.reading_count());
+  const auto of_readings = at.jacobian.topRows(readings);
+  const auto of_priors = at.jacobian.bottomRows(at.jacobian.rows() - readings);
+  const double misfit = std::max(1.0, result.chi2_per_degree());
+  const Eigen::MatrixXd information =
+      of_readings.transpose() * of_readings / misfit + of_priors.transpose() * of_priors;
+  return calc_uncertainty(information, result.unknowns);
+}
+
 /// The result at the end of the search.
-void describe(const ReadingSimulator& simulator, FitProblem& problem,
+void describe(const ReadingModel& simulator, FitProblem& problem,
               const std::vector<double>& weights, FitResult& result) {
   result.unknowns = simulator.unknowns();
   result.values = problem.calc_values(weights.data());
@@ -205,8 +234,10 @@ void describe(const ReadingSimulator& simulator, FitProblem& problem,
   result.chi2 = at.residual.squaredNorm();
   result.degrees = static_cast<long>(simulator.reading_count() + simulator.prior_count()) -
                    result.uncertainty.rank;
+  result.widened = calc_widened(simulator, at, result);
   result.channels = judge_channels(simulator, at.residual);
   result.distance = problem.calc_distance(weights.data());
+  result.distance /= problem.calc_widening(weights.data());
   result.converged = result.distance < (result.at_kink ? kKinkTolerance : kFitTolerance);
   result.simulations = simulator.simulation_count();
   result.outside = static_cast<long>(simulator.outside_count());
@@ -223,17 +254,21 @@ double FitResult::calc_excess() const {
   return degrees > 0 ? (chi2 - expected) / std::sqrt(2.0 * expected) : 0.0;
 }
 
-FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
-                         const FitOptions& options) {
-  ReadingSimulator simulator(runs, unknowns, options.linearize);
-  FitProblem problem(simulator);
-  const std::vector<double> start = make_start(simulator);
+FitResult fit_readings(ReadingModel& model, const FitOptions& options) {
+  FitProblem problem(model);
+  const std::vector<double> start = make_start(model, options);
   const std::string failure = problem.linearize(start.data()).failure;
   if (!failure.empty()) throw InputError(failure + "; the fit starts there: start it elsewhere");
   FitResult result;
   const std::vector<double> weights = search(problem, options, start, result);
-  describe(simulator, problem, weights, result);
+  describe(model, problem, weights, result);
   return result;
+}
+
+FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
+                         const FitOptions& options) {
+  ReadingSimulator simulator(runs, unknowns, options.linearize);
+  return fit_readings(simulator, options);
 }
 
 Uncertainty calc_fit_bounds(const std::vector<MeasuredRun>& runs,

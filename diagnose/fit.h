@@ -24,11 +24,15 @@ inline constexpr double kFitSigmas = 4.0;
 struct FitOptions {
   LinearizeOptions linearize;
   int iterations = 50;  // accepted steps at most
+  /// First mu relative to the diagonal of J'J: starts are near, worn springs and dampers, not other
+  /// cars.
+  double first_damping = 1e-5;
+  std::vector<double> start;  // values where the search begins; empty: the unknowns' own
 };
 
 /// How one channel of one run fits.
 struct ChannelFit {
-  int run = 0, channel = 0;  // CarChannel
+  int run = 0, channel = 0;  // of the model: CarChannel, or of list_rig_channels
   long count = 0;            // readings
   double chi2 = 0.0;         // their share of chi2
   /// Correlation of neighboring residuals: within 2 / sqrt(count) of 0 where they are white; else
@@ -41,10 +45,14 @@ struct FitResult {
   std::vector<double> values;  // in their units
   std::vector<bool> at_bound;  // held there by a bound
   Uncertainty uncertainty;     // at `values`
-  double chi2 = 0.0;           // readings and priors
-  long degrees = 0;            // readings and priors less rank
+  /// The same for a noise that explains what is left: readings count max(1, chi2 / degrees) times
+  /// less, priors as they are.
+  Uncertainty widened;
+  double chi2 = 0.0;  // readings and priors
+  long degrees = 0;   // readings and priors less rank
   std::vector<ChannelFit> channels;
-  /// How far the linear model still sees the minimum, in standard deviations.
+  /// How far the linear model still sees the minimum, in standard deviations; those of a model that
+  /// leaves more than noise are sqrt(chi2 / degrees) times as large.
   double distance = 0.0;
   /// No step of any length lowers chi2 any more: a kink of it, where a contact event passes a
   /// reading and the linear model holds on one side only.
@@ -61,6 +69,10 @@ struct FitResult {
   bool is_adequate() const { return calc_excess() <= kFitSigmas; }
   bool is_quiet() const { return calc_excess() < -kFitSigmas; }
 };
+
+/// Fits what can be fitted. `options.linearize` is the model's own affair. Throws InputError where
+/// the start cannot be simulated.
+FitResult fit_readings(ReadingModel& model, const FitOptions& options = {});
 
 /// Fits. Simulations that fail on the way are steps not taken. Deterministic for any number of
 /// threads. Throws InputError for unusable runs or unknowns, and where the start cannot be

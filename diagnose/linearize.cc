@@ -47,18 +47,6 @@ Case make_setup(const Case& setup, const std::vector<Unknown>& unknowns,
   return c;
 }
 
-void fill_priors(const std::vector<Unknown>& unknowns, const std::vector<double>& values,
-                 std::size_t first, Linearization& out) {
-  auto row = static_cast<Eigen::Index>(first);
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Prior& prior = unknowns[i].prior;
-    if (!prior.informs()) continue;
-    out.residual(row) = (values[i] - prior.mean) / prior.sigma;
-    out.jacobian(row, static_cast<Eigen::Index>(i)) = unknowns[i].scale / prior.sigma;
-    ++row;
-  }
-}
-
 std::string explain_failure(const std::string& run, const LaneRun& result) {
   return run + ": the simulation ends at t = " +
          format_number(result.results->failure_time[static_cast<std::size_t>(result.lane)]) +
@@ -69,23 +57,19 @@ std::string explain_failure(const std::string& run, const LaneRun& result) {
 
 ReadingSimulator::ReadingSimulator(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
                                    const LinearizeOptions& options)
-    : runs_(std::move(runs)),
-      unknowns_(std::move(unknowns)),
+    : ReadingModel(std::move(unknowns)),
+      runs_(std::move(runs)),
       options_(options),
       preparers_(runs_.size()) {
   if (runs_.empty()) throw InputError("fit: no measurement");
   check_unknowns(unknowns_, runs_.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     check_measured_run(runs_[r]);
+    channels_.emplace_back();
+    for (const MeasuredChannel& c : runs_[r].channels) channels_[r].push_back(c.channel);
     choose_readings(r);
   }
-  prior_count_ = static_cast<std::size_t>(std::count_if(
-      unknowns_.begin(), unknowns_.end(), [](const Unknown& u) { return u.prior.informs(); }));
-  if (reading_count() + prior_count_ < unknowns_.size()) {
-    throw InputError(runs_.front().name + ": " + std::to_string(reading_count()) +
-                     " readings within the simulated time, too few for " +
-                     std::to_string(unknowns_.size()) + " unknowns");
-  }
+  finish(runs_.front().name);
 }
 
 /// Simulates as long as the readings need, at most for the maneuver, and drops those outside.
@@ -107,7 +91,9 @@ void ReadingSimulator::choose_readings(std::size_t r) {
   for (std::size_t t = 0; t < run.times.size(); ++t) {
     const bool inside = run.times[t] + earliest >= margin && run.times[t] + latest <= end;
     if (!inside) outside_count_ += run.channels.size();
-    for (std::size_t c = 0; inside && c < run.channels.size(); ++c) readings_.push_back({r, t, c});
+    for (std::size_t c = 0; inside && c < run.channels.size(); ++c) {
+      if (std::isfinite(run.channels[c].values[t])) readings_.push_back({r, t, c});
+    }
   }
   if (readings_.size() > before) return;
   throw InputError(run.name + ": time runs from " + format_number(run.times.front()) + " to " +
@@ -165,7 +151,7 @@ Linearization ReadingSimulator::linearize(const std::vector<double>& values) {
     const RunReadings run(unknowns_, values, runs_[r], r, 1.0 / options_.rate, readings_);
     used += run.fill(results.data() + used, options_.relative_step, out);
   }
-  fill_priors(unknowns_, values, reading_count(), out);
+  fill_priors(values, out);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/unknown.h"
+#include "diagnose/reading_model.h"
 #include "sweep/run_prepared.h"
 
 namespace strut {
@@ -33,46 +33,23 @@ struct LinearizeOptions {
   int threads = 1;  // no result depends on it
 };
 
-/// Residuals and their derivatives at one point.
-struct Linearization {
-  std::string failure;  // why there is no simulation here; empty: all runs got through
-  /// (y_sim(t + hit_time) + bias - y_measured) / sigma by run, time and channel; then
-  /// (value - mean) / sigma of every prior.
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;  // by unknowns counted in their scale
-};
-
-/// Which reading a residual is.
-struct ReadingPlace {
-  std::size_t run, time, channel;  // the latter of the run's channels
-};
-
 /// Simulates the runs at given values of the unknowns: the base and the +h and -h of every
 /// parameter together in lockstep lanes. Simulated time is measured time plus hit time; readings
 /// which for a hit time within its bounds would lie outside of the simulation are left aside.
-class ReadingSimulator {
+class ReadingSimulator : public ReadingModel {
  public:
   /// Keeps references to neither. Throws InputError for unusable runs or unknowns.
   ReadingSimulator(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
                    const LinearizeOptions& options);
 
   /// `values` in the unknowns' own units. Deterministic.
-  Linearization linearize(const std::vector<double>& values);
+  Linearization linearize(const std::vector<double>& values) override;
 
   /// `values` with the hit time of each run where its readings fit best (run_readings.h); as they
   /// are where they cannot be simulated. One simulation a run.
-  std::vector<double> align(const std::vector<double>& values);
+  std::vector<double> align(const std::vector<double>& values) override;
 
   const std::vector<MeasuredRun>& runs() const { return runs_; }
-  const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  /// Of the first reading_count() residuals.
-  const std::vector<ReadingPlace>& readings() const { return readings_; }
-  std::size_t reading_count() const { return readings_.size(); }
-  std::size_t prior_count() const { return prior_count_; }
-  /// Readings left aside because they lie outside of what is simulated.
-  std::size_t outside_count() const { return outside_count_; }
-  /// Cases simulated so far.
-  long simulation_count() const { return simulation_count_; }
 
  private:
   void choose_readings(std::size_t run);
@@ -80,11 +57,7 @@ class ReadingSimulator {
                        std::vector<LaneRun>& results);
 
   std::vector<MeasuredRun> runs_;
-  std::vector<Unknown> unknowns_;
   LinearizeOptions options_;
-  std::vector<ReadingPlace> readings_;
-  std::size_t prior_count_ = 0, outside_count_ = 0;
-  long simulation_count_ = 0;
   std::vector<CasePreparer> preparers_;  // one a run, at the base point's mechanism
 };
 

@@ -38,8 +38,9 @@ void check_channel(const MeasuredRun& run, const MeasuredChannel& c) {
     throw InputError(run.name + ": " + name + " has " + std::to_string(c.values.size()) +
                      " readings at " + std::to_string(run.times.size()) + " times");
   }
-  const auto bad =
-      std::find_if_not(c.values.begin(), c.values.end(), [](double v) { return std::isfinite(v); });
+  const auto bad = std::find_if_not(c.values.begin(), c.values.end(), [&](double v) {
+    return std::isfinite(v) || (run.may_miss && std::isnan(v));
+  });
   if (bad != c.values.end()) {
     throw InputError(run.name + ": " + name + " in sample " +
                      std::to_string(bad - c.values.begin() + 1) + ": must be a finite number");

@@ -13,7 +13,7 @@ namespace strut {
 
 /// One sensor.
 struct MeasuredChannel {
-  int channel = 0;             // CarChannel
+  int channel = 0;             // of the model: CarChannel, or of list_rig_channels
   double sigma = 0.0;          // 1 sigma of its white noise per sample, in the channel's unit
   std::vector<double> values;  // one reading per time
 };
@@ -23,13 +23,15 @@ struct MeasuredRun {
   Case setup;                 // known or supposed; the duration is the fit's own
   std::vector<double> times;  // s, ascending
   std::vector<MeasuredChannel> channels;
+  bool may_miss = false;  // readings may be NaN: missing
 };
 
 /// Keeps the times in [from, to] s.
 void cut_window(MeasuredRun& run, double from, double to);
 
 /// Throws InputError, naming run and place, unless there are channels with a positive sigma, none
-/// of them twice, as many readings as times, every number finite, and times that ascend.
+/// of them twice, as many readings as times, every number finite (or missing, where it may be), and
+/// times that ascend.
 void check_measured_run(const MeasuredRun& run);
 
 /// A measurement yet to be made, for bounds: the channels that have a sensor, every 1 / rate s from

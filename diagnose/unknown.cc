@@ -40,7 +40,8 @@ Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& 
   u.start = info.get(setup);
   u.low = info.allowed.low;
   u.high = info.allowed.high;
-  u.scale = u.start != 0.0 ? std::abs(u.start) : 0.5 * (u.high - u.low);
+  const double ordinary = info.typical > 0.0 ? info.typical : 0.5 * (u.high - u.low);
+  u.scale = u.start != 0.0 ? std::abs(u.start) : ordinary;
   return u;
 }
 

@@ -10,9 +10,11 @@
 namespace strut {
 
 enum class UnknownKind {
-  kParameter,  // of sweep/parameters.h
-  kHitTime,    // s: simulated time minus the time of the measuring clock
-  kBias,       // what is to be added to a simulated channel, in its unit
+  kParameter,     // of sweep/parameters.h
+  kHitTime,       // s: simulated time minus the time of the measuring clock
+  kBias,          // what is to be added to a simulated channel, in its unit
+  kInputGain,     // of a rig: what its measured input is to be multiplied by
+  kInitialState,  // of a rig: offset of its start from rest [m], [m/s]
 };
 
 /// What is known beforehand: a Gaussian; sigma infinite: nothing.
@@ -30,9 +32,11 @@ struct Unknown {
   std::string name;     // "front_stiffness", "hit_time", "imu_rate_y_bias"
   std::string unit;     // "1" if none
   int run = kEveryRun;  // of which run, counted from 0; or one value for all
-  int channel = 0;      // kBias: the CarChannel
-  double start = 0.0;   // where the search begins
-  double scale = 1.0;   // 100 % of it: its size, or the sigma of its prior where it starts from 0
+  /// kBias: the model's channel; kInputGain: of list_rig_inputs; kInitialState: RigCoordinate,
+  /// its velocity kRigCoordinates later.
+  int channel = 0;
+  double start = 0.0;  // where the search begins
+  double scale = 1.0;  // 100 % of it: its size, or the sigma of its prior where it starts from 0
   double low = 0.0, high = 0.0;  // bounds
   Prior prior;
 };

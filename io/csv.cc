@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <ostream>
 #include <set>
 #include <stdexcept>
@@ -72,7 +73,7 @@ void write_heading(std::ostream& stream, const std::vector<CsvColumn>& columns) 
 
 class CsvReader {
  public:
-  explicit CsvReader(const fs::path& path) { table_.path = path; }
+  CsvReader(const fs::path& path, MissingCells missing) : missing_(missing) { table_.path = path; }
 
   CsvTable read(std::istream& stream) {
     std::string line;
@@ -131,13 +132,26 @@ class CsvReader {
     table_.lines.push_back(line_);
   }
 
+  /// Empty, or "nan" in any case.
+  static bool is_missing(std::string_view cell) {
+    constexpr std::string_view kNan = "nan";
+    return cell.empty() || (cell.size() == kNan.size() &&
+                            std::equal(cell.begin(), cell.end(), kNan.begin(), [](char a, char b) {
+                              return (a | 0x20) == b;  // lower case
+                            }));
+  }
+
   double parse_cell(std::string_view cell, const std::string& column) const {
+    if (missing_ == MissingCells::kNan && is_missing(cell)) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
     const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
     const auto value = parse_number<double>(digits);
     if (value && std::isfinite(*value)) return *value;
     throw error(column + " = '" + std::string(cell) + "': must be a finite number");
   }
 
+  MissingCells missing_;
   CsvTable table_;
   int line_ = 0;
 };
@@ -183,12 +197,12 @@ void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
   file.commit();
 }
 
-CsvTable read_csv(const fs::path& path) {
+CsvTable read_csv(const fs::path& path, MissingCells missing) {
   if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
   if (!fs::is_regular_file(path)) throw InputError(path.string() + ": not a file");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
-  CsvTable table = CsvReader(path).read(stream);
+  CsvTable table = CsvReader(path, missing).read(stream);
   if (stream.bad()) throw EnvironmentError(path.string() + ": cannot be read to its end");
   return table;
 }

@@ -42,9 +42,15 @@ void write_csv(std::ostream& stream, const std::vector<CsvColumn>& columns);
 /// The same into a file that appears whole or not at all. Throws EnvironmentError.
 void write_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
 
+/// What an empty cell, or one that says nan, is.
+enum class MissingCells {
+  kRefused,  // an error, with file and line
+  kNan,      // a sample that is missing
+};
+
 /// Reads a file as `write_csv` writes it; also with CR LF line ends, blanks around cells, names in
 /// quotes, comment and empty lines anywhere. Throws InputError with file and line for a missing
 /// file, a row of the wrong length, a cell that is not a finite number, an empty or repeated name.
-CsvTable read_csv(const std::filesystem::path& path);
+CsvTable read_csv(const std::filesystem::path& path, MissingCells missing = MissingCells::kRefused);
 
 }  // namespace strut

@@ -103,7 +103,7 @@ void take_columns(const MeasurementRequest& request, const std::vector<std::stri
   }
 }
 
-void check_columns(const Measurement& measurement) {
+void check_columns(const Measurement& measurement, MissingCells missing) {
   for (const CsvColumn& column : measurement.columns) {
     if (column.values.size() != measurement.row_count()) {
       throw InputError(measurement.path.string() + ": column '" + column.name + "' has " +
@@ -111,8 +111,10 @@ void check_columns(const Measurement& measurement) {
                        measurement.columns.front().name + "' " +
                        std::to_string(measurement.row_count()));
     }
-    const auto bad = std::find_if(column.values.begin(), column.values.end(),
-                                  [](double x) { return !std::isfinite(x); });
+    const auto bad = std::find_if(column.values.begin(), column.values.end(), [&](double x) {
+      const bool there = missing == MissingCells::kRefused;
+      return there ? !std::isfinite(x) : std::isinf(x);
+    });
     if (bad != column.values.end()) {
       const auto row = static_cast<std::size_t>(bad - column.values.begin());
       throw InputError(measurement.locate(row) + ": " + column.name + " is not finite");
@@ -151,7 +153,7 @@ Measurement read_measurement(const fs::path& path, const MeasurementRequest& req
     take_columns(
         request, file.names(), [&](const auto& name) { return file.read(name); }, measurement);
   } else {
-    const CsvTable table = read_csv(path);
+    const CsvTable table = read_csv(path, request.missing);
     measurement.lines = table.lines;
     std::vector<std::string> names;
     names.reserve(table.columns.size());
@@ -159,7 +161,7 @@ Measurement read_measurement(const fs::path& path, const MeasurementRequest& req
     take_columns(
         request, names, [&](const auto& name) { return table.column(name); }, measurement);
   }
-  check_columns(measurement);
+  check_columns(measurement, request.missing);
   return measurement;
 }
 

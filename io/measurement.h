@@ -23,9 +23,11 @@ struct MeasurementRequest {
   std::vector<std::string> required;
   std::vector<std::string> optional = {};  // read where they are there
   MeasuredPart part = MeasuredPart::kSnapshot;
+  /// kNan: values may be missing, NaN in the result.
+  MissingCells missing = MissingCells::kRefused;
 };
 
-/// Finite values; all columns are of one length, one row or more.
+/// Values finite unless they may be missing; all columns are of one length, one row or more.
 struct Measurement {
   std::filesystem::path path;
   std::vector<CsvColumn> columns;  // those asked for that are there, in the order of the request
@@ -42,7 +44,7 @@ struct Measurement {
 
 /// Throws InputError that names the file and, where there is one, the column and the line or row: a
 /// required column that is not there (with the nearest name and all there are), a value that is not
-/// finite, columns of different lengths, no rows.
+/// finite (infinite, where values may be missing), columns of different lengths, no rows.
 Measurement read_measurement(const std::filesystem::path& path, const MeasurementRequest& request);
 
 /// Throws InputError where a column of `expected`, which is there, names another unit.

@@ -10,6 +10,7 @@
 #include "jobs/bench.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
+#include "jobs/compare.h"
 #include "jobs/design.h"
 #include "jobs/evaluate.h"
 #include "jobs/export.h"
@@ -42,6 +43,7 @@ constexpr Command kCommands[] = {
     {"train", "a network that identifies parameters, from a sweep's cases", &strut::run_train},
     {"evaluate", "how well a trained network identifies them", &strut::run_evaluate},
     {"identify", "parameters with intervals, from measured data", &strut::run_identify},
+    {"compare", "measured against simulated: what the simulation gets wrong", &strut::run_compare},
     {"export", "a trained network as ONNX or C source", &strut::run_export},
     {"design", "which instant, window and sensors identify a sweep's parameters best",
      &strut::run_design},

@@ -171,8 +171,8 @@ std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOpti
 
 std::vector<RunParameter> list_case_parameters(const Case& c) {
   std::vector<RunParameter> parameters;
-  for (const ParameterInfo& p : list_parameters()) {
-    parameters.push_back({p.name, p.unit, p.description, p.get(c)});
+  for (const ParameterInfo* p : list_parameters_in_use(c)) {
+    parameters.push_back({p->name, p->unit, p->description, p->get(c)});
   }
   return parameters;
 }

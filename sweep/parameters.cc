@@ -5,6 +5,8 @@
 
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
+#include "model/effects/catalogue.h"
+#include "sweep/read_effects.h"
 
 namespace strut {
 
@@ -224,6 +226,23 @@ void add_maneuver(Parameters& list) {
       [](auto& c) -> auto& { return c.maneuver.road.ramp; });
 }
 
+void add_effect(Parameters& list, const EffectInfo& effect, const std::string& place) {
+  constexpr ModelKind kCar = ModelKind::kFullVehicle;
+  const auto parameters = list_effect_parameters(effect, kCar);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EffectParameter& p = *parameters[i];
+    const auto get = [&effect, place, i](const Case& c) {
+      return get_effect_value(c.vehicle.effects, effect, kCar, place, i);
+    };
+    const auto set = [&effect, place, i](Case& c, double value) {
+      set_effect_value(c.vehicle.effects, effect, kCar, place, i, value);
+    };
+    list.push_back({make_effect_parameter_name(effect, place, p, kCar), p.unit, p.neutral,
+                    get_range(p), p.description + "; effect " + effect.name + ", " + place,
+                    effect.source, get, set, p.typical, true});
+  }
+}
+
 Parameters make_parameters() {
   Parameters list;
   add_whole_car(list);
@@ -232,7 +251,26 @@ Parameters make_parameters() {
   add_struts(list);
   add_tire(list);
   add_maneuver(list);
+  for (const EffectInfo& effect : list_effects()) {
+    for (const std::string& place : list_effect_places(effect, ModelKind::kFullVehicle)) {
+      add_effect(list, effect, place);
+    }
+  }
   return list;
+}
+
+/// What a wrong name may have meant: all names for the nearest, but not all listed where none is.
+[[noreturn]] void refuse_name(const std::string& name) {
+  std::vector<std::string> names, plain;
+  for (const ParameterInfo& parameter : list_parameters()) {
+    names.push_back(parameter.name);
+    if (!parameter.is_effect) plain.push_back(parameter.name);
+  }
+  const std::string suggestion = suggest_name(name, names);
+  throw InputError("unknown parameter '" + name + "'" +
+                   (suggestion.empty() ? "; known: " + join_names(plain) +
+                                             ", and those of effects, docs/effects.md"
+                                       : suggestion));
 }
 
 }  // namespace
@@ -242,15 +280,19 @@ const std::vector<ParameterInfo>& list_parameters() {
   return list;
 }
 
+std::vector<const ParameterInfo*> list_parameters_in_use(const Case& c) {
+  std::vector<const ParameterInfo*> used;
+  for (const ParameterInfo& p : list_parameters()) {
+    if (!p.is_effect || p.get(c) != p.default_value) used.push_back(&p);
+  }
+  return used;
+}
+
 const ParameterInfo& find_parameter(const std::string& name) {
-  std::vector<std::string> names;
   for (const ParameterInfo& parameter : list_parameters()) {
     if (parameter.name == name) return parameter;
-    names.push_back(parameter.name);
   }
-  const std::string suggestion = suggest_name(name, names);
-  throw InputError("unknown parameter '" + name + "'" +
-                   (suggestion.empty() ? "; known: " + join_names(names) : suggestion));
+  refuse_name(name);
 }
 
 double get_parameter(const Case& c, const std::string& name) { return find_parameter(name).get(c); }

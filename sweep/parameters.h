@@ -2,7 +2,8 @@
 // (`--set name=value`), as an axis of a grid, as a quantity to identify. Listed once; readers,
 // help texts and documentation derive from the list.
 //
-// Names: `front_` and `rear_` are both corners of an axle, `front_left_` ... one corner.
+// Names: `front_` and `rear_` are both corners of an axle, `front_left_` ... one corner. Parameters
+// of effects: docs/effects.md.
 #pragma once
 
 #include <functional>
@@ -25,10 +26,16 @@ struct ParameterInfo {
   /// A parameter of an axle reads as the mean of its two corners.
   std::function<double(const Case&)> get;
   std::function<void(Case&, double)> set;
+  /// Of an effect of the catalogue: an ordinary size, the scale of a search from 0; else 0.
+  double typical = 0.0;
+  bool is_effect = false;
 };
 
-/// All parameters in a fixed order: whole car, axles, corners, tire, maneuver.
+/// All parameters in a fixed order: whole car, axles, corners, tire, maneuver, effects.
 const std::vector<ParameterInfo>& list_parameters();
+
+/// Every parameter that is not of an effect, and those of effects that are not at their default.
+std::vector<const ParameterInfo*> list_parameters_in_use(const Case& c);
 
 /// Throws InputError with the nearest known name.
 const ParameterInfo& find_parameter(const std::string& name);

@@ -7,6 +7,7 @@
 #include "io/csv.h"
 #include "io/nearest_name.h"
 #include "model/integrate/rig_system.h"
+#include "sweep/read_effects.h"
 
 namespace strut {
 
@@ -26,6 +27,39 @@ const Range kInitialVelocity = between(-100.0, 100.0, "m/s");
 
 Range get_range(const RigParameterInfo& info) {
   return {.low = info.low, .high = info.high, .open_low = info.open_low, .unit = info.unit};
+}
+
+void add_effect_settings(RigKind kind, const EffectInfo& effect, const std::string& place,
+                         std::vector<RigParameter>& list) {
+  const ModelKind model = get_model_kind(kind);
+  const auto parameters = list_effect_parameters(effect, model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EffectParameter& p = *parameters[i];
+    list.push_back({make_effect_parameter_name(effect, place, p, model), p.unit,
+                    p.description + "; effect " + effect.name, get_range(p), p.typical, true,
+                    [&effect, model, place, i](const RigSpec& spec) {
+                      return get_effect_value(spec.effects, effect, model, place, i);
+                    },
+                    [&effect, model, place, i](RigSpec& spec, double value) {
+                      set_effect_value(spec.effects, effect, model, place, i, value);
+                    }});
+  }
+}
+
+std::vector<RigParameter> make_settings(RigKind kind) {
+  std::vector<RigParameter> list;
+  for (const RigParameterInfo& info : list_rig_parameters(kind)) {
+    const auto field = info.field;
+    list.push_back({info.name, info.unit, info.description, get_range(info), 0.0, false,
+                    [field](const RigSpec& spec) { return spec.*field; },
+                    [field](RigSpec& spec, double value) { spec.*field = value; }});
+  }
+  for (const EffectInfo& effect : list_effects()) {
+    for (const std::string& place : list_effect_places(effect, get_model_kind(kind))) {
+      add_effect_settings(kind, effect, place, list);
+    }
+  }
+  return list;
 }
 
 void read_initial(const Table& root, RigSpec& spec) {
@@ -117,25 +151,38 @@ RigSpec read_rig(const std::filesystem::path& path) {
     spec.unilateral_tire = root.choice("tire_contact", kContacts) == 1;
   }
   read_initial(root, spec);
+  spec.effects = read_effects(root, get_model_kind(spec.kind));
   document.check_all_read();
   return spec;
 }
 
-void set_rig_parameter(RigSpec& spec, const std::string& name, double value) {
-  std::vector<std::string> names;
-  for (const RigParameterInfo& info : list_rig_parameters(spec.kind)) {
-    names.push_back(info.name);
-    if (info.name != name) continue;
-    const Range range = get_range(info);
-    if (!range.contains(value)) {
-      throw InputError(name + " = " + format_number(value) + ": " + range.describe());
-    }
-    spec.*info.field = value;
-    return;
+const std::vector<RigParameter>& list_rig_settings(RigKind kind) {
+  static const std::array<std::vector<RigParameter>, 3> lists = {
+      make_settings(RigKind::kQuarterCar), make_settings(RigKind::kStrutRig),
+      make_settings(RigKind::kSingleMass)};
+  return lists[static_cast<std::size_t>(kind)];
+}
+
+const RigParameter& find_rig_parameter(RigKind kind, const std::string& name) {
+  std::vector<std::string> names, plain;
+  for (const RigParameter& parameter : list_rig_settings(kind)) {
+    if (parameter.name == name) return parameter;
+    names.push_back(parameter.name);
+    if (!parameter.is_effect) plain.push_back(parameter.name);
   }
   const std::string suggestion = suggest_name(name, names);
   throw InputError("unknown parameter '" + name + "'" +
-                   (suggestion.empty() ? "; known: " + join_names(names) : suggestion));
+                   (suggestion.empty() ? "; known: " + join_names(plain) +
+                                             ", and those of effects, docs/effects.md"
+                                       : suggestion));
+}
+
+void set_rig_parameter(RigSpec& spec, const std::string& name, double value) {
+  const RigParameter& parameter = find_rig_parameter(spec.kind, name);
+  if (!parameter.allowed.contains(value)) {
+    throw InputError(name + " = " + format_number(value) + ": " + parameter.allowed.describe());
+  }
+  parameter.set(spec, value);
 }
 
 RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {

@@ -10,9 +10,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "io/config.h"
 #include "model/vehicle/rigs.h"
 
 namespace strut {
@@ -23,9 +26,25 @@ std::optional<RigKind> find_rig_kind(const std::filesystem::path& path);
 
 /// Reads a rig's file: `type`, `name`, the parameters of list_rig_parameters, for a quarter car
 /// `tire_contact` ("bilateral" or "unilateral"), and the table [initial] with offsets of the start
-/// from rest (`sprung_position`, ... or `position`, `velocity`). Throws InputError with file, line,
-/// key, value and what is allowed.
+/// from rest (`sprung_position`, ... or `position`, `velocity`), and effects (read_effects.h).
+/// Throws InputError with file, line, key, value and what is allowed.
 RigSpec read_rig(const std::filesystem::path& path);
+
+/// A parameter of a kind of rig that settings and fits know by name.
+struct RigParameter {
+  std::string name, unit, description;
+  Range allowed;
+  double typical = 0.0;    // of an effect: an ordinary size in a car, else 0
+  bool is_effect = false;  // of the catalogue of effects
+  std::function<double(const RigSpec&)> get;
+  std::function<void(RigSpec&, double)> set;
+};
+
+/// Those of list_rig_parameters, then those of the effects that this kind of rig may have.
+const std::vector<RigParameter>& list_rig_settings(RigKind kind);
+
+/// Throws InputError with the nearest known name.
+const RigParameter& find_rig_parameter(RigKind kind, const std::string& name);
 
 /// Throws InputError with name, value and allowed range, or with the nearest known name.
 void set_rig_parameter(RigSpec& spec, const std::string& name, double value);

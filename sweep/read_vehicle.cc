@@ -5,6 +5,7 @@
 #include "io/config.h"
 #include "model/vehicle/rigs.h"
 #include "sweep/parameters.h"
+#include "sweep/read_effects.h"
 #include "sweep/read_tire.h"
 
 namespace strut {
@@ -259,6 +260,7 @@ VehicleSpec read_vehicle(const std::filesystem::path& path) {
   }
   read_tire_contact(root.table("tire"), vehicle);
   read_options(root, vehicle);
+  vehicle.effects = read_effects(root, ModelKind::kFullVehicle);
   document.check_all_read();
   return vehicle;
 }

@@ -293,9 +293,9 @@ TEST_CASE("Heave and pitch frequencies are those of a linear half car", "[unit][
   const VehicleSpec spec = reference::make_paper_sedan_spec();
   PreparedCase c = prepare(make_flat_case(spec));
   const State<double> x = rest(c).state;
-  c.vehicle.numbers.tire.damping = 0.0;
+  for (auto& tire : c.vehicle.numbers.tire) tire.damping = 0.0;
   for (LinearDamper<double>& damper : c.vehicle.numbers.damper) damper.damping = 0.0;
-  c.vehicle.struts = make_strut_elements(c.vehicle.numbers);
+  fill_strut_elements(c.vehicle);
   const auto modes = find_symmetric_modes(linearize(c.vehicle, x));
   const auto expected = calc_half_car_modes(spec, c);
   REQUIRE(modes.size() == 4);

@@ -46,7 +46,7 @@ struct Car {
   }
   State<double> make_state(Random& random) const {
     return make_random_state(random, prepared.mechanism->car.center_height, 20.0,
-                             prepared.vehicle.numbers.tire.radius);
+                             prepared.vehicle.numbers.tire[kFront].radius);
   }
 };
 

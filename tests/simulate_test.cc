@@ -33,7 +33,7 @@ struct KinkedSystem {
   std::vector<double> crossed{};
 
   int size() const { return kCapacity; }
-  int stiff_begin() const { return 0; }
+  int stiff_at(int /*i*/) const { return 0; }
   int stiff_count() const { return 0; }
 
   void calc_derivative(const T& t, const T* x, T* dx, T* /*decay*/) {

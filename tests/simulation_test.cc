@@ -356,6 +356,11 @@ TEST_CASE("A step allocates nothing", "[unit][property]") {
   const Closure closure = GENERATE(Closure::kNewton, Closure::kTable);
   const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
   const bool with_history = GENERATE(false, true);
+  if (with_history) {
+    c.vehicle.effects = {{"damper_hysteresis", "rear", {2e-3}},
+                         {"strut_friction", "front", {30.0, 0.02}},
+                         {"wheel_runout", "front_left", {1e-4, 0.0}}};
+  }
   const IntegrateOptions options = make_options(stepper, 1e-3, closure);
   // Both contain the snapshot, the second twice the steps; as many samples, so that the history
   // takes as much memory.

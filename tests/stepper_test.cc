@@ -24,7 +24,7 @@ struct ClosedFormSystem {
   T lambda, factor;
 
   int size() const { return kCapacity; }
-  int stiff_begin() const { return kU; }
+  int stiff_at(int i) const { return kU + i; }
   int stiff_count() const { return 2; }
 
   void calc_derivative(const T& t, const T* x, T* dx, T* decay) const {

@@ -1,21 +1,14 @@
 // A car and its states for tests of the reduced equations.
 #pragma once
 
-#include <cstdlib>
 #include <random>
 #include <string>
 
 #include "model/kernel/simulation.h"
 #include "tests/reference/sample_specs.h"
+#include "tests/tolerance.h"
 
 namespace strut::test {
-
-/// Every tolerance is multiplied by STRUT_TOLERANCE_SCALE; at 0 all comparisons fail and print the
-/// real residuals.
-inline double tolerance(double value) {
-  const char* text = std::getenv("STRUT_TOLERANCE_SCALE");
-  return text != nullptr ? std::atof(text) * value : value;
-}
 
 /// Uniform numbers, the same on every platform.
 class Random {

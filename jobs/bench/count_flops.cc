@@ -81,7 +81,7 @@ FlopCount count_flops(const PreparedCase& c, Closure closure) {
                            pack_lanes<VehicleParameters, Counted>(&c.vehicle.numbers),
                            {},
                            make_road<Counted>(&surface, &c.bump_center)};
-  vehicle.struts = make_strut_elements(vehicle.numbers);
+  fill_strut_elements(vehicle);
   counter = {};
   if (closure == Closure::kNewton) {
     run_once(vehicle, NewtonClosure<Counted>{&vehicle.layout, &vehicle.numbers}, c);

@@ -42,8 +42,11 @@ int explain_failure(const SimulateOptions& options, const RigSpec& rig, const Ri
 
 void describe_run(const SimulateOptions& options, const RigSpec& rig, RigKind kind,
                   RunRecord& run) {
-  for (const RigParameterInfo& p : list_rig_parameters(kind)) {
-    run.parameters.push_back({p.name, p.unit, p.description, rig.*p.field});
+  RigSpec plain;
+  plain.kind = kind;
+  for (const RigParameter& p : list_rig_settings(kind)) {
+    if (p.is_effect && p.get(rig) == p.get(plain)) continue;
+    run.parameters.push_back({p.name, p.unit, p.description, p.get(rig)});
   }
   const StepOptions& step = options.integrate.step;
   run.provenance = describe_program(options.source);

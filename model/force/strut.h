@@ -3,7 +3,8 @@
 // An element is a plain struct of T fields. Force is positive in compression (it pushes the mounts
 // apart), so its power on the car is force * length_rate. A conservative element states its stored
 // energy; the power of any other is dissipation or input. A new element is a header like this and
-// one entry in `StrutElements`: the dynamics never names an element.
+// one entry in `StrutElements`, or in `StrutEffects` (strut_effects.h) if it is an effect: the
+// dynamics never names an element.
 #pragma once
 
 #include <array>
@@ -73,30 +74,36 @@ struct StrutForce {
   T energy;                      // J
 };
 
+/// Adds the forces of the elements of one kind.
+template <class T, int Corners, class Element>
+void add_element_list(const ElementList<Element>& list,
+                      const std::array<CornerMotion<T>, Corners>& motion, const T* q_dot,
+                      std::array<StrutForce<T>, Corners>& out) {
+  for (int i = 0; i < list.count; ++i) {
+    const auto corner = static_cast<std::size_t>(list.corner[static_cast<std::size_t>(i)]);
+    const Element& element = list.element[static_cast<std::size_t>(i)];
+    const CornerMotion<T>& m = motion[corner];
+    const LineState<T> line{m.length[Element::kLine], m.length_q[Element::kLine] * q_dot[corner]};
+    const T force = element.calc_force(line);
+    StrutForce<T>& f = out[corner];
+    (Element::kLine == kSpringLine ? f.spring_force : f.damper_force) += force;
+    f.generalized += force * m.length_q[Element::kLine];
+    if constexpr (Element::kConservative) {
+      f.energy += element.calc_energy(line);
+    } else {
+      f.power += force * line.rate;
+    }
+  }
+}
+
 template <class T, int Corners>
 void add_strut_forces(const StrutElements<T>& elements,
                       const std::array<CornerMotion<T>, Corners>& motion, const T* q_dot,
                       std::array<StrutForce<T>, Corners>& out) {
   for (StrutForce<T>& f : out) f = {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)};
-  const auto add_list = [&](const auto& list) {
-    using Element = typename std::decay_t<decltype(list.element)>::value_type;
-    for (int i = 0; i < list.count; ++i) {
-      const auto corner = static_cast<std::size_t>(list.corner[static_cast<std::size_t>(i)]);
-      const Element& element = list.element[static_cast<std::size_t>(i)];
-      const CornerMotion<T>& m = motion[corner];
-      const LineState<T> line{m.length[Element::kLine], m.length_q[Element::kLine] * q_dot[corner]};
-      const T force = element.calc_force(line);
-      StrutForce<T>& f = out[corner];
-      (Element::kLine == kSpringLine ? f.spring_force : f.damper_force) += force;
-      f.generalized += force * m.length_q[Element::kLine];
-      if constexpr (Element::kConservative) {
-        f.energy += element.calc_energy(line);
-      } else {
-        f.power += force * line.rate;
-      }
-    }
-  };
-  std::apply([&](const auto&... list) { (add_list(list), ...); }, elements);
+  std::apply(
+      [&](const auto&... list) { (add_element_list<T, Corners>(list, motion, q_dot, out), ...); },
+      elements);
 }
 
 }  // namespace strut

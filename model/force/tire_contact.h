@@ -17,6 +17,15 @@ struct TireVertical {
   T radius;     // m, unloaded
   T stiffness;  // N/m
   T damping;    // N s/m
+  /// 1/m, growth of the stiffness with the deflection; of effect only where a model says so.
+  T progression;
+};
+
+/// Out-of-round wheel: its radius is larger by amplitude * cos(angle + phase) where it touches.
+template <class T>
+struct WheelRunout {
+  T amplitude;  // m
+  T phase;      // rad
 };
 
 /// Wheel as the tire sees it, all vectors in one frame (chassis axes).
@@ -55,12 +64,19 @@ T calc_unclamped_load(const TireVertical<C>& tire, const T& deflection, const T&
          tire.damping * smoothstep(deflection * T(1.0 / kDampingRamp)) * rate;
 }
 
+/// k q d abs(d): what a progressive tire carries beyond the linear one [N].
+template <class C, class T>
+T calc_progressive_load(const TireVertical<C>& tire, const T& deflection) {
+  return (tire.stiffness * tire.progression) * (deflection * abs(deflection));
+}
+
 /// Contact with the effective road under the wheel: `normal`, its vertical component `normal_z` in
 /// the world, and `clearance`, the wheel center's height over the road below it [m].
 /// Envelope: the road is where a rigid disc of the free radius would carry the center, so the
 /// deflection is the gap to that path along its normal. Point: the plane itself is the road.
+/// `progressive`: whether the tire's progression counts.
 template <class C, class T>
-TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind,
+TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind, bool progressive,
                                  const WheelMotion<T>& wheel, const Vec3<T>& normal,
                                  const T& normal_z, const T& clearance) {
   TireContact<T> contact;
@@ -79,6 +95,7 @@ TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind,
   contact.deflection = tire.radius - contact.loaded_radius;
   const T rate = -dot(wheel.velocity, normal) * tilt;
   contact.unclamped_load = calc_unclamped_load(tire, contact.deflection, rate);
+  if (progressive) contact.unclamped_load += calc_progressive_load(tire, contact.deflection);
   contact.load = max(contact.unclamped_load, T(0.0));
   return contact;
 }

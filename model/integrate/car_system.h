@@ -40,10 +40,18 @@ class CarSystem {
   }
 
   int size() const {
-    return vehicle_.layout.relaxation ? StateIndex::kCount : StateIndex::kCountWithoutRelaxation;
+    if (vehicle_.effects.has_states()) return StateIndex::kCount;
+    return vehicle_.layout.relaxation ? StateIndex::kCountWithoutStruts
+                                      : StateIndex::kCountWithoutRelaxation;
   }
-  int stiff_begin() const { return StateIndex::kSpin; }
-  int stiff_count() const { return stiff_ ? kCorners : 0; }
+  /// The wheels' spins, then the states of the struts, if there are any.
+  int stiff_at(int i) const {
+    return i < kCorners ? StateIndex::kSpin + i : StateIndex::kStrut + (i - kCorners);
+  }
+  int stiff_count() const {
+    if (!stiff_) return 0;
+    return vehicle_.effects.has_states() ? kCorners + StateIndex::kStrutCount : kCorners;
+  }
 
   /// Puts every wheel on the road segment under it.
   void start(const T* x) {
@@ -60,6 +68,9 @@ class CarSystem {
     derivative_(*this, x, dx);
     if (stiff_) {
       for (int c = 0; c < kCorners; ++c) decay[c] = workspace_.spin_decay[c];
+      for (int i = kCorners; i < stiff_count(); ++i) {
+        decay[i] = workspace_.strut_decay[i - kCorners];
+      }
     }
     failed_ = (!is_finite(workspace_.acceleration.z + workspace_.acceleration.x +
                           workspace_.angular_acceleration.y)) |

@@ -11,7 +11,7 @@
 // A system offers
 //   static constexpr int kCapacity;         largest state
 //   int size() const;                       state in use
-//   int stiff_begin() const, stiff_count() const;
+//   int stiff_count() const, stiff_at(int i) const;   component of the i-th stiff one
 //   void calc_derivative(const T& t, const T* x, T* dx, T* decay);
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace strut {
 
-inline constexpr int kMaxStiff = 4;
+inline constexpr int kMaxStiff = 12;
 
 /// Weights of the exponential formulas for each stiff component over one step.
 template <class T>
@@ -52,20 +52,23 @@ struct StepScratch {
 template <class T, class System>
 void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWeights<T>& weights,
               const T& h, T* x1, StepScratch<T, System::kCapacity>& scratch) {
-  const int n = system.size(), begin = system.stiff_begin(), count = system.stiff_count();
+  const int n = system.size(), count = system.stiff_count();
   const T half = T(0.5) * h;
   T* stage = scratch.stage.data();
   T *k2 = scratch.k[1].data(), *k3 = scratch.k[2].data(), *k4 = scratch.k[3].data();
   std::array<T, kMaxStiff> n1, n2, n3;
   const auto nonlinear = [&](const T* k, const T* u, std::array<T, kMaxStiff>& out) {
-    for (int i = 0; i < count; ++i) out[i] = k[begin + i] + weights.decay[i] * u[begin + i];
+    for (int i = 0; i < count; ++i) {
+      const int at = system.stiff_at(i);
+      out[i] = k[at] + weights.decay[i] * u[at];
+    }
   };
 
   nonlinear(f, x, n1);
   for (int i = 0; i < n; ++i) stage[i] = x[i] + half * f[i];
   for (int i = 0; i < count; ++i) {
     const PhiFunctions<T>& p = weights.half[i];
-    stage[begin + i] = p.exponential * x[begin + i] + half * p.phi1 * n1[i];
+    stage[system.stiff_at(i)] = p.exponential * x[system.stiff_at(i)] + half * p.phi1 * n1[i];
   }
   system.calc_derivative(t + half, stage, k2, scratch.unused_decay.data());
   nonlinear(k2, stage, n2);
@@ -73,8 +76,8 @@ void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWei
   for (int i = 0; i < n; ++i) stage[i] = x[i] + half * k2[i];
   for (int i = 0; i < count; ++i) {
     const PhiFunctions<T>& p = weights.half[i];
-    stage[begin + i] =
-        p.exponential * x[begin + i] + half * (p.phi1 * n1[i] + T(2.0) * p.phi2 * (n2[i] - n1[i]));
+    stage[system.stiff_at(i)] = p.exponential * x[system.stiff_at(i)] +
+                                half * (p.phi1 * n1[i] + T(2.0) * p.phi2 * (n2[i] - n1[i]));
   }
   system.calc_derivative(t + half, stage, k3, scratch.unused_decay.data());
   nonlinear(k3, stage, n3);
@@ -82,8 +85,8 @@ void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWei
   for (int i = 0; i < n; ++i) stage[i] = x[i] + h * k3[i];
   for (int i = 0; i < count; ++i) {
     const PhiFunctions<T>& p = weights.full[i];
-    stage[begin + i] =
-        p.exponential * x[begin + i] + h * (p.phi1 * n1[i] + T(2.0) * p.phi2 * (n3[i] - n1[i]));
+    stage[system.stiff_at(i)] = p.exponential * x[system.stiff_at(i)] +
+                                h * (p.phi1 * n1[i] + T(2.0) * p.phi2 * (n3[i] - n1[i]));
   }
   system.calc_derivative(t + h, stage, k4, scratch.unused_decay.data());
 
@@ -98,8 +101,8 @@ void step_rk4(System& system, const T& t, const T* x, const T* f, const StiffWei
     const T w1 = p.phi1 - T(3.0) * p.phi2 + T(4.0) * p.phi3;
     const T w2 = T(2.0) * p.phi2 - T(4.0) * p.phi3;
     const T w3 = T(4.0) * p.phi3 - p.phi2;
-    x1[begin + i] =
-        p.exponential * x[begin + i] + h * (w1 * n1[i] + w2 * (n2[i] + n3[i]) + w3 * n4[i]);
+    x1[system.stiff_at(i)] = p.exponential * x[system.stiff_at(i)] +
+                             h * (w1 * n1[i] + w2 * (n2[i] + n3[i]) + w3 * n4[i]);
   }
 }
 
@@ -115,7 +118,7 @@ template <class T, class System>
 void step_abm4(System& system, const T& t, const T* x, const T* f, const AdamsHistory<T>& past,
                const StiffWeights<T>& weights, const T& h, T* x1,
                StepScratch<T, System::kCapacity>& scratch) {
-  const int n = system.size(), begin = system.stiff_begin(), count = system.stiff_count();
+  const int n = system.size(), count = system.stiff_count();
   T* predicted = scratch.stage.data();
   T* fp = scratch.k[1].data();
   const T scale = h * T(1.0 / 24.0);
@@ -126,10 +129,10 @@ void step_abm4(System& system, const T& t, const T* x, const T* f, const AdamsHi
   std::array<std::array<T, kMaxStiff>, 4> nonlinear;  // newest first
   for (int i = 0; i < count; ++i) {
     const PhiFunctions<T>& p = weights.full[i];
-    const T n0 = f[begin + i] + weights.decay[i] * x[begin + i];
+    const T n0 = f[system.stiff_at(i)] + weights.decay[i] * x[system.stiff_at(i)];
     T nj[3];
     for (int j = 0; j < 3; ++j) {
-      nj[j] = past.f[j][begin + i] + weights.decay[i] * past.x[j][begin + i];
+      nj[j] = past.f[j][system.stiff_at(i)] + weights.decay[i] * past.x[j][system.stiff_at(i)];
     }
     nonlinear[0][i] = n0;
     for (int j = 0; j < 3; ++j) nonlinear[j + 1][i] = nj[j];
@@ -137,9 +140,10 @@ void step_abm4(System& system, const T& t, const T* x, const T* f, const AdamsHi
     const T d1 = n0 - nj[0];
     const T d2 = d1 - (nj[0] - nj[1]);
     const T d3 = d2 - (nj[0] - T(2.0) * nj[1] + nj[2]);
-    predicted[begin + i] = p.exponential * x[begin + i] +
-                           h * (p.phi1 * n0 + p.phi2 * d1 + (p.phi3 + T(0.5) * p.phi2) * d2 +
-                                (p.phi4 + p.phi3 + T(1.0 / 3.0) * p.phi2) * d3);
+    predicted[system.stiff_at(i)] =
+        p.exponential * x[system.stiff_at(i)] +
+        h * (p.phi1 * n0 + p.phi2 * d1 + (p.phi3 + T(0.5) * p.phi2) * d2 +
+             (p.phi4 + p.phi3 + T(1.0 / 3.0) * p.phi2) * d3);
   }
   system.calc_derivative(t + h, predicted, fp, scratch.unused_decay.data());
   for (int i = 0; i < n; ++i) {
@@ -147,14 +151,15 @@ void step_abm4(System& system, const T& t, const T* x, const T* f, const AdamsHi
   }
   for (int i = 0; i < count; ++i) {
     const PhiFunctions<T>& p = weights.full[i];
-    const T n1 = fp[begin + i] + weights.decay[i] * predicted[begin + i];
+    const T n1 = fp[system.stiff_at(i)] + weights.decay[i] * predicted[system.stiff_at(i)];
     const T d1 = n1 - nonlinear[0][i];
     const T e1 = nonlinear[0][i] - nonlinear[1][i];
     const T d2 = d1 - e1;
     const T d3 = d2 - (e1 - (nonlinear[1][i] - nonlinear[2][i]));
-    x1[begin + i] = p.exponential * x[begin + i] +
-                    h * (p.phi1 * n1 + (p.phi2 - p.phi1) * d1 + (p.phi3 - T(0.5) * p.phi2) * d2 +
-                         (p.phi4 - T(1.0 / 6.0) * p.phi2) * d3);
+    x1[system.stiff_at(i)] =
+        p.exponential * x[system.stiff_at(i)] +
+        h * (p.phi1 * n1 + (p.phi2 - p.phi1) * d1 + (p.phi3 - T(0.5) * p.phi2) * d2 +
+             (p.phi4 - T(1.0 / 6.0) * p.phi2) * d3);
   }
 }
 

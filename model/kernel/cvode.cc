@@ -17,8 +17,8 @@
 namespace strut {
 namespace {
 
-/// A spin decay rate [1/s] from which the implicit BDF formulas cost less than Adams formulas with
-/// fixed-point iteration, whose step it would bound.
+/// A decay rate [1/s] of spin or strut from which the implicit BDF formulas cost less than Adams
+/// formulas with fixed-point iteration, whose step it would bound.
 constexpr double kStiffDecay = 5000.0;
 constexpr int kMaxRoots = 2 * kCorners + 1;
 
@@ -99,8 +99,12 @@ class ReferenceRun {
     double decay[kMaxStiff] = {};
     State<double> dx{};
     system_.calc_derivative(0.0, state_.data(), dx.data(), decay);
-    const auto& rates = system_.workspace().spin_decay;
-    const bool stiff = *std::max_element(rates.begin(), rates.end()) > kStiffDecay;
+    const Workspace<double>& ws = system_.workspace();
+    double fastest = *std::max_element(ws.spin_decay.begin(), ws.spin_decay.end());
+    if (system_.vehicle().effects.has_states()) {
+      fastest = std::max(fastest, *std::max_element(ws.strut_decay.begin(), ws.strut_decay.end()));
+    }
+    const bool stiff = fastest > kStiffDecay;
     const int n = system_.size();
     y_.reset(N_VMake_Serial(n, state_.data(), context_.raw));
     cvode_.raw = CVodeCreate(stiff ? CV_BDF : CV_ADAMS, context_.raw);

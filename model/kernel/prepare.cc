@@ -2,13 +2,15 @@
 
 #include "model/kernel/mechanism.h"
 #include "model/kernel/simulation.h"
+#include "model/vehicle/assemble_effects.h"
 
 namespace strut {
 namespace {
 
 /// The parts of a case that shape its mechanism; the rest is neutral.
 Case strip_to_mechanism(const Case& c) {
-  Case key = c;
+  Case key = apply_case_effects(c);
+  key.vehicle.effects.clear();
   for (SuspensionSpec& suspension : key.vehicle.suspension) suspension.strut.fill(StrutSpec{});
   key.vehicle.preload = PreloadKind::kFreeLength;
   const ManeuverSpec neutral;
@@ -56,7 +58,9 @@ bool shares_mechanism(const Case& a, const Case& b) {
   return x.vehicle == y.vehicle && x.maneuver == y.maneuver;
 }
 
-PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
+PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
+  validate(given.vehicle.effects, ModelKind::kFullVehicle);
+  const Case c = apply_case_effects(given);
   const Case key = strip_to_mechanism(c);
   if (!mechanism_ || !(mechanism_->vehicle == key.vehicle) ||
       !(mechanism_->maneuver == key.maneuver)) {
@@ -66,7 +70,8 @@ PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
   PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, make_flat_road()}, {}};
   Vehicle<double>& vehicle = prepared.vehicle;
   set_operating_parameters(c.vehicle, c.maneuver, car, vehicle.numbers);
-  vehicle.struts = make_strut_elements(vehicle.numbers);
+  set_effects(c.vehicle, vehicle.layout, vehicle.numbers);
+  fill_strut_elements(vehicle);
   prepared.bump_center = calc_bump_center(car, c.maneuver);
   prepared.trigger_x = prepared.bump_center + snapshot_offset;
   prepared.duration = c.maneuver.duration;

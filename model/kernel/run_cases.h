@@ -30,6 +30,18 @@ VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
   return packed;
 }
 
+/// A batch computes what any of its lanes needs; in the others it is neutral.
+inline void add_parts(const VehicleLayout& lane, VehicleLayout& batch) {
+  batch.tire_parts = batch.tire_parts | lane.tire_parts;
+  for (int c = 0; c < kCorners; ++c) batch.strut_effects[c] |= lane.strut_effects[c];
+  for (int axle = 0; axle < kAxles; ++axle) {
+    batch.has_anti_roll_bar[axle] = batch.has_anti_roll_bar[axle] || lane.has_anti_roll_bar[axle];
+  }
+  batch.progressive_tire = batch.progressive_tire || lane.progressive_tire;
+  batch.has_runout = batch.has_runout || lane.has_runout;
+  batch.has_lift = batch.has_lift || lane.has_lift;
+}
+
 template <class T>
 Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   constexpr auto kWidth = static_cast<std::size_t>(kLaneCount<T>);
@@ -43,13 +55,13 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   }
   VehicleLayout layout = cases[0]->vehicle.layout;
   for (std::size_t lane = 1; lane < kWidth; ++lane) {
-    layout.tire_parts = layout.tire_parts | cases[lane]->vehicle.layout.tire_parts;
+    add_parts(cases[lane]->vehicle.layout, layout);
   }
   Vehicle<T> vehicle{layout,
                      pack_lanes<VehicleParameters, T>(numbers.data()),
                      {},
                      make_road<T>(surfaces.data(), centers.data())};
-  vehicle.struts = make_strut_elements(vehicle.numbers);
+  fill_strut_elements(vehicle);
   return vehicle;
 }
 

@@ -30,7 +30,7 @@ class StepMap {
     for (int past = 0; multistep_ && past < kPast; ++past) {
       for (int i = 0; i < n_; ++i)
         base_[derivative(past) + i] = h_ * f[static_cast<std::size_t>(i)];
-      for (int i = 0; i < stiff_; ++i) base_[spin(past) + i] = base_[system_.stiff_begin() + i];
+      for (int i = 0; i < stiff_; ++i) base_[spin(past) + i] = base_[system_.stiff_at(i)];
     }
   }
 
@@ -67,9 +67,7 @@ class StepMap {
         past_f_[at][static_cast<std::size_t>(i)] = y[derivative(past) + i] / h_;
       }
       for (int i = 0; i < stiff_; ++i) {
-        const auto component =
-            static_cast<std::size_t>(system_.stiff_begin()) + static_cast<std::size_t>(i);
-        past_x_[at][component] = y[spin(past) + i];
+        past_x_[at][static_cast<std::size_t>(system_.stiff_at(i))] = y[spin(past) + i];
       }
       past_.f[at] = past_f_[at].data();
       past_.x[at] = past_x_[at].data();
@@ -78,7 +76,7 @@ class StepMap {
 
   void write_past(const Eigen::VectorXd& y, const State<double>& f, Eigen::VectorXd& y1) const {
     for (int i = 0; i < n_; ++i) y1[derivative(0) + i] = h_ * f[static_cast<std::size_t>(i)];
-    for (int i = 0; i < stiff_; ++i) y1[spin(0) + i] = y[system_.stiff_begin() + i];
+    for (int i = 0; i < stiff_; ++i) y1[spin(0) + i] = y[system_.stiff_at(i)];
     const int rest = (kPast - 1) * (n_ + stiff_);
     y1.segment(derivative(1), rest) = y.segment(derivative(0), rest);
   }

@@ -43,6 +43,7 @@ struct Workspace {
   std::array<T, kCorners> segment;      // road segment each wheel is on (input)
   // struts
   std::array<StrutForce<T>, kCorners> strut;
+  std::array<T, StateIndex::kStrutCount> strut_decay;  // 1/s, decay rates of the struts' states
   // composite
   Vec3<T> moment, moment_rate;
   Sym3<T> inertia;
@@ -73,6 +74,18 @@ WheelMotion<T> calc_wheel_motion(const T* x, int corner, const CornerMotion<T>& 
           w + rate * motion.upright_rate, x[I::kSpin + corner]};
 }
 
+/// How much out-of-round wheels bring the road closer [m].
+template <class T>
+Pair<T> calc_runout(const Vehicle<T>& vehicle, const T* x, int axle) {
+  T offset[2];
+  for (int side = 0; side < 2; ++side) {
+    const int corner = 2 * axle + side;
+    const WheelRunout<T>& runout = vehicle.numbers.runout[corner];
+    offset[side] = runout.amplitude * cos(x[StateIndex::kWheelAngle + corner] + runout.phase);
+  }
+  return {offset[0], offset[1]};
+}
+
 /// Motion of both wheels of an axle and their contact with the road.
 template <class T>
 TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int axle,
@@ -87,7 +100,8 @@ TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int 
     road[c - left] = find_road(vehicle, center[c - left].x, c, ws);
   }
   const Pair<T> slope(road[0].slope, road[1].slope);
-  const Pair<T> clearance(center[0].z - road[0].height, center[1].z - road[1].height);
+  Pair<T> clearance(center[0].z - road[0].height, center[1].z - road[1].height);
+  if (vehicle.layout.has_runout) clearance = clearance - calc_runout(vehicle, x, axle);
   const Pair<T> normal_z = Pair<T>(1.0) / sqrt(Pair<T>(1.0) + slope * slope);
   // The road's normal (-slope, 0, 1) in chassis axes.
   const Vec3<T> forward{ws.rotation.x.x, ws.rotation.y.x, ws.rotation.z.x};
@@ -95,9 +109,9 @@ TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int 
   const Vec3<Pair<T>> normal{normal_z * (up.x - slope * forward.x),
                              normal_z * (up.y - slope * forward.y),
                              normal_z * (up.z - slope * forward.z)};
-  const TireContact<Pair<T>> contact =
-      calc_tire_contact(vehicle.numbers.tire, vehicle.layout.contact,
-                        join_pair(ws.wheel[left], ws.wheel[right]), normal, normal_z, clearance);
+  const TireContact<Pair<T>> contact = calc_tire_contact(
+      vehicle.numbers.tire[axle], vehicle.layout.contact, vehicle.layout.progressive_tire,
+      join_pair(ws.wheel[left], ws.wheel[right]), normal, normal_z, clearance);
   split_pair(contact, ws.contact[left], ws.contact[right]);
   return contact;
 }
@@ -119,7 +133,8 @@ void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle
   }
   const VehicleParameters<T>& numbers = vehicle.numbers;
   const WheelMotion<Pair<T>> wheel = join_pair(ws.wheel[left], ws.wheel[right]);
-  const TireSlipState<Pair<T>> slip = calc_tire_slip(numbers.pacejka, numbers.tire, wheel, contact);
+  const TireSlipState<Pair<T>> slip =
+      calc_tire_slip(numbers.pacejka, numbers.tire[axle], wheel, contact);
   Pair<T> kappa = slip.kappa, tan_alpha = slip.tan_alpha;
   if (vehicle.layout.relaxation) {
     kappa = {x[StateIndex::kKappa + left], x[StateIndex::kKappa + right]};
@@ -172,6 +187,22 @@ struct GeneralizedForce {
   std::array<T, kCorners> corner;
 };
 
+/// Aerodynamic lift of both axles on the chassis, upwards through the axles' wheel centers; returns
+/// its power [W].
+template <class T>
+T add_lift(const Vehicle<T>& vehicle, const Vec3<T>& v, const Vec3<T>& w, Vec3<T>& force,
+           Vec3<T>& moment) {
+  T power = T(0.0);
+  for (int axle = 0; axle < kAxles; ++axle) {
+    const T lift = vehicle.numbers.lift[axle] * v.x * v.x;
+    const T& place = vehicle.numbers.geometry[2 * axle].wheel_center.x;
+    force.z += lift;
+    moment.y -= place * lift;
+    power += lift * (v.z - place * w.y);
+  }
+  return power;
+}
+
 /// External and inertia forces: right sides of the equations at the top of this file. Returns the
 /// power of non-conservative forces [W].
 template <class T>
@@ -218,6 +249,7 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
              dot(tire.moment, w) + tire_on_corner * rate + tire_spin_moment * relative_spin +
              drive * (spin - dot(m.axis, w));
   }
+  if (vehicle.layout.has_lift) power += add_lift(vehicle, v, w, force, moment);
   rhs.force = force - cross(w, p);
   rhs.moment = moment - cross(w, l);
   return power;
@@ -272,6 +304,19 @@ void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
   }
 }
 
+/// What effects add to the struts' linear forces; the rates of their states, if they have any.
+template <class T>
+void update_strut_effects(const Vehicle<T>& vehicle, const T* x, T* dx, Workspace<T>& ws) {
+  using I = StateIndex;
+  StrutStates<T> states;
+  if (vehicle.effects.has_states()) {
+    states = {x + I::kStrut, dx + I::kStrut, ws.strut_decay.data()};
+    for (int i = I::kKappa; !vehicle.layout.relaxation && i < I::kStrut; ++i) dx[i] = T(0.0);
+  }
+  add_strut_effects<T, kCorners>(vehicle.effects, ws.motion, x + I::kCornerRate, T(0.0), states,
+                                 ws.strut);
+}
+
 /// dx/dt of the car at state x. `closure(corner, q, motion)` supplies the corner's motion functions
 /// and returns the loop error left [m] (closures.h). ws.segment is read, the rest of ws is written.
 template <class T, class Closure>
@@ -290,6 +335,7 @@ void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode
     update_tires(vehicle, x, mode, axle, update_contacts(vehicle, x, axle, ws), ws);
   }
   add_strut_forces<T, kCorners>(vehicle.struts, ws.motion, x + I::kCornerRate, ws.strut);
+  if (vehicle.effects.count > 0) update_strut_effects(vehicle, x, dx, ws);
   update_composite(vehicle, x, ws);
   GeneralizedForce<T> rhs;
   const T power = calc_forces(vehicle, x, ws, rhs);

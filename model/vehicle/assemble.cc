@@ -43,19 +43,6 @@ double calc_corner_mass(const CornerTopology& topology, const CornerInertia<doub
   return mass;
 }
 
-/// Sylvester's criterion.
-void check_chassis_inertia(const Sym3<double>& j) {
-  const double minor = j.xx * j.yy - j.xy * j.xy;
-  const double det = j.xx * (j.yy * j.zz - j.yz * j.yz) - j.xy * (j.xy * j.zz - j.yz * j.xz) +
-                     j.xz * (j.xy * j.yz - j.yy * j.xz);
-  if (j.xx > 0.0 && minor > 0.0 && det > 0.0) return;
-  std::ostringstream message;
-  message << "whole_car.inertia: what is left for the chassis is not positive definite (" << j.xx
-          << ", " << j.yy << ", " << j.zz
-          << " kg m^2); allowed: more than wheels and suspension have";
-  throw ModelError(message.str());
-}
-
 /// Chassis mass, center and inertia such that the whole car meets its specification.
 void fit_chassis(const VehicleSpec& spec, AssembledVehicle& car) {
   VehicleParameters<double>& numbers = car.numbers;
@@ -123,9 +110,22 @@ std::array<bool, kCorners> find_wheels_on_bump(const RoadSpec& road) {
 
 }  // namespace
 
+// Sylvester's criterion.
+void check_chassis_inertia(const Sym3<double>& j) {
+  const double minor = j.xx * j.yy - j.xy * j.xy;
+  const double det = j.xx * (j.yy * j.zz - j.yz * j.yz) - j.xy * (j.xy * j.zz - j.yz * j.xz) +
+                     j.xz * (j.xy * j.yz - j.yy * j.xz);
+  if (j.xx > 0.0 && minor > 0.0 && det > 0.0) return;
+  std::ostringstream message;
+  message << "whole_car.inertia: what is left for the chassis is not positive definite (" << j.xx
+          << ", " << j.yy << ", " << j.zz
+          << " kg m^2); allowed: more than wheels and suspension have";
+  throw ModelError(message.str());
+}
+
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
   AssembledVehicle car{};
-  car.numbers.tire = {spec.tire.unloaded_radius, spec.tire.stiffness, spec.tire.damping};
+  car.numbers.tire.fill({spec.tire.unloaded_radius, spec.tire.stiffness, spec.tire.damping, 0.0});
   car.numbers.pacejka = spec.pacejka;
   car.numbers.gravity = maneuver.gravity;
   car.numbers.imu = spec.imu_position;

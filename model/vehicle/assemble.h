@@ -23,6 +23,9 @@ struct AssembledVehicle {
 /// do not close over +-kHalfTravel.
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 
+/// Throws ModelError unless it is positive definite.
+void check_chassis_inertia(const Sym3<double>& inertia);
+
 /// Springs and dampers of `spec` over the preload of `car`; drive torque of `maneuver`.
 void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneuver,
                               const AssembledVehicle& car, VehicleParameters<double>& numbers);
@@ -38,15 +41,23 @@ Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 /// chassis origin starts at x = 0.
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver);
 
-/// The spring and damper elements of T numbers.
+/// Puts the spring, damper and effect elements of T numbers into their lists.
 template <class T>
-StrutElements<T> make_strut_elements(const VehicleParameters<T>& numbers) {
-  StrutElements<T> elements;
+void fill_strut_elements(Vehicle<T>& vehicle) {
+  const VehicleLayout& layout = vehicle.layout;
+  const VehicleParameters<T>& numbers = vehicle.numbers;
+  vehicle.struts = {};
+  vehicle.effects = {};
   for (int c = 0; c < kCorners; ++c) {
-    std::get<0>(elements).add(c, numbers.spring[c]);
-    std::get<1>(elements).add(c, numbers.damper[c]);
+    const unsigned bits = layout.strut_effects[c];
+    std::get<0>(vehicle.struts).add(c, numbers.spring[c]);
+    if ((bits & kShapedDamper) == 0) std::get<1>(vehicle.struts).add(c, numbers.damper[c]);
+    vehicle.effects.add(c, bits, numbers.effects[c]);
   }
-  return elements;
+  for (int axle = 0; axle < kAxles; ++axle) {
+    if (!layout.has_anti_roll_bar[axle]) continue;
+    vehicle.effects.add_bar(2 * axle, numbers.anti_roll_bar[axle]);
+  }
 }
 
 }  // namespace strut

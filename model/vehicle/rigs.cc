@@ -1,8 +1,11 @@
 #include "model/vehicle/rigs.h"
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
-#include "model/vehicle/assemble.h"
+#include "model/effects/strut_numbers.h"
+#include "model/vehicle/model_error.h"
 
 namespace strut {
 
@@ -109,7 +112,31 @@ int find_input(RigKind kind, const std::string& name) {
                    " is driven by " + names);
 }
 
+/// The rig with its masses as effects make them.
+RigSpec apply_mass_effects(const RigSpec& spec) {
+  const EffectValues values{spec.effects, get_model_kind(spec.kind)};
+  RigSpec changed = spec;
+  changed.sprung_mass += values.get("payload", "mass", "");
+  changed.unsprung_mass += values.get("unsprung_mass", "mass", "");
+  const bool wheel = spec.kind != RigKind::kQuarterCar || changed.unsprung_mass > 0.0;
+  const bool body = spec.kind == RigKind::kStrutRig || changed.sprung_mass > 0.0;
+  if (wheel && body) return changed;
+  throw ModelError(std::string("effect ") + (body ? "unsprung_mass" : "payload") +
+                   ": leaves no mass; allowed: more than minus the mass that is there");
+}
+
+/// x of k (x + q x^2) = load; load >= 0.
+double calc_static_deflection(double load, double stiffness, double progression) {
+  const double linear = load / stiffness;
+  if (progression == 0.0) return linear;
+  return 2.0 * linear / (1.0 + std::sqrt(1.0 + 4.0 * progression * linear));
+}
+
 }  // namespace
+
+ModelKind get_model_kind(RigKind kind) {
+  return list_model_kinds()[1 + static_cast<std::size_t>(kind)];
+}
 
 const std::vector<std::string>& list_rig_kinds() {
   static const std::vector<std::string> kinds = {"quarter_car", "strut_rig", "single_mass"};
@@ -149,6 +176,7 @@ void validate(const RigSpec& spec) {
             << info.low << ", " << info.high << "] " << info.unit;
     throw ModelError(message.str());
   }
+  validate(spec.effects, get_model_kind(spec.kind));
 }
 
 std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
@@ -167,8 +195,9 @@ std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
   return assigned;
 }
 
-RigParameters<double> make_rig_parameters(const RigSpec& spec) {
-  validate(spec);
+RigParameters<double> make_rig_parameters(const RigSpec& given) {
+  validate(given);
+  const RigSpec spec = apply_mass_effects(given);
   RigParameters<double> p{};
   const bool quarter_car = spec.kind == RigKind::kQuarterCar;
   p.mass = {spec.unsprung_mass, spec.sprung_mass};
@@ -179,23 +208,31 @@ RigParameters<double> make_rig_parameters(const RigSpec& spec) {
   const double weight = spec.kind == RigKind::kStrutRig ? 0.0 : spec.sprung_mass * spec.gravity;
   p.spring = {spec.stiffness, spec.stiffness > 0.0 ? weight / spec.stiffness : 0.0};
   p.damper = {spec.damping};
-  p.tire = {0.0, spec.tire_stiffness, spec.tire_damping};
+  const EffectValues values{spec.effects, get_model_kind(spec.kind)};
+  p.effects = make_strut_effect_numbers(values, "", PlainStrut{spec.stiffness, spec.damping, 0.0});
+  p.tire = {0.0, spec.tire_stiffness * (1.0 + values.get("tire_stiffness", "gain", "")),
+            std::max(0.0, spec.tire_damping + values.get("tire_damping", "rate", "")),
+            values.get("tire_progressive", "progression", "")};
   if (quarter_car) {
     p.static_deflection =
-        (spec.sprung_mass + spec.unsprung_mass) * spec.gravity / spec.tire_stiffness;
+        calc_static_deflection((spec.sprung_mass + spec.unsprung_mass) * spec.gravity,
+                               p.tire.stiffness, p.tire.progression);
   }
+  p.road_gain = 1.0 + values.get("road_gain", "gain", "");
   p.gravity = spec.gravity;
   p.temperature = spec.temperature;
   return p;
 }
 
-RigLayout make_rig_layout(const RigSpec* const specs[], int count) {
-  const RigLayout layout{specs[0]->kind, specs[0]->unilateral_tire};
-  for (int i = 1; i < count; ++i) {
-    if (specs[i]->kind == layout.kind && specs[i]->unilateral_tire == layout.unilateral_tire) {
-      continue;
+RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,
+                          int count) {
+  RigLayout layout{specs[0]->kind, specs[0]->unilateral_tire, 0, false};
+  for (int i = 0; i < count; ++i) {
+    if (specs[i]->kind != layout.kind || specs[i]->unilateral_tire != layout.unilateral_tire) {
+      throw ModelError("rigs of one batch: type and tire contact must be the same");
     }
-    throw ModelError("rigs of one batch: type and tire contact must be the same");
+    layout.strut_effects |= find_strut_effects(numbers[i].effects);
+    layout.progressive_tire = layout.progressive_tire || numbers[i].tire.progression != 0.0;
   }
   return layout;
 }

@@ -18,7 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "model/force/strut.h"
+#include "model/effects/catalogue.h"
+#include "model/force/strut_effects.h"
 #include "model/force/tire_contact.h"
 #include "model/scenario/input_signal.h"
 #include "model/vehicle/channels.h"
@@ -48,6 +49,7 @@ struct RigSpec {
   bool unilateral_tire = false;  // true: the car's tire law, which lifts off
   /// Start, as an offset from rest on the road's first position [m], [m/s]; by RigCoordinate.
   std::array<double, kRigCoordinates> initial_position{}, initial_velocity{};
+  EffectSettings effects;
   bool operator==(const RigSpec&) const = default;
 };
 
@@ -143,8 +145,10 @@ struct RigParameters {
   std::array<T, kRigCoordinates> initial_velocity;  // m/s
   LinearSpring<T> spring;
   LinearDamper<T> damper;
+  StrutEffectNumbers<T> effects;
   TireVertical<T> tire;
   T static_deflection;  // m, of the tire at rest
+  T road_gain;          // of the road's input
   T gravity;            // m/s^2
   T temperature;        // K
 };
@@ -153,6 +157,8 @@ struct RigParameters {
 struct RigLayout {
   RigKind kind = RigKind::kQuarterCar;
   bool unilateral_tire = false;
+  unsigned strut_effects = 0;  // StrutEffectBits
+  bool progressive_tire = false;
 };
 
 template <class T>
@@ -160,24 +166,31 @@ struct Rig {
   RigLayout layout;
   RigParameters<T> numbers;
   StrutElements<T> struts;
+  StrutEffects<T> effects{};
 };
+
+/// The kind of model that a kind of rig is to the catalogue of effects.
+ModelKind get_model_kind(RigKind kind);
 
 /// Numbers of a rig at its rest position. Throws ModelError as validate does.
 RigParameters<double> make_rig_parameters(const RigSpec& spec);
 
 /// Layout of rigs that may share lanes. Throws ModelError where kind or tire contact differ.
-RigLayout make_rig_layout(const RigSpec* const specs[], int count);
+RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,
+                          int count);
 
 /// One rig for each lane.
 template <class T>
 Rig<T> make_rig(const RigSpec* const specs[]) {
   std::array<RigParameters<double>, static_cast<std::size_t>(kLaneCount<T>)> lanes;
   Rig<T> rig;
-  rig.layout = make_rig_layout(specs, kLaneCount<T>);
   for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = make_rig_parameters(*specs[i]);
+  rig.layout = make_rig_layout(specs, lanes.data(), kLaneCount<T>);
   rig.numbers = pack_lanes<RigParameters, T>(lanes.data());
   std::get<0>(rig.struts).add(0, rig.numbers.spring);
-  std::get<1>(rig.struts).add(0, rig.numbers.damper);
+  const unsigned bits = rig.layout.strut_effects;
+  if ((bits & kShapedDamper) == 0) std::get<1>(rig.struts).add(0, rig.numbers.damper);
+  rig.effects.add(0, bits, rig.numbers.effects);
   return rig;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "model/effects/setting.h"
 #include "model/force/pac2002.h"
 #include "model/math/spatial.h"
 #include "model/multibody/corner.h"
@@ -119,6 +120,7 @@ struct VehicleSpec {
   double rack_position = 0.0;  // m, + left; fixed during a run
   PreloadKind preload = PreloadKind::kFreeLength;
   Vec3<double> imu_position{};  // m from the centroid at nominal trim
+  EffectSettings effects;
   bool operator==(const VehicleSpec&) const = default;
 };
 

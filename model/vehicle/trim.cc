@@ -51,7 +51,7 @@ State<double> make_state(const TrimProblem& p, const double* u) {
       transpose_times(rotation_of(get_quaternion(x.data())), Vec3<double>{p.speed, 0.0, 0.0});
   set_vec3(x.data(), I::kVelocity, v);
   for (int c = 0; c < kCorners; ++c) {
-    const double radius = p.vehicle->numbers.tire.radius;
+    const double radius = p.vehicle->numbers.tire[axle_of(c)].radius;
     x[I::kSpin + c] = p.speed / radius * (1.0 + TrimProblem::kSlip * u[7 + c]);
   }
   return x;

@@ -1,7 +1,7 @@
 // The car as the equations read it: topology common to a batch, numbers one per simulation.
 #pragma once
 
-#include "model/force/strut.h"
+#include "model/force/strut_effects.h"
 #include "model/force/tire_contact.h"
 #include "model/multibody/closure.h"
 #include "model/multibody/corner.h"
@@ -18,9 +18,13 @@ struct VehicleParameters {
   std::array<CornerInertia<T>, kCorners> inertia;
   std::array<LinearSpring<T>, kCorners> spring;
   std::array<LinearDamper<T>, kCorners> damper;
+  std::array<StrutEffectNumbers<T>, kCorners> effects;
+  std::array<AntiRollBar<T>, kAxles> anti_roll_bar;
   std::array<T, kCorners> drive_torque;             // N m, on each wheel
   std::array<T, kLines * kCorners> nominal_length;  // m, lines at nominal trim
-  TireVertical<T> tire;
+  std::array<TireVertical<T>, kAxles> tire;
+  std::array<WheelRunout<T>, kCorners> runout;
+  std::array<T, kAxles> lift;  // N s^2/m^2, aerodynamic lift over speed squared
   Pac2002<T> pacejka;
   Vec3<T> imu;  // m, chassis axes
   T gravity;    // m/s^2
@@ -34,6 +38,9 @@ struct VehicleLayout {
   bool relaxation = false;
   Pac2002Parts tire_parts;
   std::array<bool, kCorners> on_bump{true, true, true, true};  // wheels that see the bump
+  std::array<unsigned, kCorners> strut_effects{};              // StrutEffectBits
+  std::array<bool, kAxles> has_anti_roll_bar{};
+  bool progressive_tire = false, has_runout = false, has_lift = false;
 };
 
 template <class T>
@@ -42,6 +49,7 @@ struct Vehicle {
   VehicleParameters<T> numbers;
   StrutElements<T> struts;
   Road<T> road;
+  StrutEffects<T> effects{};
 };
 
 }  // namespace strut

@@ -1,0 +1,73 @@
+// What is left between measurement and simulation, looked at from every side.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace strut {
+
+/// A stretch of a run, on its own clock.
+struct TimeWindow {
+  std::string name;
+  double from = 0.0, to = 0.0;  // s
+};
+
+struct WindowResidual {
+  TimeWindow window;
+  std::size_t count = 0;
+  double rms = 0.0, nrmse = 0.0;  // of the channel's spread over the whole run
+};
+
+/// Hz; the last has no upper end.
+struct FrequencyBand {
+  double from = 0.0, to = 0.0;
+};
+inline constexpr std::array<FrequencyBand, 5> kBands = {
+    {{0.0, 0.5}, {0.5, 3.0}, {3.0, 8.0}, {8.0, 20.0}, {20.0, 1e9}}};
+/// "0.5-3 Hz", "> 20 Hz"
+std::string describe(const FrequencyBand& band);
+
+struct BandResidual {
+  FrequencyBand band;
+  double residual_rms = 0.0, measured_rms = 0.0, noise_rms = 0.0;
+};
+
+/// Residuals by a state of the model.
+struct StateBin {
+  double center = 0.0;  // of the state, in its unit
+  std::size_t count = 0;
+  double mean = 0.0, rms = 0.0;
+};
+struct StateResidual {
+  std::string state, unit;
+  std::vector<StateBin> bins;
+  /// Mean residual where the state is negative, positive, and the 1 sigma of their difference, if
+  /// readings a correlation time apart are independent.
+  double mean_negative = 0.0, mean_positive = 0.0, difference_sigma = 0.0;
+  /// Share of the residual's mean square that a curve over the state explains, 0 to 1.
+  double explained = 0.0;
+};
+
+std::vector<WindowResidual> calc_window_residuals(std::span<const double> times,
+                                                  std::span<const double> residual,
+                                                  double measured_spread,
+                                                  const std::vector<TimeWindow>& windows);
+
+/// By the periodogram of the whole run, readings that are missing interpolated: rms in the bands,
+/// whose squares add up to that of residual and measurement, means taken off. Throws nothing.
+std::vector<BandResidual> calc_band_residuals(std::span<const double> times,
+                                              std::span<const double> residual,
+                                              std::span<const double> measured, double sigma);
+
+/// In kStateBins bins of equal width between the 0.5 and 99.5 % quantiles; what is beyond counts in
+/// the outermost.
+inline constexpr std::size_t kStateBins = 16;
+StateResidual calc_state_residual(const std::string& name, const std::string& unit,
+                                  std::span<const double> state, std::span<const double> residual);
+
+/// Correlation of neighboring residuals.
+double calc_neighbor_correlation(std::span<const double> residual);
+
+}  // namespace strut

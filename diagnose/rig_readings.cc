@@ -1,0 +1,436 @@
+#include "diagnose/rig_readings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/run_readings.h"
+#include "diagnose/sampled_curve.h"
+#include "diagnose/spread.h"
+#include "io/config.h"
+#include "io/nearest_name.h"
+#include "model/integrate/rig_system.h"
+#include "model/parallel/team.h"
+#include "model/vehicle/model_error.h"
+#include "sweep/read_rig.h"
+
+namespace strut {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr char kGain[] = "_gain", kBias[] = "_bias", kInitial[] = "initial_";
+
+/// How a run is sampled: at its own times where they are even, else finely enough to interpolate.
+struct RigSampling {
+  double interval = 0.0, step = 0.0;
+  bool even = false;
+};
+
+RigSampling choose_sampling(const RigRun& run, const RigSpec& spec, const RigOptions& options) {
+  const double n = static_cast<double>(run.times.size() - 1);
+  const double mean = run.times.back() / n, mode = calc_fastest_mode(spec);
+  const double longest =
+      mode > 0.0 ? std::min(options.longest_step, 0.1 / mode) : options.longest_step;
+  RigSampling s;
+  s.even = true;
+  for (std::size_t i = 0; i < run.times.size() && s.even; ++i) {
+    s.even = std::abs(run.times[i] - mean * static_cast<double>(i)) < 1e-6 * mean;
+  }
+  s.step = mean / std::ceil(mean / longest - 1e-9);
+  s.interval = s.even ? mean : s.step;
+  return s;
+}
+
+/// A setup with the unknowns of one run set, and its inputs where a gain changes them.
+struct RigVariant {
+  RigSpec spec;
+  std::vector<InputSignal> scaled;  // empty: the run's own
+};
+
+bool belongs(const Unknown& u, int run) { return u.run == kEveryRun || u.run == run; }
+
+void scale_input(const RigRun& run, RigVariant& variant, int input, double gain) {
+  if (variant.scaled.empty()) variant.scaled = run.inputs;
+  const std::string& name = list_rig_inputs(run.setup.kind)[static_cast<std::size_t>(input)].name;
+  for (InputSignal& signal : variant.scaled) {
+    if (signal.channel != name) continue;
+    for (SignalCell& cell : signal.cells) {
+      for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= gain;
+    }
+  }
+}
+
+RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
+                        const std::vector<double>& values) {
+  RigVariant variant{run.setup, {}};
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    if (!belongs(u, index)) continue;
+    if (u.kind == UnknownKind::kParameter) set_rig_parameter(variant.spec, u.name, values[i]);
+    if (u.kind == UnknownKind::kInputGain) scale_input(run, variant, u.channel, values[i]);
+    if (u.kind == UnknownKind::kInitialState) {
+      const bool rate = u.channel >= kRigCoordinates;
+      const auto at = static_cast<std::size_t>(u.channel - (rate ? kRigCoordinates : 0));
+      (rate ? variant.spec.initial_velocity : variant.spec.initial_position)[at] = values[i];
+    }
+  }
+  return variant;
+}
+
+/// A simulation, read at the run's times.
+class RigResult {
+ public:
+  RigResult(const RigRun& run, const RigVariant& variant, const RigOptions& options)
+      : run_(run),
+        sampling_(choose_sampling(run, run.setup, options)),
+        channels_(list_rig_channels(run.setup.kind).size()) {
+    StepOptions step;
+    step.step = sampling_.step;
+    SamplePlan plan;
+    plan.interval = sampling_.interval;
+    plan.duration = run.times.back() + (sampling_.even ? 0.0 : kMarginSteps * sampling_.step);
+    plan.snapshot = false;
+    try {
+      results_ = simulate_rig(variant.spec, variant.scaled.empty() ? run.inputs : variant.scaled,
+                              step, plan);
+    } catch (const ModelError& e) {
+      failure_ = run.name + ": " + e.what();
+      return;
+    }
+    if (results_.status[0] == 0) return;
+    failure_ = run.name +
+               ": the simulation ends at t = " + format_rounded(results_.failure_time[0]) +
+               " s: the motion is not finite";
+  }
+
+  const std::string& failure() const { return failure_; }
+
+  /// NaN where the simulation cannot be interpolated.
+  double read(std::size_t time, std::size_t channel) const {
+    const auto get = [&](std::size_t sample) {
+      return results_.history[sample * channels_ + channel];
+    };
+    const auto count = static_cast<std::size_t>(results_.sample_count);
+    if (sampling_.even) return time < count ? get(time) : kNan;
+    const double at = run_.times[time] / sampling_.interval;
+    const auto index = static_cast<std::size_t>(at);
+    if (index < kCurveMargin || index + 1 + kCurveMargin >= count) return kNan;
+    return interpolate_curve(get, index, at - static_cast<double>(index), sampling_.interval).value;
+  }
+
+ private:
+  static constexpr double kMarginSteps = 4.0;
+
+  const RigRun& run_;
+  RigSampling sampling_;
+  std::size_t channels_;
+  LaneResults results_;
+  std::string failure_;
+};
+
+std::vector<std::string> list_unknown_names(const RigRun& run) {
+  std::vector<std::string> names;
+  for (const RigParameter& info : list_rig_settings(run.setup.kind)) {
+    if (!info.is_effect) names.push_back(info.name);
+  }
+  for (const RigInputInfo& info : list_rig_inputs(run.setup.kind))
+    names.push_back(info.name + kGain);
+  for (const MeasuredChannel& c : run.channels) {
+    names.push_back(list_rig_channels(run.setup.kind)[static_cast<std::size_t>(c.channel)].name +
+                    kBias);
+  }
+  return names;
+}
+
+Unknown make_gain(const std::string& name, int input) {
+  Unknown u;
+  u.kind = UnknownKind::kInputGain;
+  u.name = name;
+  u.unit = "1";
+  u.channel = input;
+  u.start = 1.0;
+  u.low = -100.0;
+  u.high = 100.0;
+  return u;
+}
+
+Unknown make_rig_bias(const RigRun& run, int index, const MeasuredChannel& c) {
+  const ChannelInfo& info = list_rig_channels(run.setup.kind)[static_cast<std::size_t>(c.channel)];
+  Unknown u;
+  u.kind = UnknownKind::kBias;
+  u.name = info.name + kBias;
+  u.unit = info.unit;
+  u.run = index;
+  u.channel = c.channel;
+  u.scale = std::max(calc_spread(c.values), c.sigma);
+  u.low = -std::numeric_limits<double>::infinity();
+  u.high = std::numeric_limits<double>::infinity();
+  return u;
+}
+
+/// Where the parameter's lower bound itself is not allowed.
+constexpr double kAboveLow = 1e-4, kReach = 1e4;
+
+/// An effect of the catalogue begins where it vanishes and is as large as such effects are.
+Unknown make_rig_parameter(const RigRun& run, const RigParameter& info) {
+  Unknown u;
+  u.name = info.name;
+  u.unit = info.unit;
+  u.start = info.get(run.setup);
+  u.scale = u.start != 0.0 ? std::abs(u.start) : info.typical != 0.0 ? info.typical : 1.0;
+  u.low = info.allowed.open_low ? info.allowed.low + kAboveLow * u.scale : info.allowed.low;
+  const bool bounded = info.is_effect || u.start == 0.0;
+  u.high = bounded ? info.allowed.high : std::min(info.allowed.high, kReach * u.scale);
+  return u;
+}
+
+/// The first reading of a coordinate's position, less the road's; 0 where it is not measured.
+double read_first_offset(const RigRun& run, const std::string& name) {
+  const std::vector<ChannelInfo>& infos = list_rig_channels(run.setup.kind);
+  for (const MeasuredChannel& c : run.channels) {
+    if (infos[static_cast<std::size_t>(c.channel)].name != name) continue;
+    const auto there =
+        std::find_if(c.values.begin(), c.values.end(), [](double v) { return std::isfinite(v); });
+    if (there == c.values.end()) return 0.0;
+    double ground = 0.0;
+    for (const InputSignal& input : run.inputs) {
+      if (input.channel == "road_position") ground = calc_signal(input, 0.0).value;
+    }
+    return *there - ground;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+double calc_fastest_mode(const RigSpec& spec) {
+  switch (spec.kind) {
+    case RigKind::kQuarterCar:
+      return std::sqrt((spec.stiffness + spec.tire_stiffness) / spec.unsprung_mass);
+    case RigKind::kSingleMass:
+      return std::sqrt(spec.stiffness / spec.sprung_mass);
+    case RigKind::kStrutRig:
+      break;
+  }
+  return 0.0;
+}
+
+double get_rig_parameter(const RigSpec& spec, const std::string& name) {
+  return find_rig_parameter(spec.kind, name).get(spec);
+}
+
+RigCurves simulate_rig_run(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
+                           const std::vector<double>& values, const RigOptions& options) {
+  const RigResult result(run, make_variant(run, index, unknowns, values), options);
+  RigCurves curves{result.failure(), {}};
+  if (!curves.failure.empty()) return curves;
+  const std::size_t count = list_rig_channels(run.setup.kind).size();
+  curves.channel.assign(count, std::vector<double>(run.times.size()));
+  for (std::size_t c = 0; c < count; ++c) {
+    for (std::size_t t = 0; t < run.times.size(); ++t) curves.channel[c][t] = result.read(t, c);
+  }
+  return curves;
+}
+
+RigRun set_rig_unknowns(const RigRun& run, const std::vector<Unknown>& unknowns,
+                        const std::vector<double>& values) {
+  RigVariant variant = make_variant(run, 0, unknowns, values);
+  RigRun changed = run;
+  changed.setup = std::move(variant.spec);
+  if (!variant.scaled.empty()) changed.inputs = std::move(variant.scaled);
+  return changed;
+}
+
+RigReadings::RigReadings(std::vector<RigRun> runs, std::vector<Unknown> unknowns,
+                         const RigOptions& options)
+    : ReadingModel(std::move(unknowns)), runs_(std::move(runs)), options_(options) {
+  if (runs_.empty()) throw InputError("fit: no measurement");
+  check_unknowns(unknowns_, runs_.size());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const RigRun& run = runs_[r];
+    channels_.emplace_back();
+    for (const MeasuredChannel& c : run.channels) channels_[r].push_back(c.channel);
+    begin_.push_back(readings_.size());
+    const bool even = choose_sampling(run, run.setup, options_).even;
+    const double step = choose_sampling(run, run.setup, options_).interval;
+    for (std::size_t t = 0; t < run.times.size(); ++t) {
+      const bool inside = even || run.times[t] >= static_cast<double>(kCurveMargin) * step;
+      if (!inside) outside_count_ += run.channels.size();
+      for (std::size_t c = 0; inside && c < run.channels.size(); ++c) {
+        if (std::isfinite(run.channels[c].values[t])) readings_.push_back({r, t, c});
+      }
+    }
+  }
+  begin_.push_back(readings_.size());
+  finish(runs_.front().name);
+}
+
+std::vector<RigReadings::Task> RigReadings::list_tasks(const std::vector<double>& values,
+                                                       bool derivatives) const {
+  std::vector<Task> tasks;
+  tasks.reserve(runs_.size() * (1 + 2 * unknowns_.size()));
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    tasks.push_back({r, kNoUnknown, 0.0});
+    for (std::size_t i = 0; derivatives && i < unknowns_.size(); ++i) {
+      const Unknown& u = unknowns_[i];
+      if (!belongs(u, static_cast<int>(r)) || u.kind == UnknownKind::kBias) continue;
+      const auto [upper, lower] = calc_sides(u, values[i], options_.relative_step);
+      tasks.push_back({r, i, upper});
+      tasks.push_back({r, i, lower});
+    }
+  }
+  return tasks;
+}
+
+/// Returns why there is no simulation.
+std::string RigReadings::simulate(const Task& task, const std::vector<double>& values,
+                                  std::vector<double>& read) const {
+  const RigRun& run = runs_[task.run];
+  std::vector<double> varied = values;
+  if (task.unknown != kNoUnknown) varied[task.unknown] = task.value;
+  try {
+    const RigResult result(run, make_variant(run, static_cast<int>(task.run), unknowns_, varied),
+                           options_);
+    if (!result.failure().empty()) return result.failure();
+    read.reserve(begin_[task.run + 1] - begin_[task.run]);
+    for (std::size_t i = begin_[task.run]; i < begin_[task.run + 1]; ++i) {
+      const ReadingPlace& place = readings_[i];
+      read.push_back(
+          result.read(place.time, static_cast<std::size_t>(run.channels[place.channel].channel)));
+    }
+  } catch (const InputError& e) {  // out of a parameter's range
+    return run.name + ": " + e.what();
+  }
+  return "";
+}
+
+/// Adds what biases do to residuals and derivatives.
+void RigReadings::fill_biases(const std::vector<double>& values, Linearization& out) const {
+  for (std::size_t u = 0; u < unknowns_.size(); ++u) {
+    if (unknowns_[u].kind != UnknownKind::kBias) continue;
+    for (std::size_t i = 0; i < readings_.size(); ++i) {
+      const ReadingPlace& place = readings_[i];
+      const MeasuredChannel& c = runs_[place.run].channels[place.channel];
+      if (c.channel != unknowns_[u].channel) continue;
+      if (!belongs(unknowns_[u], static_cast<int>(place.run))) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      out.residual(row) += values[u] / c.sigma;
+      out.jacobian(row, static_cast<Eigen::Index>(u)) = unknowns_[u].scale / c.sigma;
+    }
+  }
+}
+
+Linearization RigReadings::run_tasks(const std::vector<double>& values, bool derivatives) {
+  const std::vector<Task> tasks = list_tasks(values, derivatives);
+  std::vector<std::vector<double>> read(tasks.size());
+  std::vector<std::string> failures(tasks.size());
+  share_items(options_.threads, tasks.size(), [&](std::size_t k, int /*thread*/) {
+    failures[k] = simulate(tasks[k], values, read[k]);
+  });
+  simulation_count_ += static_cast<long>(tasks.size());
+  Linearization out;
+  for (const std::string& failure : failures) {
+    if (out.failure.empty()) out.failure = failure;
+  }
+  if (!out.failure.empty()) return out;
+  const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
+  out.residual = Eigen::VectorXd::Zero(rows);
+  out.jacobian = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(unknowns_.size()));
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    const Task& task = tasks[k];
+    const bool base = task.unknown == kNoUnknown;
+    const double width = base ? 0.0 : task.value - tasks[k + 1].value;
+    for (std::size_t i = begin_[task.run]; i < begin_[task.run + 1]; ++i) {
+      const MeasuredChannel& c = runs_[task.run].channels[readings_[i].channel];
+      const auto row = static_cast<Eigen::Index>(i);
+      const double simulated = read[k][i - begin_[task.run]];
+      if (base) {
+        out.residual(row) = (simulated - c.values[readings_[i].time]) / c.sigma;
+      } else {
+        const double lower = read[k + 1][i - begin_[task.run]];
+        out.jacobian(row, static_cast<Eigen::Index>(task.unknown)) =
+            (simulated - lower) / width * unknowns_[task.unknown].scale / c.sigma;
+      }
+    }
+    if (!base) ++k;  // its lower side
+  }
+  fill_biases(values, out);
+  fill_priors(values, out);
+  return out;
+}
+
+Linearization RigReadings::linearize(const std::vector<double>& values) {
+  return run_tasks(values, true);
+}
+
+Linearization RigReadings::evaluate(const std::vector<double>& values) {
+  return run_tasks(values, false);
+}
+
+Unknown make_rig_unknown(const std::vector<RigRun>& runs, const std::string& name) {
+  const RigRun& run = runs.at(0);
+  for (const RigParameter& info : list_rig_settings(run.setup.kind)) {
+    if (info.name == name) return make_rig_parameter(run, info);
+  }
+  const std::vector<RigInputInfo>& inputs = list_rig_inputs(run.setup.kind);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i].name + kGain == name) return make_gain(name, static_cast<int>(i));
+  }
+  for (const MeasuredChannel& c : run.channels) {
+    Unknown u = make_rig_bias(run, kEveryRun, c);
+    if (u.name == name) return u;
+  }
+  std::vector<std::string> names = list_unknown_names(run);
+  const std::string allowed = join_names(names);
+  for (const RigParameter& info : list_rig_settings(run.setup.kind)) names.push_back(info.name);
+  throw InputError("'" + name + "' cannot be free; allowed: " + allowed +
+                   ", and parameters of effects" + suggest_name(name, names));
+}
+
+std::vector<Unknown> make_initial_states(const std::vector<RigRun>& runs) {
+  std::vector<Unknown> unknowns;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const RigRun& run = runs[r];
+    const int count = count_coordinates(run.setup.kind);
+    if (count == 0) continue;
+    const RigCurves curves = simulate_rig_run(run, static_cast<int>(r), {}, {});
+    const std::vector<ChannelInfo>& infos = list_rig_channels(run.setup.kind);
+    for (int i = 0; i < 2 * count; ++i) {
+      const bool rate = i >= count;
+      const std::string mass = count == 1 ? "" : i % count == kUnsprung ? "unsprung_" : "sprung_";
+      const std::string channel = mass + (rate ? "velocity" : "position");
+      const auto found = std::find_if(infos.begin(), infos.end(), [&](const ChannelInfo& info) {
+        return info.name == channel;
+      });
+      Unknown u;
+      u.kind = UnknownKind::kInitialState;
+      u.name = kInitial + channel;
+      u.unit = rate ? "m/s" : "m";
+      u.run = static_cast<int>(r);
+      u.channel = i % count + (rate ? kRigCoordinates : 0);
+      const auto at = static_cast<std::size_t>(found - infos.begin());
+      const double spread = curves.failure.empty() ? calc_spread(curves.channel[at]) : 0.0;
+      u.start = rate ? 0.0 : read_first_offset(run, channel);
+      u.scale = std::max(spread, std::abs(u.start));
+      if (u.scale == 0.0) u.scale = 1e-3;  // nothing moves: any small number
+      u.prior = {u.start, u.scale};
+      u.low = u.start - 100.0 * u.scale;
+      u.high = u.start + 100.0 * u.scale;
+      unknowns.push_back(std::move(u));
+    }
+  }
+  return unknowns;
+}
+
+std::vector<Unknown> make_rig_biases(const std::vector<RigRun>& runs, double wide) {
+  std::vector<Unknown> unknowns;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (const MeasuredChannel& c : runs[r].channels) {
+      unknowns.push_back(make_rig_bias(runs[r], static_cast<int>(r), c));
+      unknowns.back().prior = {0.0, wide * unknowns.back().scale};
+    }
+  }
+  return unknowns;
+}
+
+}  // namespace strut

@@ -1,0 +1,43 @@
+#include "diagnose/spread.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace strut {
+namespace {
+
+/// Mean of f(value) over what is there.
+template <class F>
+double average(std::span<const double> values, const F& f) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    sum += f(v);
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+}  // namespace
+
+double calc_mean(std::span<const double> values) {
+  return average(values, [](double v) { return v; });
+}
+
+double calc_rms(std::span<const double> values) {
+  return std::sqrt(average(values, [](double v) { return v * v; }));
+}
+
+double calc_spread(std::span<const double> values) {
+  const double mean = calc_mean(values);
+  return std::sqrt(average(values, [mean](double v) { return (v - mean) * (v - mean); }));
+}
+
+std::size_t count_readings(std::span<const double> values) {
+  std::size_t count = 0;
+  for (const double v : values) count += std::isfinite(v) ? 1 : 0;
+  return count;
+}
+
+}  // namespace strut

@@ -1,0 +1,15 @@
+// Moments of readings of which some are missing (NaN).
+#pragma once
+
+#include <span>
+
+namespace strut {
+
+double calc_mean(std::span<const double> values);
+/// Root mean square; 0 without readings.
+double calc_rms(std::span<const double> values);
+/// Standard deviation about the mean; 0 without readings.
+double calc_spread(std::span<const double> values);
+std::size_t count_readings(std::span<const double> values);
+
+}  // namespace strut

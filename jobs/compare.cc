@@ -1,0 +1,91 @@
+#include "jobs/compare.h"
+
+#include <filesystem>
+#include <iostream>
+
+#include "io/atomic_file.h"
+#include "jobs/arguments.h"
+#include "jobs/command.h"
+#include "jobs/compare/folder.h"
+#include "jobs/compare/json.h"
+#include "jobs/compare/report.h"
+#include "jobs/compare/tables.h"
+#include "jobs/interrupt.h"
+#include "jobs/open_sweep.h"
+
+namespace strut {
+namespace {
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut compare CAMPAIGN.toml -o DIR [OPTIONS]",
+      "Measured against simulated: every run of the campaign with the model as its file says and\n"
+      "with the parameters that the campaign lets it adjust, fitted to the runs for fitting. Says\n"
+      "for every channel what is left, when, in which band, in which state, and whether the model\n"
+      "is adequate. Writes DIR/compare.json, CSV tables, figures and report.html\n"
+      "(docs/diagnosis.md).",
+      "  strut compare examples/campaigns/quarter_car.toml -o comparison");
+  arguments.add_option("output,o", "DIR", "folder of the comparison");
+  arguments.add_option("threads", "N", "threads (default: all processors)");
+  arguments.add_switch("force", "replace the comparison that is in DIR");
+  arguments.add_switch("json", "print compare.json instead of tables");
+  return arguments;
+}
+
+/// Every run went through with the calibrated model, and the fit that calibrated it converged.
+bool is_whole(const Comparison& comparison) {
+  if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) return false;
+  for (const RunComparison& run : comparison.runs) {
+    if (!run.calibrated.evaluation.failure.empty()) return false;
+  }
+  return true;
+}
+
+void tell(const Comparison& comparison) {
+  if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) {
+    std::cerr << "strut: the calibration has not converged: its minimum is "
+              << format_rounded(comparison.baseline.fit.distance) << " standard deviations away\n";
+  }
+  for (const RunComparison& run : comparison.runs) {
+    for (const ModelComparison* model : {&run.nominal, &run.calibrated}) {
+      const std::string& failure = model->evaluation.failure;
+      if (!failure.empty()) std::cerr << "strut: " << failure << "\n";
+    }
+  }
+}
+
+}  // namespace
+
+int run_compare(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  if (arguments.positional().size() != 1) {
+    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
+                                " files; expected CAMPAIGN.toml");
+  }
+  const CompareFolder folder = find_compare_folder(arguments);
+  const CampaignData data = read_campaign_data(arguments.positional().front());
+  for (const std::string& note : data.notes) std::cerr << "strut: " << note << "\n";
+  const Comparison comparison = compare_campaign(data, find_threads(arguments));
+  tell(comparison);
+  const std::string json = make_compare_json(data, comparison).dump() + "\n";
+  {
+    const InterruptGuard guard;
+    write_compare_tables(folder, data, comparison);
+    write_text_file(folder.json(), json);
+    for (const std::string& note : write_compare_report(folder, data, comparison)) {
+      std::cerr << "strut: " << note << "\n";
+    }
+  }
+  if (arguments.is_on("json")) {
+    std::cout << json;
+  } else {
+    for (const ReportTable& table : make_compare_tables(data, comparison)) {
+      std::cout << make_text(table) << "\n";
+    }
+    std::cout << make_verdict_text(data, comparison) << "\n" << folder.report().string() << "\n";
+  }
+  return is_whole(comparison) ? kExitDone : kExitNo;
+}
+
+}  // namespace strut

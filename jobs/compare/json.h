@@ -1,0 +1,11 @@
+// compare.json: keys in docs/diagnosis.md.
+#pragma once
+
+#include "diagnose/compare.h"
+#include "jobs/json.h"
+
+namespace strut {
+
+Json make_compare_json(const CampaignData& data, const Comparison& comparison);
+
+}  // namespace strut

@@ -1,0 +1,47 @@
+#include "jobs/compare/report.h"
+
+#include <algorithm>
+
+#include "io/atomic_file.h"
+#include "jobs/compare/figures.h"
+#include "jobs/compare/tables.h"
+#include "jobs/report/figures.h"
+
+namespace strut {
+namespace {
+
+ReportSection make_run_section(const CampaignData& data, const RunComparison& run,
+                               const FigureDrawer& drawer) {
+  const CampaignRun& about = data.campaign.runs[run.run];
+  ReportSection section;
+  section.heading = about.name + (about.use == RunUse::kFit ? ", for fitting" : ", held out");
+  if (!run.calibrated.evaluation.failure.empty()) {
+    section.paragraphs.push_back(run.calibrated.evaluation.failure);
+    return section;
+  }
+  for (const auto& [figure, caption] : make_run_figures(data, run)) {
+    section.figures.push_back(drawer.draw(figure, caption));
+  }
+  section.tables = make_run_tables(data, run);
+  return section;
+}
+
+}  // namespace
+
+std::vector<std::string> write_compare_report(const CompareFolder& folder, const CampaignData& data,
+                                              const Comparison& comparison) {
+  const FigureDrawer drawer(folder.figures());
+  ReportPage page;
+  page.title = "Measured against simulated: " + data.campaign.path.filename().string();
+  page.lead = {make_verdict_text(data, comparison)};
+  page.sections.push_back({"Overview", data.notes, make_compare_tables(data, comparison)});
+  for (const RunComparison& run : comparison.runs) {
+    page.sections.push_back(make_run_section(data, run, drawer));
+  }
+  page.footer = make_report_footer();
+  write_text_file(folder.report(), make_html(page));
+  return drawer.note().empty() ? std::vector<std::string>{}
+                               : std::vector<std::string>{drawer.note()};
+}
+
+}  // namespace strut

@@ -1,0 +1,16 @@
+// The report of a comparison: report.html and its figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/compare.h"
+#include "jobs/compare/folder.h"
+
+namespace strut {
+
+/// Returns what could not be made, for the user. Throws EnvironmentError.
+std::vector<std::string> write_compare_report(const CompareFolder& folder, const CampaignData& data,
+                                              const Comparison& comparison);
+
+}  // namespace strut

@@ -1,0 +1,236 @@
+#include "jobs/compare/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "io/csv.h"
+
+namespace strut {
+namespace {
+
+std::string format_percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f %%", 100.0 * share);
+  return text;
+}
+
+std::string format_short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+ReportTable make_parameter_table(const Comparison& comparison) {
+  ReportTable table{"Parameters", {"parameter", "unit", "nominal", "calibrated", "95 %"}};
+  table.text_columns = 2;
+  const Baseline& baseline = comparison.baseline;
+  for (std::size_t i = 0; i < baseline.shared_count(); ++i) {
+    const Unknown& u = baseline.calibrated.unknowns[i];
+    table.rows.push_back(
+        {u.name, u.unit, format_short(baseline.nominal.values[i]),
+         format_short(baseline.calibrated.values[i]) + (baseline.fit.at_bound[i] ? " (bound)" : ""),
+         "+- " + format_short(1.96 * baseline.calc_sigma(i))});
+  }
+  for (const std::string& open : comparison.not_identifiable) {
+    table.notes.push_back("The runs leave open: " + open);
+  }
+  return table;
+}
+
+const ChannelComparison* find_channel(const ModelComparison& model, int channel) {
+  for (const ChannelComparison& c : model.channels) {
+    if (c.channel == channel) return &c;
+  }
+  return nullptr;
+}
+
+std::string describe_error(const ChannelComparison* c) {
+  return c == nullptr ? "failed" : format_percent(c->nrmse);
+}
+
+ReportTable make_channel_table(const CampaignData& data, const Comparison& comparison) {
+  ReportTable table{
+      "Residuals: rms over the measured channel's standard deviation",
+      {"run", "use", "channel", "nominal", "calibrated", "rms", "noise", "chi2/n", "adequate"}};
+  table.text_columns = 3;
+  for (const RunComparison& run : comparison.runs) {
+    for (const MeasuredChannel& measured : data.channels(run.run)) {
+      const ChannelComparison* before = find_channel(run.nominal, measured.channel);
+      const ChannelComparison* after = find_channel(run.calibrated, measured.channel);
+      const CampaignRun& about = data.campaign.runs[run.run];
+      const ChannelInfo& info = data.info(measured.channel);
+      std::vector<std::string> row = {about.name, get_name(about.use), info.name,
+                                      describe_error(before), describe_error(after)};
+      if (after != nullptr) {
+        row.insert(row.end(),
+                   {format_short(after->rms) + " " + info.unit, format_short(after->sigma),
+                    format_short(after->chi2_per_reading), after->is_adequate() ? "yes" : "no"});
+      } else {
+        row.insert(row.end(), {"", "", "", ""});
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+CsvColumn make_column(const std::string& name, const std::string& unit) { return {name, unit, {}}; }
+
+/// Numbers of every channel of every run; runs and channels by their numbers in compare.json.
+std::vector<CsvColumn> make_channel_columns(const Comparison& comparison) {
+  std::vector<CsvColumn> columns = {make_column("run", "1"),
+                                    make_column("channel", "1"),
+                                    make_column("calibrated", "1"),
+                                    make_column("count", "1"),
+                                    make_column("rms", ""),
+                                    make_column("nrmse", "1"),
+                                    make_column("noise", ""),
+                                    make_column("chi2_per_reading", "1"),
+                                    make_column("neighbor_correlation", "1")};
+  for (const RunComparison& run : comparison.runs) {
+    for (const ModelComparison* model : {&run.nominal, &run.calibrated}) {
+      for (std::size_t k = 0; k < model->channels.size(); ++k) {
+        const ChannelComparison& c = model->channels[k];
+        const double row[] = {static_cast<double>(run.run + 1),
+                              static_cast<double>(k + 1),
+                              model == &run.calibrated ? 1.0 : 0.0,
+                              static_cast<double>(c.count),
+                              c.rms,
+                              c.nrmse,
+                              c.sigma,
+                              c.chi2_per_reading,
+                              c.neighbor_correlation};
+        for (std::size_t i = 0; i < columns.size(); ++i) columns[i].values.push_back(row[i]);
+      }
+    }
+  }
+  return columns;
+}
+
+std::vector<CsvColumn> make_run_columns(const CampaignData& data, const RunComparison& run) {
+  std::vector<CsvColumn> columns = {{"time", "s", data.times(run.run)}};
+  for (const MeasuredChannel& c : data.channels(run.run)) {
+    const ChannelInfo& info = data.info(c.channel);
+    columns.push_back({info.name, info.unit, c.values});
+    for (const auto& [model, name] :
+         {std::pair{&run.nominal, "_nominal"}, std::pair{&run.calibrated, "_calibrated"}}) {
+      if (!model->evaluation.failure.empty()) continue;
+      columns.push_back({info.name + name, info.unit,
+                         model->evaluation.curves.channel[static_cast<std::size_t>(c.channel)]});
+    }
+  }
+  if (!run.balance) return columns;
+  columns.push_back({"balance_deflection", "m", run.balance->deflection});
+  columns.push_back({"balance_velocity", "m/s", run.balance->velocity});
+  columns.push_back({"balance_force", "N", run.balance->force});
+  columns.push_back({"balance_residual", "N", run.balance->residual});
+  return columns;
+}
+
+ReportTable make_window_table(const CampaignData& data, const RunComparison& run) {
+  ReportTable table{"By time, calibrated: rms over the channel's standard deviation", {"channel"}};
+  for (const TimeWindow& window : run.windows) {
+    table.header.push_back(window.name + "\n" + format_short(window.from) + " s");
+  }
+  for (const ChannelComparison& c : run.calibrated.channels) {
+    std::vector<std::string> row = {data.info(c.channel).name};
+    for (const WindowResidual& w : c.windows) {
+      row.push_back(w.count > 0 ? format_percent(w.nrmse) : "");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable make_band_table(const CampaignData& data, const RunComparison& run) {
+  ReportTable table{"By frequency, calibrated: rms of residual, of measurement, of noise",
+                    {"channel"}};
+  for (const FrequencyBand& band : kBands) table.header.push_back(describe(band));
+  for (const ChannelComparison& c : run.calibrated.channels) {
+    std::vector<std::string> row = {data.info(c.channel).name + " [" + data.info(c.channel).unit +
+                                    "]"};
+    for (const BandResidual& b : c.bands) {
+      row.push_back(format_short(b.residual_rms) + "\n" + format_short(b.measured_rms) + "\n" +
+                    format_short(b.noise_rms));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable make_balance_table(const BodyBalance& b) {
+  ReportTable table{"Body balance, no road in it", {"", "value"}};
+  table.rows = {{"residual", format_short(b.rms) + " N"},
+                {"of the strut's force", format_percent(b.nrmse)},
+                {"noise alone", format_short(b.noise_rms) + " N"},
+                {"stiffness", format_short(b.stiffness) + " +- " +
+                                  format_short(1.96 * b.stiffness_sigma) + " N/m"},
+                {"damping", format_short(b.damping) + " +- " +
+                                format_short(1.96 * b.damping_sigma) + " N s/m"}};
+  for (const StateResidual& state : b.states) {
+    table.rows.push_back({"explained by " + state.state, format_percent(state.explained)});
+  }
+  for (const KinematicResidual& k : b.kinematics) {
+    table.rows.push_back(
+        {k.channel + " against the position's",
+         "gain " + format_short(k.gain) + ", rest " + format_short(k.rms) + " m/s^2"});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string make_run_name(const CampaignData& data, std::size_t run) {
+  std::string name =
+      "run_" + std::to_string(run + 1) + "_" + data.campaign.runs[run].file.stem().string();
+  for (char& c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!plain && c != '-') c = '_';
+  }
+  return name;
+}
+
+std::string make_verdict_text(const CampaignData& data, const Comparison& comparison) {
+  if (comparison.is_adequate()) {
+    return "Adequate: the calibrated model agrees with every channel as far as its noise allows.";
+  }
+  const ChannelComparison* worst = nullptr;
+  std::size_t where = 0;
+  for (const RunComparison& run : comparison.runs) {
+    for (const ChannelComparison& c : run.calibrated.channels) {
+      const double excess = c.chi2_per_reading / c.limit;
+      if (worst != nullptr && excess <= worst->chi2_per_reading / worst->limit) continue;
+      worst = &c;
+      where = run.run;
+    }
+  }
+  if (worst == nullptr) return "Not adequate: no run could be simulated.";
+  return "Not adequate: the calibrated model leaves " + format_percent(worst->nrmse) + " of " +
+         data.info(worst->channel).name + " in " + data.campaign.runs[where].name + ", " +
+         format_short(std::sqrt(worst->chi2_per_reading)) + " times its noise.";
+}
+
+std::vector<ReportTable> make_compare_tables(const CampaignData& data,
+                                             const Comparison& comparison) {
+  std::vector<ReportTable> tables;
+  if (comparison.baseline.is_fitted) tables.push_back(make_parameter_table(comparison));
+  tables.push_back(make_channel_table(data, comparison));
+  return tables;
+}
+
+std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComparison& run) {
+  std::vector<ReportTable> tables = {make_window_table(data, run), make_band_table(data, run)};
+  if (run.balance) tables.push_back(make_balance_table(*run.balance));
+  return tables;
+}
+
+void write_compare_tables(const CompareFolder& folder, const CampaignData& data,
+                          const Comparison& comparison) {
+  write_csv(folder.table("channels"), make_channel_columns(comparison));
+  for (const RunComparison& run : comparison.runs) {
+    write_csv(folder.table(make_run_name(data, run.run)), make_run_columns(data, run));
+  }
+}
+
+}  // namespace strut

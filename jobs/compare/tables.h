@@ -1,0 +1,31 @@
+// A comparison as tables: for a person, and as CSV files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/compare.h"
+#include "jobs/compare/folder.h"
+#include "jobs/report/html.h"
+
+namespace strut {
+
+/// Adequate or not, and where it fails most, in one sentence.
+std::string make_verdict_text(const CampaignData& data, const Comparison& comparison);
+
+/// Parameters; then residuals by run and channel.
+std::vector<ReportTable> make_compare_tables(const CampaignData& data,
+                                             const Comparison& comparison);
+
+/// One run's residuals of the calibrated model by time and band, and its body balance.
+std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComparison& run);
+
+/// Writes channels.csv, and for every run NAME.csv: time, and of every channel measured, nominal,
+/// calibrated; with a body balance its curves. Throws EnvironmentError.
+void write_compare_tables(const CompareFolder& folder, const CampaignData& data,
+                          const Comparison& comparison);
+
+/// "run_2_chirp_A2": of a run's files.
+std::string make_run_name(const CampaignData& data, std::size_t run);
+
+}  // namespace strut

@@ -1,0 +1,147 @@
+// Effects of masses, tires and road.
+#include "model/effects/tables.h"
+
+namespace strut {
+namespace {
+
+constexpr ModelSet kWithTire = kCars | kQuarterCars;
+
+EffectInfo make_payload() {
+  return {
+      "payload",
+      "load that the model does not know, a point mass on the body",
+      "m_body + m_p at x_p, z_p from the whole car's centroid",
+      "rigid load; the car sinks on its springs",
+      kOnBody,
+      {make_switch("mass", "kg", "m_p: the load", -500.0, 2000.0, 50.0, kEveryModel & ~kStrutRigs),
+       make_shape("x", "m", "x_p: ahead of the centroid", 0.0, -5.0, 5.0, 1.0, kCars),
+       make_shape("z", "m", "z_p: above the centroid", 0.0, -2.0, 3.0, 0.5, kCars)}};
+}
+
+EffectInfo make_center_of_mass_shift() {
+  return {"center_of_mass_shift",
+          "the whole car's center of mass is not where the file says",
+          "r_body + (m / m_body) (x, 0, z)",
+          "masses and inertia stay; 1 to 10 cm between model and car",
+          kOnBody,
+          {make_switch("x", "m", "shift forward", -1.0, 1.0, 0.05, kCars),
+           make_switch("z", "m", "shift upward", -0.5, 0.5, 0.05, kCars)}};
+}
+
+EffectInfo make_pitch_inertia() {
+  return {"pitch_inertia", "the whole car's pitch inertia is not what the file says",
+          "I_yy (1 + e)",  "4 to 15 % by estimates from size and mass",
+          kOnBody,         {make_switch("gain", "1", "e: relative error", -0.3, 1.0, 0.1, kCars)}};
+}
+
+EffectInfo make_unsprung_mass() {
+  return {
+      "unsprung_mass",
+      "each wheel of the axle weighs more than the file says, the body as much less",
+      "m_wheel + m_e; quarter_car: m_unsprung + m_e",
+      "point mass at the wheel center; 5 to 25 % of the unsprung mass",
+      kOnAxle,
+      {make_switch("mass", "kg", "m_e: additional mass of a wheel", -30.0, 300.0, 5.0, kWithTire)}};
+}
+
+EffectInfo make_tire_stiffness() {
+  return {"tire_stiffness",
+          "inflation pressure: the tires' vertical stiffness is not what the file says",
+          "k_t (1 + e)",
+          "nearly proportional to pressure; 5 to 20 %",
+          kOnAxle,
+          {make_switch("gain", "1", "e: relative error", -0.7, 3.0, 0.1, kWithTire)}};
+}
+
+EffectInfo make_tire_progressive() {
+  return {"tire_progressive",
+          "the tire's vertical stiffness grows with its deflection",
+          "F = k_t (x + q x abs(x)), rate k_t (1 + 2 q abs(x))",
+          "quadratic term of PAC2002's load (QFZ2); +10 to +30 % stiffness at bump loads",
+          kOnAxle,
+          {make_switch("progression", "1/m", "q: growth of the stiffness", 0.0, 200.0, 4.0,
+                       kWithTire)}};
+}
+
+EffectInfo make_tire_damping() {
+  return {"tire_damping",
+          "the tires damp more than the file says",
+          "c_t + c_e",
+          "50 to 2000 N s/m in the literature",
+          kOnAxle,
+          {make_switch("rate", "N s/m", "c_e: additional damping of a tire", -5000.0, 50000.0,
+                       200.0, kWithTire)}};
+}
+
+EffectInfo make_tire_enveloping() {
+  return {
+      "tire_enveloping",
+      "the contact patch that smooths short obstacles is longer than the file says",
+      "footprint + l",
+      "averaging over the patch, docs/design/0003-road-contact.md; patches of 0.08 to 0.15 m",
+      kOnRoad,
+      {make_switch("length", "m", "l: additional length averaged over", -0.5, 0.8, 0.04, kCars)}};
+}
+
+EffectInfo make_wheel_runout() {
+  return {"wheel_runout",
+          "the wheels of the axle are out of round",
+          "x + a cos(theta + phi), theta: angle of the wheel since the start",
+          "first harmonic of radial run-out; 0.3 to 0.5 mm for 80 N of radial force variation",
+          kOnAxle | kOnCorner,
+          {make_switch("amplitude", "m", "a: amplitude of the radius", 0.0, 0.02, 4e-4, kCars),
+           make_shape("phase", "rad", "phi: phase at the start", 0.0, -6.4, 6.4, 1.0, kCars)}};
+}
+
+EffectInfo make_bump_height() {
+  return {"bump_height", "the bump is higher than surveyed",
+          "h (1 + e)",   "2 to 8 % as built",
+          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kCars)}};
+}
+
+EffectInfo make_bump_length() {
+  return {"bump_length",
+          "the bump is longer than surveyed",
+          "L (1 + e), flanks as well",
+          "2 to 8 % as built",
+          kOnRoad,
+          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kCars)}};
+}
+
+EffectInfo make_speed_error() {
+  return {"speed_error", "the car drives faster than the speedometer says",
+          "v (1 + e)",   "wheel speed and effective radius; 0.2 to 2 %",
+          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.5, 1.0, 0.01, kCars)}};
+}
+
+EffectInfo make_road_gain() {
+  return {"road_gain",
+          "the road moves the rig more than its recording says",
+          "z_road (1 + e)",
+          "gain of the stand's displacement sensor",
+          kOnRoad,
+          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.02, kQuarterCars)}};
+}
+
+EffectInfo make_aerodynamic_lift() {
+  return {
+      "aerodynamic_lift",
+      "air lifts the axle, along the body's vertical through the axle's wheel centers",
+      "F = rho / 2 A_l v^2, rho = 1.2 kg/m^3",
+      "A_l: lift coefficient times frontal area, -0.1 to 0.3 m^2 an axle; Hucho, Aerodynamics of "
+      "Road Vehicles",
+      kOnAxle,
+      {make_switch("area", "m^2", "A_l: lift area of the axle", -5.0, 5.0, 0.1, kCars)}};
+}
+
+}  // namespace
+
+std::vector<EffectInfo> make_body_effects() {
+  return {make_payload(),       make_center_of_mass_shift(), make_pitch_inertia(),
+          make_unsprung_mass(), make_tire_stiffness(),       make_tire_progressive(),
+          make_tire_damping(),  make_tire_enveloping(),      make_wheel_runout(),
+          make_bump_height(),   make_bump_length(),          make_speed_error(),
+          make_road_gain(),     make_aerodynamic_lift()};
+}
+
+}  // namespace strut

@@ -1,0 +1,225 @@
+#include "model/effects/catalogue.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <stdexcept>
+
+#include "model/effects/tables.h"
+#include "model/vehicle/model_error.h"
+
+namespace strut {
+namespace {
+
+const std::array<std::string, 2> kAxlePlaces = {"front", "rear"};
+const std::array<std::string, 4> kCornerPlaces = {"front_left", "front_right", "rear_left",
+                                                  "rear_right"};
+
+std::vector<EffectInfo> make_effects() {
+  std::vector<EffectInfo> effects = make_strut_effects();
+  for (EffectInfo& effect : make_body_effects()) effects.push_back(std::move(effect));
+  for (EffectInfo& effect : make_sensor_effects()) effects.push_back(std::move(effect));
+  return effects;
+}
+
+/// "rear" for "rear_left" and "rear_right", "" for what is no corner.
+std::string find_axle_of(const std::string& place) {
+  for (std::size_t c = 0; c < kCornerPlaces.size(); ++c) {
+    if (kCornerPlaces[c] == place) return kAxlePlaces[c / 2];
+  }
+  return "";
+}
+
+template <class Settings>
+auto find_setting(Settings& settings, const std::string& effect, const std::string& place) {
+  return std::find_if(settings.begin(), settings.end(), [&](const EffectSetting& s) {
+    return s.effect == effect && s.place == place;
+  });
+}
+
+std::vector<double> get_values(const EffectSettings& settings, const EffectInfo& effect,
+                               ModelKind kind, const std::string& place) {
+  auto found = find_setting(settings, effect.name, place);
+  if (found != settings.end()) return found->values;
+  const std::string axle = find_axle_of(place);
+  if (!axle.empty()) return get_values(settings, effect, kind, axle);
+  return make_neutral_setting(effect, place, kind).values;
+}
+
+/// Replaces the setting at a place, or drops it where it says what would hold without it.
+void put_values(EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
+                const std::string& place, const std::vector<double>& values) {
+  const auto found = find_setting(settings, effect.name, place);
+  const auto at = found - settings.begin();
+  EffectSettings others = settings;
+  if (found != settings.end()) others.erase(others.begin() + at);
+  if (get_values(others, effect, kind, place) == values) {
+    settings = std::move(others);
+  } else if (found != settings.end()) {
+    found->values = values;
+  } else {
+    settings.push_back({effect.name, place, values});
+  }
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string describe(const EffectSetting& setting) {
+  return "effect " + setting.effect + (setting.place.empty() ? "" : " at " + setting.place);
+}
+
+void check_values(const EffectSetting& setting,
+                  const std::vector<const EffectParameter*>& parameters) {
+  if (setting.values.size() != parameters.size()) {
+    throw ModelError(describe(setting) + ": has " + std::to_string(setting.values.size()) +
+                     " values; allowed: " + std::to_string(parameters.size()));
+  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EffectParameter& p = *parameters[i];
+    if (setting.values[i] >= p.low && setting.values[i] <= p.high) continue;
+    std::ostringstream message;
+    message << describe(setting) << ": " << p.name << " = " << setting.values[i]
+            << ": must lie in [" << p.low << ", " << p.high << "] " << p.unit;
+    throw ModelError(message.str());
+  }
+}
+
+void check_setting(const EffectSetting& setting, ModelKind kind) {
+  const EffectInfo* effect = find_effect(setting.effect);
+  if (effect == nullptr) throw ModelError("effect " + setting.effect + ": there is none");
+  const std::vector<std::string> places = list_effect_places(*effect, kind);
+  if (places.empty()) {
+    throw ModelError("effect " + setting.effect + ": a " + get_model_kind_name(kind) +
+                     " does not have it");
+  }
+  if (std::find(places.begin(), places.end(), setting.place) == places.end()) {
+    throw ModelError(describe(setting) + ": place must be one of " + join(places));
+  }
+  check_values(setting, list_effect_parameters(*effect, kind));
+}
+
+}  // namespace
+
+const std::vector<ModelKind>& list_model_kinds() {
+  static const std::vector<ModelKind> kinds = {ModelKind::kFullVehicle, ModelKind::kQuarterCar,
+                                               ModelKind::kStrutRig, ModelKind::kSingleMass};
+  return kinds;
+}
+
+const std::string& get_model_kind_name(ModelKind kind) {
+  static const std::array<std::string, 4> names = {"full_vehicle", "quarter_car", "strut_rig",
+                                                   "single_mass"};
+  std::size_t i = 0;
+  while (list_model_kinds()[i] != kind) ++i;
+  return names[i];
+}
+
+const std::vector<EffectInfo>& list_effects() {
+  static const std::vector<EffectInfo> effects = make_effects();
+  return effects;
+}
+
+const EffectInfo* find_effect(std::string_view name) {
+  for (const EffectInfo& effect : list_effects()) {
+    if (effect.name == name) return &effect;
+  }
+  return nullptr;
+}
+
+std::vector<const EffectParameter*> list_effect_parameters(const EffectInfo& effect,
+                                                           ModelKind kind) {
+  std::vector<const EffectParameter*> list;
+  list.reserve(effect.parameters.size());
+  for (const EffectParameter& p : effect.parameters) {
+    if (contains(p.models, kind)) list.push_back(&p);
+  }
+  return list;
+}
+
+std::string make_effect_parameter_name(const EffectInfo& effect, const std::string& place,
+                                       const EffectParameter& parameter, ModelKind kind) {
+  const bool only_one = list_effect_parameters(effect, kind).size() == 1;
+  return (place.empty() ? "" : place + "_") + effect.name + (only_one ? "" : "_" + parameter.name);
+}
+
+std::vector<std::string> list_effect_places(const EffectInfo& effect, ModelKind kind) {
+  if (list_effect_parameters(effect, kind).empty()) return {};
+  if ((effect.places & kOnChannel) != 0) return list_sensor_channels(kind);
+  if (kind != ModelKind::kFullVehicle) return {""};
+  std::vector<std::string> places;
+  if ((effect.places & kOnAxle) != 0) {
+    places.insert(places.end(), kAxlePlaces.begin(), kAxlePlaces.end());
+  }
+  if ((effect.places & kOnCorner) != 0) {
+    places.insert(places.end(), kCornerPlaces.begin(), kCornerPlaces.end());
+  }
+  if ((effect.places & kOnBody) != 0) places.emplace_back("body");
+  if ((effect.places & kOnRoad) != 0) places.emplace_back("road");
+  return places;
+}
+
+EffectSetting make_neutral_setting(const EffectInfo& effect, const std::string& place,
+                                   ModelKind kind) {
+  EffectSetting setting{effect.name, place, {}};
+  for (const EffectParameter* p : list_effect_parameters(effect, kind)) {
+    setting.values.push_back(p->neutral);
+  }
+  return setting;
+}
+
+bool is_neutral(const EffectSetting& setting, ModelKind kind) {
+  const auto parameters = list_effect_parameters(*find_effect(setting.effect), kind);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i]->switches && setting.values[i] != parameters[i]->neutral) return false;
+  }
+  return true;
+}
+
+void validate(const EffectSettings& settings, ModelKind kind) {
+  for (const EffectSetting& setting : settings) {
+    check_setting(setting, kind);
+    const auto same = [&](const EffectSetting& other) {
+      return other.effect == setting.effect && other.place == setting.place;
+    };
+    if (std::count_if(settings.begin(), settings.end(), same) > 1) {
+      throw ModelError(describe(setting) + ": is there twice; allowed: once");
+    }
+  }
+}
+
+double get_effect_value(const EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
+                        const std::string& place, std::size_t parameter) {
+  // An axle reads as the mean of its two corners.
+  std::vector<double> found;
+  for (const std::string& corner : kCornerPlaces) {
+    if (find_axle_of(corner) != place) continue;
+    if (find_setting(settings, effect.name, corner) == settings.end()) continue;
+    found.push_back(get_values(settings, effect, kind, corner).at(parameter));
+  }
+  const double own = get_values(settings, effect, kind, place).at(parameter);
+  if (found.empty()) return own;
+  return 0.5 * (found.front() + (found.size() > 1 ? found.back() : own));
+}
+
+void set_effect_value(EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
+                      const std::string& place, std::size_t parameter, double value) {
+  const auto put = [&](const std::string& where) {
+    std::vector<double> values = get_values(settings, effect, kind, where);
+    values.at(parameter) = value;
+    put_values(settings, effect, kind, where, values);
+  };
+  // Corners with settings of their own first: once the axle says the same they are dropped.
+  std::vector<std::string> corners;
+  for (const std::string& corner : kCornerPlaces) {
+    if (find_axle_of(corner) != place) continue;
+    if (find_setting(settings, effect.name, corner) != settings.end()) corners.push_back(corner);
+  }
+  put(place);
+  for (const std::string& corner : corners) put(corner);
+}
+
+}  // namespace strut

@@ -1,0 +1,72 @@
+// Effects of sensors: what a reading differs by from the channel itself.
+#include "model/effects/tables.h"
+#include "model/vehicle/rigs.h"
+
+namespace strut {
+namespace {
+
+EffectInfo make_sensor_gain() {
+  return {"sensor_gain", "the sensor's sensitivity is not what its data sheet says",
+          "(1 + e) y",   "1 to 5 % uncalibrated, 0.02 %/K",
+          kOnChannel,    {make_switch("gain", "1", "e: relative error", -2.0, 9.0, 0.02)}};
+}
+
+EffectInfo make_sensor_bias() {
+  return {"sensor_bias",
+          "the sensor reads something where there is nothing",
+          "y + b",
+          "zero-g offset of MEMS accelerometers 0.2 to 0.6 m/s^2, of gyroscopes 0.01 to 0.05 rad/s",
+          kOnChannel,
+          {make_switch("bias", "unit of the channel", "b: constant offset", -1e6, 1e6, 0.1)}};
+}
+
+EffectInfo make_sensor_delay() {
+  return {"sensor_delay",
+          "the reading is late: transport, filters with linear phase",
+          "y(t - tau)",
+          "1 to 10 ms on a vehicle's bus",
+          kOnChannel,
+          {make_switch("delay", "s", "tau: time by which the reading is late; < 0: early", -0.2,
+                       0.2, 2e-3)}};
+}
+
+EffectInfo make_sensor_lowpass() {
+  return {"sensor_lowpass",  "the sensor or its amplifier smooths what it reads",
+          "T dz/dt + z = y", "first-order filter, corner frequency 1 / (2 pi T)",
+          kOnChannel,        {make_switch("time", "s", "T: time constant", 0.0, 0.5, 2e-3)}};
+}
+
+EffectInfo make_sensor_position() {
+  return {"sensor_position",
+          "the inertial sensor sits elsewhere than the file says",
+          "a + dw/dt x s + w x (w x s), s: the shift",
+          "rigid body kinematics; 3 to 30 cm, or in the frame of another drawing",
+          kOnBody,
+          {make_switch("x", "m", "forward", -3.0, 3.0, 0.05, kCars),
+           make_switch("y", "m", "left", -3.0, 3.0, 0.05, kCars),
+           make_switch("z", "m", "upward", -3.0, 3.0, 0.05, kCars)}};
+}
+
+}  // namespace
+
+std::vector<EffectInfo> make_sensor_effects() {
+  return {make_sensor_gain(), make_sensor_bias(), make_sensor_delay(), make_sensor_lowpass(),
+          make_sensor_position()};
+}
+
+std::vector<std::string> list_sensor_channels(ModelKind kind) {
+  const auto rig = [](RigKind of) { return &list_rig_channels(of); };
+  const std::vector<ChannelInfo>* channels =
+      kind == ModelKind::kFullVehicle  ? &list_car_channels()
+      : kind == ModelKind::kQuarterCar ? rig(RigKind::kQuarterCar)
+      : kind == ModelKind::kStrutRig   ? rig(RigKind::kStrutRig)
+                                       : rig(RigKind::kSingleMass);
+  std::vector<std::string> names;
+  names.reserve(channels->size());
+  for (const ChannelInfo& channel : *channels) {
+    if (channel.name != "time") names.push_back(channel.name);
+  }
+  return names;
+}
+
+}  // namespace strut

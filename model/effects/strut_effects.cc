@@ -1,0 +1,147 @@
+// Effects of springs, dampers and their mounts.
+#include "model/effects/tables.h"
+
+namespace strut {
+namespace {
+
+constexpr unsigned kOnStrut = kOnAxle | kOnCorner;
+
+EffectInfo make_damper_asymmetry() {
+  return {"damper_asymmetry",
+          "the damper is stiffer in rebound than in compression",
+          "F = c (1 - a sgn v) v",
+          "Dixon, The Shock Absorber Handbook, 2nd ed.; 0.2 to 0.5 in passenger cars",
+          kOnStrut,
+          {make_switch("asymmetry", "1", "a: share moved from compression to rebound", -0.9, 0.9,
+                       0.3)}};
+}
+
+EffectInfo make_damper_blow_off() {
+  return {"damper_blow_off",
+          "valves open: above a knee the damper is softer (digressive)",
+          "F = c ((1 - r) + r / sqrt(1 + (v / v_b)^2)) v",
+          "smooth form of two straight lines that meet at v_b; Dixon: v_b 0.05 to 0.2 m/s, "
+          "r 0.3 to 0.7",
+          kOnStrut,
+          {make_switch("loss", "1", "r: share of the rate lost far above the knee; < 0: gained",
+                       -1.0, 0.98, 0.3),
+           make_shape("knee", "m/s", "v_b: speed of the knee", 0.1, 0.005, 2.0, 0.1)}};
+}
+
+EffectInfo make_damper_hysteresis() {
+  return {"damper_hysteresis",
+          "the damper's force lags behind its speed: compressible oil, valve dynamics",
+          "tau dF/dt + F = f(v), f: the damper's law with all other effects",
+          "first-order lag; 1 ms (force), 40 ms (frequency selective) in Project Chrono's FEDA",
+          kOnStrut,
+          {make_switch("lag", "s", "tau: time constant of the lag", 0.0, 0.1, 2e-3)}};
+}
+
+EffectInfo make_damper_leak() {
+  return {
+      "damper_leak",
+      "a worn damper leaks past its piston: little force at low speed and after each reversal",
+      "F = c v abs(v) / (abs(v) + v_l)",
+      "a leak in series with the valves' line: c (v - v_l sgn v) at high speed, c v abs(v) / v_l "
+      "at low speed",
+      kOnStrut,
+      {make_switch("speed", "m/s", "v_l: speed that the leak swallows", 0.0, 1.0, 0.02)}};
+}
+
+EffectInfo make_damper_fade() {
+  EffectInfo fade = {
+      "damper_fade",
+      "the damper is softer than its rate says: warm oil; with a measured temperature, by it",
+      "F = c (1 - l) v; on a strut_rig F = c exp(-b (T - 293.15 K)) v",
+      "Dixon, The Shock Absorber Handbook, 2nd ed.: 0.2 to 2 %/K",
+      kOnStrut,
+      {make_switch("loss", "1", "l: share of the rate lost; < 0: gained, cold oil", -2.0, 0.95,
+                   0.1),
+       make_switch("rate", "1/K", "b: relative loss of rate per kelvin", -0.1, 0.1, 5e-3)}};
+  fade.parameters[0].models = kEveryModel & ~kStrutRigs;
+  fade.parameters[1].models = kStrutRigs;
+  return fade;
+}
+
+EffectInfo make_strut_friction() {
+  return {
+      "strut_friction",
+      "dry friction of seals, guide and bushings",
+      "F = F_c tanh(v / v_s), explicit steps need h F_c / (v_s m) < 2.7",
+      "regularized Coulomb friction; 20 to 150 N an axle, a strut's most: Deubel and Prokop, "
+      "2022",
+      kOnStrut,
+      {make_switch("force", "N", "F_c: sliding friction", 0.0, 2000.0, 50.0),
+       make_shape("speed", "m/s", "v_s: speed over which it builds up", 0.01, 1e-3, 0.2, 0.01)}};
+}
+
+EffectInfo make_progressive_spring() {
+  return {"progressive_spring",
+          "the spring's rate grows with its deflection from nominal trim, in both directions",
+          "F = k (d + q d^3), rate k (1 + 3 q d^2)",
+          "odd cubic law; +10 to +60 % rate at 50 mm are q = 13 to 80 1/m^2",
+          kOnStrut,
+          {make_switch("cubic", "1/m^2", "q: growth of the rate", -100.0, 5000.0, 40.0)}};
+}
+
+EffectInfo make_bump_stop() {
+  return {"bump_stop",
+          "a jounce bumper comes in beyond a gap, along the spring's line",
+          "F = k_b (s + p s^2), s = max(d - g, 0)",
+          "70 N/mm and p = 50 1/m follow the table of ADAMS/Car's sedan to 20 % up to 50 mm",
+          kOnStrut,
+          {make_switch("stiffness", "N/m", "k_b: rate where it comes in", 0.0, 1e6, 5e4),
+           make_shape("gap", "m", "g: compression from nominal trim that is free", 0.04, 0.0, 0.3,
+                      0.04),
+           make_shape("progression", "1/m", "p: growth of the rate", 50.0, 0.0, 500.0, 50.0)}};
+}
+
+EffectInfo make_top_mount_compliance() {
+  return {"top_mount_compliance",
+          "rubber between damper and body, a Kelvin-Voigt element in series with the damper",
+          "F = w + tau_m dw/dt, (tau_m + kappa c_s) dw/dt + w = f(v), c_s = f(v) / v",
+          "Kelvin-Voigt mount of stiffness 1 / kappa and damping tau_m / kappa; exact for a linear "
+          "damper, by its secant rate c_s for others; mounts of 150 to 1000 N/mm",
+          kOnStrut,
+          {make_switch("compliance", "m/N", "kappa: 1 / stiffness of the mount", 0.0, 1e-2, 3e-6),
+           make_shape("relaxation", "s", "tau_m: damping over stiffness of the mount", 2e-3, 2e-4,
+                      0.1, 2e-3)}};
+}
+
+EffectInfo make_gas_force() {
+  EffectInfo gas = {
+      "gas_force",
+      "gas pressure on the damper's rod pushes the strut apart; invisible in displacements from "
+      "rest, hence not on a quarter_car or single_mass",
+      "F = F_g",
+      "150 to 300 N a corner in monotube dampers; Dixon",
+      kOnStrut,
+      {make_switch("force", "N", "F_g: force of the gas at rest", -5000.0, 5000.0, 200.0)}};
+  gas.parameters[0].models = kCars | kStrutRigs;
+  return gas;
+}
+
+EffectInfo make_anti_roll_bar() {
+  EffectInfo bar = {
+      "anti_roll_bar",
+      "a bar resists the difference of an axle's two deflections",
+      "F_left = k_r (d_left - d_right) = -F_right",
+      "linear torsion bar, its rate taken at the springs; Milliken, Race Car Vehicle Dynamics, "
+      "ch. 16",
+      kOnAxle,
+      {make_switch("stiffness", "N/m", "k_r: force on each spring's line by their difference", 0.0,
+                   1e6, 1e4)}};
+  bar.parameters[0].models = kCars;
+  return bar;
+}
+
+}  // namespace
+
+std::vector<EffectInfo> make_strut_effects() {
+  return {make_damper_asymmetry(),   make_damper_blow_off(), make_damper_hysteresis(),
+          make_damper_leak(),        make_damper_fade(),     make_strut_friction(),
+          make_progressive_spring(), make_bump_stop(),       make_top_mount_compliance(),
+          make_gas_force(),          make_anti_roll_bar()};
+}
+
+}  // namespace strut

@@ -1,0 +1,60 @@
+#include "model/effects/strut_numbers.h"
+
+#include <stdexcept>
+
+namespace strut {
+
+double EffectValues::get(const char* effect, const char* parameter,
+                         const std::string& place) const {
+  const EffectInfo* info = find_effect(effect);
+  if (info == nullptr) throw std::logic_error(std::string(effect) + ": no such effect");
+  const auto here = list_effect_parameters(*info, kind);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (here[i]->name == parameter) return get_effect_value(settings, *info, kind, place, i);
+  }
+  for (const EffectParameter& p : info->parameters) {
+    if (p.name == parameter) return p.neutral;
+  }
+  throw std::logic_error(std::string(effect) + ": has no parameter " + parameter);
+}
+
+StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
+                                                     const std::string& place,
+                                                     const PlainStrut& strut) {
+  const auto get = [&](const char* effect, const char* parameter) {
+    return values.get(effect, parameter, place);
+  };
+  const double length = strut.nominal_spring_length;
+  StrutEffectNumbers<double> n{};
+  n.law = {strut.damping,
+           get("damper_asymmetry", "asymmetry"),
+           get("damper_blow_off", "loss"),
+           get("damper_blow_off", "knee"),
+           get("damper_leak", "speed"),
+           get("damper_fade", "loss"),
+           get("damper_fade", "rate")};
+  n.series = {get("damper_hysteresis", "lag"), get("top_mount_compliance", "compliance"),
+              get("top_mount_compliance", "relaxation")};
+  n.spring = {strut.stiffness * get("progressive_spring", "cubic"), length};
+  n.stop = {get("bump_stop", "stiffness"), get("bump_stop", "progression"),
+            length - get("bump_stop", "gap")};
+  n.friction = {get("strut_friction", "force"), 1.0 / get("strut_friction", "speed")};
+  n.gas = {get("gas_force", "force")};
+  return n;
+}
+
+unsigned find_strut_effects(const StrutEffectNumbers<double>& n) {
+  unsigned bits = 0;
+  const auto add_if = [&](bool on, unsigned bit) { bits |= on ? bit : 0U; };
+  add_if(n.law.asymmetry != 0.0 || n.law.knee_loss != 0.0 || n.law.leak_speed != 0.0 ||
+             n.law.fade != 0.0 || n.law.warm_fade != 0.0,
+         kShapedDamper);
+  add_if(n.series.lag != 0.0 || n.series.compliance != 0.0, kShapedDamper | kSeriesDamper);
+  add_if(n.spring.rate != 0.0, kCubicSpring);
+  add_if(n.stop.stiffness != 0.0, kBumpStop);
+  add_if(n.friction.force != 0.0, kDryFriction);
+  add_if(n.gas.force != 0.0, kGasForce);
+  return bits;
+}
+
+}  // namespace strut

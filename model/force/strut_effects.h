@@ -1,0 +1,218 @@
+// Force elements of the catalogue's effects (model/effects) in a strut. An effect that is off is in
+// no list; where none is on, nothing here is called.
+//
+// d = nominal length - length and v = -d(length)/dt are deflection and speed in compression.
+#pragma once
+
+#include "model/force/damper_law.h"
+
+namespace strut {
+
+/// F = k q d^3, beside the LinearSpring.
+template <class T>
+struct CubicSpring {
+  static constexpr Line kLine = kSpringLine;
+  static constexpr bool kConservative = true;
+  T rate;            // k q, N/m^3
+  T nominal_length;  // m
+
+  T calc_force(const LineState<T>& line) const {
+    const T d = nominal_length - line.length;
+    return rate * (d * d * d);
+  }
+  T calc_energy(const LineState<T>& line) const {
+    return T(0.25) * rate * square(square(nominal_length - line.length));
+  }
+};
+
+/// F = k_b (s + p s^2), s = max(d - g, 0).
+template <class T>
+struct BumpStop {
+  static constexpr Line kLine = kSpringLine;
+  static constexpr bool kConservative = true;
+  T stiffness;       // k_b, N/m
+  T progression;     // p, 1/m
+  T contact_length;  // m, nominal length - g
+
+  T calc_force(const LineState<T>& line) const {
+    const T s = max(contact_length - line.length, T(0.0));
+    return stiffness * s * (T(1.0) + progression * s);
+  }
+  T calc_energy(const LineState<T>& line) const {
+    const T s = max(contact_length - line.length, T(0.0));
+    return stiffness * square(s) * (T(0.5) + T(1.0 / 3.0) * progression * s);
+  }
+};
+
+/// tanh(x), to one unit in the last place of 1.
+template <class T>
+T calc_tanh(const T& x) {
+  const T e = exp(T(-2.0) * abs(x));
+  const T size = (T(1.0) - e) / (T(1.0) + e);
+  return select(x < T(0.0), -size, size);
+}
+
+/// F = F_c tanh(v / v_s).
+template <class T>
+struct DryFriction {
+  static constexpr Line kLine = kDamperLine;
+  static constexpr bool kConservative = false;
+  T force;          // F_c, N
+  T inverse_speed;  // 1 / v_s, s/m
+
+  T calc_force(const LineState<T>& line) const {
+    return force * calc_tanh(-line.rate * inverse_speed);
+  }
+  T calc_energy(const LineState<T>&) const { return T(0.0); }
+};
+
+/// F = F_g.
+template <class T>
+struct GasForce {
+  static constexpr Line kLine = kDamperLine;
+  static constexpr bool kConservative = true;
+  T force;  // F_g, N
+
+  T calc_force(const LineState<T>&) const { return force; }
+  T calc_energy(const LineState<T>& line) const { return -force * line.length; }
+};
+
+/// Force on both springs' lines of an axle by the difference of their deflections.
+template <class T>
+struct AntiRollBar {
+  T stiffness;      // N/m
+  T nominal_twist;  // m, nominal length left - right
+};
+
+/// Numbers of all effects of one strut; each neutral where it is off.
+template <class T>
+struct StrutEffectNumbers {
+  DamperLaw<T> law;
+  DamperSeries<T> series;
+  CubicSpring<T> spring;
+  BumpStop<T> stop;
+  DryFriction<T> friction;
+  GasForce<T> gas;
+};
+
+/// Which elements a strut has beyond spring and damper; bits of a set, common to a batch.
+enum StrutEffectBits : unsigned {
+  kShapedDamper = 1,  // in place of the linear one
+  kSeriesDamper = 2,  // a shaped one with states
+  kCubicSpring = 4,
+  kBumpStop = 8,
+  kDryFriction = 16,
+  kGasForce = 32,
+};
+
+inline constexpr int kStatesPerStrut = 2;  // of a DamperSeries
+
+template <class T>
+struct ShapedDamper {
+  DamperLaw<T> law;
+  DamperSeries<T> series;
+};
+
+template <class T>
+struct StrutEffects {
+  ElementList<ShapedDamper<T>> shaped, series;
+  std::tuple<ElementList<CubicSpring<T>>, ElementList<BumpStop<T>>, ElementList<DryFriction<T>>,
+             ElementList<GasForce<T>>>
+      added;
+  ElementList<AntiRollBar<T>> bars;  // at the axle's left corner
+  int count = 0;                     // of all elements
+
+  bool has_states() const { return series.count > 0; }
+
+  void add(int corner, unsigned bits, const StrutEffectNumbers<T>& numbers) {
+    const auto add_if = [&](unsigned bit, auto& list, const auto& element) {
+      if ((bits & bit) == 0) return;
+      list.add(corner, element);
+      ++count;
+    };
+    const ShapedDamper<T> damper{numbers.law, numbers.series};
+    add_if(kSeriesDamper, series, damper);
+    if ((bits & kSeriesDamper) == 0) add_if(kShapedDamper, shaped, damper);
+    add_if(kCubicSpring, std::get<0>(added), numbers.spring);
+    add_if(kBumpStop, std::get<1>(added), numbers.stop);
+    add_if(kDryFriction, std::get<2>(added), numbers.friction);
+    add_if(kGasForce, std::get<3>(added), numbers.gas);
+  }
+  void add_bar(int left_corner, const AntiRollBar<T>& bar) {
+    bars.add(left_corner, bar);
+    ++count;
+  }
+};
+
+/// States of all struts and what becomes of them: first every strut's lagged force, then every
+/// strut's mount force; null where no strut has any.
+template <class T>
+struct StrutStates {
+  const T* value = nullptr;
+  T* rate = nullptr;
+  T* decay = nullptr;
+};
+
+template <class T, int Corners>
+void add_shaped_dampers(const ElementList<ShapedDamper<T>>& list,
+                        const std::array<CornerMotion<T>, Corners>& motion, const T* q_dot,
+                        const T& warming, const StrutStates<T>& states,
+                        std::array<StrutForce<T>, Corners>& out) {
+  for (int i = 0; i < list.count; ++i) {
+    const int c = list.corner[static_cast<std::size_t>(i)];
+    const ShapedDamper<T>& damper = list.element[static_cast<std::size_t>(i)];
+    const auto corner = static_cast<std::size_t>(c);
+    const T rate = motion[corner].length_q[kDamperLine] * q_dot[corner];
+    const T law_rate = damper.law.calc_rate(-rate, warming);
+    T force = -law_rate * rate;
+    if (states.value != nullptr) {
+      DamperSeriesState<T> s{states.value[c], {}, {}, states.value[Corners + c], {}, {}};
+      force = calc_series_force(damper.series, force, law_rate, s);
+      states.rate[c] = s.lagged_rate;
+      states.decay[c] = s.lagged_decay;
+      states.rate[Corners + c] = s.mount_rate;
+      states.decay[Corners + c] = s.mount_decay;
+    }
+    out[corner].damper_force += force;
+    out[corner].generalized += force * motion[corner].length_q[kDamperLine];
+    out[corner].power += force * rate;
+  }
+}
+
+template <class T, int Corners>
+void add_anti_roll_bars(const ElementList<AntiRollBar<T>>& list,
+                        const std::array<CornerMotion<T>, Corners>& motion,
+                        std::array<StrutForce<T>, Corners>& out) {
+  for (int i = 0; i < list.count; ++i) {
+    const AntiRollBar<T>& bar = list.element[static_cast<std::size_t>(i)];
+    const auto left = static_cast<std::size_t>(list.corner[static_cast<std::size_t>(i)]);
+    const auto right = left + 1;
+    const T twist =
+        bar.nominal_twist - (motion[left].length[kSpringLine] - motion[right].length[kSpringLine]);
+    const T force = bar.stiffness * twist;
+    out[left].generalized += force * motion[left].length_q[kSpringLine];
+    out[right].generalized += -force * motion[right].length_q[kSpringLine];
+    out[left].energy += T(0.5) * force * twist;
+  }
+}
+
+/// Adds what all effects do to `out`, which holds the linear elements' forces. `warming`: how much
+/// warmer the dampers are than at their rate's reference [K].
+template <class T, int Corners>
+[[gnu::noinline]] void add_strut_effects(const StrutEffects<T>& effects,
+                                         const std::array<CornerMotion<T>, Corners>& motion,
+                                         const T* q_dot, const T& warming,
+                                         const StrutStates<T>& states,
+                                         std::array<StrutForce<T>, Corners>& out) {
+  if (states.value != nullptr) {
+    for (int i = 0; i < kStatesPerStrut * Corners; ++i) states.rate[i] = states.decay[i] = T(0.0);
+  }
+  add_shaped_dampers<T, Corners>(effects.shaped, motion, q_dot, warming, {}, out);
+  add_shaped_dampers<T, Corners>(effects.series, motion, q_dot, warming, states, out);
+  std::apply(
+      [&](const auto&... list) { (add_element_list<T, Corners>(list, motion, q_dot, out), ...); },
+      effects.added);
+  if constexpr (Corners > 1) add_anti_roll_bars<T, Corners>(effects.bars, motion, out);
+}
+
+}  // namespace strut

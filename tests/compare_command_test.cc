@@ -1,0 +1,170 @@
+// strut compare as a user meets it.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "io/csv.h"
+#include "tests/campaign_files.h"
+#include "tests/parse_json.h"
+#include "tests/run_program.h"
+#include "tests/test_car.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::run_program;
+
+const std::string kExamples = STRUT_SOURCE_DIR "/examples";
+
+std::string compare(const std::filesystem::path& campaign, const std::filesystem::path& folder,
+                    const std::string& options = "") {
+  return "compare " + campaign.string() + " -o " + folder.string() + " " + options;
+}
+
+TEST_CASE("compare writes numbers, tables, figures and a report of every run", "[io]") {
+  const test::TemporaryFolder folder;
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  test::write_two_runs(folder, truth);
+  const auto campaign = test::write_campaign(folder);
+  const test::Outcome outcome = run_program(compare(campaign, folder / "out", "--json"));
+  CHECK(outcome.code == 0);
+  const auto json = test::parse_json(outcome.out);
+  CHECK(test::read_text(folder / "out" / "compare.json") == outcome.out);
+  CHECK(json.get<bool>("adequate"));
+  CHECK(json.get<std::string>("noise.sprung_position.source") == "estimated");
+  const double stiffness = json.get<double>("parameters.stiffness.value");
+  CHECK(stiffness == Approx(950.0).epsilon(test::tolerance(0.01)));
+  CHECK(json.get<double>("parameters.stiffness.nominal") == 900.0);
+  int runs = 0;
+  for (const auto& [key, run] : json.get_child("runs")) {
+    const auto& before = run.get_child("nominal.channels.sprung_position");
+    const auto& after = run.get_child("calibrated.channels.sprung_position");
+    CHECK(after.get<double>("nrmse") < 0.5 * before.get<double>("nrmse"));
+    CHECK(after.get_child("time").size() == 5);
+    CHECK(after.get_child("band").size() == 5);
+    CHECK(after.get_child("state").size() == 3);
+    CHECK(run.get<double>("balance.nrmse") < 0.5);
+    ++runs;
+  }
+  CHECK(runs == 2);
+  const CsvTable table = read_csv(folder / "out" / "run_1_a.csv", MissingCells::kNan);
+  CHECK(table.row_count() == 801);
+  // What the table says of the residual is what compare.json says.
+  double squares = 0.0;
+  const auto& measured = table.column("sprung_position").values;
+  const auto& simulated = table.column("sprung_position_calibrated").values;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    squares += std::pow(measured[i] - simulated[i], 2.0) / static_cast<double>(measured.size());
+  }
+  const auto& first = json.get_child("runs").front().second;
+  CHECK(std::sqrt(squares) ==
+        Approx(first.get<double>("calibrated.channels.sprung_position.rms")).epsilon(1e-6));
+  const std::string report = test::read_text(folder / "out" / "report.html");
+  CHECK_THAT(report, Contains("Adequate") && Contains("b.csv, held out") && Contains("</html>"));
+  CHECK(std::filesystem::exists(folder / "out" / "channels.csv"));
+}
+
+TEST_CASE("compare does not replace a comparison without being told to", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder);
+  test::CampaignText text;
+  text.fit = "";  // nothing is free: quick
+  const auto campaign = test::write_campaign(folder, text);
+  CHECK(run_program(compare(campaign, folder / "out")).code == 0);
+  const test::Outcome again = run_program(compare(campaign, folder / "out"));
+  CHECK(again.code == 2);
+  CHECK_THAT(again.messages, Contains("--force"));
+  CHECK(run_program(compare(campaign, folder / "out", "--force")).code == 0);
+}
+
+TEST_CASE("compare ends with code 2 and a plain message on bad data", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder, {}, [](std::size_t row, std::array<std::string, 4>& cells) {
+    if (row == 30) cells[0] = "0.1";
+  });
+  const test::Outcome outcome = run_program(compare(test::write_campaign(folder), folder / "out"));
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.messages, Contains("a.csv:32") && Contains("runs backwards"));
+}
+
+TEST_CASE("The example campaigns lack nothing but their recordings", "[io]") {
+  for (const char* name : {"quarter_car", "damper_dyno"}) {
+    const test::TemporaryFolder folder;
+    const test::Outcome outcome =
+        run_program(compare(kExamples + "/campaigns/" + name + ".toml", folder / "out"));
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.messages, Contains("run[1].file") && Contains("file not found"));
+  }
+}
+
+TEST_CASE("A damper on a crank is compared by its force", "[io]") {
+  const test::TemporaryFolder folder;
+  std::string text = "t_s,disp_mm,force_N,temp_C\n";
+  for (int i = 0; i < 3000; ++i) {
+    const double t = std::round(i / 300.0 * 1e4) / 1e4, w = 6.6;
+    const double force = 1500.0 * 0.0187 * w * std::cos(w * i / 300.0) + 40.0 +
+                         0.5 * test::calc_test_normal(1, 0, static_cast<std::uint64_t>(i));
+    text += test::print_number(t) + "," + test::print_number(18.7 * std::sin(w * i / 300.0)) + "," +
+            test::print_number(force) + ",25\n";
+  }
+  folder.write("trial_1.csv", text);
+  folder.write("trial_2.csv", text);
+  std::string campaign = test::read_text(kExamples + "/campaigns/damper_dyno.toml");
+  campaign.replace(campaign.find("../rigs"), 7, kExamples + "/rigs");
+  const test::Outcome outcome = run_program(
+      compare(folder.write("dyno.toml", campaign), folder / "out", "--json --threads 1"));
+  CHECK(outcome.code == 0);
+  const auto json = test::parse_json(outcome.out);
+  // 0.5 N of noise on 2000 s N/m at 0.09 m/s rms, 3000 readings: 0.1 N s/m.
+  CHECK(json.get<double>("parameters.damping.value") == Approx(1500.0).epsilon(1e-3));
+  CHECK(json.get<bool>("adequate"));
+}
+
+TEST_CASE("A car's crossing is compared axle by axle", "[io]") {
+  const test::TemporaryFolder folder;
+  const std::string vehicle = kExamples + "/vehicles/paper_sedan.toml";
+  const std::string maneuver = kExamples + "/maneuvers/bump_20mps.toml";
+  const auto record = [&](const std::string& name, const std::string& more) {
+    REQUIRE(run_program("simulate " + vehicle + " " + maneuver +
+                        " --set rear_damping=1700 --step 0.0005 --rate 250 " + more + " -o " +
+                        std::string(folder / name))
+                .code == 0);
+  };
+  record("a.csv", "");
+  record("b.h5", "--set speed=19.5");
+  const auto run = [&](const std::string& file, const std::string& use, const std::string& more) {
+    return "[[run]]\nfile = \"" + file + "\"\nuse = \"" + use + "\"\nmaneuver = \"" + maneuver +
+           "\"\n" + more;
+  };
+  const auto campaign = folder.write(
+      "car.toml", "model = \"" + vehicle +
+                      "\"\n[columns]\ntime = {}\nimu_acceleration_z = { noise = 0.02 }\n"
+                      "imu_rate_y = { noise = 1e-3 }\n[fit]\nfree = [\"rear_damping\"]\n" +
+                      run("a.csv", "fit", "window = [0.1, 2.0]\n") +
+                      run("b.h5", "hold_out", "speed = [19.6, 0.1]\nhit_time = [0, 0.002]\n"));
+  const test::Outcome outcome = run_program(compare(campaign, folder / "out", "--json"));
+  CHECK(outcome.code == 0);
+  const auto json = test::parse_json(outcome.out);
+  CHECK(json.get<double>("parameters.rear_damping.value") ==
+        Approx(1700.0).epsilon(test::tolerance(2e-3)));
+  const auto& held = json.get_child("runs").back().second;
+  CHECK(held.get<double>("calibrated.run_values.speed") ==
+        Approx(19.5).epsilon(test::tolerance(5e-4)));
+  const auto& before = held.get_child("nominal.channels.imu_acceleration_z");
+  const auto& after = held.get_child("calibrated.channels.imu_acceleration_z");
+  CHECK(after.get<double>("nrmse") < 0.1 * before.get<double>("nrmse"));
+  const auto& time = before.get_child("time");
+  REQUIRE(time.size() == 5);
+  CHECK(time.front().first == "approach");
+  // A worn rear damper shows when the rear axle crosses, not before.
+  CHECK(time.get<double>("ring-down.rms") > 5.0 * time.get<double>("approach.rms"));
+  CHECK(json.get<bool>("adequate"));
+}
+
+}  // namespace
+}  // namespace strut

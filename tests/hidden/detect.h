@@ -1,0 +1,93 @@
+// How well a fault could be seen: the signal-to-noise ratio that is left once everything a fit may
+// adjust has been adjusted. From the generator's own model, its own finite differences.
+//
+// Roughness enters all channels together. The ratio that grades a trial is that of a fit which
+// weights each channel by its own spectrum and knows nothing of their coherence, but whose
+// threshold is right: with residual r, weights W and covariance S, s = r'Wr / sqrt(r'W S W r). A
+// joint treatment sees more; the bound d'S^-1 d on it is reported beside.
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/hidden/kit.h"
+
+namespace strut::hidden {
+
+/// A grade of the signal-to-noise ratio s: A >= 30, B >= 10, C >= 5, D below.
+char find_grade(double ratio);
+
+/// Covariance of the transforms of all sensors at one frequency [Hz], over samples * sigma^2:
+/// sensor noise, the converter's rounding, and on a rough road the response to both tracks by the
+/// linearized car, front and rear delayed by the wheelbase.
+class NoiseSpectrum {
+ public:
+  NoiseSpectrum(const Kit& kit, const RunPlan& run, double roughness);
+  Eigen::MatrixXcd calc(double frequency) const;
+
+ private:
+  const Kit& kit_;
+  RunPlan run_;
+  double roughness_;
+  Eigen::MatrixXd a_, b_, c_, d_;  // states, (height, slope) of four wheels, sensors
+};
+
+/// Spectra of the runs for fitting without their means (the sensors' biases), cut above 80 Hz, the
+/// last tenth faded out; and what noise makes of them.
+class Whitener {
+ public:
+  Whitener(const Kit& kit, double roughness);
+  /// Each channel in units of its own noise; real and imaginary parts, times sqrt(2).
+  Eigen::VectorXd whiten(const std::vector<std::vector<Signal>>& runs) const;
+  /// Variance of the sum over r times whitened noise.
+  double calc_variance(const Eigen::VectorXd& r) const;
+  /// d' S^-1 d of a whitened deviation, all channels jointly.
+  double calc_joint_square(const Eigen::VectorXd& d) const;
+
+ private:
+  /// Calls visit(correlation of the channels, first entry of the whitened vector).
+  template <class Visit>
+  void visit_bins(const Visit& visit) const;
+
+  const Kit& kit_;
+  std::vector<std::size_t> fit_runs_;
+  std::vector<std::vector<Eigen::VectorXd>> weight_;        // of each run, of each frequency
+  std::vector<std::vector<Eigen::MatrixXcd>> correlation_;  // of the channels' noise
+};
+
+/// Signals of all runs for fitting at the kit's rate.
+std::vector<std::vector<Signal>> simulate_fit_runs(const Kit& kit, const Truth& truth);
+
+/// Signals minus others.
+std::vector<std::vector<Signal>> subtract(std::vector<std::vector<Signal>> a,
+                                          const std::vector<std::vector<Signal>>& b);
+
+/// What a fit of the kit's baseline may adjust, as deviations per 1 sigma of the prior or per per
+/// mille where there is none: parameters, speed and hit time of each run. (Biases: the means.)
+struct Nuisance {
+  std::vector<std::vector<Signal>> deviation;
+  bool has_prior = false;
+};
+std::vector<Nuisance> make_nuisances(const Kit& kit);
+
+struct SignalToNoise {
+  double ratio = 0.0;  // channel by channel, after the nuisances: grades the trial
+  double joint = 0.0;  // the same fit, all channels jointly: a bound
+  double bare = 0.0;   // channel by channel, nothing adjusted
+};
+
+/// Knows a kit's nuisances on a road.
+class Detector {
+ public:
+  Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, double roughness);
+  SignalToNoise calc(const std::vector<std::vector<Signal>>& deviation) const;
+
+ private:
+  Whitener whitener_;
+  Eigen::MatrixXd jacobian_;  // one column a nuisance
+  Eigen::LDLT<Eigen::MatrixXd> normal_;
+};
+
+}  // namespace strut::hidden

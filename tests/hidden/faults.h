@@ -1,0 +1,85 @@
+// What a trial may hide: the names, the sizes, and where each is set in the generator's own models.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/hidden/car.h"
+#include "tests/hidden/rigs.h"
+
+namespace strut::hidden {
+
+enum class Fault : int {
+  kAsymmetry,
+  kKnee,
+  kLag,
+  kLeak,
+  kFriction,
+  kHardening,
+  kStop,
+  kMount,
+  kRollBar,
+  kPayload,
+  kCenterShift,
+  kPitchInertia,
+  kUnsprungMass,
+  kTireStiffness,
+  kTirePower,
+  kTireDamping,
+  kCams,
+  kRunout,
+  kBumpHeight,
+  kBumpLength,
+  kRoadGain,
+  kSensorGain,
+  kSensorDelay,
+  kSensorLowpass,
+  // In no catalogue:
+  kEngine,
+  kParabola,
+  kTruncatedRamp,
+  kBodyBending,
+  kSelectiveDamper,
+  kSideFriction,
+  kSaturation,
+  kSeatedPassenger,
+  kInerter,
+  kHum,
+  kCount
+};
+
+enum class Where { kStrut, kTire, kBody, kRoad, kChannel };
+
+enum KitBits : unsigned { kInCar = 1, kInQuarterCar = 2, kInDyno = 4 };
+
+struct FaultInfo {
+  Fault fault;
+  const char* name;       // of the generator
+  const char* effect;     // of the catalogue; "": in none
+  const char* parameter;  // of the effect that equals magnitude * scale; "": the forms differ
+  Where where;
+  unsigned kits;
+  bool either_sign;
+  double car, rig;  // magnitudes at which a search begins
+  double parameter_scale = 1.0;
+};
+
+const std::vector<FaultInfo>& list_faults();
+const FaultInfo& get_info(Fault fault);
+
+/// A fault at a place: the axle (0 front, 1 rear) of struts and tires, the sensor's number of
+/// channels, else 0.
+struct FaultSetting {
+  Fault fault = Fault::kAsymmetry;
+  int place = 0;
+  double magnitude = 0.0;
+  double peak = 0.0;  // SI, of a sensor's largest reading, which saturation is measured by
+};
+
+/// Sets what the setting says of struts, tires and masses; faults of road and sensors change
+/// nothing here.
+void apply(const FaultSetting& setting, Car& car);
+void apply(const FaultSetting& setting, QuarterCar& car);
+void apply(const FaultSetting& setting, StrutLaw& law);
+
+}  // namespace strut::hidden

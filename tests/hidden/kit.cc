@@ -1,0 +1,407 @@
+#include "tests/hidden/kit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+namespace strut::hidden {
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647692;
+constexpr double kPreroll = 1.5;  // s of road before a recording: it begins in the middle of one
+constexpr double kKmh = 1.0 / 3.6;
+constexpr double kG = 9.80665;
+
+std::vector<double> make_grid(double begin, double end, double rate) {
+  const auto count = static_cast<std::size_t>(std::lround((end - begin) * rate)) + 1;
+  std::vector<double> times(count);
+  for (std::size_t i = 0; i < count; ++i) times[i] = begin + static_cast<double>(i) / rate;
+  return times;
+}
+
+double find_factor(const Kit& kit, const Truth& truth, const std::string& name) {
+  for (std::size_t i = 0; i < kit.parameters.size(); ++i) {
+    if (kit.parameters[i].name == name) return truth.factors[i];
+  }
+  return 1.0;
+}
+
+// --- the car ------------------------------------------------------------------------------------
+
+double find_magnitude(const Truth& truth, Fault fault) {
+  for (const FaultSetting& s : truth.faults) {
+    if (s.fault == fault) return s.magnitude;
+  }
+  return 0.0;
+}
+
+/// The bump of a run as built, as a tire feels it.
+Curve make_true_bump(const Kit& kit, const Truth& truth, const RunPlan& run, double radius) {
+  Bump bump = run.bump;
+  const std::string number = std::to_string(run.bump_number);
+  bump.height *= find_factor(kit, truth, "bump_height" + number) *
+                 (1.0 + find_magnitude(truth, Fault::kBumpHeight));
+  const double stretch = find_factor(kit, truth, "bump_length" + number) *
+                         (1.0 + find_magnitude(truth, Fault::kBumpLength));
+  bump.length *= stretch;
+  bump.ramp *= stretch;
+  Curve felt = make_felt_bump(bump, radius, kFootprint);
+  for (const Fault fault : {Fault::kParabola, Fault::kTruncatedRamp}) {
+    const double share = find_magnitude(truth, fault);
+    if (share == 0.0) continue;
+    Bump other = bump;
+    other.form = fault == Fault::kParabola ? BumpForm::kParabola : BumpForm::kTruncated;
+    const Curve otherwise = make_felt_bump(other, radius, kFootprint);
+    for (std::size_t i = 0; i < felt.height.size(); ++i) {
+      felt.height[i] += share * (otherwise.height[i] - felt.height[i]);
+    }
+    felt = make_curve(felt.begin, felt.spacing, felt.height);
+  }
+  const double spread = find_magnitude(truth, Fault::kCams);
+  return spread > 0.0 ? spread_cams(felt, spread) : felt;
+}
+
+std::vector<double> select_channel(const std::vector<CarSample>& samples, const std::string& name) {
+  static const std::vector<std::string> corners = {"front_left_", "front_right_", "rear_left_",
+                                                   "rear_right_"};
+  std::size_t corner = kWheels;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (name.rfind(corners[i], 0) == 0) corner = i;
+  }
+  std::vector<double> values;
+  values.reserve(samples.size());
+  for (const CarSample& s : samples) {
+    if (corner < kWheels) {
+      const bool deflection = name.find("deflection") != std::string::npos;
+      values.push_back(deflection ? s.deflection[corner] : s.wheel_acceleration[corner]);
+    } else {
+      const Eigen::Vector3d& v =
+          name.find("rate") != std::string::npos ? s.imu_rate : s.imu_acceleration;
+      values.push_back(name.back() == 'x' ? v.x() : name.back() == 'y' ? v.y() : v.z());
+    }
+  }
+  return values;
+}
+
+std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::size_t number,
+                                     double rate, double margin) {
+  const RunPlan& run = kit.runs[number];
+  const Car car = make_car(kit, truth);
+  const CarModel model(car);
+  const double front = car.wheel[0].position.x(), rear = car.wheel[2].position.x();
+  Drive drive;
+  drive.speed = run.speed * (1.0 + truth.speed_error[number]);
+  Curve bump;
+  if (run.excitation == Excitation::kBump) {
+    bump = make_true_bump(kit, truth, run, car.wheel[0].tire.radius);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      if (run.one_sided && i % 2 == 1) continue;
+      drive.track[i].bump = &bump;
+      drive.track[i].bump_center = front + run.distance;
+    }
+  }
+  RoughTracks rough;
+  const bool is_rough = truth.roughness > 0.0;
+  const double before = is_rough ? kPreroll + margin : margin;
+  if (is_rough) {
+    const double begin = rear - 1.0 - drive.speed * before;
+    const double length = drive.speed * (run.duration + before + margin) + front - rear + 10.0;
+    Roughness roughness;
+    roughness.degree = truth.roughness;
+    rough = make_rough_tracks(roughness, begin, length, kFootprint, truth.seed + 1000003 * number);
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      drive.track[i].rough = i % 2 == 0 ? &rough.left : &rough.right;
+    }
+  }
+  std::vector<double> times = make_grid(-margin, run.duration + margin, rate);
+  std::vector<double> all = times;
+  all.insert(all.begin(), -before - 1e-9);
+  std::vector<CarSample> samples =
+      simulate_car(model, drive, model.make_start(drive.speed, drive.speed * all.front()), all);
+  samples.erase(samples.begin());
+  std::vector<Signal> signals;
+  for (const Sensor& sensor : kit.sensors) {
+    signals.push_back({times.front(), 1.0 / rate, select_channel(samples, sensor.channel)});
+  }
+  return signals;
+}
+
+// --- stands -------------------------------------------------------------------------------------
+
+/// Position and velocity of the plate or crank over time; at rest before t = 0.
+RoadMotion make_drive(const RunPlan& run, const Truth& truth, std::size_t number) {
+  const double a = run.amplitude, w = kTwoPi * run.low_frequency;
+  if (run.excitation == Excitation::kSine) {
+    // The crank starts over one second.
+    const auto ramp = [](double t) { return t < 1.0 ? t * t * (3.0 - 2.0 * t) : 1.0; };
+    const auto rise = [](double t) { return t < 1.0 ? 6.0 * t * (1.0 - t) : 0.0; };
+    return {[=](double t) { return t <= 0.0 ? 0.0 : a * ramp(t) * std::sin(w * t); },
+            [=](double t) {
+              return t <= 0.0 ? 0.0
+                              : a * (rise(t) * std::sin(w * t) + w * ramp(t) * std::cos(w * t));
+            }};
+  }
+  if (run.excitation == Excitation::kChirp) {
+    const double sweep = kTwoPi * (run.high_frequency - run.low_frequency) / run.duration;
+    const auto phase = [=](double t) { return w * t + 0.5 * sweep * t * t; };
+    return {[=](double t) { return t <= 0.0 ? 0.0 : a * std::sin(phase(t)); },
+            [=](double t) { return t <= 0.0 ? 0.0 : a * (w + sweep * t) * std::cos(phase(t)); }};
+  }
+  if (run.excitation == Excitation::kStep) {
+    // A square wave whose flanks take 40 ms, as a motor's stage does.
+    const double period = 1.0 / run.low_frequency, flank = 0.04;
+    const auto place = [=](double t) {
+      return t / (0.5 * period) - std::floor(t / (0.5 * period));
+    };
+    const auto sign = [=](double t) {
+      return std::fmod(std::floor(t / (0.5 * period)), 2.0) < 0.5 ? 1.0 : -1.0;
+    };
+    return {[=](double t) {
+              if (t <= 0.5) return 0.0;
+              const double s = std::min(place(t - 0.5) * 0.5 * period / flank, 1.0);
+              const double shape = 0.5 * (1.0 - std::cos(0.5 * kTwoPi * s));
+              const double from = t - 0.5 < 0.5 * period ? 0.0 : -sign(t - 0.5) * a;
+              return from + (sign(t - 0.5) * a - from) * shape;
+            },
+            [=](double t) {
+              if (t <= 0.5) return 0.0;
+              const double s = place(t - 0.5) * 0.5 * period / flank;
+              if (s >= 1.0) return 0.0;
+              const double from = t - 0.5 < 0.5 * period ? 0.0 : -sign(t - 0.5) * a;
+              return (sign(t - 0.5) * a - from) * 0.25 * kTwoPi / flank *
+                     std::sin(0.5 * kTwoPi * s);
+            }};
+  }
+  // ISO roughness at 10 m/s, scaled so that its standard deviation is the amplitude.
+  Roughness roughness;
+  roughness.lowest = run.low_frequency / 10.0;
+  roughness.highest = run.high_frequency / 10.0;
+  const double variance =
+      roughness.degree * 0.01 * (1.0 / roughness.lowest - 1.0 / roughness.highest);
+  roughness.degree *= a * a / variance;
+  const Curve track = make_rough_tracks(roughness, -1.0, 10.0 * (run.duration + 2.0), 0.0,
+                                        truth.seed + 1000003 * number)
+                          .left;
+  const auto window = [](double t) { return std::clamp(t, 0.0, 1.0); };
+  return {[=](double t) {
+            double z = 0.0, slope = 0.0;
+            track.evaluate(10.0 * t, z, slope);
+            return std::pow(window(t), 2) * (3.0 - 2.0 * window(t)) * z;
+          },
+          [=](double t) {
+            double z = 0.0, slope = 0.0;
+            track.evaluate(10.0 * t, z, slope);
+            const double s = window(t);
+            return s * s * (3.0 - 2.0 * s) * 10.0 * slope + 6.0 * s * (1.0 - s) * z;
+          }};
+}
+
+const StrutScale kRigScale{0.012, 0.15, 15.0, 8000.0, 1e-4, 15.0, 0.05, 0.006};
+
+QuarterCar make_quarter_car(const Kit& kit, const Truth& truth) {
+  QuarterCar car;
+  const auto value = [&](std::size_t i) { return kit.parameters[i].nominal * truth.factors[i]; };
+  car.sprung_mass = value(0);
+  car.unsprung_mass = value(1);
+  car.strut.stiffness = value(2);
+  car.strut.damping = value(3);
+  car.tire_stiffness = value(4);
+  car.tire_damping = value(5);
+  car.strut.scale = kRigScale;
+  for (const FaultSetting& s : truth.faults) apply(s, car);
+  return car;
+}
+
+std::vector<Signal> simulate_rig_run(const Kit& kit, const Truth& truth, std::size_t number,
+                                     double rate, double margin) {
+  const RunPlan& run = kit.runs[number];
+  // The plate moves more than its sensor says.
+  const double gain = 1.0 + find_magnitude(truth, Fault::kRoadGain);
+  RunPlan moved = run;
+  moved.amplitude *= gain;
+  const RoadMotion drive = make_drive(moved, truth, number);
+  const std::vector<double> times = make_grid(-margin, run.duration + margin, rate);
+  std::vector<Signal> signals(kit.sensors.size(), {times.front(), 1.0 / rate, {}});
+  if (kit.kind == KitKind::kDyno) {
+    StrutLaw law;
+    law.stiffness = kit.parameters[0].nominal * truth.factors[0];
+    law.damping = kit.parameters[1].nominal * truth.factors[1];
+    for (const FaultSetting& s : truth.faults) apply(s, law);
+    signals[1].value = simulate_strut(law, drive, times);
+    for (const double t : times) signals[0].value.push_back(drive.position(t));
+    return signals;
+  }
+  for (const QuarterCarSample& s :
+       simulate_quarter_car(make_quarter_car(kit, truth), drive, times)) {
+    signals[0].value.push_back(s.road / gain);
+    signals[1].value.push_back(s.unsprung);
+    signals[2].value.push_back(s.sprung);
+  }
+  return signals;
+}
+
+Sensor make_accelerometer(const std::string& channel, const std::string& column, double noise,
+                          double bias, double range) {
+  return {channel, column, "g", "m/s^2", kG, noise, bias, range / 32768.0, range, false};
+}
+
+RunPlan make_crossing(const std::string& name, bool fit, const Bump& bump, int number, double kmh) {
+  RunPlan run;
+  run.name = name;
+  run.fit = fit;
+  run.speed = kmh * kKmh;
+  run.bump = bump;
+  run.bump_number = number;
+  run.distance = 0.5 * run.speed + 0.5 * bump.length + 0.4;
+  return run;
+}
+
+RunPlan make_rig_run(const std::string& name, bool fit, Excitation excitation, double duration,
+                     double amplitude, double low, double high) {
+  RunPlan run;
+  run.name = name;
+  run.fit = fit;
+  run.excitation = excitation;
+  run.duration = duration;
+  run.amplitude = amplitude;
+  run.low_frequency = low;
+  run.high_frequency = high;
+  return run;
+}
+
+Kit make_car_kit() {
+  Kit kit;
+  kit.name = "car";
+  kit.time_sigma = 4e-3;
+  kit.speed_sigma = 4.5e-3;
+  const Car car = make_nominal_car();
+  kit.parameters = {{"front_stiffness", "N/m", car.wheel[0].strut.stiffness, 0.8, 1.05, 0.0, false},
+                    {"front_damping", "N s/m", car.wheel[0].strut.damping, 0.6, 1.05, 0.0, false},
+                    {"rear_stiffness", "N/m", car.wheel[2].strut.stiffness, 0.8, 1.05, 0.0, false},
+                    {"rear_damping", "N s/m", car.wheel[2].strut.damping, 0.6, 1.05, 0.0, false},
+                    {"mass", "kg", car.mass, 0.994, 1.006, 3e-3, false}};
+  for (int bump = 0; bump < 3; ++bump) {
+    const std::string number = std::to_string(bump);
+    kit.parameters.push_back({"bump_height" + number, "1", 1.0, 0.98, 1.02, 0.012, true});
+    kit.parameters.push_back({"bump_length" + number, "1", 1.0, 0.98, 1.02, 0.012, true});
+  }
+  kit.sensors = {make_accelerometer("imu_acceleration_x", "Acc_X", 0.025, 0.3, 4.0 * kG),
+                 make_accelerometer("imu_acceleration_z", "Acc_Z", 0.025, 0.3, 4.0 * kG)};
+  const double degree = kTwoPi / 360.0;
+  for (const char* axis : {"x", "y"}) {
+    kit.sensors.push_back({std::string("imu_rate_") + axis,
+                           std::string("Gyro_") + (*axis == 'x' ? "X" : "Y"), "deg/s", "rad/s",
+                           degree, 0.002, 0.015, 250.0 * degree / 32768.0, 250.0 * degree, false});
+  }
+  const std::array<std::array<const char*, 2>, 4> corners = {
+      {{"front_left", "FL"}, {"front_right", "FR"}, {"rear_left", "RL"}, {"rear_right", "RR"}}};
+  for (const auto& [name, mark] : corners) {
+    kit.sensors.push_back({std::string(name) + "_suspension_deflection",
+                           std::string("RideHeight_") + mark, "mm", "m", 1e-3, 3e-4, 2e-3, 5e-5,
+                           0.15, false});
+    kit.sensors.push_back(make_accelerometer(std::string(name) + "_wheel_acceleration_z",
+                                             std::string("Hub_") + mark, 0.2, 0.5, 50.0 * kG));
+  }
+  const Bump low{BumpForm::kArc, 0.05, 0.4, 0.0}, middle{BumpForm::kCosine, 0.08, 0.9, 0.0},
+      high{BumpForm::kHalfSine, 0.10, 3.7, 0.0};
+  kit.runs = {make_crossing("low_12", true, low, 0, 12.0),
+              make_crossing("middle_20", true, middle, 1, 20.0),
+              make_crossing("middle_30", true, middle, 1, 30.0),
+              make_crossing("high_30", true, high, 2, 30.0),
+              make_crossing("left_15", true, middle, 1, 15.0)};
+  kit.runs.back().one_sided = true;
+  RunPlan flat = make_crossing("flat_20", true, {}, 0, 20.0);
+  flat.excitation = Excitation::kFlat;
+  flat.duration = 10.0;
+  kit.runs.push_back(flat);
+  kit.runs.push_back(make_crossing("middle_22", false, middle, 1, 22.0));
+  kit.runs.push_back(make_crossing("low_14", false, low, 0, 14.0));
+  kit.runs.push_back(make_crossing("high_24", false, high, 2, 24.0));
+  return kit;
+}
+
+Kit make_quarter_car_kit() {
+  Kit kit;
+  kit.kind = KitKind::kQuarterCar;
+  kit.name = "quarter_car";
+  kit.bit = kInQuarterCar;
+  kit.parameters = {{"sprung_mass", "kg", 2.45, 0.99, 1.01, 5e-3, false},
+                    {"unsprung_mass", "kg", 1.0, 0.8, 1.2, 0.0, false},
+                    {"stiffness", "N/m", 900.0, 0.75, 1.25, 0.0, false},
+                    {"damping", "N s/m", 7.5, 0.7, 1.4, 0.0, false},
+                    {"tire_stiffness", "N/m", 1250.0, 0.75, 1.25, 0.0, false},
+                    {"tire_damping", "N s/m", 5.0, 0.7, 1.4, 0.0, false}};
+  // Encoders, zeroed at rest; the plate's has twice the counts.
+  const double count = 2e-5;  // m
+  kit.sensors = {
+      {"road_position", "z_plate", "mm", "m", 1e-3, 0.5 * count, 0.0, 0.5 * count, 1.0, true},
+      {"unsprung_position", "z_wheel", "mm", "m", 1e-3, count, 0.0, count, 1.0, false},
+      {"sprung_position", "z_body", "mm", "m", 1e-3, count, 0.0, count, 1.0, false}};
+  kit.runs = {make_rig_run("chirp_A", true, Excitation::kChirp, 20.0, 1.5e-3, 1.0, 9.0),
+              make_rig_run("step_A", true, Excitation::kStep, 10.0, 8e-3, 0.3, 0.0),
+              make_rig_run("rough_A", true, Excitation::kRough, 12.0, 4e-3, 0.3, 20.0),
+              make_rig_run("chirp_B", false, Excitation::kChirp, 15.0, 2.5e-3, 1.2, 7.0),
+              make_rig_run("rough_B", false, Excitation::kRough, 10.0, 3e-3, 0.3, 20.0)};
+  return kit;
+}
+
+Kit make_dyno_kit() {
+  Kit kit;
+  kit.kind = KitKind::kDyno;
+  kit.name = "dyno";
+  kit.bit = kInDyno;
+  kit.parameters = {{"stiffness", "N/m", 24000.0, 0.8, 1.1, 0.0, false},
+                    {"damping", "N s/m", 1700.0, 0.6, 1.2, 0.0, false}};
+  kit.sensors = {{"displacement", "stroke", "mm", "m", 1e-3, 2e-6, 0.0, 1e-6, 1.0, true},
+                 {"force", "load_cell", "kN", "N", 1e3, 4.0, 0.0, 0.5, 2e4, false}};
+  kit.runs = {make_rig_run("slow", true, Excitation::kSine, 8.0, 0.03, 0.5, 0.0),
+              make_rig_run("medium", true, Excitation::kSine, 6.0, 0.03, 1.5, 0.0),
+              make_rig_run("fast", true, Excitation::kSine, 4.0, 0.03, 4.0, 0.0),
+              make_rig_run("between", false, Excitation::kSine, 5.0, 0.03, 2.5, 0.0),
+              make_rig_run("short", false, Excitation::kSine, 5.0, 0.015, 3.0, 0.0)};
+  return kit;
+}
+
+}  // namespace
+
+Truth make_nominal_truth(const Kit& kit) {
+  Truth truth;
+  truth.factors.assign(kit.parameters.size(), 1.0);
+  truth.speed_error.assign(kit.runs.size(), 0.0);
+  return truth;
+}
+
+Car make_car(const Kit& kit, const Truth& truth) {
+  Car car = make_nominal_car();
+  car.mass *= find_factor(kit, truth, "mass");
+  for (std::size_t i = 0; i < kWheels; ++i) {
+    const std::string axle = i < 2 ? "front" : "rear";
+    car.wheel[i].strut.stiffness *= find_factor(kit, truth, axle + "_stiffness");
+    car.wheel[i].strut.damping *= find_factor(kit, truth, axle + "_damping");
+  }
+  for (const FaultSetting& s : truth.faults) apply(s, car);
+  return car;
+}
+
+std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
+                                 double margin) {
+  std::vector<Signal> signals = kit.kind == KitKind::kCar
+                                    ? simulate_car_run(kit, truth, run, rate, margin)
+                                    : simulate_rig_run(kit, truth, run, rate, margin);
+  for (const FaultSetting& s : truth.faults) {
+    if (get_info(s.fault).where != Where::kChannel) continue;
+    Signal& signal = signals[static_cast<std::size_t>(s.place)];
+    signal = distort(signal, s);
+  }
+  return signals;
+}
+
+Kit make_kit(const std::string& name) {
+  if (name == "car") return make_car_kit();
+  if (name == "quarter_car") return make_quarter_car_kit();
+  if (name == "dyno") return make_dyno_kit();
+  throw std::invalid_argument("kit '" + name + "': must be car, quarter_car or dyno");
+}
+
+}  // namespace strut::hidden

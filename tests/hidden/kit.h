@@ -1,0 +1,80 @@
+// A kit: a model, its sensors and the runs of a campaign, as the sampler and the writer see them.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/hidden/faults.h"
+#include "tests/hidden/road.h"
+#include "tests/hidden/sensor.h"
+
+namespace strut::hidden {
+
+enum class KitKind { kCar, kQuarterCar, kDyno };
+
+/// What a trial may vary of the kit's model, with its name in the model's file; the truth is the
+/// nominal value times a factor.
+struct KitParameter {
+  std::string name, unit;
+  double nominal = 0.0;
+  double low = 1.0, high = 1.0;  // factors drawn from
+  double prior = 0.0;            // 1 sigma over nominal of a weighed value; 0: free
+  bool survey = false;           // belongs to the maneuver, not to the model's file
+};
+
+enum class Excitation { kBump, kFlat, kChirp, kStep, kRough, kSine };
+
+struct RunPlan {
+  std::string name;
+  bool fit = true;
+  double duration = 3.0;  // s
+  Excitation excitation = Excitation::kBump;
+  double speed = 0.0;  // m/s
+  Bump bump;
+  int bump_number = 0;  // of the kit's bumps: one survey each
+  bool one_sided = false;
+  double distance = 0.0;   // m, bump ahead of the front wheels when the recording begins
+  double amplitude = 0.0;  // m, of rigs
+  double low_frequency = 0.0, high_frequency = 0.0;  // Hz
+};
+
+struct Kit {
+  KitKind kind = KitKind::kCar;
+  std::string name;
+  unsigned bit = kInCar;
+  double rate = 500.0;  // Hz
+  std::vector<KitParameter> parameters;
+  std::vector<Sensor> sensors;
+  std::vector<RunPlan> runs;
+  double time_sigma = 0.0;   // s, of the hit time
+  double speed_sigma = 0.0;  // 1
+  double jitter = 2e-5;      // s
+};
+
+/// Everything a simulation of a trial depends on.
+struct Truth {
+  std::vector<double> factors;  // of the kit's parameters
+  std::vector<FaultSetting> faults;
+  std::vector<double> speed_error;  // of each run, 1
+  double roughness = 0.0;           // m^3 at 0.1 cycles/m; 0: smooth
+  std::uint64_t seed = 0;           // of the roughness
+};
+
+/// "car", "quarter_car" or "dyno"; throws std::invalid_argument for others.
+Kit make_kit(const std::string& name);
+
+/// A truth without faults, errors and roughness.
+Truth make_nominal_truth(const Kit& kit);
+
+/// Noise-free channels of run `run`, one signal a sensor on a grid of `rate` [Hz] that begins
+/// `margin` [s] before the recording and ends as much after it; sensor faults included.
+std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
+                                 double margin);
+
+/// The car of a truth; its nominal one in the file.
+Car make_car(const Kit& kit, const Truth& truth);
+inline constexpr double kFootprint = 0.12;  // m
+
+}  // namespace strut::hidden

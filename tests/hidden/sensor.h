@@ -1,0 +1,50 @@
+// What a sensor makes of the truth: data-sheet noise, and what may be wrong with it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/hidden/faults.h"
+
+namespace strut::hidden {
+
+/// One column of a file. Data sheets: docs in README.md of this folder.
+struct Sensor {
+  std::string channel;       // of the model
+  std::string column, unit;  // of the file
+  std::string si;            // of the channel
+  double unit_scale = 1.0;   // SI of one unit of the file
+  double noise = 0.0;        // SI, 1 sigma a sample
+  double bias = 0.0;         // SI, 1 sigma over sensors
+  double quantum = 0.0;      // SI, of the converter
+  double range = 1e30;       // SI, reading saturates at +-
+  bool input = false;        // drives the model
+};
+
+/// The clock of a file: stamps are exact to a microsecond, the samples are not.
+struct Clock {
+  double offset = 0.0;  // s, the recording began late by this
+  double drift = 0.0;   // 1, the file's second is longer by this share
+  double jitter = 0.0;  // s, 1 sigma
+};
+
+/// A signal on an even grid of time, cubic between.
+struct Signal {
+  double begin = 0.0, spacing = 1.0;
+  std::vector<double> value;
+
+  double evaluate(double t) const;
+};
+
+/// What the fault makes of the signal: gain, delay [s], first-order low-pass [s]; kSaturation cuts
+/// at +-(1 - magnitude) times the setting's peak. Others: the signal itself.
+Signal distort(const Signal& signal, const FaultSetting& fault);
+
+/// Readings in the file's unit at the stamps [s]: sampled late and with jitter, biased, noisy, cut
+/// at the range, rounded to the converter's steps.
+std::vector<double> read_sensor(const Sensor& sensor, const Signal& signal, const Clock& clock,
+                                const std::vector<double>& stamps, double bias, std::uint64_t seed,
+                                const std::string& purpose);
+
+}  // namespace strut::hidden

@@ -1,0 +1,173 @@
+// What the sampler draws, how it grades, what it writes.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "tests/hidden/campaign_files.h"
+#include "tests/hidden/random_stream.h"
+#include "tests/hidden/sha256.h"
+#include "tests/run_program.h"
+#include "tests/tolerance.h"
+
+namespace strut::hidden {
+namespace {
+
+using test::tolerance;
+
+Truth with_fault(const Kit& kit, const FaultSetting& setting) {
+  Truth truth = make_nominal_truth(kit);
+  truth.faults = {setting};
+  return truth;
+}
+
+SignalToNoise calc_noise(const Kit& kit, const Detector& detector, const Truth& truth) {
+  const auto base = simulate_fit_runs(kit, make_nominal_truth(kit));
+  return detector.calc(subtract(simulate_fit_runs(kit, truth), base));
+}
+
+std::map<std::string, std::string> read_folder(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    files[std::filesystem::relative(entry.path(), folder).string()] =
+        test::read_text(entry.path().string());
+  }
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("Hidden data: 780 trials hide nothing 300 times and something unknown 100 times",
+          "[unit]") {
+  std::map<Category, int> count;
+  for (std::uint64_t seed = 0; seed < 780; ++seed) ++count[draw_category(seed)];
+  CHECK(count[Category::kNone] == 300);
+  CHECK(count[Category::kOne] == 280);
+  CHECK(count[Category::kTwo] == 100);
+  CHECK(count[Category::kUnknown] == 100);
+}
+
+TEST_CASE("Hidden data: a fault's ratio grows in proportion to its magnitude", "[property]") {
+  const Kit kit = make_kit("quarter_car");
+  const Detector detector(kit, make_nuisances(kit), 0.0);
+  const double one = calc_noise(kit, detector, with_fault(kit, {Fault::kAsymmetry, 0, 0.02})).ratio;
+  const double two = calc_noise(kit, detector, with_fault(kit, {Fault::kAsymmetry, 0, 0.04})).ratio;
+  CHECK(one > 1.0);
+  CHECK(two == Approx(2.0 * one).epsilon(tolerance(0.02)));
+}
+
+TEST_CASE("Hidden data: what the baseline may adjust is no fault", "[property]") {
+  const Kit kit = make_kit("quarter_car");
+  const Detector detector(kit, make_nuisances(kit), 0.0);
+  Truth softer = make_nominal_truth(kit);
+  softer.factors[2] = 1.0 - 1e-3;
+  const SignalToNoise noise = calc_noise(kit, detector, softer);
+  CHECK(noise.bare > 1.0);
+  // The second order of a change by a per mille.
+  CHECK(noise.ratio < tolerance(0.02) * noise.bare);
+}
+
+TEST_CASE("Hidden data: noise alone is white to the grader", "[statistical]") {
+  const Kit kit = make_kit("quarter_car");
+  const Whitener whitener(kit, 0.0);
+  auto runs = simulate_fit_runs(kit, make_nominal_truth(kit));
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (std::size_t c = 0; c < runs[r].size(); ++c) {
+      RandomStream draws(r, kit.sensors[c].channel);
+      const double sigma =
+          std::hypot(kit.sensors[c].noise, kit.sensors[c].quantum / std::sqrt(12.0));
+      for (double& v : runs[r][c].value) v = sigma * draws.draw_normal();
+    }
+  }
+  // The noise of the input, which comes on top, is not drawn: channels well above its response.
+  const Eigen::VectorXd w = whitener.whiten(runs);
+  const double mean_square = w.squaredNorm() / (2.0 / 3.0 * static_cast<double>(w.size()));
+  CHECK(mean_square < 1.0);
+  CHECK(mean_square > 0.7);
+}
+
+TEST_CASE("Hidden data: the grader knows the response to a rough road", "[statistical][slow]") {
+  const Kit kit = make_kit("car");
+  const double degree = 16e-6;
+  const Whitener whitener(kit, degree);
+  std::vector<std::vector<Signal>> sum;
+  double square = 0.0, size = 0.0;
+  constexpr int kRepeats = 4;
+  for (int i = 0; i < kRepeats; ++i) {
+    std::vector<std::vector<Signal>> runs;
+    for (std::size_t r = 0; r < kit.runs.size(); ++r) {
+      if (!kit.runs[r].fit) continue;
+      Truth rough = make_nominal_truth(kit);
+      rough.roughness = degree;
+      rough.seed = static_cast<std::uint64_t>(i);
+      Kit flat = kit;
+      flat.runs[r].excitation = Excitation::kFlat;
+      runs.push_back(simulate_run(flat, rough, r, kit.rate, 0.0));
+      for (std::size_t c = 0; c < kit.sensors.size(); ++c) {
+        RandomStream draws(static_cast<std::uint64_t>(i),
+                           kit.runs[r].name + kit.sensors[c].channel);
+        for (double& v : runs.back()[c].value) v += kit.sensors[c].noise * draws.draw_normal();
+      }
+    }
+    const Eigen::VectorXd w = whitener.whiten(runs);
+    square += w.squaredNorm();
+    size += static_cast<double>(w.size());
+  }
+  // The last tenth is faded out, the ends leak; the linear car on the linear road.
+  CHECK(square / size == Approx(0.95).epsilon(tolerance(0.15)));
+}
+
+TEST_CASE("Hidden data: a trial depends on its seed and on nothing else", "[property]") {
+  const Kit kit = make_kit("dyno");
+  const Sampler sampler(kit), other(kit);
+  const test::TemporaryFolder a, b;
+  for (const std::uint64_t seed : {3U, 1U, 2U, 0U}) write_trial(kit, sampler.draw(seed), a / "x");
+  for (const std::uint64_t seed : {0U, 1U, 2U, 3U}) write_trial(kit, other.draw(seed), b / "x");
+  seal_truths(a / "x");
+  seal_truths(b / "x");
+  const auto files = read_folder(a / "x");
+  CHECK(files == read_folder(b / "x"));
+  CHECK(files.count("trials/000003/campaign.toml") == 1);
+  CHECK(files.count("truths/000003.json") == 1);
+  const std::string sealed = calc_sha256(files.at("truths/000002.json")) + "  000002.json";
+  CHECK(files.at("truths/SHA256SUMS").find(sealed) != std::string::npos);
+}
+
+TEST_CASE("Hidden data: ratios are what was asked for, over all grades", "[statistical]") {
+  const Sampler sampler(make_kit("dyno"));
+  std::map<char, int> grades;
+  for (std::uint64_t seed = 0; seed < 78; ++seed) {
+    for (const HiddenFault& f : sampler.draw(seed).faults) {
+      INFO(get_info(f.setting.fault).name << ", " << f.setting.magnitude);
+      ++grades[find_grade(f.noise.ratio)];
+      CHECK(f.noise.ratio < tolerance(80.0));
+      CHECK(f.noise.joint > 0.0);
+    }
+  }
+  for (const char grade : {'A', 'B', 'C', 'D'}) CHECK(grades[grade] >= 4);
+}
+
+TEST_CASE("Hidden data: nothing that the tested program gets tells of the truth", "[unit]") {
+  const Kit kit = make_kit("quarter_car");
+  const Sampler sampler(kit);
+  const test::TemporaryFolder folder;
+  std::map<std::string, std::string> first;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    write_trial(kit, sampler.draw(seed), folder / "x");
+    auto files =
+        read_folder(std::filesystem::path(folder / "x") / "trials" / make_trial_name(seed));
+    std::erase_if(files, [](const auto& file) { return file.first.ends_with(".csv"); });
+    if (seed == 0) first = files;
+    CHECK(files == first);
+  }
+}
+
+TEST_CASE("Hidden data: SHA-256 of FIPS 180-4's examples", "[reference]") {
+  CHECK(calc_sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(calc_sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+}
+
+}  // namespace strut::hidden

@@ -1,0 +1,153 @@
+// Rigs fitted to what was measured: parameters of records by an integrator of the test's own.
+#include "diagnose/rig_readings.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "diagnose/baseline.h"
+#include "tests/campaign_files.h"
+#include "tests/test_car.h"
+
+namespace strut {
+namespace {
+
+using test::TemporaryFolder;
+
+CampaignData read_two_runs(const test::QuarterTruth& truth, const test::CampaignText& text = {},
+                           const test::ChangeRow& change = {}) {
+  const TemporaryFolder folder;
+  test::write_two_runs(folder, truth, change);
+  return read_campaign_data(test::write_campaign(folder, text));
+}
+
+/// Name and truth of what the campaign frees.
+std::vector<std::pair<std::string, double>> list_truth(const test::QuarterTruth& t) {
+  return {{"unsprung_mass", t.unsprung_mass},
+          {"stiffness", t.stiffness},
+          {"damping", t.damping},
+          {"tire_stiffness", t.tire_stiffness},
+          {"tire_damping", t.tire_damping}};
+}
+
+test::CampaignText with_noise(double sigma) {
+  test::CampaignText text;
+  const std::string noise = ", noise = " + test::print_number(sigma) + " }";
+  text.unsprung = "{ column = \"unsprung\"" + noise;
+  text.sprung = "{ column = \"sprung\"" + noise;
+  return text;
+}
+
+TEST_CASE("A rig's parameters come back from records of another integrator", "[reference]") {
+  test::QuarterTruth truth;
+  truth.start = {1e-3, -5e-4, 0.02, -0.01};
+  const CampaignData data = read_two_runs(truth, with_noise(1e-6));
+  const Baseline baseline = calibrate_baseline(data);
+  CHECK(baseline.fit.converged);
+  for (std::size_t i = 0; i < baseline.shared_count(); ++i) {
+    const auto [name, value] = list_truth(truth)[i];
+    INFO(name);
+    CHECK(baseline.calibrated.unknowns[i].name == name);
+    // The spline through a chirp of up to 8 Hz at 200 Hz errs by 1e-5 of it.
+    CHECK(baseline.calibrated.values[i] == Approx(value).epsilon(test::tolerance(2e-4)));
+  }
+  for (std::size_t i = 0; i < baseline.fit.unknowns.size(); ++i) {
+    const Unknown& u = baseline.fit.unknowns[i];
+    if (u.name == "initial_sprung_velocity" && u.run == 0) {
+      CHECK(baseline.fit.values[i] == Approx(-0.01).epsilon(test::tolerance(0.01)));
+    }
+  }
+}
+
+TEST_CASE("Intervals of a fitted rig cover the truth as often as they say", "[statistical][slow]") {
+  int inside = 0, count = 0;
+  double chi2 = 0.0;
+  constexpr int kDraws = 6;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    test::QuarterTruth truth;
+    truth.noise = 2e-5;
+    truth.seed = 50 + 10 * static_cast<std::uint64_t>(draw);
+    const Baseline baseline = calibrate_baseline(read_two_runs(truth, with_noise(2e-5)));
+    chi2 += baseline.fit.chi2_per_degree() / kDraws;
+    for (std::size_t i = 0; i < baseline.shared_count(); ++i) {
+      const double error = baseline.calibrated.values[i] - list_truth(truth)[i].second;
+      inside += std::abs(error) < 1.96 * baseline.calc_sigma(i) ? 1 : 0;
+      ++count;
+    }
+  }
+  // 30 intervals of 95 %, correlated within a draw: fewer than 24 is beyond 3 sigmas.
+  CHECK(inside >= 24);
+  CHECK(count == 30);
+  // 1600 readings a draw: 1 sigma of the mean 1.4 %.
+  CHECK(chi2 == Approx(1.0).epsilon(test::tolerance(0.06)));
+}
+
+TEST_CASE("The Jacobian of a rig agrees with differences of its residuals", "[unit]") {
+  const CampaignData data = read_two_runs({}, with_noise(2e-5));
+  const std::vector<std::size_t> runs = {0, 1};
+  std::vector<Unknown> unknowns = {make_rig_unknown(data.rigs, "stiffness"),
+                                   make_rig_unknown(data.rigs, "road_position_gain"),
+                                   make_rig_unknown(data.rigs, "sprung_position_bias")};
+  for (Unknown& u : make_run_unknowns(data, runs, unknowns)) unknowns.push_back(u);
+  const auto model = make_reading_model(data, runs, unknowns, 2);
+  std::vector<double> values;
+  for (const Unknown& u : unknowns) values.push_back(u.start);
+  values[2] = 1e-4;
+  const Linearization at = model->linearize(values);
+  REQUIRE(at.failure.empty());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    INFO(unknowns[i].name);
+    const double h = 1e-3 * unknowns[i].scale;
+    std::vector<double> up = values, down = values;
+    up[i] += h;
+    down[i] -= h;
+    const Eigen::VectorXd slope =
+        (model->linearize(up).residual - model->linearize(down).residual) / 2e-3;
+    const auto column = at.jacobian.col(static_cast<Eigen::Index>(i));
+    // The curvature within a thousandth of the scale, at resonance.
+    CHECK((slope - column).norm() <= test::tolerance(1e-4) * column.norm());
+  }
+}
+
+TEST_CASE("A rig's fit is the same for any number of threads", "[property]") {
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  const CampaignData data = read_two_runs(truth, with_noise(2e-5));
+  CHECK(calibrate_baseline(data, 1).fit.values == calibrate_baseline(data, 3).fit.values);
+}
+
+TEST_CASE("Samples at uneven times are interpolated, not rounded", "[reference]") {
+  test::QuarterTruth truth;
+  const CampaignData data = read_two_runs(
+      truth, with_noise(1e-6), [](std::size_t row, std::array<std::string, 4>& cells) {
+        if (row % 4 == 1 || row % 11 == 3) cells[2] = cells[3] = "";
+        if (row % 3 == 1) cells[0] = test::print_number(std::stod(cells[0]) + 1e-9);
+      });
+  const Baseline baseline = calibrate_baseline(data);
+  CHECK(baseline.fit.converged);
+  CHECK(baseline.calibrated.values[1] == Approx(950.0).epsilon(test::tolerance(2e-4)));
+}
+
+TEST_CASE("A held-out run is not used to fit, and tells only where it started", "[unit]") {
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  const TemporaryFolder folder;
+  test::write_two_runs(folder, truth);
+  const Baseline before =
+      calibrate_baseline(read_campaign_data(test::write_campaign(folder, with_noise(2e-5))));
+  truth.seed = 2;
+  truth.amplitude = 0.001;
+  truth.start = {0.0, 2e-3, 0.0, 0.0};
+  test::write_record(folder, "b.csv", test::record_quarter_car(truth));
+  const CampaignData data = read_campaign_data(test::write_campaign(folder, with_noise(2e-5)));
+  const Baseline after = calibrate_baseline(data);
+  CHECK(after.calibrated.values == before.calibrated.values);
+  const RunEvaluation evaluation = evaluate_run(data, 1, after.calibrated);
+  REQUIRE(evaluation.failure.empty());
+  CHECK(evaluation.unknowns.size() == 6);
+  CHECK(evaluation.values[1] == Approx(2e-3).epsilon(test::tolerance(0.1)));
+}
+
+}  // namespace
+}  // namespace strut
