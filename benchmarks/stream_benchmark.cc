@@ -70,11 +70,17 @@ ShardRows make_rows(const ShardSchema& schema, std::int64_t first, std::int64_t 
   return rows;
 }
 
+fs::path make_path(const fs::path& folder, std::int64_t shard) {
+  return folder / (std::to_string(shard) + ".h5");
+}
+
 void write_shards(const fs::path& folder, std::int64_t cases, int threads) {
   const ShardSchema schema = make_schema();
   const std::string plan_hash(64, '0');
   const std::int64_t shards = (cases + kShardCases - 1) / kShardCases;
   fs::create_directories(folder);
+  // Those of a longer run before this one.
+  for (std::int64_t old = shards; fs::remove(make_path(folder, old)); ++old) continue;
   std::mutex library;  // the HDF5 library is not for many threads
   share_items(threads, static_cast<std::size_t>(shards), [&](std::size_t item, int) {
     const auto shard = static_cast<std::int64_t>(item);
@@ -83,9 +89,10 @@ void write_shards(const fs::path& folder, std::int64_t cases, int threads) {
         compress_shard(schema, make_rows(schema, first, std::min(kShardCases, cases - first)));
     const std::lock_guard lock(library);
     const std::vector<std::byte> image = make_shard_image(data, {plan_hash, shard, {}});
-    std::ofstream file(folder / (std::to_string(shard) + ".h5"), std::ios::binary);
+    std::ofstream file(make_path(folder, shard), std::ios::binary);
     file.write(reinterpret_cast<const char*>(image.data()),
                static_cast<std::streamsize>(image.size()));
+    if (!file.flush()) throw EnvironmentError(folder.string() + ": cannot be written");
   });
 }
 

@@ -15,6 +15,12 @@ void require(bool good, const fs::path& path, const std::string& object, const s
 }
 
 void check_schema_version(const fs::path& path, const Hdf5Reader& file) {
+  // Models and checkpoints count their versions apart; they alone say what they are.
+  constexpr char kKindKey[] = "kind";
+  if (file.has_attribute("/", kKindKey)) {
+    throw InputError(path.string() + ": a " + file.read_attribute("/", kKindKey) +
+                     "; must be a sweep's shard or merged file");
+  }
   const std::int64_t version = file.read_integer_attribute("/", kSchemaVersionKey);
   require(version == kShardSchemaVersion, path, kSchemaVersionKey,
           "is " + std::to_string(version) + "; this program reads " +

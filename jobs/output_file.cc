@@ -16,6 +16,11 @@ fs::path find_output_file(const Arguments& arguments, const std::vector<std::str
   if (fs::exists(output) && !arguments.is_on("force")) {
     throw InputError(start + "exists; --force replaces it");
   }
+  // Told before the work, not after it.
+  const fs::path folder = fs::absolute(output).parent_path();
+  if (!fs::is_directory(folder)) {
+    throw EnvironmentError(start + "there is no folder " + folder.string());
+  }
   return output;
 }
 

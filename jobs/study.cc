@@ -26,7 +26,7 @@ Arguments make_arguments() {
       "Simulates, trains and evaluates a table of networks: cases with each preload, numbers of\n"
       "cases, networks, inputs and seeds (every key: docs/studies.md). Prints the errors beside\n"
       "published ones and writes DIR/report.html, results.json, tables.csv, figures, models and\n"
-      "sweeps; with a [noise] section also what sensor noise does to it. Running it again does "
+      "sweeps; with a [noise] section also what sensor noise does to it. Running it again does\n"
       "only what is missing; Ctrl-C stops it cleanly.",
       "  strut study examples/studies/paper_quick.toml -o study\n"
       "  strut study examples/studies/paper.toml -o study --threads 2");

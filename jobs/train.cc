@@ -63,6 +63,10 @@ Arguments make_arguments() {
   arguments.add_option("max-failures", "N",
                        "stop N epochs after the validation minimum; default 6");
   arguments.add_option("goal", "MSE", "stop at this loss of normalized values; default 0");
+  arguments.add_option("min-gradient", "G", "stop at this length of its gradient; default 1e-7");
+  arguments.add_option("damping", "MU", "first damping; by itself the rule's, docs/training.md");
+  arguments.add_option("max-damping", "MU", "stop beyond this damping; default 1e10");
+  arguments.add_option("max-time", "S", "stop after so many seconds; by itself never");
   arguments.add_option("threads", "N", "default: all processors");
   arguments.add_option("checkpoint", "FILE", "keep the training's state there");
   arguments.add_switch("resume", "go on from that file, to the same bits");
@@ -95,6 +99,10 @@ void read_limits(const Arguments& arguments, LevenbergMarquardtOptions& options)
   options.max_failures =
       static_cast<int>(arguments.integer_or("max-failures", options.max_failures, 1, kMostInt));
   options.goal = arguments.number_or("goal", options.goal, at_least(0.0));
+  options.min_gradient = arguments.number_or("min-gradient", options.min_gradient, at_least(0.0));
+  options.first_damping = arguments.number_or("damping", options.first_damping, above(0.0));
+  options.max_damping = arguments.number_or("max-damping", options.max_damping, above(0.0));
+  options.seconds = arguments.number_or("max-time", options.seconds, above(0.0, "s"));
   options.threads = find_threads(arguments);
 }
 
@@ -122,13 +130,19 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
 }
 
 /// Where the training's state is kept; empty: nowhere. A checkpoint that is there is replaced only
-/// by the training that goes on from it.
-fs::path find_checkpoint(const Arguments& arguments) {
+/// by the training that goes on from it, and never is it a file of `others`.
+fs::path find_checkpoint(const Arguments& arguments, const std::vector<std::string>& others) {
   if (!arguments.has("checkpoint")) {
     if (arguments.is_on("resume")) throw arguments.usage_error("--resume needs --checkpoint FILE");
     return {};
   }
   fs::path checkpoint = arguments.text("checkpoint");
+  for (const std::string& other : others) {
+    std::error_code ignored;
+    if (checkpoint != other && !fs::equivalent(checkpoint, other, ignored)) continue;
+    throw InputError("--checkpoint = " + checkpoint.string() +
+                     ": must be another file than the model and the data");
+  }
   const bool may_replace = arguments.is_on("resume") || arguments.is_on("force");
   if (fs::exists(checkpoint) && !may_replace) {
     throw InputError("--checkpoint = " + checkpoint.string() +
@@ -162,6 +176,10 @@ class Progress {
 
 /// Steps until the training stops; false where a signal came first.
 bool train(Training& training, const fs::path& checkpoint, const std::atomic<bool>& halt) {
+  const auto keep = [&] {
+    if (!checkpoint.empty()) write_checkpoint(checkpoint, training.make_checkpoint());
+  };
+  keep();  // a place where it cannot be is told before the work, not after it
   Progress progress;
   bool goes_on = true;
   {
@@ -169,12 +187,10 @@ bool train(Training& training, const fs::path& checkpoint, const std::atomic<boo
     while (goes_on && !halt) {
       goes_on = training.step();
       progress.set(training.record().back(), training.rows());
-      if (!checkpoint.empty() && training.state().epoch % kCheckpointEpochs == 0) {
-        write_checkpoint(checkpoint, training.make_checkpoint());
-      }
+      if (training.state().epoch % kCheckpointEpochs == 0) keep();
     }
   }
-  if (!checkpoint.empty()) write_checkpoint(checkpoint, training.make_checkpoint());
+  keep();
   return !goes_on;
 }
 
@@ -225,8 +241,10 @@ int run_train(const std::vector<std::string>& words) {
   if (!arguments.parse(words)) return kExitDone;
   const auto& names = arguments.positional();
   if (names.empty()) throw arguments.usage_error("DATA: missing");
-  const fs::path output = find_output_file(arguments, names),
-                 checkpoint = find_checkpoint(arguments);
+  const fs::path output = find_output_file(arguments, names);
+  std::vector<std::string> others = names;
+  others.push_back(output.string());
+  const fs::path checkpoint = find_checkpoint(arguments, others);
   TrainingRequest request = read_request(arguments, output);
   DatasetOptions options;
   options.partial = arguments.is_on("partial");

@@ -17,9 +17,10 @@ constexpr int kCopies = 8, kMostCopies = 10'000;
 /// s, 1 sigma of when the bump is hit.
 constexpr double kHitTime = 0.005;
 
-double read_time(const std::string& option, const std::string& text) {
-  if (const auto value = parse_number<double>(text)) return *value;
-  throw InputError("--window = " + option + ": must be FROM:TO in s, as 0.3:2.5");
+/// A part of `window`, the option's value.
+double read_time(const std::string& window, const std::string& part) {
+  if (const auto value = parse_number<double>(part)) return *value;
+  throw InputError("--window = " + window + ": must be FROM:TO in s, as 0.3:2.5");
 }
 
 WindowChoice read_window(const Arguments& arguments) {

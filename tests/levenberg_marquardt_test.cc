@@ -255,6 +255,21 @@ TEST_CASE("A growing sample resumed at any epoch ends with the same bits", "[uni
   CHECK_THROWS_AS(training.restore({states.front().training, 91}), InputError);
 }
 
+TEST_CASE("A sample on which no step helps any more is grown and trained on", "[unit]") {
+  LevenbergMarquardtOptions options;
+  options.epochs = 5;
+  GrowingSampleOptions growing;
+  growing.first_rows = 10;
+  SmallTraining small;
+  GrowingSample training(small.problem, nullptr, options, growing);
+  training.start(make_nguyen_widrow_weights(small.shape, {}, 3));
+  GrowingSampleState stuck = training.save();
+  stuck.training.damping = 2.0 * options.max_damping;
+  training.restore(stuck);
+  CHECK(training.run().reason == StopReason::kEpochs);
+  CHECK(training.rows() > 10);
+}
+
 TEST_CASE("Threads change no bit of a training", "[unit][property]") {
   const StudyProblem study(std::string(STRUT_SOURCE_DIR) + "/tests/data/lm_problem");
   LevenbergMarquardtState first;

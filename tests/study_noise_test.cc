@@ -279,6 +279,18 @@ TEST_CASE("Bounds and fits that are lost or damaged are computed anew, others ke
         before.at("noise/bounds_trimmed.csv"));
 }
 
+TEST_CASE("Bounds of other cases are computed anew", "[io][slow]") {
+  const fs::path root = copy_study("other"), file = root / "noise/bounds_trimmed.csv";
+  const std::string before = test::read_text(file);
+  const std::size_t units = before.find('\n') + 1, row = before.find('\n', units) + 1;
+  const std::size_t end = before.find(',', row);
+  std::ofstream(file) << before.substr(0, row) + "9999" + before.substr(end);
+  const Outcome again = get_study().run("", "other");
+  CHECK(again.code == 0);
+  CHECK_THAT(again.messages, Contains("bounds_trimmed.csv: computed anew, it was of other cases"));
+  CHECK(test::read_text(file) == before);
+}
+
 TEST_CASE("A study that is stopped among its fits goes on to the same numbers", "[io][slow]") {
   const fs::path root = copy_study("stopped");
   fs::remove(root / "noise/fits_0.1.csv");

@@ -109,6 +109,15 @@ TEST_CASE("A table of trainings keeps what is the same and nothing else", "[io]"
   CHECK(run_table(trainings, models, 2).kept == 6);
 }
 
+TEST_CASE("A table names the training that cannot be", "[io]") {
+  const test::PlannedSweep sweep;
+  sweep.run();
+  const TemporaryFolder folder;
+  auto trainings = make_trainings(sweep.folder().root);
+  trainings[4].request.hidden = {50};
+  CHECK_THROWS_WITH(run_table(trainings, folder / "models", 1), Catch::StartsWith("t4: "));
+}
+
 TEST_CASE("A table of trainings that is halted writes nothing half", "[io]") {
   const test::PlannedSweep sweep;
   sweep.run();

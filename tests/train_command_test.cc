@@ -220,7 +220,39 @@ TEST_CASE("Nothing is overwritten without --force", "[io]") {
   const fs::path shard = get_sweep() / "shards/000000.h5";
   const auto before = read_bytes(shard);
   CHECK_THAT(train(shard, shard, "--force").messages, Contains("is what is read"));
+  CHECK_THAT(train(shard, folder / "n.h5", "--force --checkpoint " + shard.string()).messages,
+             Contains("must be another file than the model and the data"));
   CHECK(read_bytes(shard) == before);
+}
+
+TEST_CASE("Each limit of a training is an option that stops it", "[io]") {
+  struct Limit {
+    const char *option, *reason;
+  };
+  const Limit limits[] = {{"--goal 1e9", "goal"},
+                          {"--min-gradient 1e9", "gradient"},
+                          {"--max-damping 1e-30", "damping bound"},
+                          {"--max-time 1e-9", "time"}};
+  for (const Limit& limit : limits) {
+    const TemporaryFolder folder;
+    const Outcome outcome =
+        train(get_sweep().string(), folder / "m.h5", std::string("--json ") + limit.option);
+    REQUIRE(outcome.code == 0);
+    CHECK(test::parse_json(outcome.out).get<std::string>("stopped_by") == limit.reason);
+  }
+  CHECK(train_weights(get_sweep(), "--damping 10") != train_weights(get_sweep()));
+}
+
+TEST_CASE("A place where nothing can be written is told", "[io]") {
+  const TemporaryFolder folder;
+  const std::string sweep = get_sweep().string(), none = (folder / "none/c.h5").string();
+  const Outcome model = train(sweep, none);
+  CHECK(model.code == 3);
+  CHECK_THAT(model.messages, Contains("there is no folder") && Contains("none"));
+  const Outcome state = train(sweep, folder / "m.h5", "--checkpoint " + none);
+  CHECK(state.code == 3);
+  CHECK_THAT(state.messages, Contains("c.h5"));
+  CHECK(folder.file_count() == 0);
 }
 
 TEST_CASE("A test part is told only of the data that trained", "[io]") {
@@ -242,6 +274,12 @@ TEST_CASE("A test part is told only of the data that trained", "[io]") {
   CHECK(fewer.code == 2);
   CHECK_THAT(fewer.messages, Contains("200 usable cases, this has 60"));
   CHECK(run_program("evaluate " + model).code == 2);
+  const Outcome model_twice = run_program("evaluate " + model + " " + model);
+  CHECK(model_twice.code == 2);
+  CHECK_THAT(model_twice.messages, Contains("a strut model; must be"));
+  const Outcome turned = run_program("evaluate " + get_sweep().string() + " " + model);
+  CHECK(turned.code == 2);
+  CHECK_THAT(turned.messages, Contains("a folder; must be an HDF5 file"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/input_error.h"
+#include "io/config.h"
 #include "io/nearest_name.h"
 #include "io/shard_layout.h"
 
@@ -39,7 +39,7 @@ void require_spread(const Normalizer& map, const std::vector<ColumnInfo>& column
   const std::size_t at = map.find_constant();
   if (at == columns.size()) return;
   throw InputError(std::string(kind) + " '" + columns[at].name + "' is constant, " +
-                   std::to_string(map.low()[at]) + " " + columns[at].unit + ", in all " +
+                   format_number(map.low()[at]) + " " + columns[at].unit + ", in all " +
                    std::to_string(rows) + " training rows: nothing can be learned from it; " +
                    "leave it out");
 }

@@ -81,6 +81,11 @@ void GrowingSample::grow(LevenbergMarquardtState state) {
   const std::size_t all = problem_->source_rows();
   // What remains for a last sample of nearly all rows is not worth a stage.
   rows_ = wanted < 0.75 * static_cast<double>(all) ? static_cast<std::size_t>(wanted) : all;
+  if (state.stop == StopReason::kDamping) {
+    // The bound was reached on the old rows; with it the new ones would be given up at once.
+    state.damping = 0.0;
+    state.growth = 2.0;
+  }
   state.stop = StopReason::kNone;
   state.failures = 0;
   training_.restore(state);

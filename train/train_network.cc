@@ -1,8 +1,6 @@
 #include "train/train_network.h"
 
-#include <charconv>
-
-#include "io/input_error.h"
+#include "io/config.h"
 #include "io/nearest_name.h"
 #include "io/shard_layout.h"
 #include "train/interval.h"
@@ -11,12 +9,7 @@
 namespace strut {
 namespace {
 
-std::string to_text(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string to_text(const std::vector<int>& values) {
+std::string list_sizes(const std::vector<int>& values) {
   std::vector<std::string> texts;
   texts.reserve(values.size());
   for (const int value : values) texts.push_back(std::to_string(value));
@@ -36,8 +29,8 @@ void require_equations(const TrainingRows& data, const NetworkShape& shape) {
   throw InputError(std::to_string(rows) + " training cases x " + std::to_string(outputs) +
                    " parameters are " + std::to_string(rows * outputs) +
                    " equations for the network's " + std::to_string(shape.weight_count) +
-                   " weights: it would learn them by heart; take more cases or a smaller "
-                   "--hidden, or insist with --allow-few");
+                   " weights: it would learn them by heart; take more cases or a smaller network, "
+                   "or insist with `strut train --allow-few`");
 }
 
 TrainingRows read_parts(Dataset& dataset, const TrainingRequest& request) {
@@ -54,7 +47,7 @@ TrainingRows read_parts(Dataset& dataset, const TrainingRequest& request) {
 NamedTexts describe_window(const WindowTransform& window) {
   const WindowGrid& grid = window.grid;
   return {{"window_channels", join_names(list_names(window.channels))},
-          {"window_interval", to_text(grid.interval)},
+          {"window_interval", format_number(grid.interval)},
           {"window_first_sample", std::to_string(grid.first)},
           {"window_samples", std::to_string(grid.samples)},
           {"window_lags", std::to_string(grid.lags)}};
@@ -72,7 +65,7 @@ std::string describe_sample(const std::optional<GrowingSampleOptions>& growing) 
   if (!growing) return "all rows";
   const std::string first =
       growing->first_rows > 0 ? std::to_string(growing->first_rows) : std::string("2 a weight");
-  return "first " + first + ", grows by " + to_text(growing->growth);
+  return "first " + first + ", grows by " + format_number(growing->growth);
 }
 
 void append(NamedTexts& texts, const NamedTexts& more) {
@@ -127,14 +120,14 @@ NamedTexts Training::describe_start() const {
                       {"inputs", join_names(list_names(data_.inputs))},
                       {"parameters", join_names(list_names(data_.targets))},
                       {"usable_cases", std::to_string(data_.usable)},
-                      {"layers", to_text(shape_.sizes)},
+                      {"layers", list_sizes(shape_.sizes)},
                       {"seed", std::to_string(request_.seed)},
                       {"split_seed", std::to_string(request_.split.seed)},
-                      {"split_train", to_text(request_.split.train)},
-                      {"split_validate", to_text(request_.split.validate)},
+                      {"split_train", format_number(request_.split.train)},
+                      {"split_validate", format_number(request_.split.validate)},
                       {"rule", options.rule == DampingRule::kTrainlm ? "trainlm" : "gain-ratio"},
                       {"accelerate", options.accelerate ? "yes" : "no"},
-                      {"first_damping", to_text(options.first_damping)},
+                      {"first_damping", format_number(options.first_damping)},
                       {"sample", describe_sample(request_.growing)},
                       {"gram_rows", std::to_string(request_.problem.gram_rows)},
                       {"instruction_set", problem_->kernel().isa}};
@@ -171,9 +164,9 @@ Model Training::make_model() const {
   model.options = describe_start();
   const NamedTexts limits = {{"epochs", std::to_string(options.epochs)},
                              {"max_failures", std::to_string(options.max_failures)},
-                             {"goal", to_text(options.goal)},
-                             {"min_gradient", to_text(options.min_gradient)},
-                             {"max_damping", to_text(options.max_damping)}};
+                             {"goal", format_number(options.goal)},
+                             {"min_gradient", format_number(options.min_gradient)},
+                             {"max_damping", format_number(options.max_damping)}};
   append(model.options, limits);
   model.record = record_;
   model.stop = s.stop;

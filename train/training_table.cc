@@ -102,11 +102,19 @@ class TrainingTable {
     ++progress_.trained;
   }
 
+  static std::unique_ptr<Training> make_training(const TableTraining& t) {
+    try {
+      Dataset dataset({t.data}, {.histories = t.request.window.has_value()});
+      return std::make_unique<Training>(dataset, t.request);
+    } catch (const InputError& e) {
+      throw InputError(t.name + ": " + e.what());
+    }
+  }
+
   /// Null where the model is there already.
   std::unique_ptr<Training> begin(const TableTraining& t) {
     const std::scoped_lock lock(files_);
-    Dataset dataset({t.data}, {.histories = t.request.window.has_value()});
-    auto training = std::make_unique<Training>(dataset, t.request);
+    std::unique_ptr<Training> training = make_training(t);
     const fs::path file = find_file(t);
     if (!fs::exists(file)) return training;
     std::string difference;

@@ -49,7 +49,8 @@ std::string find_difference(const Model& model, const Training& training,
 /// Trains what the folder lacks, longest first. A model of the same data and options is kept; one
 /// of others, or that cannot be read, is trained anew. Once `halt` is true (set by anybody) it
 /// drops the trainings at hand and returns. Throws InputError of a training's data or options,
-/// EnvironmentError where a model cannot be written; those written before stay.
+/// which names the training, EnvironmentError where a model cannot be written; those written before
+/// stay.
 TrainingTableSummary run_training_table(const std::vector<TableTraining>& trainings,
                                         const TrainingTableOptions& options,
                                         TrainingTableProgress& progress, std::atomic<bool>& halt);

@@ -10,8 +10,8 @@ namespace strut {
 struct Figure {
   std::string name;               // of its files
   int width = 900, height = 560;  // px
-  std::string
-      commands;  // gnuplot's; terminal and palette are set, data come as make_data names them
+  /// gnuplot's; terminal and palette are set, data come as make_data names them.
+  std::string commands;
 };
 
 /// Colors that the color-blind can tell apart (M. Okabe, K. Ito, 2008): line types 1 to 6 of every

@@ -1,6 +1,8 @@
 #include "jobs/report/html.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 namespace strut {
 namespace {
@@ -116,6 +118,13 @@ std::string make_contents(const std::vector<ReportSection>& sections) {
 }
 
 }  // namespace
+
+std::string print_number(const char* format, double value) {
+  if (std::isnan(value)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
 
 std::string escape_html(const std::string& text) {
   std::string escaped;

@@ -10,6 +10,9 @@ namespace strut {
 /// `text` with the characters that HTML gives a meaning replaced.
 std::string escape_html(const std::string& text);
 
+/// The text of a number in one of printf's formats; empty for NaN, what is not there.
+std::string print_number(const char* format, double value);
+
 /// Texts by rows. On a page lines of a cell below its first stand smaller.
 struct ReportTable {
   std::string caption;

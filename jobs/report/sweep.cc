@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "io/atomic_file.h"
 #include "io/dataset.h"
@@ -49,11 +48,7 @@ Cases read_cases(const SweepFolder& folder) {
   return cases;
 }
 
-std::string round(double value, const char* format = "%.6g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
+std::string round(double value) { return print_number("%.6g", value); }
 
 std::vector<double> sort_column(const Cases& cases, std::size_t column) {
   std::vector<double> values;
@@ -137,9 +132,10 @@ ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const S
       {"size", format_bytes(static_cast<double>(s.bytes))}};
   const auto simulated = static_cast<double>(s.done + s.failed);
   if (simulated > 0.0 && s.simulation_seconds > 0.0) {
-    table.rows.push_back({"simulation", format_duration(s.simulation_seconds) + " of one thread, " +
-                                            round(1e3 * s.simulation_seconds / simulated, "%.3g") +
-                                            " ms a case"});
+    table.rows.push_back(
+        {"simulation", format_duration(s.simulation_seconds) + " of one thread, " +
+                           print_number("%.3g", 1e3 * s.simulation_seconds / simulated) +
+                           " ms a case"});
   }
   ReportSection section{"Cases", {}, {table}};
   if (!s.complete()) {

@@ -23,9 +23,9 @@ std::string make_panel(const StudyRequest& request, const Bars& bars, std::size_
   double lowest = 1e300, highest = 0.0;
   for (std::size_t b = 0; b < bars.cells.size(); ++b) {
     const CellResult& cell = *bars.cells[b];
-    const Spread& mae = cell.spread[p][1];
+    const Spread& mae = cell.spread[p][kMae];
     const double x = static_cast<double>(b + 1);
-    const double theirs = find_published(request, cell, p, 1);
+    const double theirs = find_published(request, cell, p, kMae);
     ours.push_back({x, mae.median, mae.low, mae.high, static_cast<double>(bars.colors[b])});
     published.push_back({x, theirs});
     lowest = std::min(lowest, mae.low);

@@ -66,14 +66,19 @@ std::string make_title(const ColumnInfo& column) {
   return quote_figure_text(make_words(column.name) + " [" + column.unit + "]");
 }
 
+/// The two parameters that inputs are drawn over.
+struct Ground {
+  std::size_t x = 0, y = 1;
+};
+
 /// The ground of the paper's Figure 6: the rear axle's parameters where there are any.
-std::pair<std::size_t, std::size_t> choose_ground(const std::vector<ColumnInfo>& parameters) {
+Ground choose_ground(const std::vector<ColumnInfo>& parameters) {
   std::vector<std::size_t> rear;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (parameters[p].name.starts_with("rear_")) rear.push_back(p);
   }
   if (rear.size() >= 2) return {rear[0], rear[1]};
-  return {0, parameters.size() > 1 ? 1 : 0};
+  return {0, std::min<std::size_t>(1, parameters.size() - 1)};
 }
 
 /// "set xrange ..." and three tics, to the ends of a parameter.
@@ -83,93 +88,119 @@ std::string make_range(const std::string& axis, const Rows& rows, std::size_t co
     low = std::min(low, row[column]);
     high = std::max(high, row[column]);
   }
-  const double margin = 0.05 * (high - low);
-  return "set " + axis + "range [" + format_number(low - margin) + ":" +
-         format_number(high + margin) + "]\nset " + axis + "tics " + format_number(low) + ", " +
-         format_number(0.5 * (high - low)) + "\n";
+  const double width = high > low ? high - low : 1.0;  // gnuplot takes no empty range
+  return "set " + axis + "range [" + format_number(low - 0.05 * width) + ":" +
+         format_number(high + 0.05 * width) + "]\nset " + axis + "tics " + format_number(low) +
+         ", " + format_number(0.5 * width) + "\n";
+}
+
+/// True place, identified place, input, by test cases.
+Rows list_points(const Identified& data, const Ground& ground, std::size_t input) {
+  Rows points;
+  points.reserve(data.inputs.size());
+  for (std::size_t i = 0; i < data.inputs.size(); ++i) {
+    const auto &truth = data.reference[i], &found = data.predicted[i];
+    points.push_back({truth[ground.x], truth[ground.y], found[ground.x], found[ground.y],
+                      data.inputs[i][input]});
+  }
+  return points;
+}
+
+std::string make_state_axes(const Identified& data, const Ground& ground) {
+  const auto& names = data.model.targets;
+  return "set view 62,35,0.88,0.85\nset ticslevel 0.05\nset grid\nset tics font ',11'\n" +
+         make_range("x", data.reference, ground.x) + make_range("y", data.reference, ground.y) +
+         "set key at screen 0.5,0.985 center horizontal\nset format z '%.4g'\nset xlabel " +
+         make_title(names[ground.x]) + " rotate parallel offset 0,-0.4\nset ylabel " +
+         make_title(names[ground.y]) + " rotate parallel offset -2,0\n";
+}
+
+/// The first panel has the figure's only key.
+std::string make_state_panel(const Identified& data, std::size_t input) {
+  const std::string block = "$state" + std::to_string(input);
+  const auto name = [input](const char* text) {
+    return input == 0 ? "title " + quote_figure_text(text) : std::string("notitle");
+  };
+  return "set zlabel " + make_title(data.model.inputs[input]) + " rotate by 90 offset 0,0\nsplot " +
+         block + " using 3:4:5 with points linetype 2 pointtype 2 pointsize 0.7 " +
+         name("network") + ", " + block +
+         " using 1:2:5 with points linetype 1 pointtype 6 pointsize 0.8 " + name("simulation") +
+         "\nunset key\n";
 }
 
 StudyFigure draw_states(const Identified& data, const std::string& preload) {
-  const auto& [x, y] = choose_ground(data.model.targets);
+  const Ground ground = choose_ground(data.model.targets);
   const std::size_t panels = data.model.inputs.size(), rows = (panels + 1) / 2;
   StudyFigure figure{{"states_" + preload, 1000, static_cast<int>(480 * rows), ""}, ""};
   std::string& text = figure.figure.commands;
   for (std::size_t c = 0; c < panels; ++c) {
-    Rows points;
-    points.reserve(data.inputs.size());
-    for (std::size_t i = 0; i < data.inputs.size(); ++i) {
-      const auto &truth = data.reference[i], &found = data.predicted[i];
-      points.push_back({truth[x], truth[y], found[x], found[y], data.inputs[i][c]});
-    }
-    text += make_data("state" + std::to_string(c), points);
+    text += make_data("state" + std::to_string(c), list_points(data, ground, c));
   }
   text += "set multiplot layout " + std::to_string(rows) +
-          ",2 margins 0.16,0.9,0.14,0.93 spacing 0.24,0.17\nset view 62,35,0.88,0.85\n"
-          "set ticslevel 0.05\nset grid\nset tics font ',11'\n" +
-          make_range("x", data.reference, x) + make_range("y", data.reference, y) +
-          "set key at screen 0.5,0.985 center horizontal\nset format z '%.4g'\nset xlabel " +
-          make_title(data.model.targets[x]) + " rotate parallel offset 0,-0.4\nset ylabel " +
-          make_title(data.model.targets[y]) + " rotate parallel offset -2,0\n";
-  for (std::size_t c = 0; c < panels; ++c) {
-    const std::string block = "$state" + std::to_string(c);
-    text += "set zlabel " + make_title(data.model.inputs[c]) + " rotate by 90 offset 0,0\nsplot " +
-            block + " using 3:4:5 with points linetype 2 pointtype 2 pointsize 0.7 " +
-            (c == 0 ? "title 'network'" : "notitle") + ", " + block +
-            " using 1:2:5 with points linetype 1 pointtype 6 pointsize 0.8 " +
-            (c == 0 ? "title 'simulation'" : "notitle") + "\nunset key\n";
-  }
+          ",2 margins 0.16,0.9,0.14,0.93 spacing 0.24,0.17\n" + make_state_axes(data, ground);
+  for (std::size_t c = 0; c < panels; ++c) text += make_state_panel(data, c);
   text += "unset multiplot\n";
   figure.caption =
       "As Figure 6 of the paper. The states of the " + std::to_string(data.inputs.size()) +
-      " test cases over " + make_words(data.model.targets[x].name) + " and " +
-      make_words(data.model.targets[y].name) +
+      " test cases over " + make_words(data.model.targets[ground.x].name) + " and " +
+      make_words(data.model.targets[ground.y].name) +
       ": circles at the true values, crosses at those that the network identifies from the states.";
   return figure;
 }
 
-StudyFigure draw_boxes(const StudyRequest& request, const CellResult& cell, const Identified& data,
-                       const std::string& preload) {
-  StudyFigure figure{{"errors_" + preload, 900, 520, ""}, ""};
-  std::string& text = figure.figure.commands;
-  const std::size_t count = data.model.targets.size();
-  Rows errors, published;
+/// Absolute percentage errors by test cases; NaN for none, which a logarithmic scale cannot show.
+Rows list_percentage_errors(const Identified& data) {
+  Rows errors;
+  errors.reserve(data.reference.size());
   for (std::size_t i = 0; i < data.reference.size(); ++i) {
     std::vector<double> row;
-    for (std::size_t p = 0; p < count; ++p) {
+    row.reserve(data.reference[i].size());
+    for (std::size_t p = 0; p < data.reference[i].size(); ++p) {
       const double truth = data.reference[i][p];
       const double error = 100.0 * std::fabs((data.predicted[i][p] - truth) / truth);
       row.push_back(error > 0.0 ? error : std::nan(""));
     }
-    errors.push_back(row);
+    errors.push_back(std::move(row));
   }
+  return errors;
+}
+
+std::string make_box_axes(const std::vector<ColumnInfo>& parameters) {
   std::string tics;
-  for (std::size_t p = 0; p < count; ++p) {
-    const double x = static_cast<double>(p + 1);
-    published.push_back({x, find_published(request, cell, p, 2)});
-    tics +=
-        (p == 0 ? "'" : ", '") + make_words(data.model.targets[p].name) + "' " + format_number(x);
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    tics += (p == 0 ? "'" : ", '") + make_words(parameters[p].name) + "' " + std::to_string(p + 1);
   }
-  text += make_data("errors", errors) + make_data("published", published) +
-          "set logscale y\nset format y '10^{%L}'\nset grid ytics\nset xtics (" + tics +
-          ")\nset xrange [0.5:" + std::to_string(count) +
-          ".5]\n"
-          "set ylabel 'absolute percentage error [%]'\nset style boxplot outliers pointtype 6\n"
-          "set style fill solid 0.35 border\nset boxwidth 0.4\nset pointsize 0.4\n"
-          "set key outside top center horizontal\nplot ";
-  for (std::size_t p = 0; p < count; ++p) {
+  return "set logscale y\nset format y '10^{%L}'\nset grid ytics\nset xtics (" + tics +
+         ")\nset xrange [0.5:" + std::to_string(parameters.size()) +
+         ".5]\nset ylabel 'absolute percentage error [%]'\n"
+         "set style boxplot outliers pointtype 6\nset style fill solid 0.35 border\n"
+         "set boxwidth 0.4\nset pointsize 0.4\nset key outside top center horizontal\n";
+}
+
+StudyFigure draw_boxes(const StudyRequest& request, const CellResult& cell, const Identified& data,
+                       const std::string& preload) {
+  const std::vector<ColumnInfo>& parameters = data.model.targets;
+  Rows published;
+  std::string boxes;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
     const std::string n = std::to_string(p + 1);
-    text += "$errors using (" + n + "):" + n + " with boxplot linetype 1 notitle, ";
+    boxes += "$errors using (" + n + "):" + n + " with boxplot linetype 1 notitle, ";
+    published.push_back({static_cast<double>(p + 1), find_published(request, cell, p, kMape)});
   }
   const bool any = std::any_of(published.begin(), published.end(),
                                [](const auto& row) { return !std::isnan(row[1]); });
-  text += any ? "$published using 1:2 with points linetype 2 pointtype 9 pointsize 1.4 "
-                "title 'the paper: mean'\n"
-              : "NaN notitle\n";
+  StudyFigure figure{{"errors_" + preload, 900, 520, ""}, ""};
+  figure.figure.commands =
+      make_data("errors", list_percentage_errors(data)) + make_data("published", published) +
+      make_box_axes(parameters) + "plot " + boxes +
+      (any ? "$published using 1:2 with points linetype 2 pointtype 9 pointsize 1.4 title 'the "
+             "paper: mean'\n"
+           : "NaN notitle\n");
   figure.caption =
       "As Figure 7 of the paper. Absolute percentage errors of " + cell.key +
       " on its test cases: median, quartiles, whiskers to 1.5 times their distance, outliers. The "
       "scale is logarithmic" +
-      std::string(any ? "; triangles: the paper's MAPE." : ".");
+      (any ? "; triangles: the paper's MAPE." : ".");
   return figure;
 }
 

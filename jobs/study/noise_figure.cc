@@ -60,7 +60,7 @@ std::vector<Curve> list_curves(const NoiseStudy& study, std::size_t p) {
   return curves;
 }
 
-/// A data block: scale, then the curves; a line of one point needs a second one to be seen.
+/// A data block: scale, then the curves.
 std::string make_block(const NoiseStudy& study, const std::vector<Curve>& curves,
                        const std::string& name) {
   std::vector<std::vector<double>> rows;
@@ -132,8 +132,7 @@ StudyFigure make_noise_figure(const NoiseStudy& study) {
   figure.caption =
       "Root mean square errors over the noise, on cases that training never saw. Lines: "
       "Cramer-Rao bounds; circles: networks; triangles: fits of the simulation; dashed: the error "
-      "of "
-      "who says the middle of the grid always.";
+      "of who says the middle of the grid always.";
   return figure;
 }
 

@@ -1,5 +1,6 @@
 #include "jobs/study/noise_limits.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -98,14 +99,25 @@ bool calc_items(int threads, NoiseLimitsProgress& progress, std::atomic<bool>& h
   return !halt;
 }
 
-/// True where the file is there and whole; a note where it is not whole.
+const BoundedCase& get_bounds(const BoundedCase& bounded) { return bounded; }
+const BoundedCase& get_bounds(const FittedCase& fit) { return fit.bounds; }
+
+/// Whether what was computed is of these test cases. A resumed sweep may have mended others.
+template <class Item>
+bool is_of(const std::vector<Item>& items, const std::vector<TestCase>& cases) {
+  return std::equal(
+      items.begin(), items.end(), cases.begin(), cases.end(),
+      [](const Item& item, const TestCase& c) { return get_bounds(item).number == c.number; });
+}
+
+/// True where the file is there and of these cases; a note where it is not what it should be.
 template <class Read>
-bool is_done(const fs::path& file, std::size_t count, const Read& read,
+bool is_done(const fs::path& file, const std::vector<TestCase>& cases, const Read& read,
              std::vector<std::string>& notes) {
   if (!fs::exists(file)) return false;
   try {
-    if (read() == count) return true;
-    notes.push_back(file.string() + ": computed anew, it was of another number of cases");
+    if (is_of(read(), cases)) return true;
+    notes.push_back(file.string() + ": computed anew, it was of other cases");
   } catch (const InputError& e) {
     notes.push_back(file.string() + ": computed anew: " + e.what());
   }
@@ -124,11 +136,11 @@ struct Work {
   std::vector<std::string> parameters = list_axes(data.snapshots.front().sweep);
 };
 
-bool update_bounds(Work& work, const NoiseSnapshots& snapshots) {
-  const std::vector<TestCase> cases = list_test_cases(work.request, work.data, snapshots);
+bool update_bounds(Work& work, const NoiseSnapshots& snapshots,
+                   const std::vector<TestCase>& cases) {
   const fs::path file = find_bounds_file(work.folder, snapshots);
-  const auto read = [&] { return read_bounds(file, work.parameters).size(); };
-  if (is_done(file, cases.size(), read, work.notes)) {
+  const auto read = [&] { return read_bounds(file, work.parameters); };
+  if (is_done(file, cases, read, work.notes)) {
     work.progress.done += cases.size();
     return true;
   }
@@ -144,8 +156,8 @@ bool update_bounds(Work& work, const NoiseSnapshots& snapshots) {
 
 bool update_fits(Work& work, const std::vector<TestCase>& cases, double scale) {
   const fs::path file = find_fits_file(work.folder, scale);
-  const auto read = [&] { return read_fits(file, work.parameters).size(); };
-  if (is_done(file, cases.size(), read, work.notes)) {
+  const auto read = [&] { return read_fits(file, work.parameters); };
+  if (is_done(file, cases, read, work.notes)) {
     work.progress.done += cases.size();
     return true;
   }
@@ -163,14 +175,19 @@ bool update_noise_limits(const NoiseStudyRequest& request, const NoiseStudyData&
                          const fs::path& folder, int threads, NoiseLimitsProgress& progress,
                          std::vector<std::string>& notes, std::atomic<bool>& halt) {
   Work work{request, data, folder, threads, progress, notes, halt};
-  progress.total =
-      (data.snapshots.size() + request.scales.size()) * static_cast<std::size_t>(request.fits);
+  const std::vector<TestCase> windows = list_window_cases(request, data);
+  progress.total = request.scales.size() * windows.size();
+  std::vector<std::vector<TestCase>> cases;  // of the snapshots
+  cases.reserve(data.snapshots.size());
   for (const NoiseSnapshots& snapshots : data.snapshots) {
-    if (!update_bounds(work, snapshots)) return false;
+    cases.push_back(list_test_cases(request, data, snapshots));
+    progress.total += cases.back().size();
   }
-  const std::vector<TestCase> cases = list_window_cases(request, data);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!update_bounds(work, data.snapshots[i], cases[i])) return false;
+  }
   for (const double scale : request.scales) {
-    if (!update_fits(work, cases, scale)) return false;
+    if (!update_fits(work, windows, scale)) return false;
   }
   return true;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "io/config.h"
 #include "jobs/study/noise_figure.h"
@@ -10,17 +9,11 @@
 namespace strut {
 namespace {
 
-std::string print(const char* format, double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-/// Three digits.
+/// Three digits, large numbers without an exponent.
 std::string round(double value) {
-  return print("%.3g", value).find('e') == std::string::npos || std::abs(value) < 1.0
-             ? print("%.3g", value)
-             : print("%.0f", std::stod(print("%.3g", value)));
+  std::string text = print_number("%.3g", value);
+  if (text.find('e') == std::string::npos || std::abs(value) < 1.0) return text;
+  return print_number("%.0f", std::stod(text));
 }
 
 std::vector<std::string> make_header(const NoiseStudy& study) {
@@ -43,8 +36,8 @@ std::vector<std::string> make_row(const NoisePoint& point, const NoiseErrors& er
   }
   const WindowErrors& window = errors.window;
   row.insert(row.end(), {round(window.bound), round(window.network),
-                         print("%.2f", window.network / window.bound), round(window.fit),
-                         print("%.2f", window.fit / window.bound)});
+                         print_number("%.2f", window.network / window.bound), round(window.fit),
+                         print_number("%.2f", window.fit / window.bound)});
   return row;
 }
 
@@ -61,11 +54,9 @@ ReportTable make_sensor_table(const NoiseStudy& study) {
   table.notes = {
       "Accelerometers and gyroscopes of the MEMS class: 75 to 160 ug/sqrt(Hz) and 0.003 to 0.014 "
       "deg/s/sqrt(Hz) over some 250 Hz, zero offsets of 20 to 60 mg and 0.5 to 3 deg/s (data "
-      "sheets "
-      "of ICM-42688, ICM-20602, BMI160, BMI270, BMI088). Height as of a laser sensor, velocity "
-      "integrated and corrected by it, pitch angle of a fused attitude: assumptions. White noise "
-      "is "
-      "scaled; biases, hit time and speed are not."};
+      "sheets of ICM-42688, ICM-20602, BMI160, BMI270, BMI088). Height as of a laser sensor, "
+      "velocity integrated and corrected by it, pitch angle of a fused attitude: assumptions. "
+      "White noise is scaled; biases, hit time and speed are not."};
   return table;
 }
 
@@ -76,9 +67,9 @@ ReportTable make_fit_table(const NoiseStudy& study) {
                     {},
                     0};
   for (const NoisePoint& point : study.points) {
-    table.rows.push_back({format_number(point.scale), std::to_string(study.fits),
-                          std::to_string(point.converged), print("%.4f", point.chi2_per_degree),
-                          print("%.2g", point.fit_seconds)});
+    table.rows.push_back(
+        {format_number(point.scale), std::to_string(study.fits), std::to_string(point.converged),
+         print_number("%.4f", point.chi2_per_degree), print_number("%.2g", point.fit_seconds)});
   }
   table.notes = {
       "chi2 above 1 where noise is far below that of real sensors: there the steps of the "
@@ -100,7 +91,9 @@ std::string describe_shares(const NoiseStudy& study, const Get& get) {
     shares.push_back(100.0 * get(point.errors[p]) / study.spread[p]);
   }
   const auto [low, high] = std::minmax_element(shares.begin(), shares.end());
-  const auto describe = [](double share) { return print(share < 9.95 ? "%.2g" : "%.0f", share); };
+  const auto describe = [](double share) {
+    return print_number(share < 9.95 ? "%.2g" : "%.0f", share);
+  };
   return describe(*low) + " to " + describe(*high) + " %";
 }
 
@@ -108,8 +101,7 @@ std::string describe_measurements(const NoiseStudy& study) {
   return "The tables above are without noise. Here every network is trained and tested with it: " +
          std::to_string(study.copies) +
          " noisy copies of each case. A snapshot is the main inputs at the sweep's own instant, "
-         "with "
-         "each preload. A window is what the sensors on the body record at " +
+         "with each preload. A window is what the sensors on the body record at " +
          format_number(study.rate) + " Hz from " + format_number(study.from) + " to " +
          format_number(study.to) + " s (preload " + study.window_preload +
          "); of it hit time (1 sigma " + format_number(1e3 * study.hit_time) +
@@ -125,8 +117,8 @@ std::string describe_bounds(const NoiseStudy& study) {
   const std::string cases = std::to_string(study.fits);
   return "Bound: the Cramer-Rao bound, 1 sigma of the best estimate without bias from the sensors "
          "alone. Over the test cases it varies by a factor of up to " +
-         print("%.2f", snapshot) + " for snapshots and " +
-         print("%.2f", find_largest(study.window_variation)) +
+         print_number("%.2f", snapshot) + " for snapshots and " +
+         print_number("%.2f", find_largest(study.window_variation)) +
          " for windows, so the tables hold its root mean square over " + cases +
          " test cases, as errors are root mean squares. A network knows more, the grid that its "
          "cases come from: where the bound is beyond the grid's spread it says the middle, errs by "
@@ -149,11 +141,11 @@ std::string describe_result(const NoiseStudy& study) {
          ", depending on the parameter; 100 % is what is known without any sensor. From a window "
          "it errs by " +
          describe_shares(study, [](const auto& e) { return e.window.network; }) +
-         ". That is at most " + print("%.2f", ratios.network) +
-         " times the bound; the fitted simulation reaches " + print("%.2f", ratios.fit) +
+         ". That is at most " + print_number("%.2f", ratios.network) +
+         " times the bound; the fitted simulation reaches " + print_number("%.2f", ratios.fit) +
          " times at most (worst parameter; 1 sigma of a ratio of " + std::to_string(study.fits) +
-         " fits is " + print("%.0f", 100.0 / std::sqrt(2.0 * static_cast<double>(study.fits))) +
-         " %).";
+         " fits is " +
+         print_number("%.0f", 100.0 / std::sqrt(2.0 * static_cast<double>(study.fits))) + " %).";
 }
 
 }  // namespace
@@ -185,10 +177,10 @@ std::string make_noise_line(const NoiseStudy& study) {
     }
   }
   return "noise " + format_number(point.scale) + ": from a window the network errs by at most " +
-         print("%.2f", ratios.network) + ", the fit by at most " + print("%.2f", ratios.fit) +
-         " times the Cramer-Rao bound (" + std::to_string(study.fits) +
-         " fits); from one snapshot at least " + print("%.2g", least) +
-         " times as much as from the window";
+         print_number("%.2f", ratios.network) + ", the fit by at most " +
+         print_number("%.2f", ratios.fit) + " times the Cramer-Rao bound (" +
+         std::to_string(study.fits) + " fits); from one snapshot at least " +
+         print_number("%.2g", least) + " times as much as from the window";
 }
 
 ReportSection make_noise_section(const NoiseStudy& study, const FigureDrawer& drawer) {

@@ -1,7 +1,6 @@
 #include "jobs/study/report.h"
 
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 
 #include "io/atomic_file.h"
 #include "io/config.h"
@@ -16,19 +15,15 @@
 namespace strut {
 namespace {
 
-std::string round(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
+std::string round(double value) { return print_number("%.2g", value); }
 
 ReportSection make_summary(const StudyRequest& request, const StudyResults& results) {
   ReportSection section;
   section.heading = "Result";
   ReportTable table;
   table.caption =
-      "Medians over seeds against the aim: errors at most a tenth of the published "
-      "ones, 1 - R2 at most 1e-4";
+      "Medians over seeds against the aim: errors at most a tenth of the published ones, 1 - R2 at "
+      "most 1e-4";
   table.header = {"preload",  "what",   "largest at", "within the aim",
                   "smallest", "median", "largest"};
   table.text_columns = 3;
@@ -45,8 +40,8 @@ ReportSection make_summary(const StudyRequest& request, const StudyResults& resu
                           round(s.smallest_gap), round(s.median_gap), round(s.largest_gap)});
   }
   table.notes = {
-      "Ratio: our median over the published number. MAE, MAPE and RMSE of every cell "
-      "with a published number count, at the sweep's own instant."};
+      "Ratio: our median over the published number. Every published error counts, at the sweep's "
+      "own instant."};
   section.tables.push_back(table);
   return section;
 }
@@ -54,9 +49,8 @@ ReportSection make_summary(const StudyRequest& request, const StudyResults& resu
 std::string describe_grid(const SweepRequest& sweep) {
   std::string text;
   for (const Axis& axis : sweep.grid.axes()) {
-    const double to = axis.from + axis.step * static_cast<double>(axis.count - 1);
     text += (text.empty() ? "" : ", ") + axis.name + " " + format_number(axis.from) + " to " +
-            format_number(to);
+            format_number(axis.last());
     if (sweep.sample.method == SampleMethod::kGrid) {
       text += " in " + std::to_string(axis.count) + " levels";
     }
@@ -75,24 +69,19 @@ ReportSection make_method(const StudyFolder& folder, const StudyRequest& request
   const SweepRequest sweep = read_request(folder.base().request());
   ReportSection section;
   section.heading = "What was done";
-  char shares[160];
-  std::snprintf(shares, sizeof shares,
-                "%.4g %% of the cases train, %.4g %% validate, the rest tests",
-                100.0 * request.split.train, 100.0 * request.split.validate);
   section.paragraphs = {
       "Cars with every combination of worn springs and dampers drawn from a grid (" +
           describe_grid(sweep) + ") were simulated over a bump: " + sweep.base.vehicle.name +
           ". A snapshot of the body's motion, taken as the rear wheels pass the bump, is all that "
-          "a "
-          "network sees; it is to say which springs and dampers the car has.",
+          "a network sees; it is to say which springs and dampers the car has.",
       "Preload free_length: the springs' free length is as of the new car, so worn springs sag, "
-      "and "
-      "the height at rest tells of them. Preload trimmed: each car stands at the same height, and "
-      "only its motion tells.",
-      std::string("Networks are trained by Levenberg-Marquardt. ") + shares +
-          ". A training keeps the weights of its best validation; the errors below are those of "
-          "the "
-          "test cases, which it never saw. " +
+      "and the height at rest tells of them. Preload trimmed: each car stands at the same height, "
+      "and only its motion tells.",
+      "Networks are trained by Levenberg-Marquardt. " +
+          print_number("%.4g", 100.0 * request.split.train) + " % of the cases train, " +
+          print_number("%.4g", 100.0 * request.split.validate) +
+          " % validate, the rest tests. A training keeps the weights of its best validation; the "
+          "errors below are those of the test cases, which it never saw. " +
           describe_seeds(request),
       "ME is the largest absolute error, MAE the mean absolute one, MAPE the mean absolute "
       "percentage, RMSE the root mean square, R2 the coefficient of determination."};
@@ -145,6 +134,16 @@ ReportTable make_option_table(const StudyRequest& request) {
   return table;
 }
 
+/// "goal", "goal, validation failures": why the trainings of a cell ended, each reason once.
+std::string list_stops(const CellResult& cell) {
+  std::vector<std::string> names;
+  for (const SeedResult& seed : cell.seeds) {
+    const std::string name = get_name(seed.stop);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return join_names(names);
+}
+
 /// How long the trainings took, and why they ended.
 ReportTable make_time_table(const StudyRequest& request, const StudyResults& results) {
   ReportTable table{"Trainings", {"preload", "cell", "stopped by", "epochs", "s each"}, {}, {}, 3};
@@ -157,8 +156,7 @@ ReportTable make_time_table(const StudyRequest& request, const StudyResults& res
     const Spread e = calc_spread(epochs);
     table.rows.push_back({request.preloads[cell.cell.preload].name,
                           cell.key + (cell.cell.best_instant ? ", best instant" : ""),
-                          get_name(cell.seeds.front().stop),
-                          format_number(e.low) + " .. " + format_number(e.high),
+                          list_stops(cell), format_number(e.low) + " .. " + format_number(e.high),
                           round(calc_spread(seconds).median)});
   }
   return table;

@@ -16,6 +16,7 @@ constexpr std::int64_t kMostInt64 = std::numeric_limits<std::int64_t>::max();
 constexpr int kMostInt = std::numeric_limits<int>::max();
 constexpr int kMostSeeds = 1000;
 constexpr double kWholeLimit = 9e15;  // whole numbers that a double counts
+constexpr double kLeastR2 = -1e6;     // worse than any fit that somebody published
 const std::vector<std::string> kPreloadNames = {"free_length", "trimmed"};
 const std::vector<std::string> kRules = {"gain-ratio", "trainlm"};  // DampingRule
 
@@ -163,10 +164,11 @@ PublishedCell read_published_cell(const Table& table) {
   for (const std::string& parameter : table.keys()) {
     if (parameter == "table") continue;
     const Table values = table.table(parameter);
-    for (const MetricInfo& metric : kMetrics) {
-      if (values.has(metric.name)) {
-        cell.parameters[parameter][metric.name] = values.number(metric.name, at_least(0.0));
-      }
+    for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+      const char* name = kMetrics[m].name;
+      if (!values.has(name)) continue;
+      cell.parameters[parameter][name] =
+          values.number(name, m == kR2 ? between(kLeastR2, 1.0) : above(0.0));
     }
   }
   return cell;
@@ -186,16 +188,23 @@ PublishedNumbers read_published(const std::filesystem::path& path) {
   return numbers;
 }
 
-/// Numbers of a cell that the study does not have would be forgotten in silence.
-void check_published(const StudyRequest& request) {
+/// Numbers of a cell or parameter that the study does not have would be forgotten in silence.
+void check_published(const StudyRequest& request, const std::vector<std::string>& parameters) {
+  const auto require = [&](const std::string& at, const std::string& name, const char* kind,
+                           const std::vector<std::string>& known) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) return;
+    throw InputError(request.published_path.string() + ": cells." + at + ": no " + kind +
+                     " of the study" + suggest_name(name, known) + "; it has " + join_names(known));
+  };
   std::vector<std::string> keys;
   for (const StudyCell& cell : list_cells(request)) keys.push_back(make_key(request, cell));
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   for (const auto& [key, cell] : request.published.cells) {
-    if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-    throw InputError(request.published_path.string() + ": cells." + key + ": no cell of the study" +
-                     suggest_name(key, keys) + "; cells: " + join_names(keys));
+    require(key, key, "cell", keys);
+    for (const auto& [name, values] : cell.parameters) {
+      require(key + "." + name, name, "parameter", parameters);
+    }
   }
 }
 
@@ -229,7 +238,7 @@ StudyRequest read_study(const std::filesystem::path& path) {
     request.published = read_published(request.published_path);
   }
   document.check_all_read();
-  check_published(request);
+  check_published(request, list_axes(sweep));
   return request;
 }
 

@@ -45,7 +45,8 @@ inline constexpr std::array<MetricInfo, 5> kMetrics = {
      {"MAPE", &Metrics::mean_absolute_percentage},
      {"RMSE", &Metrics::rms_error},
      {"R2", &Metrics::r2}}};
-inline constexpr std::size_t kR2 = 4;  // of kMetrics
+/// Positions in kMetrics.
+inline constexpr std::size_t kMae = 1, kMape = 2, kRmse = 3, kR2 = 4;
 
 /// Published numbers of one cell: parameter -> metric -> value.
 struct PublishedCell {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <memory>
 #include <stdexcept>
 
+#include "jobs/report/html.h"
 #include "jobs/study/trainings.h"
 #include "sweep/folder.h"
 #include "train/evaluate.h"
@@ -147,6 +147,10 @@ StudySummary summarize_preload(const StudyRequest& request, const StudyResults& 
 
 Spread calc_spread(std::vector<double> values) {
   if (values.empty()) throw std::invalid_argument("calc_spread: no values");
+  // A sort needs an order, which NaN has not.
+  if (std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); })) {
+    return {kNaN, kNaN, kNaN};
+  }
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
   return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
@@ -194,7 +198,7 @@ double find_published(const StudyRequest& request, const CellResult& cell, std::
 
 std::string get_unit(const ColumnInfo& parameter, std::size_t metric) {
   if (metric == kR2) return "1";
-  return kMetrics[metric].name == std::string("MAPE") ? "%" : parameter.unit;
+  return metric == kMape ? "%" : parameter.unit;
 }
 
 std::vector<StudySummary> summarize(const StudyRequest& request, const StudyResults& results) {
@@ -207,19 +211,16 @@ std::vector<StudySummary> summarize(const StudyRequest& request, const StudyResu
 }
 
 std::string make_line(const StudySummary& s) {
-  char text[512];
+  const auto round = [](double value) { return print_number("%.2g", value); };
   std::string line = s.preload + ": ";
   if (s.errors > 0) {
-    std::snprintf(text, sizeof text,
-                  "%zu of %zu errors at most a tenth of the published ones (ratio %.2g at best, "
-                  "%.2g in the median, %.2g at worst: %s); ",
-                  s.errors_held, s.errors, s.smallest_ratio, s.median_ratio, s.largest_ratio,
-                  s.largest_at.c_str());
-    line += text;
+    line += std::to_string(s.errors_held) + " of " + std::to_string(s.errors) +
+            " errors at most a tenth of the published ones (ratio " + round(s.smallest_ratio) +
+            " at best, " + round(s.median_ratio) + " in the median, " + round(s.largest_ratio) +
+            " at worst: " + s.largest_at + "); ";
   }
-  std::snprintf(text, sizeof text, "%zu of %zu with 1 - R2 at most 1e-4 (worst %.2g: %s)",
-                s.gaps_held, s.gaps, s.largest_gap, s.largest_gap_at.c_str());
-  return line + text;
+  return line + std::to_string(s.gaps_held) + " of " + std::to_string(s.gaps) +
+         " with 1 - R2 at most 1e-4 (worst " + round(s.largest_gap) + ": " + s.largest_gap_at + ")";
 }
 
 }  // namespace strut

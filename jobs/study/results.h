@@ -20,7 +20,8 @@ struct Spread {
   double median = 0.0, low = 0.0, high = 0.0;
 };
 
-/// Median: of an even number the mean of the middle two. Throws std::invalid_argument for none.
+/// Median: of an even number the mean of the middle two. All NaN where one value is. Throws
+/// std::invalid_argument for none.
 Spread calc_spread(std::vector<double> values);
 
 struct SeedResult {

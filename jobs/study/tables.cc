@@ -1,21 +1,12 @@
 #include "jobs/study/tables.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
 #include "io/config.h"
 #include "jobs/progress.h"
 
 namespace strut {
 namespace {
 
-std::string round(double value, const char* format = "%.2g") {
-  if (std::isnan(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
+std::string round(double value) { return print_number("%.2g", value); }
 
 std::string round_spread(const Spread& s, TableDetail detail) {
   std::string median = round(s.median);
@@ -27,12 +18,12 @@ std::string round_spread(const Spread& s, TableDetail detail) {
 Spread calc_gap(const Spread& r2) { return {1.0 - r2.median, 1.0 - r2.high, 1.0 - r2.low}; }
 
 /// Which metrics the tables show, in the paper's order.
-constexpr std::size_t kShown[] = {1, 2, 3};  // MAE, MAPE, RMSE of kMetrics
+constexpr std::size_t kShown[] = {kMae, kMape, kRmse};
 
 std::vector<std::string> make_header(const std::string& first, bool published) {
   std::vector<std::string> header = {first, "parameter", "unit"};
   for (const std::size_t m : kShown) {
-    header.push_back(std::string(kMetrics[m].name) + (kMetrics[m].name[2] == 'P' ? " %" : ""));
+    header.push_back(kMetrics[m].name + std::string(m == kMape ? " %" : ""));
     if (!published) continue;
     header.emplace_back("paper");
     header.emplace_back("ratio");
@@ -52,11 +43,11 @@ void add_rows(const StudyRequest& request, const CellResult& cell, const std::st
       const Spread& spread = cell.spread[p][m];
       row.push_back(round_spread(spread, detail));
       if (!published) continue;
-      row.push_back(round(find_published(request, cell, p, m), "%g"));
+      row.push_back(print_number("%g", find_published(request, cell, p, m)));
       row.push_back(round(spread.median / find_published(request, cell, p, m)));
     }
     row.push_back(round_spread(calc_gap(cell.spread[p][kR2]), detail));
-    if (published) row.push_back(round(1.0 - find_published(request, cell, p, kR2), "%.1g"));
+    if (published) row.push_back(print_number("%.1g", 1.0 - find_published(request, cell, p, kR2)));
     table.rows.push_back(row);
   }
 }
@@ -125,7 +116,7 @@ ReportTable make_input_table(const StudyRequest& request, const StudyResults& re
 std::string describe_inputs(const StudyRequest& request, const CellResult& cell) {
   std::string text = request.inputs[cell.cell.inputs].name + " inputs";
   if (cell.cell.best_instant) {
-    text += ", snapshot at " + round(cell.offset, "%.4g") + " m";
+    text += ", snapshot at " + print_number("%.4g", cell.offset) + " m";
   }
   return text;
 }
