@@ -5,7 +5,6 @@
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
 #include "io/shard_layout.h"
-#include "sweep/find_channel.h"
 #include "sweep/parameters.h"
 #include "sweep/sensor_noise.h"
 
@@ -59,15 +58,6 @@ void apply_settings(const Arguments& arguments, const std::string& option,
     const auto [name, sigma] = read_setting(option, setting);
     values[find_input(option, inputs, name)] = sigma;
   }
-}
-
-std::vector<double> take_channels(const SensorNoise& all, const std::vector<std::string>& inputs) {
-  std::vector<double> taken;
-  taken.reserve(inputs.size());
-  for (const std::string& name : inputs) {
-    taken.push_back(all[static_cast<std::size_t>(find_car_channel(name))]);
-  }
-  return taken;
 }
 
 void require_noise(const Arguments& arguments, const std::vector<std::string>& inputs,

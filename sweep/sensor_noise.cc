@@ -79,6 +79,15 @@ void apply_noise(SensorNoise& noise, const std::string& setting) {
   noise[channel] = sigma;
 }
 
+std::vector<double> take_channels(const SensorNoise& noise, const std::vector<std::string>& names) {
+  std::vector<double> taken;
+  taken.reserve(names.size());
+  for (const std::string& name : names) {
+    taken.push_back(noise[static_cast<std::size_t>(find_car_channel(name))]);
+  }
+  return taken;
+}
+
 std::vector<int> list_sensors(const SensorNoise& noise) {
   std::vector<int> channels;
   for (std::size_t c = 0; c < noise.size(); ++c) {

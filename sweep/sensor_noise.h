@@ -25,6 +25,9 @@ SensorNoise make_default_bias();
 /// Applies "channel=sigma". Throws InputError where the text is not that or sigma is not positive.
 void apply_noise(SensorNoise& noise, const std::string& setting);
 
+/// The sigmas of channels by name. Throws InputError with the nearest known name.
+std::vector<double> take_channels(const SensorNoise& noise, const std::vector<std::string>& names);
+
 /// Channels that have a sensor, in order.
 std::vector<int> list_sensors(const SensorNoise& noise);
 

@@ -29,14 +29,8 @@ namespace fs = std::filesystem;
 /// A study that has run, made once; tests that change it take a copy.
 const StudyFiles& get_study() {
   static const StudyFiles files;
-  static const bool made = [] {
-    const Outcome outcome = files.run("--threads 2");
-    INFO(outcome.messages);
-    REQUIRE(outcome.code == 0);
-    return true;
-  }();
-  REQUIRE(made);
-  return files;
+  static const StudyFiles& made = test::require_run(files);
+  return made;
 }
 
 TEST_CASE("A study's numbers are those that evaluate gives of its models", "[io][slow]") {
@@ -171,9 +165,7 @@ TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow
 
 TEST_CASE("A model of other options or a damaged one is trained anew", "[io][slow]") {
   const StudyFiles& files = get_study();
-  const fs::path root = files / "copy", models = root / "models";
-  fs::remove_all(root);
-  fs::copy(files / "made", root, fs::copy_options::recursive);
+  const fs::path root = files.copy("copy"), models = root / "models";
   const fs::path other = models / "trimmed_small_70_four_seed1.h5",
                  damaged = models / "trimmed_small_70_four_seed2.h5";
   const std::string before = test::read_text(other);
@@ -296,9 +288,7 @@ TEST_CASE("A study's report is one well-formed page that needs no other file", "
 
 TEST_CASE("Without gnuplot a study and its report say that figures are left out", "[io][slow]") {
   const StudyFiles& files = get_study();
-  const fs::path root = files / "bare";
-  fs::remove_all(root);
-  fs::copy(files / "made", root, fs::copy_options::recursive);
+  const fs::path root = files.copy("bare");
   const Outcome outcome = run_shell("PATH=" + (files / "nothing").string() +
                                     " " STRUT_PROGRAM " report " + root.string());
   CHECK(outcome.code == 0);

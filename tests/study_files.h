@@ -95,10 +95,26 @@ class StudyFiles {
     return run_file((files_ / "study.toml").string(), folder, options);
   }
 
+  /// A copy of "made", anew.
+  fs::path copy(const std::string& folder) const {
+    fs::path root = files_ / folder;
+    fs::remove_all(root);
+    fs::copy(files_ / "made", root, fs::copy_options::recursive);
+    return root;
+  }
+
  private:
   std::string text_;
   TemporaryFolder files_;
 };
+
+/// Runs the study into "made"; for a study that is made once, of which tests take copies.
+inline const StudyFiles& require_run(const StudyFiles& files) {
+  const Outcome outcome = files.run("--threads 2");
+  INFO(outcome.messages);
+  REQUIRE(outcome.code == 0);
+  return files;
+}
 
 inline std::map<std::string, std::string> read_folder(const fs::path& root) {
   std::map<std::string, std::string> files;

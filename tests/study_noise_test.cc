@@ -56,21 +56,8 @@ class NoiseStudyFiles : public StudyFiles {
 /// A study that has run, made once; tests that change it take a copy.
 const StudyFiles& get_study() {
   static const NoiseStudyFiles files;
-  static const bool made = [] {
-    const Outcome outcome = files.run("--threads 2");
-    INFO(outcome.messages);
-    REQUIRE(outcome.code == 0);
-    return true;
-  }();
-  REQUIRE(made);
-  return files;
-}
-
-fs::path copy_study(const std::string& name) {
-  fs::path root = get_study() / name;
-  fs::remove_all(root);
-  fs::copy(get_study() / "made", root, fs::copy_options::recursive);
-  return root;
+  static const StudyFiles& made = test::require_run(files);
+  return made;
 }
 
 /// `noise.scales` by scale.
@@ -245,7 +232,7 @@ TEST_CASE("noise.csv has a line for every number of the noise section", "[io][sl
 }
 
 TEST_CASE("A report of a study with noise computes nothing and repeats its bytes", "[io][slow]") {
-  const fs::path root = copy_study("reported");
+  const fs::path root = get_study().copy("reported");
   const auto before = read_folder(root);
   for (const char* name : {"results.json", "noise.csv", "report.html", "figures/noise.svg"}) {
     REQUIRE(fs::remove(root / name));
@@ -257,7 +244,7 @@ TEST_CASE("A report of a study with noise computes nothing and repeats its bytes
 }
 
 TEST_CASE("Bounds and fits that are lost or damaged are computed anew, others kept", "[io][slow]") {
-  const fs::path root = copy_study("lost");
+  const fs::path root = get_study().copy("lost");
   const auto before = read_folder(root);
   fs::remove(root / "noise/fits_1.csv");
   const Outcome none = run_program("report " + root.string());
@@ -280,7 +267,7 @@ TEST_CASE("Bounds and fits that are lost or damaged are computed anew, others ke
 }
 
 TEST_CASE("Bounds of other cases are computed anew", "[io][slow]") {
-  const fs::path root = copy_study("other"), file = root / "noise/bounds_trimmed.csv";
+  const fs::path root = get_study().copy("other"), file = root / "noise/bounds_trimmed.csv";
   const std::string before = test::read_text(file);
   const std::size_t units = before.find('\n') + 1, row = before.find('\n', units) + 1;
   const std::size_t end = before.find(',', row);
@@ -292,7 +279,7 @@ TEST_CASE("Bounds of other cases are computed anew", "[io][slow]") {
 }
 
 TEST_CASE("A study that is stopped among its fits goes on to the same numbers", "[io][slow]") {
-  const fs::path root = copy_study("stopped");
+  const fs::path root = get_study().copy("stopped");
   fs::remove(root / "noise/fits_0.1.csv");
   fs::remove(root / "noise/fits_1.csv");
   fs::remove(root / "results.json");

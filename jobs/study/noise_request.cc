@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "diagnose/unknown.h"
 #include "io/nearest_name.h"
-#include "sweep/find_channel.h"
 #include "sweep/plan.h"
+#include "sweep/sensor_noise.h"
 
 namespace strut {
 namespace {
@@ -13,16 +12,6 @@ namespace {
 constexpr int kMostCopies = 1000, kMostFits = 100'000;
 constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
 constexpr char kSpeed[] = "speed";
-
-std::vector<double> scale_noise(const std::vector<std::string>& channels, const SensorNoise& noise,
-                                double scale) {
-  std::vector<double> values;
-  values.reserve(channels.size());
-  for (const std::string& name : channels) {
-    values.push_back(scale * noise[static_cast<std::size_t>(find_car_channel(name))]);
-  }
-  return values;
-}
 
 std::vector<double> read_scales(const Table& table) {
   std::vector<double> scales = table.numbers("scales", between(kLeastScale, kMostScale));
@@ -61,7 +50,7 @@ void check_grids(const Table& table, const SweepRequest& first, const SweepReque
 
 void check_sensors(const Table& table, const std::string& key,
                    const std::vector<std::string>& channels) {
-  const std::vector<double> noise = scale_noise(channels, make_default_noise(), 1.0);
+  const std::vector<double> noise = take_channels(make_default_noise(), channels);
   for (std::size_t c = 0; c < channels.size(); ++c) {
     if (noise[c] > 0.0) continue;
     throw table.error(key, "no sensor of " + channels[c] +
@@ -126,17 +115,16 @@ NoiseModel make_snapshot_noise(const NoiseStudyRequest& request,
                                const std::vector<std::string>& channels, double scale) {
   NoiseModel noise;
   noise.copies = request.copies;
-  noise.sigma = scale_noise(channels, make_default_noise(), scale);
+  noise.sigma = take_channels(make_default_noise(), channels);
+  for (double& sigma : noise.sigma) sigma *= scale;
   noise.bias.assign(channels.size(), 0.0);
   return noise;
 }
 
 NoiseModel make_window_noise(const NoiseStudyRequest& request,
                              const std::vector<std::string>& channels, double scale) {
-  NoiseModel noise;
-  noise.copies = request.copies;
-  noise.sigma = scale_noise(channels, make_default_noise(), scale);
-  noise.bias = scale_noise(channels, make_default_bias(), 1.0);
+  NoiseModel noise = make_snapshot_noise(request, channels, scale);
+  noise.bias = take_channels(make_default_bias(), channels);
   noise.hit_time = request.hit_time;
   return noise;
 }
