@@ -15,6 +15,7 @@
 #include "jobs/run_file.h"
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
+#include "model/effects/read_out.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
 
@@ -115,14 +116,17 @@ LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
                       const StepOptions& step) {
   SamplePlan plan;
   plan.interval = 1.0 / options.rate;
-  if (options.integrator == kCvode) {
-    ReferenceOptions reference;
-    reference.closure = options.integrate.closure;
-    return run_cvode(c, reference, plan);
-  }
-  IntegrateOptions integrate = options.integrate;
-  integrate.step = step;
-  return list_kernels().front().run_scalar(c, integrate, plan);
+  const ReadOut out(list_car_channels(), {&c.sensors});
+  return simulate_readings(out, plan, [&](const SamplePlan& record) {
+    if (options.integrator == kCvode) {
+      ReferenceOptions reference;
+      reference.closure = options.integrate.closure;
+      return run_cvode(c, reference, record);
+    }
+    IntegrateOptions integrate = options.integrate;
+    integrate.step = step;
+    return list_kernels().front().run_scalar(c, integrate, record);
+  });
 }
 
 /// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "model/effects/read_out.h"
 #include "model/vehicle/model_error.h"
 #include "sweep/timer.h"
 
@@ -29,6 +30,13 @@ IntegrateOptions make_retry_options(const IntegrateOptions& options, int attempt
   finer.step.coarse_step = 0.0;
   finer.step.locate_events = true;
   return finer;
+}
+
+ReadOut make_read_out(const std::vector<const PreparedCase*>& lanes) {
+  std::vector<const EffectSettings*> sensors;
+  sensors.reserve(lanes.size());
+  for (const PreparedCase* c : lanes) sensors.push_back(&c->sensors);
+  return ReadOut(list_car_channels(), sensors);
 }
 
 void fail(ShardRows& rows, std::size_t row, CaseStatus status, double time, std::string reason) {
@@ -96,11 +104,14 @@ void CaseSimulator::retry(std::int64_t case_id, int attempt, ShardRows& rows, st
   const std::optional<PreparedCase> prepared = prepare(case_id, rows, row);
   if (!prepared) return;
   const IntegrateRequest& integrate = plan_.request().integrate;
-  record(
-      integrate.solver == Solver::kCvode
-          ? run_cvode(*prepared, integrate.reference, samples_)
-          : kernel_.run_scalar(*prepared, make_retry_options(integrate.options, attempt), samples_),
-      0, rows, row);
+  const LaneResults results =
+      simulate_readings(make_read_out({&*prepared}), samples_, [&](const SamplePlan& samples) {
+        return integrate.solver == Solver::kCvode
+                   ? run_cvode(*prepared, integrate.reference, samples)
+                   : kernel_.run_scalar(*prepared, make_retry_options(integrate.options, attempt),
+                                        samples);
+      });
+  record(results, 0, rows, row);
 }
 
 /// Everything but parameters and layer neutral, whatever stood there before.
@@ -153,10 +164,6 @@ std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std
 std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& rows) {
   const Timer timer(seconds_.integrate);
   const IntegrateRequest& integrate = plan_.request().integrate;
-  if (integrate.solver == Solver::kCvode) {
-    record(run_cvode(ready[0].prepared, integrate.reference, samples_), 0, rows, ready[0].row);
-    return 1;
-  }
   std::vector<const PreparedCase*> lanes;
   lanes.reserve(batch_size());
   for (const Ready& next : ready) {
@@ -167,7 +174,12 @@ std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& ro
     lanes.push_back(&next.prepared);
   }
   const auto count = static_cast<int>(lanes.size());
-  const LaneResults results = kernel_.run_lanes(lanes.data(), count, integrate.options, samples_);
+  const LaneResults results =
+      simulate_readings(make_read_out(lanes), samples_, [&](const SamplePlan& samples) {
+        return integrate.solver == Solver::kCvode
+                   ? run_cvode(*lanes[0], integrate.reference, samples)
+                   : kernel_.run_lanes(lanes.data(), count, integrate.options, samples);
+      });
   for (int lane = 0; lane < count; ++lane) {
     record(results, lane, rows, ready[static_cast<std::size_t>(lane)].row);
   }

@@ -237,7 +237,8 @@ EffectSettings make_many() {
           {"tire_progressive", "front", {4.0}},
           {"tire_damping", "rear", {150.0}},
           {"wheel_runout", "rear", {3e-4, 0.5}},
-          {"aerodynamic_lift", "rear", {0.2}}};
+          {"aerodynamic_lift", "rear", {0.2}},
+          {"joint_play", "rear_right", {4e-4}}};
 }
 
 TEST_CASE("A car with many effects follows CVODE", "[unit][reference][effects]") {

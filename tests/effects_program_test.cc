@@ -1,7 +1,11 @@
 // Effects through the program: a file that names them and a setting are one and the same.
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
 
 #include "sweep/read_effects.h"
 #include "tests/run_program.h"
@@ -59,6 +63,63 @@ TEST_CASE("A rig's effect from its file and by a setting give one run", "[io][ef
   const std::string from_file = simulate(extended, "");
   CHECK(from_file == simulate(plain, "--set strut_friction_force=1"));
   CHECK(from_file != simulate(plain, ""));
+}
+
+/// Columns of a CSV file by name.
+std::map<std::string, std::vector<double>> read_columns(const std::string& path) {
+  std::ifstream file(path);
+  std::string line, cell;
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<double>> columns;
+  std::getline(file, line);
+  for (std::istringstream cells(line); std::getline(cells, cell, ',');) {
+    names.push_back(cell.substr(0, cell.find_first_of(" [")));
+  }
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    for (std::size_t i = 0; std::getline(cells, cell, ','); ++i) {
+      if (line[0] != '#') columns[names.at(i)].push_back(std::strtod(cell.c_str(), nullptr));
+    }
+  }
+  return columns;
+}
+
+TEST_CASE("What sensors read is what simulate writes, of cars and rigs", "[io][effects]") {
+  const test::TemporaryFolder folder;
+  const bool car = GENERATE(true, false);
+  const std::string model =
+      kExamples / (car ? "vehicles/paper_sedan.toml" : "rigs/quarter_car.toml");
+  const std::string maneuver =
+      kExamples / (car ? "maneuvers/bump_20mps.toml" : "rigs/maneuvers/bump.toml");
+  const std::string loud = car ? "pitch_rate" : "sprung_position";
+  const std::string late = car ? "body_velocity_z" : "sprung_velocity";
+  const auto simulate = [&](const std::string& more) {
+    const std::string file = folder / "run.csv";
+    const test::Outcome outcome =
+        test::run_program("simulate " + model + " " + maneuver + " -o " + file + " " + more);
+    INFO(outcome.messages);
+    REQUIRE(outcome.code == 0);
+    return read_columns(file);
+  };
+  auto plain = simulate("--rate 500");
+  auto read = simulate("--rate 250 --set " + loud + "_sensor_gain=0.5 --set " + late +
+                       "_sensor_delay=0.008");
+  REQUIRE(plain.count(loud) == 1);
+  REQUIRE(read[loud].size() == (plain[loud].size() + 1) / 2);
+  double largest = 0.0;
+  for (const double y : plain[late]) largest = std::fmax(largest, std::fabs(y));
+  for (auto& [name, values] : read) {
+    INFO(name);
+    for (std::size_t i = 2; i < values.size(); ++i) {
+      if (name == loud) {
+        CHECK(values[i] == Approx(1.5 * plain[name][2 * i]).margin(1e-12));
+      } else if (name == late) {
+        CHECK(values[i] == Approx(plain[name][2 * i - 4]).margin(1e-6 * largest));
+      } else {
+        CHECK(values[i] == plain[name][2 * i]);
+      }
+    }
+  }
 }
 
 TEST_CASE("A misspelled effect on the command line is told", "[io][effects]") {

@@ -182,6 +182,75 @@ TEST_CASE("A lag that vanishes leaves the damper as it is", "[property][rigs]") 
   CHECK(before < 2e-5);  // what is left: stages of a step do not share one force
 }
 
+/// Force of a damper behind a joint of play p, `t` after the strut's speed, steady since long, has
+/// turned from -v to v.
+double calc_reversed_force(double t, double v, double c, double p) {
+  const double tau = p / 0.5, leaves = tau * std::numbers::ln2, arrives = leaves + p / v;
+  if (t < leaves) return c * v * (1.0 - 2.0 * std::exp(-t / tau));
+  return t < arrives ? 0.0 : c * v * (1.0 - std::exp(-(t - arrives) / tau));
+}
+
+TEST_CASE("A damper behind a joint with play is without force until the rod has crossed it",
+          "[unit][reference][rigs]") {
+  const double p = GENERATE(2e-4, 1e-3), v = GENERATE(0.02, 0.2), turn = 0.1;
+  const RigSpec spec = make_rig(RigKind::kStrutRig, {{"joint_play", "", {p}}});
+  const InputSignal input = make_signal("displacement", {0.0, turn, 0.4}, {v * turn, 0.0, 0.3 * v},
+                                        Interpolation::kLinear);
+  const LaneResults run = simulate_rig(spec, {input}, make_options(1e-5), make_plan(0.3, 5e-4));
+  int free = 0;
+  for (int i = 0; i <= 600; ++i) {
+    const double t = 5e-4 * i - turn, force = get_value(run, spec.kind, i, Strut::kDamperForce);
+    const double exact = t < 0.0 ? -1500.0 * v : calc_reversed_force(t, v, 1500.0, p);
+    if (std::fabs(t) < 1e-9) continue;  // the rate is either side's
+    free += force == 0.0 ? 1 : 0;
+    // Contact is made and lost within steps of 10 us: h / tau of the force at most.
+    CHECK(std::fabs(force - exact) < tolerance(1500.0 * v * 1e-5 / (p / 0.5) + 1e-9));
+  }
+  CHECK(free >= static_cast<int>(p / v / 5e-4) - 1);
+}
+
+TEST_CASE("A joint's play only takes energy", "[unit][property][rigs]") {
+  const double p = GENERATE(1e-4, 1e-3);
+  RigSpec spec = make_rig(RigKind::kSingleMass, {{"joint_play", "", {p}}});
+  spec.initial_velocity = {0.6, 0.0};
+  const LaneResults run = simulate_rig(spec, {}, make_options(1e-4), make_plan(2.0, 1e-3));
+  using C = SingleMassChannel;
+  double before = 1e300, first = 0.0;
+  for (int i = 0; i <= 2000; ++i) {
+    const double x = get_value(run, spec.kind, i, C::kPosition);
+    const double v = get_value(run, spec.kind, i, C::kVelocity);
+    const double w = get_value(run, spec.kind, i, C::kDamperForce) / 1500.0;
+    // The contact, a spring of stiffness c / 2 p, is pressed in by 2 p w.
+    const double energy = 150.0 * v * v + 1e4 * x * x + 1500.0 * p * w * w;
+    if (i == 0) first = energy;
+    CHECK(energy <= before + 1e-6 * first);  // steps over the contact's kink
+    before = energy;
+  }
+  CHECK(before < 0.1 * first);
+}
+
+TEST_CASE("A play that vanishes leaves the damper as it is", "[property][rigs]") {
+  const RigSpec plain = make_rig(RigKind::kQuarterCar);
+  const std::vector<InputSignal> road = {make_bump("road_position", 0.05, 0.1, 0.15)};
+  const auto run = [&](const RigSpec& spec) {
+    return simulate_rig(spec, road, make_options(1e-3), make_plan(1.0, 0.01));
+  };
+  const LaneResults base = run(plain);
+  for (const double play : {3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-7, 1e-10}) {
+    const LaneResults loose = run(make_rig(RigKind::kQuarterCar, {{"joint_play", "", {play}}}));
+    REQUIRE(loose.status[0] == 0);
+    double difference = 0.0;
+    for (int i = 0; i <= 100; ++i) {
+      const double sprung = get_value(loose, plain.kind, i, Quarter::kSprungPosition);
+      difference = std::fmax(
+          difference, std::fabs(sprung - get_value(base, plain.kind, i, Quarter::kSprungPosition)));
+    }
+    INFO(play << ": " << difference);
+    CHECK(difference < 1.5 * play + 2e-5);  // the rest: stages of a step do not share one force
+    CHECK(difference > 0.1 * play);
+  }
+}
+
 /// The quarter car with effects of every kind, written anew and integrated by the midpoint rule
 /// with tiny steps; returns positions at the end.
 std::array<double, 2> integrate_anew(double duration, const InputSignal& road) {
@@ -321,6 +390,11 @@ TEST_CASE("Smooth effects keep order four, kinks of a force's slope leave two",
   CHECK(measure_order({{"damper_asymmetry", "", {0.3}}}) > 1.5);
   CHECK(measure_order({{"bump_stop", "", {5e4, 0.005, 50.0}}}) > 1.5);
   CHECK(measure_error({{"damper_asymmetry", "", {0.3}}}, 1e-3) < 1e-6);
+  // A millisecond's step where the rod crosses the play within one: hundredths of the play.
+  for (const double play : {1e-4, 3e-4, 1e-3}) {
+    INFO(play << ": " << measure_error({{"joint_play", "", {play}}}, 1e-3));
+    CHECK(measure_error({{"joint_play", "", {play}}}, 1e-3) < 0.05 * play);
+  }
 }
 
 /// Settings of ordinary size for each effect that moves a rig.
@@ -389,14 +463,17 @@ TEST_CASE("An effect moves its rig, and neutral it is as if absent, also beside 
   }
 }
 
-TEST_CASE("Both integrators hold a stiff lag in a quarter car", "[unit][rigs]") {
+TEST_CASE("Both integrators hold a stiff lag and a joint in a quarter car", "[unit][rigs]") {
   const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
-  const double lag = GENERATE(1e-9, 1e-5, 2e-4, 1e-2);
-  const RigSpec spec = make_rig(RigKind::kQuarterCar, {{"damper_hysteresis", "", {lag}}});
+  const std::string effect = GENERATE("damper_hysteresis", "joint_play");
+  const double size = GENERATE(1e-9, 1e-5, 2e-4, 1e-2);
+  const RigSpec spec = make_rig(RigKind::kQuarterCar, {{effect, "", {size}}});
   const LaneResults run = simulate_rig(spec, {make_bump("road_position", 0.05, 0.1, 0.2)},
                                        make_options(1e-3, stepper), make_plan(3.0, 0.5));
   CHECK(run.status[0] == 0);
-  CHECK(std::fabs(get_value(run, spec.kind, 6, Quarter::kSprungPosition)) < 1e-3);
+  // Nothing damps within the play.
+  const double left = 1e-3 + (effect == "joint_play" ? size : 0.0);
+  CHECK(std::fabs(get_value(run, spec.kind, 6, Quarter::kSprungPosition)) < left);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "jobs/command.h"
 #include "jobs/run_file.h"
+#include "model/effects/read_out.h"
 #include "model/integrate/rig_system.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
@@ -70,11 +71,15 @@ int run_rig(const SimulateOptions& options, RigKind kind) {
   SamplePlan plan;
   plan.duration = maneuver.duration;
   plan.interval = 1.0 / options.rate;
+  plan.snapshot = false;
 
   RunRecord run;
   run.channels = &list_rig_channels(kind);
   const auto start = std::chrono::steady_clock::now();
-  run.results = simulate_rig(rig, maneuver.inputs, options.integrate.step, plan);
+  const ReadOut out(*run.channels, {&rig.effects});
+  run.results = simulate_readings(out, plan, [&](const SamplePlan& record) {
+    return simulate_rig(rig, maneuver.inputs, options.integrate.step, record);
+  });
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (run.results.status[0] != 0) {

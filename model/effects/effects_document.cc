@@ -30,7 +30,8 @@ trim; forces are positive where they push the ends of the strut apart. An effect
 switching parameters at the neutral value leaves every bit of a simulation as it is. Effects of one
 damper multiply; friction, springs and stops add. A corner's setting replaces the axle's there.
 Effects change the car that the file describes, not the file's geometry: the car finds its new
-equilibrium. Effects of sensors change readings, not the motion.
+equilibrium. Effects of sensors change what `strut simulate` and the shards of a sweep give out, not
+the motion, nor a channel that derives from theirs: the filter first, then delay, gain and bias.
 
 This page is written from the program's own list (`write_effects_document`); a test fails where the
 two differ.

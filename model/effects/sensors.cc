@@ -1,51 +1,104 @@
 #include "model/effects/sensors.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include "model/effects/strut_numbers.h"
 #include "model/integrate/exponential.h"
 #include "model/scenario/input_signal.h"
 
 namespace strut {
 namespace {
 
-std::vector<double> delay(const std::string& channel, const std::vector<double>& times,
-                          const std::vector<double>& values, double by) {
-  const InputSignal signal = make_signal(channel, times, values, Interpolation::kSpline);
-  std::vector<double> late;
-  late.reserve(values.size());
-  for (const double t : times) late.push_back(calc_signal(signal, t - by).value);
-  return late;
+struct SensorEffect {
+  const char* name;
+  double ChannelSensor::*value;
+};
+constexpr std::array<SensorEffect, 4> kSensorEffects = {{{"sensor_gain", &ChannelSensor::gain},
+                                                         {"sensor_bias", &ChannelSensor::bias},
+                                                         {"sensor_delay", &ChannelSensor::delay},
+                                                         {"sensor_lowpass", &ChannelSensor::time}}};
+
+const SensorEffect* find_sensor_effect(const std::string& name) {
+  for (const SensorEffect& effect : kSensorEffects) {
+    if (effect.name == name) return &effect;
+  }
+  return nullptr;
 }
 
-/// T dz/dt + z = y, exact for a y that is linear between samples.
-void filter(const std::vector<double>& times, double time_constant, std::vector<double>& values) {
-  double z = values.front(), y0 = values.front();
+std::vector<double> list_sample_times(double interval, std::size_t count) {
+  std::vector<double> times(count);
+  for (std::size_t i = 0; i < count; ++i) times[i] = interval * static_cast<double>(i);
+  return times;
+}
+
+/// T dz/dt + z = y, exact for a y that is a cubic between samples.
+void filter(const std::vector<double>& times, double interval, double time_constant,
+            std::vector<double>& values) {
+  const InputSignal y = make_signal("sensor", times, values, Interpolation::kSpline);
+  const double h = interval;
+  const PhiFunctions<double> phi = calc_phi(-h / time_constant);
+  double z = values.front();
   for (std::size_t i = 1; i < values.size(); ++i) {
-    const double h = times[i] - times[i - 1], y1 = values[i];
-    const PhiFunctions<double> phi = calc_phi(-h / time_constant);
-    z = phi.exponential * z + h / time_constant * (phi.phi1 * y0 + phi.phi2 * (y1 - y0));
-    y0 = y1;
+    const SignalCell& c = y.cells[i - 1];
+    const double pull =
+        c.c0 * phi.phi1 +
+        h * (c.c1 * phi.phi2 + h * (2.0 * c.c2 * phi.phi3 + 6.0 * c.c3 * h * phi.phi4));
+    z = phi.exponential * z + h / time_constant * pull;
     values[i] = z;
   }
 }
 
 }  // namespace
 
-std::vector<double> read_sensor(const EffectSettings& settings, ModelKind kind,
-                                const std::string& channel, const std::vector<double>& times,
-                                std::vector<double> values) {
-  const EffectValues of{settings, kind};
-  const double gain = of.get("sensor_gain", "gain", channel);
-  const double bias = of.get("sensor_bias", "bias", channel);
-  const double late = of.get("sensor_delay", "delay", channel);
-  const double slow = of.get("sensor_lowpass", "time", channel);
-  if (slow != 0.0 && !values.empty()) filter(times, slow, values);
-  if (late != 0.0) values = delay(channel, times, values, late);
-  if (gain == 0.0 && bias == 0.0) return values;
-  for (double& value : values) value = (1.0 + gain) * value + bias;
-  return values;
+EffectSettings list_sensor_settings(const EffectSettings& settings) {
+  EffectSettings found;
+  std::copy_if(settings.begin(), settings.end(), std::back_inserter(found),
+               [](const EffectSetting& s) { return find_sensor_effect(s.effect) != nullptr; });
+  return found;
+}
+
+ChannelSensor find_sensor(const EffectSettings& settings, const std::string& channel) {
+  ChannelSensor sensor;
+  for (const EffectSetting& setting : settings) {
+    if (setting.place != channel) continue;
+    const SensorEffect* effect = find_sensor_effect(setting.effect);
+    if (effect != nullptr) sensor.*(effect->value) = setting.values.at(0);
+  }
+  return sensor;
+}
+
+std::vector<double> read_sensor(const ChannelSensor& sensor, double interval,
+                                std::vector<double> samples, const std::vector<double>& times) {
+  const bool finite =
+      std::all_of(samples.begin(), samples.end(), [](double y) { return std::isfinite(y); });
+  if (!finite || samples.empty()) {
+    return std::vector<double>(times.size(), std::numeric_limits<double>::quiet_NaN());
+  }
+  std::vector<double> readings(times.size(), samples.front());
+  if (samples.size() > 1) {
+    const std::vector<double> sampled = list_sample_times(interval, samples.size());
+    if (sensor.time > 0.0) filter(sampled, interval, sensor.time, samples);
+    const InputSignal z = make_signal("sensor", sampled, samples, Interpolation::kSpline);
+    std::transform(times.begin(), times.end(), readings.begin(),
+                   [&](double t) { return calc_signal(z, t - sensor.delay).value; });
+  }
+  for (double& y : readings) y = sensor.amplify(y);
+  return readings;
+}
+
+std::vector<double> read_sensor(const EffectSettings& settings, const std::string& channel,
+                                double interval, std::vector<double> samples) {
+  const ChannelSensor sensor = find_sensor(settings, channel);
+  if (!sensor.is_on()) return samples;
+  if (sensor.has_memory()) {
+    const std::vector<double> times = list_sample_times(interval, samples.size());
+    return read_sensor(sensor, interval, std::move(samples), times);
+  }
+  for (double& y : samples) y = sensor.amplify(y);
+  return samples;
 }
 
 }  // namespace strut

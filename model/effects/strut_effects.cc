@@ -108,6 +108,19 @@ EffectInfo make_top_mount_compliance() {
                       0.1, 2e-3)}};
 }
 
+EffectInfo make_joint_play() {
+  return {"joint_play",
+          "a worn joint between damper and body or wheel: after a reversal the damper stands until "
+          "the rod has crossed the play",
+          "F = f(w), du/dt = v - w, w = (u - clamp(u, -p / 2, p / 2)) v_j / p, v_j = 0.5 m/s",
+          "dead zone in series with the damper, behind it a contact that yields by p at v_j "
+          "(stiffness c v_j / p of a linear damper); worn joints 0.1 to 1 mm; clearance with "
+          "contact spring: Flores et al., Kinematics and Dynamics of Multibody Systems with "
+          "Imperfect Joints, 2008",
+          kOnStrut,
+          {make_switch("play", "m", "p: lost motion from stop to stop", 0.0, 0.02, 3e-4)}};
+}
+
 EffectInfo make_gas_force() {
   EffectInfo gas = {
       "gas_force",
@@ -141,7 +154,7 @@ std::vector<EffectInfo> make_strut_effects() {
   return {make_damper_asymmetry(),   make_damper_blow_off(), make_damper_hysteresis(),
           make_damper_leak(),        make_damper_fade(),     make_strut_friction(),
           make_progressive_spring(), make_bump_stop(),       make_top_mount_compliance(),
-          make_gas_force(),          make_anti_roll_bar()};
+          make_joint_play(),         make_gas_force(),       make_anti_roll_bar()};
 }
 
 }  // namespace strut

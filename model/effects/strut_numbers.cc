@@ -33,8 +33,8 @@ StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
            get("damper_leak", "speed"),
            get("damper_fade", "loss"),
            get("damper_fade", "rate")};
-  n.series = {get("damper_hysteresis", "lag"), get("top_mount_compliance", "compliance"),
-              get("top_mount_compliance", "relaxation")};
+  n.series = {get("joint_play", "play"), get("damper_hysteresis", "lag"),
+              get("top_mount_compliance", "compliance"), get("top_mount_compliance", "relaxation")};
   n.spring = {strut.stiffness * get("progressive_spring", "cubic"), length};
   n.stop = {get("bump_stop", "stiffness"), get("bump_stop", "progression"),
             length - get("bump_stop", "gap")};
@@ -49,7 +49,8 @@ unsigned find_strut_effects(const StrutEffectNumbers<double>& n) {
   add_if(n.law.asymmetry != 0.0 || n.law.knee_loss != 0.0 || n.law.leak_speed != 0.0 ||
              n.law.fade != 0.0 || n.law.warm_fade != 0.0,
          kShapedDamper);
-  add_if(n.series.lag != 0.0 || n.series.compliance != 0.0, kShapedDamper | kSeriesDamper);
+  add_if(n.series.play != 0.0 || n.series.lag != 0.0 || n.series.compliance != 0.0,
+         kShapedDamper | kSeriesDamper);
   add_if(n.spring.rate != 0.0, kCubicSpring);
   add_if(n.stop.stiffness != 0.0, kBumpStop);
   add_if(n.friction.force != 0.0, kDryFriction);

@@ -31,25 +31,57 @@ struct DamperLaw {
   }
 };
 
-/// What lies in series with a damper whose instantaneous force is f(v): a lag, then a rubber mount.
+/// Speed at which a joint's contact yields by as much as its play [m/s]. Harder contact costs more
+/// than it is worth: at 0.5 m/s RK4 with 1 ms errs by 1 % of what 0.3 mm of play do to a quarter
+/// car, at 2 m/s by a third; what the play does changes by a seventh.
+inline constexpr double kJointSpeed = 0.5;
+
+/// What lies in series with a damper whose instantaneous force is f(v): a joint with play, a lag,
+/// then a rubber mount.
 ///
-///   tau dy/dt + y = f(v),   (tau_m + kappa c_s) dw/dt + w = y,   F = w + tau_m dw/dt
+///   du/dt = v - w,   w = (u - clamp(u, -p / 2, p / 2)) v_j / p
+///   tau dy/dt + y = f(w),   (tau_m + kappa c_s) dz/dt + z = y,   F = z + tau_m dz/dt
 ///
-/// with c_s = f(v) / v. y is f(v) itself where tau is 0, F is y where kappa is 0.
+/// with c_s = f(w) / w. u is the joint's displacement: within its play p the rod moves freely and
+/// the damper stands, beyond it the contact is a spring whose force f(w) grows as the damper's over
+/// speed does, for f = c w of stiffness c v_j / p. Its energy is the integral of f(w) over u, the
+/// damper takes f(w) w, so none is created, whatever the law. As p vanishes w becomes v. w is v
+/// itself where p is 0, y is f(w) itself where tau is 0, F is y where kappa is 0.
 template <class T>
 struct DamperSeries {
+  T play;        // p, m
   T lag;         // tau, s
   T compliance;  // kappa, m/N
   T relaxation;  // tau_m, s
 };
 
-/// States y [N] and w [N] of a DamperSeries with their rates [N/s], each also as -decay * state +
-/// the rest, decay [1/s].
+/// States y [N], z [N] and u [m] of a DamperSeries with their rates [1/s], each also as -decay *
+/// state + the rest, decay [1/s].
 template <class T>
 struct DamperSeriesState {
   T lagged, lagged_rate, lagged_decay;
   T mount, mount_rate, mount_decay;
+  T joint, joint_rate, joint_decay;
 };
+
+/// Speed w that reaches the damper through its joint [m/s], of the strut's speed v; fills rate and
+/// decay of the joint.
+template <class T>
+T calc_joint_speed(const DamperSeries<T>& series, const T& speed, DamperSeriesState<T>& state) {
+  const auto loose = series.play > T(0.0);
+  const T half = T(0.5) * series.play;
+  state.joint_decay = select(loose, T(kJointSpeed) / select(loose, series.play, T(1.0)), T(0.0));
+  const T passed = state.joint_decay * (state.joint - min(max(state.joint, -half), half));
+  state.joint_rate = select(loose, speed - passed, T(0.0));
+  return select(loose, passed, speed);
+}
+
+/// Displacement at which a joint has settled that moves at a steady speed [m].
+template <class T>
+T calc_settled_joint(const DamperSeries<T>& series, const T& speed) {
+  const T side = select(speed > T(0.0), T(0.5), select(speed < T(0.0), T(-0.5), T(0.0)));
+  return series.play * (side + speed * T(1.0 / kJointSpeed));
+}
 
 /// Force of the damper [N]; fills rates and decays of `state`.
 template <class T>

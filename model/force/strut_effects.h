@@ -105,7 +105,7 @@ enum StrutEffectBits : unsigned {
   kGasForce = 32,
 };
 
-inline constexpr int kStatesPerStrut = 2;  // of a DamperSeries
+inline constexpr int kStatesPerStrut = 3;  // of a DamperSeries
 
 template <class T>
 struct ShapedDamper {
@@ -145,7 +145,7 @@ struct StrutEffects {
 };
 
 /// States of all struts and what becomes of them: first every strut's lagged force, then every
-/// strut's mount force; null where no strut has any.
+/// strut's mount force, then every strut's joint; null where no strut has any.
 template <class T>
 struct StrutStates {
   const T* value = nullptr;
@@ -163,15 +163,24 @@ void add_shaped_dampers(const ElementList<ShapedDamper<T>>& list,
     const ShapedDamper<T>& damper = list.element[static_cast<std::size_t>(i)];
     const auto corner = static_cast<std::size_t>(c);
     const T rate = motion[corner].length_q[kDamperLine] * q_dot[corner];
-    const T law_rate = damper.law.calc_rate(-rate, warming);
-    T force = -law_rate * rate;
+    T speed = -rate;
+    DamperSeriesState<T> s;
     if (states.value != nullptr) {
-      DamperSeriesState<T> s{states.value[c], {}, {}, states.value[Corners + c], {}, {}};
+      s.lagged = states.value[c];
+      s.mount = states.value[Corners + c];
+      s.joint = states.value[2 * Corners + c];
+      speed = calc_joint_speed(damper.series, speed, s);
+    }
+    const T law_rate = damper.law.calc_rate(speed, warming);
+    T force = law_rate * speed;
+    if (states.value != nullptr) {
       force = calc_series_force(damper.series, force, law_rate, s);
       states.rate[c] = s.lagged_rate;
       states.decay[c] = s.lagged_decay;
       states.rate[Corners + c] = s.mount_rate;
       states.decay[Corners + c] = s.mount_decay;
+      states.rate[2 * Corners + c] = s.joint_rate;
+      states.decay[2 * Corners + c] = s.joint_decay;
     }
     out[corner].damper_force += force;
     out[corner].generalized += force * motion[corner].length_q[kDamperLine];

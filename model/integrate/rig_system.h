@@ -2,7 +2,7 @@
 //
 // State: positions, then velocities, of quarter_car by RigCoordinate, of single_mass the mass's;
 // strut_rig has none, its inputs say everything. Behind them, where effects give the strut states,
-// its lagged force and its mount's.
+// its lagged force, its mount's and its joint's displacement.
 //
 // A kink of a piecewise linear input is no event: where the order of the integrator matters, let
 // samples fall on ends of steps, or interpolate by a spline.
@@ -147,8 +147,9 @@ class RigSystem {
     const T speed = on_stand      ? ws_.input[0].rate
                     : count_ == 1 ? -x[1]
                                   : x[2 + kUnsprung] - x[2 + kSprung];
-    const DamperLaw<T>& law = rig_.numbers.effects.law;
-    x[2 * count_] = x[2 * count_ + 1] = law.calc_rate(speed, calc_warming()) * speed;
+    const StrutEffectNumbers<T>& numbers = rig_.numbers.effects;
+    x[2 * count_] = x[2 * count_ + 1] = numbers.law.calc_rate(speed, calc_warming()) * speed;
+    x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
   }
 
   T calc_warming() const {

@@ -1,7 +1,10 @@
 // What to integrate, what to record, and what comes back.
 #pragma once
 
+#include <algorithm>
 #include <vector>
+
+#include "model/math/lanes.h"
 
 namespace strut {
 
@@ -26,11 +29,23 @@ struct SamplePlan {
   double interval = 0.0;  // s between history samples from t = 0; 0: no history
   bool snapshot = true;
   int channel_count = 0;
+  int parts = 1;  // samples an interval; every parts-th is, bit for bit, that of a plan with one
 };
 
 /// History samples of a plan, the one at t = 0 included.
 inline int count_samples(const SamplePlan& plan) {
-  return plan.interval > 0.0 ? static_cast<int>(plan.duration / plan.interval + 1e-9) + 1 : 0;
+  if (!(plan.interval > 0.0)) return 0;
+  const double intervals = plan.duration / plan.interval;
+  const int whole = plan.parts * static_cast<int>(intervals + 1e-9);
+  return std::max(whole, static_cast<int>(intervals * plan.parts + 1e-9)) + 1;
+}
+
+/// Time of a sample by its number [s].
+template <class T>
+T calc_sample_time(const SamplePlan& plan, const T& sample) {
+  const double parts = plan.parts;
+  const T whole = floor((sample + T(0.5)) * T(1.0 / parts));
+  return whole * T(plan.interval) + (sample - whole * T(parts)) * T(plan.interval / parts);
 }
 
 /// Speeds beyond this are an unstable integration, not a car or a rig [m/s].

@@ -328,10 +328,9 @@ class Simulation {
 
   /// Samples that fall into this step, on the dense output.
   void record_samples() {
-    const T interval = T(plan_.interval);
     const T slack = T(1e-9 * options_.step);
     while (true) {
-      const T due = next_sample_ * interval;
+      const T due = calc_sample_time(plan_, next_sample_);
       const Mask pending = (due <= time_ + h_ + slack) & (time_ < end_) &
                            (next_sample_ < T(results_.sample_count - 0.5));
       if (!any(pending)) return;

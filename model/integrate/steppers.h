@@ -21,7 +21,7 @@
 
 namespace strut {
 
-inline constexpr int kMaxStiff = 12;
+inline constexpr int kMaxStiff = 16;
 
 /// Weights of the exponential formulas for each stiff component over one step.
 template <class T>

@@ -77,8 +77,9 @@ class ReferenceRun {
     double t = 0.0;
     record_due(t);
     while (t < plan_.duration) {
-      const double target =
-          sample_ < results_.sample_count ? sample_ * plan_.interval : plan_.duration;
+      const double target = sample_ < results_.sample_count
+                                ? calc_sample_time<double>(plan_, sample_)
+                                : plan_.duration;
       const int flag = CVode(cvode_.raw, std::min(target, plan_.duration), y_.get(), &t, CV_NORMAL);
       if (flag < 0) {
         results_.status[0] = static_cast<int>(system_.get_failure(0));
@@ -149,7 +150,8 @@ class ReferenceRun {
   }
 
   void record_due(double t) {
-    while (sample_ < results_.sample_count && sample_ * plan_.interval <= t + 1e-12) {
+    while (sample_ < results_.sample_count &&
+           calc_sample_time<double>(plan_, sample_) <= t + 1e-12) {
       observe(t, results_.history.data() + static_cast<std::size_t>(sample_) * CarChannel::kCount);
       ++sample_;
     }

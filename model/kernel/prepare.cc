@@ -1,5 +1,6 @@
 #include <sstream>
 
+#include "model/effects/sensors.h"
 #include "model/kernel/mechanism.h"
 #include "model/kernel/simulation.h"
 #include "model/vehicle/assemble_effects.h"
@@ -75,6 +76,7 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   prepared.bump_center = calc_bump_center(car, c.maneuver);
   prepared.trigger_x = prepared.bump_center + snapshot_offset;
   prepared.duration = c.maneuver.duration;
+  prepared.sensors = list_sensor_settings(c.vehicle.effects);
 
   check_springs(c.vehicle, car);
   // Trims roll on flat road.
