@@ -41,7 +41,8 @@ LaneResults read_strut(const EffectSettings& effects, double interval) {
 }
 
 double get_strut(const LaneResults& run, int sample, int channel) {
-  return run.history[static_cast<std::size_t>(sample * StrutRigChannel::kCount + channel)];
+  const int at = sample * StrutRigChannel::kCount + channel;
+  return run.history[static_cast<std::size_t>(at)];
 }
 
 TEST_CASE("A rig's channels are read as a filter's and a delay's closed form, at any rate",
@@ -90,6 +91,7 @@ IntegrateOptions make_options() {
 
 LaneResults read_lanes(const std::vector<const PreparedCase*>& cases, const SamplePlan& plan) {
   std::vector<const EffectSettings*> sensors;
+  sensors.reserve(cases.size());
   for (const PreparedCase* c : cases) sensors.push_back(&c->sensors);
   const ReadOut out(list_car_channels(), sensors);
   const Kernel& kernel = list_kernels().front();
@@ -133,7 +135,8 @@ TEST_CASE("Sensors change what is read in their lane and channel, and nothing th
   CHECK(same);
   CHECK(moved);
   const auto get = [&](const LaneResults& r, int channel, int lane) {
-    return r.snapshot[static_cast<std::size_t>(channel * r.lanes + lane)];
+    const int at = channel * r.lanes + lane;
+    return r.snapshot[static_cast<std::size_t>(at)];
   };
   for (int c = 0; c < C::kCount; ++c) {
     CHECK(get(run, c, 1) == get(truth, c, 1));

@@ -246,7 +246,7 @@ TEST_CASE("A play that vanishes leaves the damper as it is", "[property][rigs]")
           difference, std::fabs(sprung - get_value(base, plain.kind, i, Quarter::kSprungPosition)));
     }
     INFO(play << ": " << difference);
-    CHECK(difference < 1.5 * play + 2e-5);  // the rest: stages of a step do not share one force
+    CHECK(difference < 1.5 * play + 4e-5);  // the rest: stages of a step do not share one force
     CHECK(difference > 0.1 * play);
   }
 }
@@ -390,10 +390,10 @@ TEST_CASE("Smooth effects keep order four, kinks of a force's slope leave two",
   CHECK(measure_order({{"damper_asymmetry", "", {0.3}}}) > 1.5);
   CHECK(measure_order({{"bump_stop", "", {5e4, 0.005, 50.0}}}) > 1.5);
   CHECK(measure_error({{"damper_asymmetry", "", {0.3}}}, 1e-3) < 1e-6);
-  // A millisecond's step where the rod crosses the play within one: hundredths of the play.
+  // A millisecond's step, in which the rod crosses all of the play: less than a tenth of it.
   for (const double play : {1e-4, 3e-4, 1e-3}) {
     INFO(play << ": " << measure_error({{"joint_play", "", {play}}}, 1e-3));
-    CHECK(measure_error({{"joint_play", "", {play}}}, 1e-3) < 0.05 * play);
+    CHECK(measure_error({{"joint_play", "", {play}}}, 1e-3) < 0.1 * play);
   }
 }
 
