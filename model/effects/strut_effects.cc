@@ -38,14 +38,16 @@ EffectInfo make_damper_hysteresis() {
 }
 
 EffectInfo make_damper_leak() {
-  return {
-      "damper_leak",
-      "a worn damper leaks past its piston: little force at low speed and after each reversal",
-      "F = c v abs(v) / (abs(v) + v_l)",
-      "a leak in series with the valves' line: c (v - v_l sgn v) at high speed, c v abs(v) / v_l "
-      "at low speed",
-      kOnStrut,
-      {make_switch("speed", "m/s", "v_l: speed that the leak swallows", 0.0, 1.0, 0.02)}};
+  return {"damper_leak",
+          "a damper short of oil loses stroke: after each reversal it gives no force until it has "
+          "moved that far; joint_play in another size: no data tell the two apart, and where both "
+          "are on, their lengths add",
+          "F = f(w), du/dt = v - w, w = r (u - clamp(u, -s / 2, s / 2)), "
+          "r^2 = (1 / 1 ms)^2 + (0.5 m/s / s)^2",
+          "dead zone in series with the damper, behind it a contact that yields within 1 ms "
+          "(stiffness c r of a linear damper); 2 to 12 mm in leaking dampers",
+          kOnStrut,
+          {make_switch("stroke", "m", "s: lost stroke after each reversal", 0.0, 0.05, 5e-3)}};
 }
 
 EffectInfo make_damper_fade() {
@@ -111,12 +113,14 @@ EffectInfo make_top_mount_compliance() {
 EffectInfo make_joint_play() {
   return {"joint_play",
           "a worn joint between damper and body or wheel: after a reversal the damper stands until "
-          "the rod has crossed the play",
-          "F = f(w), du/dt = v - w, w = (u - clamp(u, -p / 2, p / 2)) v_j / p, v_j = 0.5 m/s",
-          "dead zone in series with the damper, behind it a contact that yields by p at v_j "
-          "(stiffness c v_j / p of a linear damper); worn joints 0.1 to 1 mm; clearance with "
-          "contact spring: Flores et al., Kinematics and Dynamics of Multibody Systems with "
-          "Imperfect Joints, 2008",
+          "the rod has crossed the play; damper_leak in another size: no data tell the two apart, "
+          "and where both are on, their lengths add",
+          "F = f(w), du/dt = v - w, w = r (u - clamp(u, -p / 2, p / 2)), "
+          "r^2 = (1 / 1 ms)^2 + (0.5 m/s / p)^2",
+          "dead zone in series with the damper, behind it a contact that yields within 1 ms, at "
+          "most by p at 0.5 m/s (stiffness c r of a linear damper); worn joints 0.1 to 1 mm; "
+          "clearance with contact spring: Flores et al., Kinematics and Dynamics of Multibody "
+          "Systems with Imperfect Joints, 2008",
           kOnStrut,
           {make_switch("play", "m", "p: lost motion from stop to stop", 0.0, 0.02, 3e-4)}};
 }

@@ -5,8 +5,8 @@
 
 namespace strut {
 
-/// F = c (1 - a sgn v) ((1 - r) + r / sqrt(1 + (v / v_b)^2)) abs(v) / (abs(v) + v_l) (1 - l)
-/// exp(-b (T - T_0)) v, v = -d(length)/dt. Each factor is exactly 1 where its effect is neutral.
+/// F = c (1 - a sgn v) ((1 - r) + r / sqrt(1 + (v / v_b)^2)) (1 - l) exp(-b (T - T_0)) v,
+/// v = -d(length)/dt. Each factor is exactly 1 where its effect is neutral.
 template <class T>
 struct DamperLaw {
   static constexpr Line kLine = kDamperLine;
@@ -14,42 +14,44 @@ struct DamperLaw {
   T asymmetry;   // a
   T knee_loss;   // r
   T knee_speed;  // v_b, m/s
-  T leak_speed;  // v_l, m/s
   T fade;        // l
   T warm_fade;   // b, 1/K
 
   /// F / v [N s/m]; `warming` T - T_0 [K].
   T calc_rate(const T& speed, const T& warming) const {
-    const T size = abs(speed);
     const T side = select(speed > T(0.0), T(1.0) - asymmetry, T(1.0) + asymmetry);
     const T knee = (T(1.0) - knee_loss) + knee_loss / sqrt(T(1.0) + square(speed / knee_speed));
-    // At rest 0 / tiny: no force where there is a leak, and nothing to divide by where there is
-    // none.
-    constexpr double kTiny = 1e-300;
-    const T held = select(leak_speed > T(0.0), size / max(size + leak_speed, T(kTiny)), T(1.0));
-    return damping * side * knee * held * (T(1.0) - fade) * exp(-warm_fade * warming);
+    return damping * side * knee * (T(1.0) - fade) * exp(-warm_fade * warming);
   }
 };
 
-/// Speed at which a joint's contact yields by as much as its play [m/s]. Harder contact costs more
-/// than it is worth: at 0.5 m/s RK4 with 1 ms errs by 1 % of what 0.3 mm of play do to a quarter
-/// car, at 2 m/s by a third; what the play does changes by a seventh.
-inline constexpr double kJointSpeed = 0.5;
+/// How steep the force comes in where a lost stroke is used up: a contact that yields within
+/// kContactTime [s], of a small play as much as the play itself at kJointSpeed [m/s], so that it
+/// vanishes with the play. As steep as RK4 with 1 ms allows: it errs by 1 % of what 1 to 30 mm do to
+/// the body acceleration of a quarter car, with half the time by 3 to 17 %; of 0.3 mm by 1 to 10 %.
+inline constexpr double kContactTime = 1e-3, kJointSpeed = 0.5;
 
-/// What lies in series with a damper whose instantaneous force is f(v): a joint with play, a lag,
-/// then a rubber mount.
+/// Rate at which a contact of a joint with play > 0 yields [1/s].
+template <class T>
+T calc_contact_rate(const T& play) {
+  return sqrt(T(1.0 / square(kContactTime)) + square(T(kJointSpeed) / play));
+}
+
+/// What lies in series with a damper whose instantaneous force is f(v): a lost stroke, a lag, then a
+/// rubber mount.
 ///
-///   du/dt = v - w,   w = (u - clamp(u, -p / 2, p / 2)) v_j / p
+///   du/dt = v - w,   w = r (u - clamp(u, -p / 2, p / 2)),   r^2 = (1 / t_c)^2 + (v_j / p)^2
 ///   tau dy/dt + y = f(w),   (tau_m + kappa c_s) dz/dt + z = y,   F = z + tau_m dz/dt
 ///
-/// with c_s = f(w) / w. u is the joint's displacement: within its play p the rod moves freely and
-/// the damper stands, beyond it the contact is a spring whose force f(w) grows as the damper's over
-/// speed does, for f = c w of stiffness c v_j / p. Its energy is the integral of f(w) over u, the
+/// with c_s = f(w) / w. u is the displacement in a joint: within its play p, that of a worn joint
+/// and the stroke that the damper itself loses together, the rod moves freely and the damper stands;
+/// beyond it the contact is a spring whose force f(w) grows as the damper's over speed does, for
+/// f = c w of stiffness c r. Its energy is the integral of f(w) over u, the
 /// damper takes f(w) w, so none is created, whatever the law. As p vanishes w becomes v. w is v
 /// itself where p is 0, y is f(w) itself where tau is 0, F is y where kappa is 0.
 template <class T>
 struct DamperSeries {
-  T play;        // p, m
+  T play;        // p, m, of joint and damper
   T lag;         // tau, s
   T compliance;  // kappa, m/N
   T relaxation;  // tau_m, s
@@ -70,7 +72,7 @@ template <class T>
 T calc_joint_speed(const DamperSeries<T>& series, const T& speed, DamperSeriesState<T>& state) {
   const auto loose = series.play > T(0.0);
   const T half = T(0.5) * series.play;
-  state.joint_decay = select(loose, T(kJointSpeed) / select(loose, series.play, T(1.0)), T(0.0));
+  state.joint_decay = select(loose, calc_contact_rate(select(loose, series.play, T(1.0))), T(0.0));
   const T passed = state.joint_decay * (state.joint - min(max(state.joint, -half), half));
   state.joint_rate = select(loose, speed - passed, T(0.0));
   return select(loose, passed, speed);
@@ -79,8 +81,10 @@ T calc_joint_speed(const DamperSeries<T>& series, const T& speed, DamperSeriesSt
 /// Displacement at which a joint has settled that moves at a steady speed [m].
 template <class T>
 T calc_settled_joint(const DamperSeries<T>& series, const T& speed) {
+  const auto loose = series.play > T(0.0);
   const T side = select(speed > T(0.0), T(0.5), select(speed < T(0.0), T(-0.5), T(0.0)));
-  return series.play * (side + speed * T(1.0 / kJointSpeed));
+  const T yielded = speed / calc_contact_rate(select(loose, series.play, T(1.0)));
+  return select(loose, series.play * side + yielded, T(0.0));
 }
 
 /// Force of the damper [N]; fills rates and decays of `state`.
