@@ -291,8 +291,8 @@ std::vector<std::string> Table::texts(const std::string& key) const {
   return values;
 }
 
-std::vector<double> Table::numbers(const std::string& key, const Range& range) const {
-  const void* node = require(key);
+std::vector<double> Table::checked_numbers(const std::string& key, const void* node,
+                                           const Range& range) const {
   const toml::array* array = as_node(node).as_array();
   if (array == nullptr) throw wrong_type(key, node, "an array of numbers");
   std::vector<double> values;
@@ -300,6 +300,26 @@ std::vector<double> Table::numbers(const std::string& key, const Range& range) c
     values.push_back(checked_number(key + "[" + std::to_string(i + 1) + "]", array->get(i), range));
   }
   return values;
+}
+
+std::vector<double> Table::numbers(const std::string& key, const Range& range) const {
+  return checked_numbers(key, require(key), range);
+}
+
+std::vector<std::vector<double>> Table::rows(const std::string& key, const Range& range) const {
+  const void* node = require(key);
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr || array->empty())
+    throw wrong_type(key, node, "an array of rows of numbers");
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const std::string row = key + "[" + std::to_string(i + 1) + "]";
+    rows.push_back(checked_numbers(row, array->get(i), range));
+    const std::size_t wanted = std::max<std::size_t>(rows.front().size(), 1);
+    if (rows.back().size() == wanted) continue;
+    throw wrong_type(row, array->get(i), "an array of " + std::to_string(wanted) + " numbers");
+  }
+  return rows;
 }
 
 std::array<double, 3> Table::vector(const std::string& key, const Range& range) const {

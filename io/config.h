@@ -61,6 +61,8 @@ class Table {
   bool is_text(const std::string& key) const;
   std::vector<std::string> texts(const std::string& key) const;
   std::vector<double> numbers(const std::string& key, const Range& range = {}) const;
+  /// An array of arrays of numbers, at least one, all of one length, at least one.
+  std::vector<std::vector<double>> rows(const std::string& key, const Range& range = {}) const;
   /// An array of exactly three numbers.
   std::array<double, 3> vector(const std::string& key, const Range& range = {}) const;
   std::array<double, 3> vector_or(const std::string& key, const std::array<double, 3>& fallback,
@@ -94,6 +96,8 @@ class Table {
   std::string full_name(const std::string& key) const;
   InputError wrong_type(const std::string& key, const void* node, const std::string& wanted) const;
   double checked_number(const std::string& key, const void* node, const Range& range) const;
+  std::vector<double> checked_numbers(const std::string& key, const void* node,
+                                      const Range& range) const;
 
   std::shared_ptr<Source> source_;
   const void* node_;  // the parser's table, owned by source_

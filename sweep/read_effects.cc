@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/nearest_name.h"
+#include "sweep/drop_tables.h"
 
 namespace strut {
 namespace {
@@ -50,35 +51,6 @@ std::string write_effect(const EffectSetting& setting, ModelKind kind) {
   return text;
 }
 
-bool is_header(const std::string& line) {
-  const std::size_t first = line.find_first_not_of(" \t");
-  return first != std::string::npos && line[first] == '[';
-}
-
-/// The text without its tables [[effect]] and the blank lines before them.
-std::string drop_effects(const std::string& text) {
-  std::string kept;
-  bool dropping = false;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
-    const std::string line = text.substr(begin, end - begin);
-    if (line.starts_with("effect ") || line.starts_with("effect=")) {
-      throw InputError("effect: write each as a table [[effect]], not as an array in one line");
-    }
-    if (is_header(line)) {
-      const bool dropped_before = dropping;
-      dropping = line.find("[[effect]]") != std::string::npos;
-      if (dropping && !dropped_before) {
-        while (kept.ends_with("\n\n")) kept.pop_back();
-      }
-      if (dropped_before && !dropping && !kept.empty()) kept += '\n';
-    }
-    if (!dropping) kept += line;
-    begin = end;
-  }
-  return kept;
-}
-
 }  // namespace
 
 Range get_range(const EffectParameter& parameter) {
@@ -105,7 +77,7 @@ EffectSettings read_effects(const Table& root, ModelKind kind) {
 
 std::string replace_effects(const std::string& text, const EffectSettings& settings,
                             ModelKind kind) {
-  std::string changed = drop_effects(text);
+  std::string changed = drop_tables(text, "effect");
   if (!changed.empty() && changed.back() != '\n' && !settings.empty()) changed += '\n';
   for (const EffectSetting& setting : settings) {
     changed += (changed.empty() ? "" : "\n") + write_effect(setting, kind);

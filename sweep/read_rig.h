@@ -26,8 +26,9 @@ std::optional<RigKind> find_rig_kind(const std::filesystem::path& path);
 
 /// Reads a rig's file: `type`, `name`, the parameters of list_rig_parameters, for a quarter car
 /// `tire_contact` ("bilateral" or "unilateral"), and the table [initial] with offsets of the start
-/// from rest (`sprung_position`, ... or `position`, `velocity`), and effects (read_effects.h).
-/// Throws InputError with file, line, key, value and what is allowed.
+/// from rest (`sprung_position`, ... or `position`, `velocity`), effects (read_effects.h) and a
+/// force map (read_force_maps.h). Throws InputError with file, line, key, value and what is
+/// allowed.
 RigSpec read_rig(const std::filesystem::path& path);
 
 /// A parameter of a kind of rig that settings and fits know by name.

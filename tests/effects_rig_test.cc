@@ -180,7 +180,8 @@ double calc_contact_time(double p) { return 1.0 / std::hypot(1000.0, 0.5 / p); }
 /// Force of a damper that loses a stroke p, `t` after the strut's speed, steady since long, has
 /// turned from -v to v.
 double calc_reversed_force(double t, double v, double c, double p) {
-  const double tau = calc_contact_time(p), leaves = tau * std::numbers::ln2, arrives = leaves + p / v;
+  const double tau = calc_contact_time(p), leaves = tau * std::numbers::ln2,
+               arrives = leaves + p / v;
   if (t < leaves) return c * v * (1.0 - 2.0 * std::exp(-t / tau));
   return t < arrives ? 0.0 : c * v * (1.0 - std::exp(-(t - arrives) / tau));
 }
@@ -367,11 +368,10 @@ TEST_CASE("Springs and stops give back what they take", "[unit][property][rigs]"
 }
 
 TEST_CASE("Dampers and friction only take energy", "[unit][property][rigs]") {
-  const EffectSetting effect =
-      GENERATE(EffectSetting{"strut_friction", "", {80.0, 0.01}},
-               EffectSetting{"damper_asymmetry", "", {0.6}},
-               EffectSetting{"damper_blow_off", "", {0.9, 0.1}},
-               EffectSetting{"damper_fade", "", {0.5}});
+  const EffectSetting effect = GENERATE(EffectSetting{"strut_friction", "", {80.0, 0.01}},
+                                        EffectSetting{"damper_asymmetry", "", {0.6}},
+                                        EffectSetting{"damper_blow_off", "", {0.9, 0.1}},
+                                        EffectSetting{"damper_fade", "", {0.5}});
   INFO(effect.effect);
   RigSpec spec = make_rig(RigKind::kSingleMass, {effect});
   spec.damping = effect.effect == "strut_friction" ? 0.0 : 300.0;

@@ -81,7 +81,8 @@ FlopCount count_flops(const PreparedCase& c, Closure closure) {
                            pack_lanes<VehicleParameters, Counted>(&c.vehicle.numbers),
                            {},
                            make_road<Counted>(&surface, &c.bump_center)};
-  fill_strut_elements(vehicle);
+  const CornerForceMaps* const maps[] = {&c.force_maps};
+  fill_strut_elements(vehicle, maps);
   counter = {};
   if (closure == Closure::kNewton) {
     run_once(vehicle, NewtonClosure<Counted>{&vehicle.layout, &vehicle.numbers}, c);

@@ -31,7 +31,8 @@ switching parameters at the neutral value leaves every bit of a simulation as it
 damper multiply; friction, springs and stops add. A corner's setting replaces the axle's there.
 Effects change the car that the file describes, not the file's geometry: the car finds its new
 equilibrium. Effects of sensors change what `strut simulate` and the shards of a sweep give out, not
-the motion, nor a channel that derives from theirs: the filter first, then delay, gain and bias.
+the motion, nor a channel that derives from theirs: the filter first, then delay, gain and bias. A
+strut's force that no effect explains can be given as a map ([theory.md](theory.md), "Force maps").
 
 This page is written from the program's own list (`write_effects_document`); a test fails where the
 two differ.

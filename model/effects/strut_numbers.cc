@@ -32,8 +32,9 @@ StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
            get("damper_blow_off", "knee"),
            get("damper_fade", "loss"),
            get("damper_fade", "rate")};
-  n.series = {get("joint_play", "play") + get("damper_leak", "stroke"), get("damper_hysteresis", "lag"),
-              get("top_mount_compliance", "compliance"), get("top_mount_compliance", "relaxation")};
+  n.series = {get("joint_play", "play") + get("damper_leak", "stroke"),
+              get("damper_hysteresis", "lag"), get("top_mount_compliance", "compliance"),
+              get("top_mount_compliance", "relaxation")};
   n.spring = {strut.stiffness * get("progressive_spring", "cubic"), length};
   n.stop = {get("bump_stop", "stiffness"), get("bump_stop", "progression"),
             length - get("bump_stop", "gap")};
@@ -45,8 +46,8 @@ StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
 unsigned find_strut_effects(const StrutEffectNumbers<double>& n) {
   unsigned bits = 0;
   const auto add_if = [&](bool on, unsigned bit) { bits |= on ? bit : 0U; };
-  add_if(n.law.asymmetry != 0.0 || n.law.knee_loss != 0.0 ||
-             n.law.fade != 0.0 || n.law.warm_fade != 0.0,
+  add_if(n.law.asymmetry != 0.0 || n.law.knee_loss != 0.0 || n.law.fade != 0.0 ||
+             n.law.warm_fade != 0.0,
          kShapedDamper);
   add_if(n.series.play != 0.0 || n.series.lag != 0.0 || n.series.compliance != 0.0,
          kShapedDamper | kSeriesDamper);

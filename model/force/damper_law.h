@@ -27,8 +27,9 @@ struct DamperLaw {
 
 /// How steep the force comes in where a lost stroke is used up: a contact that yields within
 /// kContactTime [s], of a small play as much as the play itself at kJointSpeed [m/s], so that it
-/// vanishes with the play. As steep as RK4 with 1 ms allows: it errs by 1 % of what 1 to 30 mm do to
-/// the body acceleration of a quarter car, with half the time by 3 to 17 %; of 0.3 mm by 1 to 10 %.
+/// vanishes with the play. As steep as RK4 with 1 ms allows: it errs by 1 % of what 1 to 30 mm do
+/// to the body acceleration of a quarter car, with half the time by 3 to 17 %; of 0.3 mm by 1 to 10
+/// %.
 inline constexpr double kContactTime = 1e-3, kJointSpeed = 0.5;
 
 /// Rate at which a contact of a joint with play > 0 yields [1/s].
@@ -37,18 +38,18 @@ T calc_contact_rate(const T& play) {
   return sqrt(T(1.0 / square(kContactTime)) + square(T(kJointSpeed) / play));
 }
 
-/// What lies in series with a damper whose instantaneous force is f(v): a lost stroke, a lag, then a
-/// rubber mount.
+/// What lies in series with a damper whose instantaneous force is f(v): a lost stroke, a lag, then
+/// a rubber mount.
 ///
 ///   du/dt = v - w,   w = r (u - clamp(u, -p / 2, p / 2)),   r^2 = (1 / t_c)^2 + (v_j / p)^2
 ///   tau dy/dt + y = f(w),   (tau_m + kappa c_s) dz/dt + z = y,   F = z + tau_m dz/dt
 ///
 /// with c_s = f(w) / w. u is the displacement in a joint: within its play p, that of a worn joint
-/// and the stroke that the damper itself loses together, the rod moves freely and the damper stands;
-/// beyond it the contact is a spring whose force f(w) grows as the damper's over speed does, for
-/// f = c w of stiffness c r. Its energy is the integral of f(w) over u, the
-/// damper takes f(w) w, so none is created, whatever the law. As p vanishes w becomes v. w is v
-/// itself where p is 0, y is f(w) itself where tau is 0, F is y where kappa is 0.
+/// and the stroke that the damper itself loses together, the rod moves freely and the damper
+/// stands; beyond it the contact is a spring whose force f(w) grows as the damper's over speed
+/// does, for f = c w of stiffness c r. Its energy is the integral of f(w) over u, the damper takes
+/// f(w) w, so none is created, whatever the law. As p vanishes w becomes v. w is v itself where p
+/// is 0, y is f(w) itself where tau is 0, F is y where kappa is 0.
 template <class T>
 struct DamperSeries {
   T play;        // p, m, of joint and damper

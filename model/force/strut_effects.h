@@ -5,6 +5,7 @@
 #pragma once
 
 #include "model/force/damper_law.h"
+#include "model/force/force_map.h"
 
 namespace strut {
 
@@ -117,10 +118,11 @@ template <class T>
 struct StrutEffects {
   ElementList<ShapedDamper<T>> shaped, series;
   std::tuple<ElementList<CubicSpring<T>>, ElementList<BumpStop<T>>, ElementList<DryFriction<T>>,
-             ElementList<GasForce<T>>>
+             ElementList<GasForce<T>>, ElementList<MappedForce<T>>>
       added;
-  ElementList<AntiRollBar<T>> bars;  // at the axle's left corner
-  int count = 0;                     // of all elements
+  ElementList<AntiRollBar<T>> bars;                               // at the axle's left corner
+  int count = 0;                                                  // of all elements
+  std::shared_ptr<const std::vector<double>> map_coefficients{};  // what mapped forces read
 
   bool has_states() const { return series.count > 0; }
 
@@ -141,6 +143,28 @@ struct StrutEffects {
   void add_bar(int left_corner, const AntiRollBar<T>& bar) {
     bars.add(left_corner, bar);
     ++count;
+  }
+
+  /// Puts the maps of `tables[lane][corner]` (null: none) into the list. `get_length(corner)`: the
+  /// damper's line at nominal trim [m].
+  template <class Tables, class GetLength>
+  void add_maps(const Tables* const* tables, const GetLength& get_length) {
+    auto& list = std::get<4>(added);
+    ForceMapPacker packer;
+    for (std::size_t c = 0; c < std::tuple_size_v<Tables>; ++c) {
+      std::array<const ForceMapTable*, static_cast<std::size_t>(kLaneCount<T>)> lanes;
+      for (std::size_t lane = 0; lane < lanes.size(); ++lane)
+        lanes[lane] = (*tables[lane])[c].get();
+      if (std::all_of(lanes.begin(), lanes.end(), [](const auto* t) { return t == nullptr; })) {
+        continue;
+      }
+      const int corner = static_cast<int>(c);
+      list.add(corner, packer.add<T>(lanes.data(), get_length(corner)));
+      ++count;
+    }
+    if (list.count == 0) return;
+    map_coefficients = packer.finish();
+    for (MappedForce<T>& force : list.element) force.table = map_coefficients->data();
   }
 };
 

@@ -12,6 +12,7 @@ namespace {
 Case strip_to_mechanism(const Case& c) {
   Case key = apply_case_effects(c);
   key.vehicle.effects.clear();
+  key.vehicle.force_maps.clear();
   for (SuspensionSpec& suspension : key.vehicle.suspension) suspension.strut.fill(StrutSpec{});
   key.vehicle.preload = PreloadKind::kFreeLength;
   const ManeuverSpec neutral;
@@ -61,6 +62,7 @@ bool shares_mechanism(const Case& a, const Case& b) {
 
 PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   validate(given.vehicle.effects, ModelKind::kFullVehicle);
+  validate(given.vehicle.force_maps, ModelKind::kFullVehicle);
   const Case c = apply_case_effects(given);
   const Case key = strip_to_mechanism(c);
   if (!mechanism_ || !(mechanism_->vehicle == key.vehicle) ||
@@ -72,7 +74,9 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   Vehicle<double>& vehicle = prepared.vehicle;
   set_operating_parameters(c.vehicle, c.maneuver, car, vehicle.numbers);
   set_effects(c.vehicle, vehicle.layout, vehicle.numbers);
-  fill_strut_elements(vehicle);
+  prepared.force_maps = make_corner_force_maps(c.vehicle.force_maps);
+  const CornerForceMaps* const maps[] = {&prepared.force_maps};
+  fill_strut_elements(vehicle, maps);
   prepared.bump_center = calc_bump_center(car, c.maneuver);
   prepared.trigger_x = prepared.bump_center + snapshot_offset;
   prepared.duration = c.maneuver.duration;

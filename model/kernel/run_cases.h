@@ -48,10 +48,12 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   std::vector<VehicleParameters<double>> numbers(kWidth);
   std::array<const Surface*, kWidth> surfaces;
   std::array<double, kWidth> centers;
+  std::array<const CornerForceMaps*, kWidth> maps;
   for (std::size_t lane = 0; lane < kWidth; ++lane) {
     numbers[lane] = cases[lane]->vehicle.numbers;
     surfaces[lane] = &cases[lane]->mechanism->surface;
     centers[lane] = cases[lane]->bump_center;
+    maps[lane] = &cases[lane]->force_maps;
   }
   VehicleLayout layout = cases[0]->vehicle.layout;
   for (std::size_t lane = 1; lane < kWidth; ++lane) {
@@ -61,7 +63,7 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
                      pack_lanes<VehicleParameters, T>(numbers.data()),
                      {},
                      make_road<T>(surfaces.data(), centers.data())};
-  fill_strut_elements(vehicle);
+  fill_strut_elements(vehicle, maps.data());
   return vehicle;
 }
 

@@ -37,6 +37,7 @@ struct PreparedCase {
   double trigger_x = 0.0;    // m, world x of the snapshot's line
   double duration = 0.0;     // s
   EffectSettings sensors{};  // effects of channels: nothing that runs asks for them
+  CornerForceMaps force_maps{};
 };
 
 /// Prepares cases, reusing the mechanism while only springs, dampers, speed or torque change.

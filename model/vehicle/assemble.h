@@ -41,9 +41,10 @@ Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 /// chassis origin starts at x = 0.
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver);
 
-/// Puts the spring, damper and effect elements of T numbers into their lists.
+/// Puts the spring, damper and effect elements of T numbers into their lists, and the force maps of
+/// each lane.
 template <class T>
-void fill_strut_elements(Vehicle<T>& vehicle) {
+void fill_strut_elements(Vehicle<T>& vehicle, const CornerForceMaps* const* maps = nullptr) {
   const VehicleLayout& layout = vehicle.layout;
   const VehicleParameters<T>& numbers = vehicle.numbers;
   vehicle.struts = {};
@@ -58,6 +59,9 @@ void fill_strut_elements(Vehicle<T>& vehicle) {
     if (!layout.has_anti_roll_bar[axle]) continue;
     vehicle.effects.add_bar(2 * axle, numbers.anti_roll_bar[axle]);
   }
+  if (maps == nullptr) return;
+  vehicle.effects.add_maps(maps,
+                           [&](int c) { return numbers.nominal_length[c * kLines + kDamperLine]; });
 }
 
 }  // namespace strut

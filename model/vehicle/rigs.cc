@@ -125,6 +125,16 @@ RigSpec apply_mass_effects(const RigSpec& spec) {
                    ": leaves no mass; allowed: more than minus the mass that is there");
 }
 
+/// At rest the line has length zero and the spring carries what stands on it, a map's force
+/// included.
+LinearSpring<double> make_spring(const RigSpec& spec) {
+  double carried = spec.kind == RigKind::kStrutRig ? 0.0 : spec.sprung_mass * spec.gravity;
+  if (spec.kind != RigKind::kStrutRig && !spec.force_maps.empty()) {
+    carried -= calc_force(spec.force_maps.front(), 0.0, 0.0);
+  }
+  return {spec.stiffness, spec.stiffness > 0.0 ? carried / spec.stiffness : 0.0};
+}
+
 /// x of k (x + q x^2) = load; load >= 0.
 double calc_static_deflection(double load, double stiffness, double progression) {
   const double linear = load / stiffness;
@@ -177,6 +187,7 @@ void validate(const RigSpec& spec) {
     throw ModelError(message.str());
   }
   validate(spec.effects, get_model_kind(spec.kind));
+  validate(spec.force_maps, get_model_kind(spec.kind));
 }
 
 std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
@@ -204,9 +215,7 @@ RigParameters<double> make_rig_parameters(const RigSpec& given) {
   if (spec.kind == RigKind::kSingleMass) p.mass = {spec.sprung_mass, 0.0};
   p.initial_position = spec.initial_position;
   p.initial_velocity = spec.initial_velocity;
-  // At rest the line has length zero and the spring carries what stands on it.
-  const double weight = spec.kind == RigKind::kStrutRig ? 0.0 : spec.sprung_mass * spec.gravity;
-  p.spring = {spec.stiffness, spec.stiffness > 0.0 ? weight / spec.stiffness : 0.0};
+  p.spring = make_spring(spec);
   p.damper = {spec.damping};
   const EffectValues values{spec.effects, get_model_kind(spec.kind)};
   p.effects = make_strut_effect_numbers(values, "", PlainStrut{spec.stiffness, spec.damping, 0.0});
@@ -222,6 +231,11 @@ RigParameters<double> make_rig_parameters(const RigSpec& given) {
   p.gravity = spec.gravity;
   p.temperature = spec.temperature;
   return p;
+}
+
+RigForceMap make_rig_force_map(const RigSpec& spec) {
+  if (spec.force_maps.empty()) return {};
+  return {make_force_map_table(spec.force_maps.front())};
 }
 
 RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,

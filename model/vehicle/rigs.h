@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "model/effects/catalogue.h"
+#include "model/effects/force_map.h"
 #include "model/force/strut_effects.h"
 #include "model/force/tire_contact.h"
 #include "model/scenario/input_signal.h"
@@ -50,6 +50,7 @@ struct RigSpec {
   /// Start, as an offset from rest on the road's first position [m], [m/s]; by RigCoordinate.
   std::array<double, kRigCoordinates> initial_position{}, initial_velocity{};
   EffectSettings effects;
+  ForceMaps force_maps;  // at most one; what it gives at rest the spring need not carry
   bool operator==(const RigSpec&) const = default;
 };
 
@@ -179,6 +180,10 @@ RigParameters<double> make_rig_parameters(const RigSpec& spec);
 RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,
                           int count);
 
+/// The force map of a rig; null where it has none.
+using RigForceMap = std::array<std::shared_ptr<const ForceMapTable>, 1>;
+RigForceMap make_rig_force_map(const RigSpec& spec);
+
 /// One rig for each lane.
 template <class T>
 Rig<T> make_rig(const RigSpec* const specs[]) {
@@ -191,6 +196,13 @@ Rig<T> make_rig(const RigSpec* const specs[]) {
   const unsigned bits = rig.layout.strut_effects;
   if ((bits & kShapedDamper) == 0) std::get<1>(rig.struts).add(0, rig.numbers.damper);
   rig.effects.add(0, bits, rig.numbers.effects);
+  std::array<RigForceMap, lanes.size()> maps;
+  std::array<const RigForceMap*, lanes.size()> map_of_lane;
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    maps[i] = make_rig_force_map(*specs[i]);
+    map_of_lane[i] = &maps[i];
+  }
+  rig.effects.add_maps(map_of_lane.data(), [](int) { return T(0.0); });
   return rig;
 }
 

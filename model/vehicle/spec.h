@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "model/effects/force_map.h"
 #include "model/effects/setting.h"
 #include "model/force/pac2002.h"
 #include "model/math/spatial.h"
@@ -121,6 +122,7 @@ struct VehicleSpec {
   PreloadKind preload = PreloadKind::kFreeLength;
   Vec3<double> imu_position{};  // m from the centroid at nominal trim
   EffectSettings effects;
+  ForceMaps force_maps;
   bool operator==(const VehicleSpec&) const = default;
 };
 

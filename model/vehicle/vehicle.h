@@ -43,6 +43,9 @@ struct VehicleLayout {
   bool progressive_tire = false, has_runout = false, has_lift = false;
 };
 
+/// Force maps of the corners; null where there is none.
+using CornerForceMaps = std::array<std::shared_ptr<const ForceMapTable>, kCorners>;
+
 template <class T>
 struct Vehicle {
   VehicleLayout layout;
