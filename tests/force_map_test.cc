@@ -34,6 +34,8 @@ const fs::path kSource = STRUT_SOURCE_DIR;
 const fs::path kCarFile = kSource / "examples/vehicles/paper_sedan.toml";
 const fs::path kRigFile = kSource / "examples/rigs/quarter_car.toml";
 
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 ForceMap make_map(const std::string& place, int deflections, int velocities) {
   ForceMap map;
   map.place = place;
@@ -93,7 +95,7 @@ TEST_CASE("A force map is a tensor product of cubic splines, held at its ends",
     double force = 0.0;
     for (int i = 0; i < rows; ++i) {
       for (int j = 0; j < columns; ++j) {
-        force += map.coefficients[static_cast<std::size_t>(i * columns + j)] *
+        force += map.coefficients[at(i) * at(columns) + at(j)] *
                  calc_spline_of(d, i, map.deflection_low, map.deflection_high, rows) *
                  calc_spline_of(v, j, map.velocity_low, map.velocity_high, columns);
       }
@@ -174,9 +176,7 @@ TEST_CASE("A rig with a map rests at its rest position", "[unit][rigs]") {
   const LaneResults run = simulate_rig(spec, {}, make_step(), {.duration = 1.0, .interval = 0.1});
   using Q = QuarterCarChannel;
   for (int i = 0; i <= 10; ++i) {
-    const auto get = [&](int c) {
-      return run.history[static_cast<std::size_t>(i * Q::kCount + c)];
-    };
+    const auto get = [&](int c) { return run.history[at(i) * Q::kCount + at(c)]; };
     CHECK(std::fabs(get(Q::kSprungPosition)) < tolerance(1e-12));
     CHECK(get(Q::kDamperForce) == Approx(250.0).epsilon(tolerance(1e-12)));
     CHECK(get(Q::kSpringForce) == Approx(300.0 * 9.81 - 250.0).epsilon(tolerance(1e-12)));

@@ -29,8 +29,10 @@ void check_count(const ForceMap& map, const std::string& name, int count) {
                         std::to_string(kFewestSplines) + " to " + std::to_string(kMostSplines));
 }
 
+std::size_t count_of(int n) { return static_cast<std::size_t>(n); }
+
 void check_coefficients(const ForceMap& map) {
-  const auto wanted = static_cast<std::size_t>(map.deflection_count * map.velocity_count);
+  const std::size_t wanted = count_of(map.deflection_count) * count_of(map.velocity_count);
   if (map.coefficients.size() != wanted) {
     throw refuse(map, "has " + std::to_string(map.coefficients.size()) +
                           " coefficients; allowed: " + std::to_string(wanted));
@@ -93,6 +95,7 @@ const ForceMap* find_force_map(const ForceMaps& maps, const std::string& place) 
 std::vector<double> calc_map_abscissas(double low, double high, int count) {
   if (count == 1) return {0.5 * (low + high)};
   std::vector<double> abscissas;
+  abscissas.reserve(count_of(count));
   for (int i = 0; i < count; ++i) {
     abscissas.push_back(low + (high - low) * (i - 1) / (count - 3));
   }
@@ -112,15 +115,14 @@ std::shared_ptr<const ForceMapTable> make_force_map_table(const ForceMap& map) {
   table.deflection = make_axis(map.deflection_low, map.deflection_high, map.deflection_count);
   table.velocity = make_axis(map.velocity_low, map.velocity_high, map.velocity_count);
   // Where the map does not depend on a variable all four splines of one cell have one coefficient.
-  const int rows = std::max(map.deflection_count, kFewestSplines);
-  const int columns = std::max(map.velocity_count, kFewestSplines);
-  table.stride = columns;
-  for (int i = 0; i < rows; ++i) {
-    const int row = map.deflection_count == 1 ? 0 : i;
-    for (int j = 0; j < columns; ++j) {
-      const int column = map.velocity_count == 1 ? 0 : j;
-      table.coefficients.push_back(
-          map.coefficients[static_cast<std::size_t>(row * map.velocity_count + column)]);
+  const std::size_t rows = count_of(std::max(map.deflection_count, kFewestSplines));
+  const std::size_t columns = count_of(std::max(map.velocity_count, kFewestSplines));
+  table.stride = static_cast<double>(columns);
+  table.coefficients.reserve(rows * columns);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::size_t row = map.deflection_count == 1 ? 0 : i * count_of(map.velocity_count);
+    for (std::size_t j = 0; j < columns; ++j) {
+      table.coefficients.push_back(map.coefficients[row + (map.velocity_count == 1 ? 0 : j)]);
     }
   }
   return std::make_shared<const ForceMapTable>(std::move(table));
