@@ -33,26 +33,6 @@ MeasuredRun pin_car(MeasuredRun run, const SharedValues& shared) {
   return run;
 }
 
-/// The campaign of one run whose model and inputs have the shared values, biases taken off its
-/// readings: what is left unknown is the run's own.
-CampaignData pin(const CampaignData& data, std::size_t run, const SharedValues& shared) {
-  CampaignData one;
-  one.campaign = data.campaign;
-  one.campaign.runs = {data.campaign.runs[run]};
-  one.noise = data.noise;
-  one.tables = {data.tables[run]};
-  if (data.is_rig()) {
-    one.rigs = {set_rig_unknowns(data.rigs[run], shared.unknowns, shared.values)};
-    for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
-      if (shared.unknowns[i].kind != UnknownKind::kBias) continue;
-      shift_readings(one.rigs[0].channels, shared.unknowns[i], shared.values[i]);
-    }
-  } else {
-    one.cars = {pin_car(data.cars[run], shared)};
-  }
-  return one;
-}
-
 /// Shared biases back on what is simulated, so that it can be compared with the readings.
 void add_shared_biases(const SharedValues& shared, RunCurves& curves) {
   for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
@@ -76,9 +56,27 @@ void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& eva
 
 }  // namespace
 
+CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared) {
+  CampaignData one;
+  one.campaign = data.campaign;
+  one.campaign.runs = {data.campaign.runs[run]};
+  one.noise = data.noise;
+  one.tables = {data.tables[run]};
+  if (data.is_rig()) {
+    one.rigs = {set_rig_unknowns(data.rigs[run], shared.unknowns, shared.values)};
+    for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
+      if (shared.unknowns[i].kind != UnknownKind::kBias) continue;
+      shift_readings(one.rigs[0].channels, shared.unknowns[i], shared.values[i]);
+    }
+  } else {
+    one.cars = {pin_car(data.cars[run], shared)};
+  }
+  return one;
+}
+
 double Baseline::calc_sigma(std::size_t i) const { return fit.widened.sigma[i]; }
 
-Baseline calibrate_baseline(const CampaignData& data, int threads) {
+Baseline calibrate_baseline(const CampaignData& data, int threads, const FitOptions& options) {
   Baseline baseline;
   baseline.runs = data.list_runs(RunUse::kFit);
   baseline.nominal.unknowns = make_free_unknowns(data, baseline.runs);
@@ -94,9 +92,9 @@ Baseline calibrate_baseline(const CampaignData& data, int threads) {
     unknowns.push_back(std::move(u));
   }
   const auto model = make_reading_model(data, baseline.runs, std::move(unknowns), threads);
-  FitOptions options;
-  if (data.is_rig()) options.start = search_start(*model);
-  baseline.fit = fit_readings(*model, options);
+  FitOptions chosen = options;
+  if (data.is_rig()) chosen.start = search_start(*model);
+  baseline.fit = fit_readings(*model, chosen);
   baseline.is_fitted = true;
   const auto shared = static_cast<std::ptrdiff_t>(baseline.shared_count());
   baseline.calibrated.values.assign(baseline.fit.values.begin(),
@@ -107,7 +105,7 @@ Baseline calibrate_baseline(const CampaignData& data, int threads) {
 RunEvaluation evaluate_run(const CampaignData& data, std::size_t run, const SharedValues& shared,
                            int threads) {
   RunEvaluation evaluation;
-  const CampaignData one = pin(data, run, shared);
+  const CampaignData one = pin_run(data, run, shared);
   evaluation.unknowns = make_run_unknowns(one, {0}, shared.unknowns);
   evaluation.values = list_starts(evaluation.unknowns);
   if (!evaluation.unknowns.empty()) {

@@ -32,7 +32,12 @@ struct Baseline {
 
 /// Fits what `[fit] free` names to the runs for fitting, together with what is unknown about each
 /// of them. Throws InputError.
-Baseline calibrate_baseline(const CampaignData& data, int threads = 1);
+Baseline calibrate_baseline(const CampaignData& data, int threads = 1,
+                            const FitOptions& options = {});
+
+/// The campaign of one run whose model and inputs have the shared values, biases taken off its
+/// readings: what is left unknown is the run's own.
+CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared);
 
 /// One run against the model at given shared values. What is unknown about this run alone is fitted
 /// to it: a run that is held out tells where it started, not what the model is like.

@@ -8,6 +8,7 @@
 
 #include "diagnose/local_cubic.h"
 #include "diagnose/spread.h"
+#include "model/effects/catalogue.h"
 #include "model/integrate/rig_system.h"
 
 namespace strut {
@@ -35,9 +36,18 @@ double calc_half_width(const RigRun& run) {
 
 /// The strut's force, static load left out, when it is moved as measured: the same elements on a
 /// dynamometer.
+/// Whether an effect of a quarter car is one of its strut, with the same parameters.
+bool acts_on_bench(const EffectSetting& setting) {
+  const EffectInfo& effect = *find_effect(setting.effect);
+  return (effect.places & kOnChannel) == 0 &&
+         list_effect_parameters(effect, ModelKind::kQuarterCar) ==
+             list_effect_parameters(effect, ModelKind::kStrutRig);
+}
+
 Values calc_strut_force(const RigRun& run, const Values& deflection) {
   RigRun bench{run.name, run.setup, {}, run.times, {}};
   bench.setup.kind = RigKind::kStrutRig;
+  std::erase_if(bench.setup.effects, [](const EffectSetting& s) { return !acts_on_bench(s); });
   Values times, moves;
   times.reserve(deflection.size());
   moves.reserve(deflection.size());

@@ -95,7 +95,7 @@ std::vector<MeasuredChannel> make_channels(const CampaignData& data, const Measu
 /// The readings that are there, as a signal over a clock that begins at 0; smoothed as far as that
 /// takes nothing but noise away (choose_half_width), since rates drive forces.
 InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
-                       const MeasuredColumn& column) {
+                       const MeasuredColumn& column, InputNoise& noise) {
   const CampaignColumn& c = data.campaign.columns[column.at];
   const double gain = c.gain.sigma == 0.0 ? c.gain.mean : 1.0;
   std::vector<double> times, values;
@@ -106,14 +106,14 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
     times.push_back(table.times[i] - table.times.front());
     values.push_back(gain * column.values[i]);
   }
-  const double sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
-  const double half_width = c.smooth ? *c.smooth : choose_half_width(times, values, sigma);
+  noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
+  // Masses smooth what they are driven by; a strut's force follows the velocity itself.
+  const bool smooths = data.campaign.rig != RigKind::kStrutRig;
+  noise.half_width = c.smooth  ? *c.smooth
+                     : smooths ? 0.0
+                               : choose_half_width(times, values, noise.sigma);
   try {
-    if (half_width > 0.0) {
-      const SmoothCurve curve = calc_local_cubic(times, values, half_width, CurveEnds::kOneSided);
-      return make_signal(c.channel, times, curve.value, curve.rate);
-    }
-    return make_signal(c.channel, times, values, Interpolation::kSpline);
+    return make_sampled_input(c.channel, times, values, noise.half_width);
   } catch (const std::invalid_argument& e) {
     throw InputError(table.name + ": " + e.what());
   }
@@ -177,7 +177,9 @@ void make_rigs(CampaignData& data) {
     for (double& t : run.times) t -= table.times.front();
     for (const MeasuredColumn& column : table.columns) {
       if (data.campaign.columns[column.at].role != ColumnRole::kInput) continue;
-      run.inputs.push_back(make_input(data, table, column));
+      InputNoise noise;
+      run.inputs.push_back(make_input(data, table, column, noise));
+      run.input_noise.push_back(noise);
     }
     try {
       assign_rig_inputs(spec.kind, run.inputs);
@@ -245,7 +247,12 @@ std::vector<Unknown> make_car_unknowns(const CampaignData& data,
                                        const std::vector<std::size_t>& chosen,
                                        const std::vector<Unknown>& free) {
   const std::vector<MeasuredRun> runs = select(data.cars, chosen);
-  std::vector<Unknown> unknowns = make_nuisances(runs, {}, free);
+  // An offset of a sensor must never speak for a cause, so it is all but free.
+  constexpr double kWide = 10.0;
+  NuisanceSigmas sigmas;
+  sigmas.bias = make_default_bias();
+  for (double& sigma : sigmas.bias) sigma *= kWide;
+  std::vector<Unknown> unknowns = make_nuisances(runs, sigmas, free);
   for (std::size_t r = 0; r < chosen.size(); ++r) {
     for (const auto& [name, known] : data.campaign.runs[chosen[r]].known) {
       if (is_among(free, name)) continue;
@@ -364,6 +371,7 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
     return std::make_unique<RigReadings>(select(data.rigs, runs), std::move(unknowns), options);
   }
   LinearizeOptions options;
+  options.rate = 1000.0;  // at a campaign's sensors and speeds
   options.threads = threads;
   return std::make_unique<ReadingSimulator>(select(data.cars, runs), std::move(unknowns), options);
 }

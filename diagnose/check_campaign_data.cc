@@ -136,8 +136,9 @@ void check_units(const CampaignData& data, std::size_t r) {
     if (!(simulated > 0.0) || !(measured > 0.0)) continue;
     const double ratio = measured / simulated;
     if (ratio < kMostRatio && ratio * kMostRatio > 1.0) continue;
-    // Below the noise the model may rest.
+    // Below the noise the model may rest; where it rests, a rough road still moves the car.
     if (std::max(simulated, measured) < 10.0 * channel.sigma) continue;
+    if (!data.is_rig() && simulated < channel.sigma) continue;
     for (const CampaignColumn& c : data.campaign.columns) {
       if (c.channel != data.info(channel.channel).name) continue;
       throw InputError(suspect(data.tables[r], c, measured, simulated,

@@ -26,16 +26,17 @@ class FitProblem : public LeastSquaresProblem {
     const auto n = static_cast<Eigen::Index>(weight_count());
     const Linearization& at = linearize(weights);
     if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
-    const Eigen::MatrixXd jacobian = get_free_jacobian(at, weights);
-    Eigen::Map<Eigen::MatrixXd>(h, n, n).noalias() = jacobian.transpose() * jacobian;
-    Eigen::Map<Eigen::VectorXd>(gradient, n).noalias() = jacobian.transpose() * at.residual;
+    const NormalEquations normal = get_free_normal(weights);
+    Eigen::Map<Eigen::MatrixXd>(h, n, n) = normal.information;
+    Eigen::Map<Eigen::VectorXd>(gradient, n) = normal.gradient;
     return at.residual.squaredNorm();
   }
 
   /// Where there is no simulation the loss is infinite: a step that is not taken.
   double calc_loss(const double* weights) override {
     const std::vector<double> values = calc_values(weights);
-    const Linearization at = values == last_values_ ? last_ : simulator_.evaluate(values);
+    const Evaluation at = values == last_values_ ? Evaluation{last_.failure, last_.residual}
+                                                 : simulator_.evaluate(values);
     return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
   }
 
@@ -45,6 +46,7 @@ class FitProblem : public LeastSquaresProblem {
     if (values != last_values_) {
       last_ = simulator_.linearize(values);
       last_values_ = values;
+      if (last_.failure.empty()) normal_ = calc_normal_equations(simulator_, last_);
     }
     return last_;
   }
@@ -70,10 +72,9 @@ class FitProblem : public LeastSquaresProblem {
   double calc_distance(const double* weights) {
     const Linearization& at = linearize(weights);
     if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
-    const Eigen::MatrixXd jacobian = get_free_jacobian(at, weights);
-    const Eigen::VectorXd gradient = jacobian.transpose() * at.residual;
-    const InformationInverse inverse = invert_information(jacobian.transpose() * jacobian);
-    return std::sqrt(std::max(0.0, gradient.dot(inverse.covariance * gradient)));
+    const NormalEquations normal = get_free_normal(weights);
+    const InformationInverse inverse = invert_information(normal.information);
+    return std::sqrt(std::max(0.0, normal.gradient.dot(inverse.covariance * normal.gradient)));
   }
 
   /// How much larger standard deviations are by what the model leaves beyond noise.
@@ -89,7 +90,7 @@ class FitProblem : public LeastSquaresProblem {
   bool release(std::vector<double>& weights) {
     const Linearization& at = linearize(weights.data());
     if (!at.failure.empty()) return false;
-    const Eigen::VectorXd gradient = at.jacobian.transpose() * at.residual;
+    const Eigen::VectorXd& gradient = normal_.gradient;
     bool inwards = false;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (!is_beyond(weights.data(), i)) continue;
@@ -104,18 +105,23 @@ class FitProblem : public LeastSquaresProblem {
   }
 
  private:
-  /// Without the columns of what a bound holds.
-  Eigen::MatrixXd get_free_jacobian(const Linearization& at, const double* weights) const {
-    Eigen::MatrixXd jacobian = at.jacobian;
-    for (Eigen::Index i = 0; i < jacobian.cols(); ++i) {
-      if (is_beyond(weights, static_cast<std::size_t>(i))) jacobian.col(i).setZero();
+  /// At the last linearization, without what a bound holds.
+  NormalEquations get_free_normal(const double* weights) const {
+    NormalEquations normal = normal_;
+    for (std::size_t i = 0; i < weight_count(); ++i) {
+      if (!is_beyond(weights, i)) continue;
+      const auto at = static_cast<Eigen::Index>(i);
+      normal.information.row(at).setZero();
+      normal.information.col(at).setZero();
+      normal.gradient(at) = 0.0;
     }
-    return jacobian;
+    return normal;
   }
 
   ReadingModel& simulator_;
   std::vector<double> last_values_;
   Linearization last_;
+  NormalEquations normal_;  // of last_
 };
 
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
@@ -209,15 +215,10 @@ std::vector<ChannelFit> judge_channels(const ReadingModel& simulator,
   return fits;
 }
 
-Uncertainty calc_widened(const ReadingModel& simulator, const Linearization& at,
-                         const FitResult& result) {
-  const auto readings = static_cast<Eigen::Index>(simulator.reading_count());
-  const auto of_readings = at.jacobian.topRows(readings);
-  const auto of_priors = at.jacobian.bottomRows(at.jacobian.rows() - readings);
+Uncertainty calc_widened(const NormalEquations& normal, const FitResult& result) {
   const double misfit = std::max(1.0, result.chi2_per_degree());
-  const Eigen::MatrixXd information =
-      of_readings.transpose() * of_readings / misfit + of_priors.transpose() * of_priors;
-  return calc_uncertainty(information, result.unknowns);
+  return calc_uncertainty((normal.information - normal.of_priors) / misfit + normal.of_priors,
+                          result.unknowns);
 }
 
 /// The result at the end of the search.
@@ -230,11 +231,12 @@ void describe(const ReadingModel& simulator, FitProblem& problem,
   for (std::size_t i = 0; i < weights.size(); ++i) {
     result.at_bound.push_back(problem.is_beyond(weights.data(), i));
   }
-  result.uncertainty = calc_uncertainty(at.jacobian.transpose() * at.jacobian, result.unknowns);
+  const NormalEquations normal = calc_normal_equations(simulator, at);
+  result.uncertainty = calc_uncertainty(normal.information, result.unknowns);
   result.chi2 = at.residual.squaredNorm();
   result.degrees = static_cast<long>(simulator.reading_count() + simulator.prior_count()) -
                    result.uncertainty.rank;
-  result.widened = calc_widened(simulator, at, result);
+  result.widened = calc_widened(normal, result);
   result.channels = judge_channels(simulator, at.residual);
   result.distance = problem.calc_distance(weights.data());
   result.distance /= problem.calc_widening(weights.data());
@@ -276,7 +278,7 @@ Uncertainty calc_fit_bounds(const std::vector<MeasuredRun>& runs,
   ReadingSimulator simulator(runs, unknowns, options);
   const Linearization at = simulator.linearize(list_starts(unknowns));
   if (!at.failure.empty()) throw InputError(at.failure);
-  return calc_uncertainty(at.jacobian.transpose() * at.jacobian, unknowns);
+  return calc_uncertainty(calc_normal_equations(simulator, at).information, unknowns);
 }
 
 }  // namespace strut

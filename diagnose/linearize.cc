@@ -6,6 +6,9 @@
 
 #include "diagnose/run_readings.h"
 #include "io/input_error.h"
+#include "model/effects/catalogue.h"
+#include "model/effects/sensors.h"
+#include "model/vehicle/channels.h"
 #include "model/vehicle/model_error.h"
 #include "sweep/parameters.h"
 #include "sweep/simulate_cases.h"
@@ -37,14 +40,38 @@ std::vector<Variant> list_variants(const std::vector<Unknown>& unknowns, std::si
   return variants;
 }
 
-Case make_setup(const Case& setup, const std::vector<Unknown>& unknowns,
-                const std::vector<double>& values, const Variant& variant) {
-  Case c = setup;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    if (!is_parameter_of(unknowns[i], variant.run)) continue;
-    set_parameter(c, unknowns[i].name, i == variant.unknown ? variant.value : values[i]);
+SampledRun get_channels(const MeasuredRun& run, const LaneRun& result) {
+  const auto count = static_cast<std::size_t>(result.results->sample_count);
+  SampledRun sampled;
+  sampled.reserve(run.channels.size());
+  for (const MeasuredChannel& c : run.channels) {
+    std::vector<double> series(count);
+    const auto channel = static_cast<std::size_t>(c.channel);
+    for (std::size_t i = 0; i < count; ++i) series[i] = result.get(i, channel);
+    sampled.push_back(std::move(series));
   }
+  return sampled;
+}
+
+bool is_sensor(const EffectSetting& setting) {
+  return (find_effect(setting.effect)->places & kOnChannel) != 0;
+}
+
+/// The car alone: what its sensors do is no part of the simulation.
+Case remove_sensors(Case c) {
+  std::erase_if(c.vehicle.effects, is_sensor);
   return c;
+}
+
+/// What the sensors make of the channels.
+SampledRun read_sensors(const Case& setup, const MeasuredRun& run, double interval,
+                        SampledRun sampled) {
+  for (std::size_t c = 0; c < sampled.size(); ++c) {
+    const auto channel = static_cast<std::size_t>(run.channels[c].channel);
+    sampled[c] = read_sensor(setup.vehicle.effects, list_car_channels()[channel].name, interval,
+                             std::move(sampled[c]));
+  }
+  return sampled;
 }
 
 std::string explain_failure(const std::string& run, const LaneRun& result) {
@@ -63,6 +90,10 @@ ReadingSimulator::ReadingSimulator(std::vector<MeasuredRun> runs, std::vector<Un
       preparers_(runs_.size()) {
   if (runs_.empty()) throw InputError("fit: no measurement");
   check_unknowns(unknowns_, runs_.size());
+  for (const Unknown& u : unknowns_) {
+    const bool is_parameter = u.kind == UnknownKind::kParameter;
+    parameters_.push_back(is_parameter ? &find_parameter(u.name) : nullptr);
+  }
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     check_measured_run(runs_[r]);
     channels_.emplace_back();
@@ -101,47 +132,139 @@ void ReadingSimulator::choose_readings(std::size_t r) {
                    format_number(driven) + " s: no reading can be compared");
 }
 
-/// Fills the results of each run's base and of both sides of `varied`, some first of the unknowns;
-/// returns why there are none.
-std::string ReadingSimulator::simulate(const std::vector<double>& values,
-                                       const std::vector<Unknown>& varied,
-                                       std::vector<LaneRun>& results) {
-  const std::vector<Variant> variants =
-      list_variants(varied, runs_.size(), values, options_.relative_step);
-  std::vector<PreparedCase> cases;
-  cases.reserve(variants.size());
-  for (const Variant& v : variants) {
-    try {
-      const Case setup = make_setup(runs_[v.run].setup, unknowns_, values, v);
-      // A copy: what changes the mechanism must not drive the base point's out of the preparer.
-      CasePreparer own = preparers_[v.run];
-      CasePreparer& preparer = v.unknown == kNoUnknown ? preparers_[v.run] : own;
-      cases.push_back(preparer.prepare(setup));
-    } catch (const ModelError& e) {
-      return runs_[v.run].name + ": " + e.what();
-    } catch (const std::invalid_argument& e) {  // the road's
-      return runs_[v.run].name + ": " + e.what();
-    } catch (const InputError& e) {  // out of a parameter's range
-      return runs_[v.run].name + ": " + e.what();
-    }
+Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& values) const {
+  Case c = runs_[run].setup;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (!is_parameter_of(unknowns_[i], run)) continue;
+    // What stays as it is is not touched: a corner's neutral effect would replace the axle's.
+    if (values[i] != parameters_[i]->get(runs_[run].setup)) parameters_[i]->set(c, values[i]);
   }
+  return c;
+}
+
+void ReadingSimulator::sample(std::size_t run, const std::vector<Case>& setups,
+                              std::vector<SampledRun>& sampled,
+                              std::vector<std::string>& failures) {
   SamplePlan plan;
   plan.interval = 1.0 / options_.rate;
   plan.snapshot = false;
-  results = run_prepared(cases, options_.integrate, plan, options_.threads);
-  simulation_count_ += static_cast<long>(cases.size());
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (results[i].status() != RunStatus::kDone) {
-      return explain_failure(runs_[variants[i].run].name, results[i]);
+  const std::size_t first = sampled.size();
+  sampled.resize(first + setups.size());
+  failures.resize(first + setups.size());
+  // As many at a time as keep their histories, of all channels, in some hundred megabytes.
+  constexpr std::size_t kAtOnce = 32;
+  for (std::size_t begin = 0; begin < setups.size(); begin += kAtOnce) {
+    const std::size_t end = std::min(begin + kAtOnce, setups.size());
+    std::vector<PreparedCase> cases;
+    std::vector<std::size_t> places;
+    for (std::size_t i = begin; i < end; ++i) {
+      try {
+        // A copy: what changes the mechanism must not drive the base point's out of the preparer.
+        CasePreparer own = preparers_[run];
+        CasePreparer& preparer = i == 0 ? preparers_[run] : own;
+        cases.push_back(preparer.prepare(remove_sensors(setups[i])));
+        places.push_back(i);
+      } catch (const ModelError& e) {
+        failures[first + i] = runs_[run].name + ": " + e.what();
+      } catch (const std::invalid_argument& e) {  // the road's
+        failures[first + i] = runs_[run].name + ": " + e.what();
+      }
     }
+    const std::vector<LaneRun> results =
+        run_prepared(cases, options_.integrate, plan, options_.threads);
+    simulation_count_ += static_cast<long>(cases.size());
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      const std::size_t i = places[k];
+      if (results[k].status() != RunStatus::kDone) {
+        failures[first + i] = explain_failure(runs_[run].name, results[k]);
+      } else {
+        sampled[first + i] = get_channels(runs_[run], results[k]);
+      }
+    }
+  }
+}
+
+/// By run: its base, then both sides of each of `varied`, some first of the unknowns; returns why
+/// there are none.
+std::string ReadingSimulator::sample_variants(const std::vector<double>& values,
+                                              const std::vector<Unknown>& varied,
+                                              std::vector<SampledRun>& sampled) {
+  const std::vector<Variant> variants =
+      list_variants(varied, runs_.size(), values, options_.relative_step);
+  std::vector<std::string> failures;
+  for (std::size_t run = 0; run < runs_.size(); ++run) {
+    std::vector<Case> setups;
+    for (const Variant& v : variants) {
+      if (v.run != run) continue;
+      std::vector<double> at = values;
+      if (v.unknown != kNoUnknown) at[v.unknown] = v.value;
+      try {
+        setups.push_back(make_setup(run, at));
+      } catch (const ModelError& e) {
+        return runs_[run].name + ": " + e.what();
+      } catch (const InputError& e) {  // out of a parameter's range
+        return runs_[run].name + ": " + e.what();
+      }
+    }
+    const std::size_t first = sampled.size();
+    sample(run, setups, sampled, failures);
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+      sampled[first + i] =
+          read_sensors(setups[i], runs_[run], 1.0 / options_.rate, std::move(sampled[first + i]));
+    }
+  }
+  for (const std::string& failure : failures) {
+    if (!failure.empty()) return failure;
   }
   return "";
 }
 
+std::vector<Evaluation> ReadingSimulator::evaluate(const std::vector<std::vector<double>>& points) {
+  std::vector<Evaluation> evaluations(points.size());
+  const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    evaluations[i].residual = Eigen::VectorXd::Zero(rows);
+    fill_prior_residuals(points[i], evaluations[i].residual);
+  }
+  for (std::size_t run = 0; run < runs_.size(); ++run) evaluate_run(run, points, evaluations);
+  return evaluations;
+}
+
+void ReadingSimulator::evaluate_run(std::size_t run, const std::vector<std::vector<double>>& points,
+                                    std::vector<Evaluation>& evaluations) {
+  std::vector<Case> cars, setups(points.size());  // cars without their sensors, each once
+  std::vector<std::size_t> which(points.size());  // of the cars
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    try {
+      setups[i] = make_setup(run, points[i]);
+    } catch (const ModelError& e) {
+      evaluations[i].failure = runs_[run].name + ": " + e.what();
+    } catch (const InputError& e) {  // out of a parameter's range
+      evaluations[i].failure = runs_[run].name + ": " + e.what();
+    }
+    Case car = remove_sensors(setups[i]);
+    const auto same = std::find(cars.begin(), cars.end(), car);
+    which[i] = static_cast<std::size_t>(same - cars.begin());
+    if (same == cars.end()) cars.push_back(std::move(car));
+  }
+  std::vector<SampledRun> sampled;
+  std::vector<std::string> failures;
+  sample(run, cars, sampled, failures);
+  const double interval = 1.0 / options_.rate;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Evaluation& e = evaluations[i];
+    if (e.failure.empty()) e.failure = failures[which[i]];
+    if (!e.failure.empty()) continue;
+    const RunReadings readings(unknowns_, points[i], runs_[run], run, interval, readings_);
+    readings.fill_residual(read_sensors(setups[i], runs_[run], interval, sampled[which[i]]),
+                           points[i], e.residual);
+  }
+}
+
 Linearization ReadingSimulator::linearize(const std::vector<double>& values) {
   Linearization out;
-  std::vector<LaneRun> results;
-  out.failure = simulate(values, unknowns_, results);
+  std::vector<SampledRun> results;
+  out.failure = sample_variants(values, unknowns_, results);
   if (!out.failure.empty()) return out;
   const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
   out.residual = Eigen::VectorXd::Zero(rows);
@@ -157,8 +280,8 @@ Linearization ReadingSimulator::linearize(const std::vector<double>& values) {
 
 std::vector<double> ReadingSimulator::align(const std::vector<double>& values) {
   std::vector<double> aligned = values;
-  std::vector<LaneRun> bases;
-  if (!simulate(values, {}, bases).empty()) return aligned;
+  std::vector<SampledRun> bases;
+  if (!sample_variants(values, {}, bases).empty()) return aligned;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const std::size_t hit = find_hit_time(unknowns_, r);
     if (hit == kNoUnknown || unknowns_[hit].run == kEveryRun) continue;

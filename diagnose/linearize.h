@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "diagnose/reading_model.h"
+#include "diagnose/run_readings.h"
+#include "sweep/parameters.h"
 #include "sweep/run_prepared.h"
 
 namespace strut {
@@ -45,6 +47,10 @@ class ReadingSimulator : public ReadingModel {
   /// `values` in the unknowns' own units. Deterministic.
   Linearization linearize(const std::vector<double>& values) override;
 
+  /// Points whose cars differ in nothing but their sensors share a simulation.
+  using ReadingModel::evaluate;
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
+
   /// `values` with the hit time of each run where its readings fit best (run_readings.h); as they
   /// are where they cannot be simulated. One simulation a run.
   std::vector<double> align(const std::vector<double>& values) override;
@@ -53,12 +59,20 @@ class ReadingSimulator : public ReadingModel {
 
  private:
   void choose_readings(std::size_t run);
-  std::string simulate(const std::vector<double>& values, const std::vector<Unknown>& varied,
-                       std::vector<LaneRun>& results);
+  /// The car and maneuver of a run at these values; throws what the parameters throw.
+  Case make_setup(std::size_t run, const std::vector<double>& values) const;
+  /// What the sensors of a run read of some setups, simulated in lanes; of each why not.
+  void sample(std::size_t run, const std::vector<Case>& setups, std::vector<SampledRun>& sampled,
+              std::vector<std::string>& failures);
+  void evaluate_run(std::size_t run, const std::vector<std::vector<double>>& points,
+                    std::vector<Evaluation>& evaluations);
+  std::string sample_variants(const std::vector<double>& values, const std::vector<Unknown>& varied,
+                              std::vector<SampledRun>& sampled);
 
   std::vector<MeasuredRun> runs_;
   LinearizeOptions options_;
-  std::vector<CasePreparer> preparers_;  // one a run, at the base point's mechanism
+  std::vector<const ParameterInfo*> parameters_;  // by unknown; null where it is none
+  std::vector<CasePreparer> preparers_;           // one a run, at the base point's mechanism
 };
 
 }  // namespace strut

@@ -49,7 +49,7 @@ SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const doub
 
 double choose_half_width(std::span<const double> times, std::span<const double> values,
                          double sigma) {
-  constexpr double kMost = 2.0;  // of the noise's rms: hum and rounding are not white
+  constexpr double kMost = 1.7;  // of the noise's rms
   // Leverage of the middle of 2 m + 1 even readings in a cubic: what noise leaves there.
   const auto calc_left = [](double m) {
     const double n = 2.0 * m + 1.0;

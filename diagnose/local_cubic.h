@@ -21,7 +21,7 @@ SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const doub
                              double half_width, CurveEnds ends = CurveEnds::kNone);
 
 /// The widest half width [s] that takes nothing but noise away: what local cubics leave of the
-/// readings has an rms of at most twice that of white noise `sigma` (hum is not white); 0 where
+/// readings has an rms of at most 1.7 times that of white noise `sigma` (hum is not white); 0 where
 /// even the narrowest takes more. Of an input whose rate drives forces, the noise of the rate falls
 /// as width^-1.5.
 double choose_half_width(std::span<const double> times, std::span<const double> values,

@@ -20,6 +20,12 @@ struct Linearization {
   Eigen::MatrixXd jacobian;  // by unknowns counted in their scale
 };
 
+/// Residuals alone, at one of several points.
+struct Evaluation {
+  std::string failure;       // as Linearization's
+  Eigen::VectorXd residual;  // as Linearization's
+};
+
 /// Which reading a residual is.
 struct ReadingPlace {
   std::size_t run, time, channel;  // the latter of the run's channels
@@ -33,8 +39,12 @@ class ReadingModel {
 
   /// `values` in the unknowns' own units. Deterministic.
   virtual Linearization linearize(const std::vector<double>& values) = 0;
-  /// The same without the derivatives, where that is cheaper.
-  virtual Linearization evaluate(const std::vector<double>& values) { return linearize(values); }
+  /// The residuals at several points, simulated together; each has a failure of its own.
+  virtual std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) = 0;
+  /// At one point.
+  Evaluation evaluate(const std::vector<double>& values) {
+    return evaluate(std::vector<std::vector<double>>{values}).front();
+  }
   /// `values` with what costs no search set right, such as the clocks.
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 
@@ -55,7 +65,8 @@ class ReadingModel {
   ReadingModel(const ReadingModel&) = default;
   ReadingModel& operator=(const ReadingModel&) = default;
 
-  /// Appends the residuals and derivatives of the priors, after the readings'.
+  /// Fills in the residuals of the priors, after the readings'; and their derivatives.
+  void fill_prior_residuals(const std::vector<double>& values, Eigen::VectorXd& residual) const;
   void fill_priors(const std::vector<double>& values, Linearization& out) const;
   /// Throws InputError where there are fewer readings than unknowns; sets prior_count_.
   void finish(const std::string& name);
@@ -66,5 +77,17 @@ class ReadingModel {
   std::size_t prior_count_ = 0, outside_count_ = 0;
   long simulation_count_ = 0;
 };
+
+/// J'J and J'r of a linearization. Unknowns of one run meet only that run's readings, which is
+/// most of the work saved.
+struct NormalEquations {
+  Eigen::MatrixXd information, of_priors;  // the latter: the priors' share of it
+  Eigen::VectorXd gradient;
+};
+NormalEquations calc_normal_equations(const ReadingModel& model, const Linearization& at);
+
+/// J'C of readings and priors, by the same saving.
+Eigen::MatrixXd calc_products(const ReadingModel& model, const Eigen::MatrixXd& jacobian,
+                              const Eigen::MatrixXd& columns);
 
 }  // namespace strut

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnose/local_cubic.h"
 #include "diagnose/run_readings.h"
 #include "diagnose/sampled_curve.h"
 #include "diagnose/spread.h"
 #include "io/config.h"
 #include "io/nearest_name.h"
+#include "model/effects/sensors.h"
 #include "model/integrate/rig_system.h"
 #include "model/parallel/team.h"
 #include "model/vehicle/model_error.h"
@@ -97,7 +99,10 @@ class RigResult {
       failure_ = run.name + ": " + e.what();
       return;
     }
-    if (results_.status[0] == 0) return;
+    if (results_.status[0] == 0) {
+      read_sensors(variant.spec);
+      return;
+    }
     failure_ = run.name +
                ": the simulation ends at t = " + format_rounded(results_.failure_time[0]) +
                " s: the motion is not finite";
@@ -120,6 +125,19 @@ class RigResult {
 
  private:
   static constexpr double kMarginSteps = 4.0;
+
+  /// Replaces what the channels are by what their sensors read.
+  void read_sensors(const RigSpec& spec) {
+    if (spec.effects.empty()) return;
+    const auto count = static_cast<std::size_t>(results_.sample_count);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      std::vector<double> series(count);
+      for (std::size_t i = 0; i < count; ++i) series[i] = results_.history[i * channels_ + c];
+      series = read_sensor(spec.effects, list_rig_channels(spec.kind)[c].name, sampling_.interval,
+                           std::move(series));
+      for (std::size_t i = 0; i < count; ++i) results_.history[i * channels_ + c] = series[i];
+    }
+  }
 
   const RigRun& run_;
   RigSampling sampling_;
@@ -219,6 +237,13 @@ double get_rig_parameter(const RigSpec& spec, const std::string& name) {
   return find_rig_parameter(spec.kind, name).get(spec);
 }
 
+InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
+                               const std::vector<double>& values, double half_width) {
+  if (half_width <= 0.0) return make_signal(channel, times, values, Interpolation::kSpline);
+  const SmoothCurve curve = calc_local_cubic(times, values, half_width, CurveEnds::kOneSided);
+  return make_signal(channel, times, curve.value, curve.rate);
+}
+
 RigCurves simulate_rig_run(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
                            const std::vector<double>& values, const RigOptions& options) {
   const RigResult result(run, make_variant(run, index, unknowns, values), options);
@@ -265,13 +290,12 @@ RigReadings::RigReadings(std::vector<RigRun> runs, std::vector<Unknown> unknowns
   finish(runs_.front().name);
 }
 
-std::vector<RigReadings::Task> RigReadings::list_tasks(const std::vector<double>& values,
-                                                       bool derivatives) const {
+std::vector<RigReadings::Task> RigReadings::list_tasks(const std::vector<double>& values) const {
   std::vector<Task> tasks;
   tasks.reserve(runs_.size() * (1 + 2 * unknowns_.size()));
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     tasks.push_back({r, kNoUnknown, 0.0});
-    for (std::size_t i = 0; derivatives && i < unknowns_.size(); ++i) {
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
       const Unknown& u = unknowns_[i];
       if (!belongs(u, static_cast<int>(r)) || u.kind == UnknownKind::kBias) continue;
       const auto [upper, lower] = calc_sides(u, values[i], options_.relative_step);
@@ -304,8 +328,25 @@ std::string RigReadings::simulate(const Task& task, const std::vector<double>& v
   return "";
 }
 
-/// Adds what biases do to residuals and derivatives.
-void RigReadings::fill_biases(const std::vector<double>& values, Linearization& out) const {
+/// Residuals of a run, biases included.
+void RigReadings::fill_residual(std::size_t run, const std::vector<double>& values,
+                                const std::vector<double>& read, Eigen::VectorXd& residual) const {
+  std::vector<double> bias(runs_[run].channels.size(), 0.0);
+  for (std::size_t u = 0; u < unknowns_.size(); ++u) {
+    if (unknowns_[u].kind != UnknownKind::kBias) continue;
+    if (!belongs(unknowns_[u], static_cast<int>(run))) continue;
+    for (std::size_t c = 0; c < bias.size(); ++c) {
+      if (runs_[run].channels[c].channel == unknowns_[u].channel) bias[c] += values[u];
+    }
+  }
+  for (std::size_t i = begin_[run]; i < begin_[run + 1]; ++i) {
+    const MeasuredChannel& c = runs_[run].channels[readings_[i].channel];
+    const double simulated = read[i - begin_[run]] + bias[readings_[i].channel];
+    residual(static_cast<Eigen::Index>(i)) = (simulated - c.values[readings_[i].time]) / c.sigma;
+  }
+}
+
+void RigReadings::fill_bias_columns(Linearization& out) const {
   for (std::size_t u = 0; u < unknowns_.size(); ++u) {
     if (unknowns_[u].kind != UnknownKind::kBias) continue;
     for (std::size_t i = 0; i < readings_.size(); ++i) {
@@ -313,15 +354,14 @@ void RigReadings::fill_biases(const std::vector<double>& values, Linearization& 
       const MeasuredChannel& c = runs_[place.run].channels[place.channel];
       if (c.channel != unknowns_[u].channel) continue;
       if (!belongs(unknowns_[u], static_cast<int>(place.run))) continue;
-      const auto row = static_cast<Eigen::Index>(i);
-      out.residual(row) += values[u] / c.sigma;
-      out.jacobian(row, static_cast<Eigen::Index>(u)) = unknowns_[u].scale / c.sigma;
+      out.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(u)) =
+          unknowns_[u].scale / c.sigma;
     }
   }
 }
 
-Linearization RigReadings::run_tasks(const std::vector<double>& values, bool derivatives) {
-  const std::vector<Task> tasks = list_tasks(values, derivatives);
+Linearization RigReadings::linearize(const std::vector<double>& values) {
+  const std::vector<Task> tasks = list_tasks(values);
   std::vector<std::vector<double>> read(tasks.size());
   std::vector<std::string> failures(tasks.size());
   share_items(options_.threads, tasks.size(), [&](std::size_t k, int /*thread*/) {
@@ -338,33 +378,46 @@ Linearization RigReadings::run_tasks(const std::vector<double>& values, bool der
   out.jacobian = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(unknowns_.size()));
   for (std::size_t k = 0; k < tasks.size(); ++k) {
     const Task& task = tasks[k];
-    const bool base = task.unknown == kNoUnknown;
-    const double width = base ? 0.0 : task.value - tasks[k + 1].value;
+    if (task.unknown == kNoUnknown) {
+      fill_residual(task.run, values, read[k], out.residual);
+      continue;
+    }
+    const double width = task.value - tasks[k + 1].value;
     for (std::size_t i = begin_[task.run]; i < begin_[task.run + 1]; ++i) {
       const MeasuredChannel& c = runs_[task.run].channels[readings_[i].channel];
-      const auto row = static_cast<Eigen::Index>(i);
-      const double simulated = read[k][i - begin_[task.run]];
-      if (base) {
-        out.residual(row) = (simulated - c.values[readings_[i].time]) / c.sigma;
-      } else {
-        const double lower = read[k + 1][i - begin_[task.run]];
-        out.jacobian(row, static_cast<Eigen::Index>(task.unknown)) =
-            (simulated - lower) / width * unknowns_[task.unknown].scale / c.sigma;
-      }
+      const double rise = read[k][i - begin_[task.run]] - read[k + 1][i - begin_[task.run]];
+      out.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(task.unknown)) =
+          rise / width * unknowns_[task.unknown].scale / c.sigma;
     }
-    if (!base) ++k;  // its lower side
+    ++k;  // its lower side
   }
-  fill_biases(values, out);
+  fill_bias_columns(out);
   fill_priors(values, out);
   return out;
 }
 
-Linearization RigReadings::linearize(const std::vector<double>& values) {
-  return run_tasks(values, true);
-}
-
-Linearization RigReadings::evaluate(const std::vector<double>& values) {
-  return run_tasks(values, false);
+std::vector<Evaluation> RigReadings::evaluate(const std::vector<std::vector<double>>& points) {
+  const std::size_t count = points.size() * runs_.size();
+  std::vector<std::vector<double>> read(count);
+  std::vector<std::string> failures(count);
+  share_items(options_.threads, count, [&](std::size_t k, int /*thread*/) {
+    const Task base{k % runs_.size(), kNoUnknown, 0.0};
+    failures[k] = simulate(base, points[k / runs_.size()], read[k]);
+  });
+  simulation_count_ += static_cast<long>(count);
+  std::vector<Evaluation> evaluations(points.size());
+  const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    Evaluation& e = evaluations[p];
+    e.residual = Eigen::VectorXd::Zero(rows);
+    for (std::size_t r = 0; r < runs_.size() && e.failure.empty(); ++r) {
+      const std::size_t k = p * runs_.size() + r;
+      e.failure = failures[k];
+      if (e.failure.empty()) fill_residual(r, points[p], read[k], e.residual);
+    }
+    fill_prior_residuals(points[p], e.residual);
+  }
+  return evaluations;
 }
 
 Unknown make_rig_unknown(const std::vector<RigRun>& runs, const std::string& name) {

@@ -16,12 +16,19 @@
 
 namespace strut {
 
+/// What is not exact about a measured input.
+struct InputNoise {
+  double sigma = 0.0;       // 1 sigma per sample, in the input's unit
+  double half_width = 0.0;  // s, of the local cubics that smoothed it; 0: none did
+};
+
 struct RigRun {
   std::string name;  // the file, for messages
   RigSpec setup;
   std::vector<InputSignal> inputs;        // over `times`' clock
   std::vector<double> times;              // s, ascending from 0
   std::vector<MeasuredChannel> channels;  // readings may be NaN: missing
+  std::vector<InputNoise> input_noise{};  // of each input
 };
 
 struct RigOptions {
@@ -31,6 +38,11 @@ struct RigOptions {
   double relative_step = 1e-5;  // h of the central differences as a share of the scale
   int threads = 1;              // no result depends on it
 };
+
+/// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
+/// std::invalid_argument as make_signal does.
+InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
+                               const std::vector<double>& values, double half_width);
 
 /// What a rig does during a run: all its channels at the run's times.
 struct RigCurves {
@@ -59,7 +71,8 @@ class RigReadings : public ReadingModel {
               const RigOptions& options = {});
 
   Linearization linearize(const std::vector<double>& values) override;
-  Linearization evaluate(const std::vector<double>& values) override;
+  using ReadingModel::evaluate;
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
 
   const std::vector<RigRun>& runs() const { return runs_; }
 
@@ -69,11 +82,12 @@ class RigReadings : public ReadingModel {
     std::size_t run, unknown;
     double value;
   };
-  std::vector<Task> list_tasks(const std::vector<double>& values, bool derivatives) const;
+  std::vector<Task> list_tasks(const std::vector<double>& values) const;
   std::string simulate(const Task& task, const std::vector<double>& values,
                        std::vector<double>& read) const;
-  Linearization run_tasks(const std::vector<double>& values, bool derivatives);
-  void fill_biases(const std::vector<double>& values, Linearization& out) const;
+  void fill_residual(std::size_t run, const std::vector<double>& values,
+                     const std::vector<double>& read, Eigen::VectorXd& residual) const;
+  void fill_bias_columns(Linearization& out) const;
 
   std::vector<RigRun> runs_;
   RigOptions options_;

@@ -49,10 +49,11 @@ RunReadings::RunReadings(const std::vector<Unknown>& unknowns, const std::vector
   }
 }
 
-std::size_t RunReadings::fill(const LaneRun* results, double relative_step,
+std::size_t RunReadings::fill(const SampledRun* results, double relative_step,
                               Linearization& out) const {
   std::size_t used = 1;
-  fill_base(results[0], out);
+  fill_residual(results[0], values_, out.residual);
+  fill_base_columns(results[0], out);
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     if (!is_parameter_of(unknowns_[i], index_)) continue;
     const auto [upper, lower] = calc_sides(unknowns_[i], values_[i], relative_step);
@@ -63,7 +64,7 @@ std::size_t RunReadings::fill(const LaneRun* results, double relative_step,
   return used;
 }
 
-double RunReadings::find_best_hit_time(const LaneRun& base) const {
+double RunReadings::find_best_hit_time(const SampledRun& base) const {
   const Unknown& u = unknowns_[find_hit_time(unknowns_, index_)];
   // On a bound a search would be held there.
   const auto first = static_cast<int>(std::floor((u.low - hit_time_) / kAlignStep)) + 1;
@@ -91,18 +92,18 @@ RunReadings::Bias RunReadings::get_bias(const MeasuredChannel& channel) const {
   return {0.0, kInfinity};
 }
 
-CurvePoint RunReadings::read(const LaneRun& simulated, const ReadingPlace& place,
+CurvePoint RunReadings::read(const SampledRun& simulated, const ReadingPlace& place,
                              double hit_time) const {
   const double at = (run_.times[place.time] + hit_time) / step_;
   const double index = std::floor(at);
-  const auto channel = static_cast<std::size_t>(run_.channels[place.channel].channel);
-  return interpolate_curve([&](std::size_t sample) { return simulated.get(sample, channel); },
+  const std::vector<double>& series = simulated[place.channel];
+  return interpolate_curve([&](std::size_t sample) { return series[sample]; },
                            static_cast<std::size_t>(index), at - index, step_);
 }
 
 /// Sum over the channels of min over b of sum (e + b)^2 + information b^2, which is
 /// sum e^2 - (sum e)^2 / (count + information).
-double RunReadings::calc_chi2(const LaneRun& base, double hit_time) const {
+double RunReadings::calc_chi2(const SampledRun& base, double hit_time) const {
   double chi2 = 0.0;
   for (std::size_t channel = 0; channel < run_.channels.size(); ++channel) {
     const MeasuredChannel& c = run_.channels[channel];
@@ -122,30 +123,44 @@ double RunReadings::calc_chi2(const LaneRun& base, double hit_time) const {
   return chi2;
 }
 
-void RunReadings::fill_base(const LaneRun& base, Linearization& out) const {
-  for (const std::size_t k : rows_) {
-    const auto row = static_cast<Eigen::Index>(k);
-    const MeasuredChannel& c = run_.channels[places_[k].channel];
-    const CurvePoint point = read(base, places_[k], hit_time_);
-    double difference = point.value - c.values[places_[k].time];
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      const Unknown& u = unknowns_[i];
-      if (!belongs(u, index_)) continue;
-      const double scale = u.scale / c.sigma;
-      if (u.kind == UnknownKind::kHitTime) {
-        out.jacobian(row, static_cast<Eigen::Index>(i)) = point.slope * scale;
-      } else if (u.kind == UnknownKind::kBias && u.channel == c.channel) {
-        difference += values_[i];
-        out.jacobian(row, static_cast<Eigen::Index>(i)) = scale;
-      }
+void RunReadings::fill_residual(const SampledRun& base, const std::vector<double>& values,
+                                Eigen::VectorXd& residual) const {
+  std::vector<double> bias(run_.channels.size(), 0.0);
+  double hit_time = 0.0;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    if (!belongs(u, index_)) continue;
+    if (u.kind == UnknownKind::kHitTime) hit_time = values[i];
+    if (u.kind != UnknownKind::kBias) continue;
+    for (std::size_t c = 0; c < bias.size(); ++c) {
+      if (run_.channels[c].channel == u.channel) bias[c] += values[i];
     }
-    out.residual(row) = difference / c.sigma;
+  }
+  for (const std::size_t k : rows_) {
+    const MeasuredChannel& c = run_.channels[places_[k].channel];
+    const double simulated = read(base, places_[k], hit_time).value + bias[places_[k].channel];
+    residual(static_cast<Eigen::Index>(k)) = (simulated - c.values[places_[k].time]) / c.sigma;
+  }
+}
+
+void RunReadings::fill_base_columns(const SampledRun& base, Linearization& out) const {
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    const bool is_time = u.kind == UnknownKind::kHitTime;
+    if (!belongs(u, index_) || (!is_time && u.kind != UnknownKind::kBias)) continue;
+    const auto column = static_cast<Eigen::Index>(i);
+    for (const std::size_t k : rows_) {
+      const MeasuredChannel& c = run_.channels[places_[k].channel];
+      if (!is_time && u.channel != c.channel) continue;
+      const double slope = is_time ? read(base, places_[k], hit_time_).slope : 1.0;
+      out.jacobian(static_cast<Eigen::Index>(k), column) = slope * u.scale / c.sigma;
+    }
   }
 }
 
 /// Differences of two runs; a column in which the second difference is as large as the first
 /// holds nothing but rounding, as its step is short, and becomes zero.
-void RunReadings::fill_parameter(const LaneRun* results, std::size_t upper, double width,
+void RunReadings::fill_parameter(const SampledRun* results, std::size_t upper, double width,
                                  bool centered, std::size_t unknown, Linearization& out) const {
   constexpr double kRounding = 0.5;
   double slopes = 0.0, bends = 0.0;

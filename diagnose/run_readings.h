@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "diagnose/linearize.h"
+#include "diagnose/reading_model.h"
 #include "diagnose/sampled_curve.h"
 
 namespace strut {
@@ -25,6 +25,10 @@ std::size_t find_hit_time(const std::vector<Unknown>& unknowns, std::size_t run)
 /// bounds.
 std::pair<double, double> calc_sides(const Unknown& u, double value, double relative_step);
 
+/// What the sensors of one run read of a simulation: a series by channel of the run, sample by
+/// sample.
+using SampledRun = std::vector<std::vector<double>>;
+
 /// Keeps references to what it is made of.
 class RunReadings {
  public:
@@ -35,12 +39,16 @@ class RunReadings {
 
   /// Residuals and derivatives; `results` begins with this run's base, then the upper and the lower
   /// side of each of its parameters. Returns how many simulations were this run's.
-  std::size_t fill(const LaneRun* results, double relative_step, Linearization& out) const;
+  std::size_t fill(const SampledRun* results, double relative_step, Linearization& out) const;
+
+  /// Residuals alone, at the values given here instead of those of the constructor.
+  void fill_residual(const SampledRun& base, const std::vector<double>& values,
+                     Eigen::VectorXd& residual) const;
 
   /// The hit time within its bounds at which `base`, shifted in time and with the best bias of each
   /// channel, comes nearest to the readings. A search that starts a flank of the bump away from the
   /// truth can end in another valley; trying all costs no simulation. The run has a hit time.
-  double find_best_hit_time(const LaneRun& base) const;
+  double find_best_hit_time(const SampledRun& base) const;
 
  private:
   /// What is known of a channel's bias: mean and 1 / variance, both in sigmas of its noise;
@@ -50,10 +58,10 @@ class RunReadings {
   };
 
   Bias get_bias(const MeasuredChannel& channel) const;
-  CurvePoint read(const LaneRun& simulated, const ReadingPlace& place, double hit_time) const;
-  double calc_chi2(const LaneRun& base, double hit_time) const;
-  void fill_base(const LaneRun& base, Linearization& out) const;
-  void fill_parameter(const LaneRun* results, std::size_t upper, double width, bool centered,
+  CurvePoint read(const SampledRun& simulated, const ReadingPlace& place, double hit_time) const;
+  double calc_chi2(const SampledRun& base, double hit_time) const;
+  void fill_base_columns(const SampledRun& base, Linearization& out) const;
+  void fill_parameter(const SampledRun* results, std::size_t upper, double width, bool centered,
                       std::size_t unknown, Linearization& out) const;
 
   const std::vector<Unknown>& unknowns_;

@@ -37,7 +37,7 @@ std::vector<double> draw(const std::vector<Unknown>& unknowns, std::uint64_t num
 }
 
 double calc_chi2(ReadingModel& model, const std::vector<double>& values) {
-  const Linearization at = model.evaluate(values);
+  const Evaluation at = model.evaluate(values);
   return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
 }
 

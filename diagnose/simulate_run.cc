@@ -7,6 +7,8 @@
 #include "diagnose/linearize.h"
 #include "diagnose/sampled_curve.h"
 #include "io/config.h"
+#include "model/effects/sensors.h"
+#include "model/vehicle/channels.h"
 #include "model/vehicle/model_error.h"
 #include "sweep/parameters.h"
 #include "sweep/simulate_cases.h"
@@ -27,18 +29,22 @@ double find_hit_time_value(const std::vector<Unknown>& unknowns,
   return 0.0;
 }
 
-/// Interpolates every channel of a car's history at the run's times.
-void read_history(const LaneRun& simulated, const std::vector<double>& times, double hit_time,
-                  double step, RunCurves& curves) {
+/// Interpolates what the sensors of every channel of a car read at the run's times.
+void read_history(const LaneRun& simulated, const EffectSettings& effects,
+                  const std::vector<double>& times, double hit_time, double step,
+                  RunCurves& curves) {
   const auto count = static_cast<std::size_t>(simulated.results->sample_count);
   curves.channel.assign(CarChannel::kCount, std::vector<double>(times.size(), kNan));
-  for (std::size_t t = 0; t < times.size(); ++t) {
-    const double at = (times[t] + hit_time) / step, index = std::floor(at);
-    if (index < static_cast<double>(kCurveMargin)) continue;
-    const auto i = static_cast<std::size_t>(index);
-    if (i + 1 + kCurveMargin >= count) continue;
-    for (std::size_t c = 0; c < curves.channel.size(); ++c) {
-      const auto get = [&](std::size_t sample) { return simulated.get(sample, c); };
+  for (std::size_t c = 0; c < curves.channel.size(); ++c) {
+    std::vector<double> series(count);
+    for (std::size_t i = 0; i < count; ++i) series[i] = simulated.get(i, c);
+    series = read_sensor(effects, list_car_channels()[c].name, step, std::move(series));
+    for (std::size_t t = 0; t < times.size(); ++t) {
+      const double at = (times[t] + hit_time) / step, index = std::floor(at);
+      if (index < static_cast<double>(kCurveMargin)) continue;
+      const auto i = static_cast<std::size_t>(index);
+      if (i + 1 + kCurveMargin >= count) continue;
+      const auto get = [&](std::size_t sample) { return series[sample]; };
       curves.channel[c][t] = interpolate_curve(get, i, at - index, step).value;
     }
   }
@@ -69,15 +75,15 @@ RunCurves simulate_car(const MeasuredRun& run, const std::vector<Unknown>& unkno
   plan.snapshot = false;
   try {
     CasePreparer preparer;
-    const std::vector<PreparedCase> cases = {
-        preparer.prepare(make_case(run, unknowns, values, hit_time))};
+    const Case c = make_case(run, unknowns, values, hit_time);
+    const std::vector<PreparedCase> cases = {preparer.prepare(c)};
     const LaneRun simulated = run_prepared(cases, options.integrate, plan).front();
     if (simulated.status() != RunStatus::kDone) {
       curves.failure = run.name + ": the simulation fails: " +
                        get_case_status_name(static_cast<std::int32_t>(simulated.status()));
       return curves;
     }
-    read_history(simulated, run.times, hit_time, plan.interval, curves);
+    read_history(simulated, c.vehicle.effects, run.times, hit_time, plan.interval, curves);
   } catch (const ModelError& e) {
     curves.failure = run.name + ": " + e.what();
   } catch (const std::invalid_argument& e) {  // the road's

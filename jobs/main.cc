@@ -12,6 +12,7 @@
 #include "jobs/command.h"
 #include "jobs/compare.h"
 #include "jobs/design.h"
+#include "jobs/diagnose.h"
 #include "jobs/evaluate.h"
 #include "jobs/export.h"
 #include "jobs/identify.h"
@@ -44,6 +45,7 @@ constexpr Command kCommands[] = {
     {"evaluate", "how well a trained network identifies them", &strut::run_evaluate},
     {"identify", "parameters with intervals, from measured data", &strut::run_identify},
     {"compare", "measured against simulated: what the simulation gets wrong", &strut::run_compare},
+    {"diagnose", "name the cause, extend the model, measure the gain", &strut::run_diagnose},
     {"export", "a trained network as ONNX or C source", &strut::run_export},
     {"design", "which instant, window and sensors identify a sweep's parameters best",
      &strut::run_design},

@@ -1,5 +1,7 @@
 #include "jobs/output_file.h"
 
+#include <system_error>
+
 namespace strut {
 
 namespace fs = std::filesystem;
@@ -22,6 +24,23 @@ fs::path find_output_file(const Arguments& arguments, const std::vector<std::str
     throw EnvironmentError(start + "there is no folder " + folder.string());
   }
   return output;
+}
+
+fs::path find_output_folder(const Arguments& arguments, const std::string& file,
+                            const std::string& content) {
+  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  fs::path folder = fs::path(arguments.text("output")).lexically_normal();
+  const std::string start = "--output = " + folder.string() + ": ";
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw InputError(start + "is a file; must be a folder");
+  }
+  if (fs::exists(folder / file) && !arguments.is_on("force")) {
+    throw InputError(start + "holds a " + content + "; --force replaces it");
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw EnvironmentError(folder.string() + ": cannot be made: " + error.message());
+  return folder;
 }
 
 }  // namespace strut

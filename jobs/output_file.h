@@ -1,4 +1,4 @@
-// The file that a command writes.
+// The file or folder that a command writes.
 #pragma once
 
 #include <filesystem>
@@ -14,5 +14,11 @@ namespace strut {
 /// EnvironmentError where its folder is not there.
 std::filesystem::path find_output_file(const Arguments& arguments,
                                        const std::vector<std::string>& inputs);
+
+/// The folder of --output, made where it is missing. Throws InputError where it is missing, a file,
+/// or holds `file`, a `content` of before, and --force is not given; EnvironmentError where it
+/// cannot be made.
+std::filesystem::path find_output_folder(const Arguments& arguments, const std::string& file,
+                                         const std::string& content);
 
 }  // namespace strut

@@ -47,7 +47,7 @@ std::string drop_tables(const std::string& text, const std::string& name) {
     }
     if (open == 0 && is_header(line)) {
       const bool dropped_before = dropping;
-      dropping = line.find("[[" + name + "]]") != std::string::npos;
+      dropping = line.find("[" + name + "]") != std::string::npos;  // [name] or [[name]]
       if (dropping && !dropped_before) {
         while (kept.ends_with("\n\n")) kept.pop_back();
       }

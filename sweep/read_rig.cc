@@ -8,6 +8,7 @@
 #include "io/nearest_name.h"
 #include "model/integrate/rig_system.h"
 #include "sweep/read_effects.h"
+#include "sweep/read_fitted.h"
 #include "sweep/read_force_maps.h"
 
 namespace strut {
@@ -152,6 +153,7 @@ RigSpec read_rig(const std::filesystem::path& path) {
     spec.unilateral_tire = root.choice("tire_contact", kContacts) == 1;
   }
   read_initial(root, spec);
+  read_fitted(root, spec);
   spec.effects = read_effects(root, get_model_kind(spec.kind));
   spec.force_maps = read_force_maps(root, get_model_kind(spec.kind));
   document.check_all_read();

@@ -6,6 +6,7 @@
 #include "model/vehicle/rigs.h"
 #include "sweep/parameters.h"
 #include "sweep/read_effects.h"
+#include "sweep/read_fitted.h"
 #include "sweep/read_force_maps.h"
 #include "sweep/read_tire.h"
 
@@ -261,6 +262,7 @@ VehicleSpec read_vehicle(const std::filesystem::path& path) {
   }
   read_tire_contact(root.table("tire"), vehicle);
   read_options(root, vehicle);
+  read_fitted(root, vehicle);
   vehicle.effects = read_effects(root, ModelKind::kFullVehicle);
   vehicle.force_maps = read_force_maps(root, ModelKind::kFullVehicle);
   document.check_all_read();

@@ -2,24 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "io/csv.h"
+#include "jobs/compare/curves.h"
 
 namespace strut {
 namespace {
-
-std::string format_percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f %%", 100.0 * share);
-  return text;
-}
-
-std::string format_short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 ReportTable make_parameter_table(const Comparison& comparison) {
   ReportTable table{"Parameters", {"parameter", "unit", "nominal", "calibrated", "95 %"}};
@@ -109,17 +97,7 @@ std::vector<CsvColumn> make_channel_columns(const Comparison& comparison) {
 }
 
 std::vector<CsvColumn> make_run_columns(const CampaignData& data, const RunComparison& run) {
-  std::vector<CsvColumn> columns = {{"time", "s", data.times(run.run)}};
-  for (const MeasuredChannel& c : data.channels(run.run)) {
-    const ChannelInfo& info = data.info(c.channel);
-    columns.push_back({info.name, info.unit, c.values});
-    for (const auto& [model, name] :
-         {std::pair{&run.nominal, "_nominal"}, std::pair{&run.calibrated, "_calibrated"}}) {
-      if (!model->evaluation.failure.empty()) continue;
-      columns.push_back({info.name + name, info.unit,
-                         model->evaluation.curves.channel[static_cast<std::size_t>(c.channel)]});
-    }
-  }
+  std::vector<CsvColumn> columns = make_curve_columns(data, run.run, list_model_curves(run));
   if (!run.balance) return columns;
   columns.push_back({"balance_deflection", "m", run.balance->deflection});
   columns.push_back({"balance_velocity", "m/s", run.balance->velocity});
@@ -181,14 +159,8 @@ ReportTable make_balance_table(const BodyBalance& b) {
 
 }  // namespace
 
-std::string make_run_name(const CampaignData& data, std::size_t run) {
-  std::string name =
-      "run_" + std::to_string(run + 1) + "_" + data.campaign.runs[run].file.stem().string();
-  for (char& c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (!plain && c != '-') c = '_';
-  }
-  return name;
+std::vector<ModelCurves> list_model_curves(const RunComparison& run) {
+  return {{"nominal", 5, &run.nominal.evaluation}, {"calibrated", 2, &run.calibrated.evaluation}};
 }
 
 std::string make_verdict_text(const CampaignData& data, const Comparison& comparison) {

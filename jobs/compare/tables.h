@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "diagnose/compare.h"
+#include "jobs/compare/curves.h"
 #include "jobs/compare/folder.h"
 #include "jobs/report/html.h"
 
@@ -25,7 +26,7 @@ std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComp
 void write_compare_tables(const CompareFolder& folder, const CampaignData& data,
                           const Comparison& comparison);
 
-/// "run_2_chirp_A2": of a run's files.
-std::string make_run_name(const CampaignData& data, std::size_t run);
+/// Nominal and calibrated.
+std::vector<ModelCurves> list_model_curves(const RunComparison& run);
 
 }  // namespace strut

@@ -126,6 +126,10 @@ std::string print_number(const char* format, double value) {
   return text;
 }
 
+std::string format_short(double value) { return print_number("%.4g", value); }
+
+std::string format_percent(double share) { return print_number("%.2f %%", 100.0 * share); }
+
 std::string escape_html(const std::string& text) {
   std::string escaped;
   escaped.reserve(text.size());

@@ -13,6 +13,10 @@ std::string escape_html(const std::string& text);
 /// The text of a number in one of printf's formats; empty for NaN, what is not there.
 std::string print_number(const char* format, double value);
 
+/// Four digits; "12.34 %"; empty for NaN.
+std::string format_short(double value);
+std::string format_percent(double share);
+
 /// Texts by rows. On a page lines of a cell below its first stand smaller.
 struct ReportTable {
   std::string caption;

@@ -9,6 +9,7 @@ namespace strut {
 struct Case {
   VehicleSpec vehicle;
   ManeuverSpec maneuver;
+  bool operator==(const Case&) const = default;
 };
 
 }  // namespace strut

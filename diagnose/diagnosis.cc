@@ -1,0 +1,317 @@
+#include "diagnose/diagnosis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "diagnose/gain.h"
+#include "diagnose/leftover.h"
+#include "diagnose/next_measurement.h"
+#include "diagnose/probability.h"
+#include "io/config.h"
+
+namespace strut {
+namespace {
+
+constexpr double kInterval = 1.959963984540054;  // standard deviations of a 95 % interval
+
+std::string join(const std::vector<std::string>& names, const std::string& between) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
+  return text;
+}
+
+std::string describe(const Cause& cause) {
+  return cause.effect + (cause.place.empty() ? "" : " at " + cause.place);
+}
+
+CauseParameter make_parameter_of(const CampaignData& data, const Hypothesis& h, std::size_t i,
+                                 double value, double sigma) {
+  const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  const EffectParameter& p = *parameters[i];
+  CauseParameter c{p.name, p.unit, value, value - kInterval * sigma, value + kInterval * sigma};
+  c.low = std::clamp(c.low, p.low, std::max(p.low, value));
+  c.high = std::clamp(c.high, std::min(p.high, value), p.high);
+  return c;
+}
+
+Cause make_cause(const CampaignData& data, const Candidate& candidate, double probability) {
+  Cause cause{
+      candidate.hypothesis.effect, candidate.hypothesis.place, probability, candidate.gain, {}};
+  for (std::size_t i = 0; i < candidate.values.size(); ++i) {
+    cause.parameters.push_back(
+        make_parameter_of(data, candidate.hypothesis, i, candidate.values[i], candidate.sigma[i]));
+  }
+  return cause;
+}
+
+/// Values and intervals of a cause's parameters as the extended model's fit has them.
+void set_fitted(const CampaignData& data, const WhitenedFit& fit, const Hypothesis& h,
+                Cause& cause) {
+  cause.parameters.clear();
+  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
+    for (std::size_t k = 0; k < fit.shared_count; ++k) {
+      if (fit.fit.unknowns[k].name != h.parameters[i].name) continue;
+      cause.parameters.push_back(
+          make_parameter_of(data, h, i, fit.fit.values[k], fit.fit.widened.sigma[k]));
+    }
+  }
+}
+
+/// Probabilities of what one round fitted, with that of a cause outside of the catalogue.
+void fill_probabilities(const CampaignData& data, const SelectRound& round,
+                        const Hypothesis& chosen, double unknown, Diagnosis& diagnosis) {
+  const ProbabilityOptions options;
+  const std::vector<double> odds = calc_log_odds(round, options);
+  double sum = 0.0, own = 0.0;
+  for (std::size_t i = 0; i < odds.size(); ++i) {
+    if (round.candidates[i].gain <= 0.0) continue;
+    sum += std::exp(odds[i]);
+    const Hypothesis& h = round.candidates[i].hypothesis;
+    if (h.effect == chosen.effect && h.place == chosen.place) own = odds[i];
+  }
+  std::vector<Cause> close;
+  for (std::size_t i = 0; i < odds.size(); ++i) {
+    const Candidate& c = round.candidates[i];
+    if (c.gain <= 0.0) continue;
+    Cause cause = make_cause(data, c, (1.0 - unknown) * std::exp(odds[i]) / sum);
+    const bool is_chosen =
+        c.hypothesis.effect == chosen.effect && c.hypothesis.place == chosen.place;
+    if (odds[i] > own - options.group_odds) {
+      close.push_back(cause);
+    } else if (!is_chosen) {
+      diagnosis.runners_up.push_back(cause);
+    }
+    if (is_chosen) diagnosis.causes.push_back(std::move(cause));
+  }
+  std::stable_sort(close.begin(), close.end(),
+                   [](const Cause& a, const Cause& b) { return a.probability > b.probability; });
+  if (close.size() > 1) {
+    diagnosis.group.insert(diagnosis.group.end(), close.begin(), close.end());
+  }
+}
+
+std::string describe_band(std::size_t band) {
+  const double from = band == 0 ? 0.0 : kNoiseBands[band - 1];
+  const double to = kNoiseBands[band];
+  return to > 1e8 ? "> " + format_rounded(from) + " Hz"
+                  : format_rounded(from) + "-" + format_rounded(to) + " Hz";
+}
+
+std::vector<ParameterChange> list_changes(const CampaignData& data, const Selection& selection) {
+  std::vector<ParameterChange> changes;
+  const WhitenedFit &before = selection.base, &after = selection.extended;
+  for (std::size_t i = 0; i < before.shared_count; ++i) {
+    const Unknown& u = before.fit.unknowns[i];
+    const double spread = kInterval * before.fit.widened.sigma[i];
+    ParameterChange c{u.name, u.unit, before.fit.values[i], 0.0, 0.0, 0.0, 0.0, 0.0};
+    c.before_low = c.before - spread;
+    c.before_high = c.before + spread;
+    const double after_spread = kInterval * after.fit.widened.sigma[i];
+    c.after = after.fit.values[i];
+    c.after_low = c.after - after_spread;
+    c.after_high = c.after + after_spread;
+    changes.push_back(std::move(c));
+  }
+  (void)data;
+  return changes;
+}
+
+/// Where the calibrated model, without any extension, goes wrong most: channel, time, band, state.
+Where find_where(const CampaignData& data, const Selection& selection) {
+  Where where;
+  double most = 0.0;
+  const SharedValues shared = selection.base.shared();
+  for (const std::size_t r : data.list_runs(RunUse::kFit)) {
+    const ModelComparison run = compare_run(data, r, shared, make_time_windows(data, r));
+    for (const ChannelComparison& c : run.channels) {
+      if (c.chi2_per_reading / c.limit <= most) continue;
+      most = c.chi2_per_reading / c.limit;
+      where.channel = data.info(c.channel).name;
+      const auto window = std::max_element(
+          c.windows.begin(), c.windows.end(),
+          [](const WindowResidual& a, const WindowResidual& b) { return a.rms < b.rms; });
+      if (window != c.windows.end()) where.time = window->window.name;
+      const auto band = std::max_element(c.bands.begin(), c.bands.end(),
+                                         [](const BandResidual& a, const BandResidual& b) {
+                                           return a.residual_rms < b.residual_rms;
+                                         });
+      if (band != c.bands.end()) where.band = strut::describe(band->band);
+      const auto state = std::max_element(
+          c.states.begin(), c.states.end(),
+          [](const StateResidual& a, const StateResidual& b) { return a.explained < b.explained; });
+      if (state != c.states.end()) where.depends_on = state->state;
+    }
+  }
+  return where;
+}
+
+/// The place that holds what is left, as far as one is better than noise.
+std::string find_place(const Leftover& left) {
+  constexpr double kClear = 5.0;
+  for (const LeftoverPlace& place : left.places) {
+    if (place.energy < kClear * place.sigma) continue;
+    return place.name;
+  }
+  return "";
+}
+
+class Diagnoser {
+ public:
+  Diagnoser(const CampaignData& data, const DiagnoseOptions& options)
+      : data_(data), options_(options) {}
+
+  Diagnosis run() {
+    SelectOptions select;
+    select.threads = options_.threads;
+    select.progress = options_.progress;
+    diagnosis_.selection = select_causes(data_, select);
+    const Selection& selection = diagnosis_.selection;
+    tell("measuring what is left");
+    left_ = selection.left;
+    judge();
+    diagnosis_.parameters = list_changes(data_, selection);
+    for (const NullDirection& direction : selection.extended.fit.widened.null_directions) {
+      diagnosis_.not_identifiable.push_back(
+          describe_direction(direction, selection.extended.fit.unknowns));
+    }
+    tell("measuring the gain");
+    diagnosis_.runs = evaluate_hold_out(data_, selection, options_.threads);
+    diagnosis_.gain = calc_hold_out_gain(data_, selection, diagnosis_.runs);
+    diagnosis_.where = find_where(data_, selection);
+    diagnosis_.where.place = left_place_;
+    if (diagnosis_.kind == VerdictKind::kUnknown ||
+        diagnosis_.kind == VerdictKind::kFormIncomplete) {
+      diagnosis_.where.band = describe_band(left_.band);
+    }
+    diagnosis_.next_measurement = propose_measurement(data_, selection, diagnosis_.group);
+    diagnosis_.sentence = write_sentence();
+    return std::move(diagnosis_);
+  }
+
+ private:
+  void tell(const std::string& what) const {
+    if (options_.progress) options_.progress(what);
+  }
+
+  void judge() {
+    const Selection& selection = diagnosis_.selection;
+    const bool is_left = selection.is_left;
+    left_place_ = is_left ? find_place(left_) : "";
+    double gain = 0.0;
+    for (std::size_t i = 0; i < selection.causes.size(); ++i) gain += selection.gains[i];
+    const double share = gain + left_.energy > 0.0 ? left_.energy / (gain + left_.energy) : 0.0;
+    // A cause of another form leaves some share of itself; what leaves more is another cause.
+    constexpr double kSure = 0.02, kMiddle = 0.5, kWidth = 0.08;
+    double unknown = kSure;
+    if (is_left) unknown = std::max(kSure, 1.0 / (1.0 + std::exp((kMiddle - share) / kWidth)));
+    if (selection.causes.empty()) {
+      diagnosis_.kind = is_left ? VerdictKind::kUnknown : VerdictKind::kAdequate;
+      diagnosis_.unknown_share = is_left ? 1.0 : 0.0;
+      for (const Candidate& c : selection.rounds.front().candidates) {
+        if (is_left && c.gain > 0.0) {
+          diagnosis_.runners_up.push_back(make_cause(data_, c, 0.0));
+        }
+      }
+      return;
+    }
+    diagnosis_.unknown_share = unknown;
+    for (std::size_t i = 0; i < selection.causes.size(); ++i) {
+      fill_probabilities(data_, selection.rounds[selection.round_of[i]], selection.causes[i],
+                         unknown, diagnosis_);
+    }
+    drop_repeated();
+    for (std::size_t i = 0; i < diagnosis_.causes.size(); ++i) {
+      for (const Hypothesis& h : selection.causes) {
+        if (h.effect == diagnosis_.causes[i].effect && h.place == diagnosis_.causes[i].place) {
+          set_fitted(data_, selection.extended, h, diagnosis_.causes[i]);
+        }
+      }
+    }
+    if (is_left) {
+      diagnosis_.kind = unknown > 0.5 ? VerdictKind::kUnknown : VerdictKind::kFormIncomplete;
+    } else {
+      diagnosis_.kind = diagnosis_.group.empty() ? VerdictKind::kNamed : VerdictKind::kGroup;
+    }
+  }
+
+  /// A runner-up of one round may be the cause of another, or run in several.
+  void drop_repeated() {
+    std::vector<Cause> kept;
+    const auto is_in = [](const std::vector<Cause>& list, const Cause& c) {
+      return std::any_of(list.begin(), list.end(), [&](const Cause& other) {
+        return other.effect == c.effect && other.place == c.place;
+      });
+    };
+    for (Cause& c : diagnosis_.runners_up) {
+      if (is_in(diagnosis_.causes, c) || is_in(diagnosis_.group, c) || is_in(kept, c)) continue;
+      kept.push_back(std::move(c));
+    }
+    diagnosis_.runners_up = std::move(kept);
+  }
+
+  std::string write_sentence() const {
+    std::vector<std::string> names;
+    for (const Cause& cause : diagnosis_.causes) names.push_back(describe(cause));
+    const std::string what = join(names, " and ");
+    const std::string gain = format_rounded(std::round(100.0 * diagnosis_.gain.explained)) +
+                             " % of what could be gained on the runs held out";
+    switch (diagnosis_.kind) {
+      case VerdictKind::kAdequate:
+        return "The calibrated model is adequate: no effect of the catalogue, and nothing else, "
+               "stands out of the noise.";
+      case VerdictKind::kNamed:
+        return "The model lacks " + what + "; with it, " + gain + ".";
+      case VerdictKind::kGroup: {
+        std::vector<std::string> group;
+        for (const Cause& cause : diagnosis_.group) group.push_back(describe(cause));
+        return "The model lacks one that these runs cannot tell apart of: " + join(group, ", ") +
+               "; with " + what + ", " + gain + ".";
+      }
+      case VerdictKind::kFormIncomplete:
+        return "The model lacks " + what + ", but that is not all: more is left than noise" +
+               describe_left() + "; so far " + gain + ".";
+      case VerdictKind::kUnknown:
+        break;
+    }
+    return "The model lacks something that the catalogue does not have" + describe_left() +
+           (what.empty() ? "." : "; nearest: " + what + ", " + gain + ".");
+  }
+
+  std::string describe_left() const {
+    std::string text;
+    if (!left_place_.empty()) text += ", acting at " + left_place_;
+    text += ", at " + describe_band(left_.band);
+    return text;
+  }
+
+  const CampaignData& data_;
+  const DiagnoseOptions& options_;
+  Diagnosis diagnosis_;
+  Leftover left_;
+  std::string left_place_;
+};
+
+}  // namespace
+
+const char* get_name(VerdictKind kind) {
+  switch (kind) {
+    case VerdictKind::kAdequate:
+      return "adequate";
+    case VerdictKind::kNamed:
+      return "named";
+    case VerdictKind::kGroup:
+      return "group";
+    case VerdictKind::kFormIncomplete:
+      return "form_incomplete";
+    case VerdictKind::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& options) {
+  return Diagnoser(data, options).run();
+}
+
+}  // namespace strut

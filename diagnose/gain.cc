@@ -1,0 +1,113 @@
+#include "diagnose/gain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/spread.h"
+
+namespace strut {
+namespace {
+
+/// Variance of the noise of a channel of a run, all sources together.
+double calc_floor(const NoiseSpectrum& s, std::size_t channel) {
+  double variance = s.sigma[channel] * s.sigma[channel];
+  for (const Eigen::MatrixXcd& source : s.sources) {
+    variance += 2.0 * s.level * source.row(static_cast<Eigen::Index>(channel)).squaredNorm() /
+                static_cast<double>(s.samples);
+  }
+  return variance;
+}
+
+/// Sums over runs, of one channel.
+struct ChannelSums {
+  double before = 0.0, after = 0.0, floor = 0.0, spread = 0.0, count = 0.0;
+};
+
+double sum_squares(const std::vector<double>& residual) {
+  double sum = 0.0;
+  for (const double r : residual) {
+    if (std::isfinite(r)) sum += r * r;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<DiagnosedRun> evaluate_hold_out(const CampaignData& data, const Selection& selection,
+                                            int threads) {
+  std::vector<DiagnosedRun> runs;
+  for (const std::size_t r : data.list_runs(RunUse::kHoldOut)) {
+    runs.push_back({r, evaluate_run(data, r, selection.base.shared(), threads),
+                    evaluate_run(data, r, selection.extended.shared(), threads)});
+  }
+  return runs;
+}
+
+HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& selection,
+                               const std::vector<DiagnosedRun>& runs) {
+  HoldOutGain gain;
+  std::vector<int> channels;
+  std::vector<ChannelSums> sums;
+  for (const DiagnosedRun& run : runs) {
+    if (!run.before.failure.empty() || !run.after.failure.empty()) continue;
+    std::vector<NoiseSpectrum> spectra = make_noise_spectra(
+        data, {run.run}, selection.base.shared().unknowns, selection.base.shared().values);
+    if (!data.is_rig()) spectra.front().level = selection.level;
+    for (std::size_t k = 0; k < data.channels(run.run).size(); ++k) {
+      const MeasuredChannel& c = data.channels(run.run)[k];
+      auto at = std::find(channels.begin(), channels.end(), c.channel) - channels.begin();
+      if (at == static_cast<std::ptrdiff_t>(channels.size())) {
+        channels.push_back(c.channel);
+        sums.emplace_back();
+      }
+      ChannelSums& s = sums[static_cast<std::size_t>(at)];
+      const auto count = static_cast<double>(count_readings(run.before.residual[k]));
+      s.before += sum_squares(run.before.residual[k]);
+      s.after += sum_squares(run.after.residual[k]);
+      s.floor += count * calc_floor(spectra.front(), k);
+      const double spread = calc_spread(c.values);
+      s.spread += count * spread * spread;
+      s.count += count;
+    }
+  }
+  double explained = 0.0, room = 0.0;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const ChannelSums& s = sums[i];
+    if (!(s.count > 0.0)) continue;
+    ChannelGain c;
+    c.channel = data.info(channels[i]).name;
+    c.unit = data.info(channels[i]).unit;
+    c.rms_before = std::sqrt(s.before / s.count);
+    c.rms_after = std::sqrt(s.after / s.count);
+    c.noise_floor = std::sqrt(s.floor / s.count);
+    const double spread = std::sqrt(s.spread / s.count);
+    if (spread > 0.0) {
+      c.nrmse_before = c.rms_before / spread;
+      c.nrmse_after = c.rms_after / spread;
+    }
+    // A channel that is at its floor already has nothing to gain.
+    constexpr double kRoom = 0.05;
+    if (c.rms_before > (1.0 + kRoom) * c.noise_floor) {
+      explained +=
+          std::clamp((c.rms_before - c.rms_after) / (c.rms_before - c.noise_floor), -1.0, 1.0);
+      ++room;
+    }
+    gain.channels.push_back(std::move(c));
+  }
+  gain.explained = room > 0.0 ? explained / room : 0.0;
+  double before = 0.0, after = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < selection.hold_out_before.size(); ++i) {
+    const HoldOutRun &b = selection.hold_out_before[i], &a = selection.hold_out_after[i];
+    if (!b.failure.empty() || !a.failure.empty()) continue;
+    before += b.log_likelihood;
+    after += a.log_likelihood;
+    count += static_cast<double>(b.count);
+  }
+  if (count > 0.0) {
+    gain.log_likelihood_before = before / count;
+    gain.log_likelihood_after = after / count;
+  }
+  return gain;
+}
+
+}  // namespace strut

@@ -1,0 +1,134 @@
+#include "diagnose/next_measurement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "io/config.h"
+#include "sweep/parameters.h"
+
+namespace strut {
+namespace {
+
+/// A run that could be made.
+struct Proposal {
+  std::string description;
+  CampaignData data;  // of that run alone
+};
+
+CampaignData take_run(const CampaignData& data, std::size_t run) {
+  CampaignData one;
+  one.campaign = data.campaign;
+  one.campaign.runs = {data.campaign.runs[run]};
+  one.noise = data.noise;
+  one.tables = {data.tables[run]};
+  if (data.is_rig()) one.rigs = {data.rigs[run]};
+  if (!data.is_rig()) one.cars = {data.cars[run]};
+  return one;
+}
+
+void add_car_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
+  constexpr double kKilometersPerHour = 3.6;
+  for (const double factor : {0.5, 0.75, 1.5, 2.0}) {
+    CampaignData one = take_run(data, run);
+    ManeuverSpec& m = one.cars[0].setup.maneuver;
+    if (m.road.shape == BumpShape::kNone) return;
+    // The bump is met at the same time.
+    m.speed *= factor;
+    m.bump_distance *= factor;
+    menu.push_back({"repeat " + data.campaign.runs[run].name + " at " +
+                        format_rounded(std::round(kKilometersPerHour * m.speed)) + " km/h",
+                    std::move(one)});
+  }
+  for (const double factor : {0.5, 1.5}) {
+    CampaignData one = take_run(data, run);
+    RoadSpec& road = one.cars[0].setup.maneuver.road;
+    road.height *= factor;
+    menu.push_back({"repeat " + data.campaign.runs[run].name + " over a bump of " +
+                        format_rounded(std::round(1e3 * road.height)) + " mm",
+                    std::move(one)});
+  }
+}
+
+void add_rig_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
+  for (const double factor : {0.3, 2.0, 4.0}) {
+    CampaignData one = take_run(data, run);
+    for (InputSignal& input : one.rigs[0].inputs) {
+      if (input.channel == "temperature") continue;
+      for (SignalCell& cell : input.cells) {
+        for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
+      }
+    }
+    menu.push_back({"repeat " + data.campaign.runs[run].name + " at " + format_rounded(factor) +
+                        " times its amplitude",
+                    std::move(one)});
+  }
+}
+
+/// The shared values of the model with one hypothesis as its round fitted it.
+std::optional<SharedValues> find_values(const Selection& selection, const Cause& cause) {
+  for (const SelectRound& round : selection.rounds) {
+    for (const Candidate& c : round.candidates) {
+      if (c.hypothesis.effect == cause.effect && c.hypothesis.place == cause.place) return c.shared;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Sum over the readings of the squared difference of two models over the sensors' noise.
+double calc_difference(const CampaignData& one, const SharedValues& a, const SharedValues& b) {
+  const RunCurves first = simulate_run(one, 0, a.unknowns, a.values);
+  const RunCurves second = simulate_run(one, 0, b.unknowns, b.values);
+  if (!first.failure.empty() || !second.failure.empty()) return 0.0;
+  double sum = 0.0;
+  for (const MeasuredChannel& c : one.channels(0)) {
+    const auto at = static_cast<std::size_t>(c.channel);
+    for (std::size_t t = 0; t < first.channel[at].size(); ++t) {
+      const double d = (first.channel[at][t] - second.channel[at][t]) / c.sigma;
+      if (std::isfinite(d)) sum += d * d;
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::string propose_measurement(const CampaignData& data, const Selection& selection,
+                                const std::vector<Cause>& group) {
+  if (group.size() < 2) {
+    return selection.causes.empty()
+               ? "none is needed to judge these runs; larger bumps or amplitudes would show "
+                 "effects "
+                 "that are hidden here"
+               : "repeat one of the runs held out at another speed or amplitude: the name should "
+                 "stay, and its parameters";
+  }
+  const std::optional<SharedValues> a = find_values(selection, group[0]);
+  const std::optional<SharedValues> b = find_values(selection, group[1]);
+  const std::string pair =
+      group[0].effect + (group[0].place.empty() ? "" : " at " + group[0].place) + " from " +
+      group[1].effect + (group[1].place.empty() ? "" : " at " + group[1].place);
+  if (!a || !b) return "separate " + pair;
+  std::vector<Proposal> menu;
+  double already = 0.0;
+  for (const std::size_t r : data.list_runs(RunUse::kFit)) {
+    already = std::max(already, calc_difference(take_run(data, r), *a, *b));
+    data.is_rig() ? add_rig_proposals(data, r, menu) : add_car_proposals(data, r, menu);
+  }
+  double most = already;
+  std::string best;
+  for (const Proposal& proposal : menu) {
+    const double difference = calc_difference(proposal.data, *a, *b);
+    if (difference <= most) continue;
+    most = difference;
+    best = proposal.description;
+  }
+  if (best.empty()) {
+    return "no other speed, bump or amplitude separates " + pair +
+           " better than these runs; it takes another sensor";
+  }
+  return best + ": separates " + pair + " (" + format_rounded(std::sqrt(most)) +
+         " standard deviations, " + format_rounded(std::sqrt(already)) + " in the runs there are)";
+}
+
+}  // namespace strut

@@ -1,0 +1,58 @@
+// What noise does to all channels of a run together. Sensors are noisy each for itself; the road's
+// roughness, and the noise of what a rig's inputs were measured with, reach all channels at once,
+// through the model.
+//
+//   S(f) = diag(sigma^2) + sum_l h_l(f) h_l(f)^*
+//
+// h_l: response of the channels to one independent source l, as amplitudes of the unitary discrete
+// transform. Sources of a car: the road under each wheel, with the density
+//
+//   G(n) = G0 (n / n0)^-2, n0 = 0.1 1/m (ISO 8608)
+//
+// That the tracks are alike in long waves, and that the rear wheels follow in the tracks of the
+// front ones, is not used: the coherence of a road's tracks is not known, and at wheel hop the
+// delay would have to be known to a millisecond. Sources of a rig: the white noise of each input.
+// Responses are the model's own, to a pulse so small that it is linear.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/baseline.h"
+
+namespace strut {
+
+/// Hz, the upper ends of bands over which what noise models do not know is told apart.
+inline constexpr std::array<double, 7> kNoiseBands = {0.5, 1.0, 3.0, 8.0, 20.0, 50.0, 1e9};
+std::size_t find_noise_band(double frequency);
+
+struct NoiseSpectrum {
+  std::size_t samples = 0;    // of the transform: the first of the run's
+  double interval = 0.0;      // s between them
+  std::vector<double> sigma;  // of each channel's white noise
+  /// By source: channels x frequencies 0, 1, ... / (samples interval), per sqrt(level).
+  std::vector<Eigen::MatrixXcd> sources;
+  /// What the responses are to be multiplied by: of a car G0 [m^3], of a rig 1.
+  double level = 1.0;
+  /// Of a source's response: how far the model's own may be from the car's, relative. The linear
+  /// response of a nonlinear car is not exact, and must not be relied on to the last digit.
+  double response_error = 0.01;
+  /// A rough road's spectrum is red: a record that is cut off must be faded out.
+  bool fades = false;
+  /// By kNoiseBands: what the variance is to be multiplied by beyond the above, for what the noise
+  /// model does not know (measure_excess).
+  std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
+};
+
+/// The largest number up to n whose transform is quick: of factors 2, 3, 5.
+std::size_t find_quick_length(std::size_t n);
+
+/// Spectra of `runs` at these values of their unknowns (Unknown::run counts within `runs`).
+std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
+                                              const std::vector<std::size_t>& runs,
+                                              const std::vector<Unknown>& unknowns,
+                                              const std::vector<double>& values);
+
+}  // namespace strut

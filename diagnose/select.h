@@ -1,0 +1,76 @@
+// Which effects the data ask for: the score test of all, fits of the best, thresholds from nulls of
+// this data set, runs that are held out, adding, swapping and dropping.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "diagnose/hold_out.h"
+#include "diagnose/leftover.h"
+#include "diagnose/test_bench.h"
+#include "diagnose/whitened_fit.h"
+
+namespace strut {
+
+struct SelectOptions {
+  int threads = 1;
+  int most_causes = 3;
+  std::size_t fitted = 8;     // of the best by score, that are fitted
+  double confidence = 0.999;  // of the threshold: share of nulls whose best effect stays below
+  std::size_t nulls = 2000;
+  /// Thresholds are raised by this factor for what the noise model does not know; measured on
+  /// hidden trials that hide nothing.
+  double margin = 1.25;
+  /// Of the noise's power: what explains less is not claimed, as no model is exact to that.
+  double negligible = 1e-3;
+  /// A second cause explains at least this share of what the first does; less is told from a first
+  /// cause of another form than the catalogue's.
+  double second_share = 0.1;
+  LeftoverOptions leftover;
+  /// Where the model lacks far more than noise, a cause takes at least this share of all that is
+  /// left, and half as much of what is left of the runs held out.
+  double dominated_share = 0.15;
+  std::function<void(const std::string&)> progress;  // what is being done
+};
+
+/// A hypothesis that was fitted in one round.
+struct Candidate {
+  Hypothesis hypothesis;
+  double score = 0.0;                 // chi2's fall to first order
+  double gain = 0.0;                  // of the fit
+  std::vector<double> values, sigma;  // of its parameters
+  SharedValues shared;                // all that runs share, the hypothesis' parameters behind
+  double stability = 0.0;             // share of the runs without which it stays among the best
+};
+
+/// One round: what was tried upon the model of that round.
+struct SelectRound {
+  std::vector<Candidate> candidates;  // best first
+  double threshold = 0.0;             // of a gain
+  bool accepted = false;              // its best became a cause
+  double misfit = 1.0;                // gains are divided by it: what is left over its expectation
+};
+
+struct Selection {
+  WhitenedFit base, extended;         // without and with the causes
+  std::vector<Hypothesis> causes;     // in the order in which they were found
+  std::vector<std::size_t> round_of;  // of each cause
+  std::vector<double> gains;          // of each, in its round
+  Leftover left;                      // of the extended model
+  bool is_left = false;               // more than noise is
+  std::vector<SelectRound> rounds;    // one a cause, and the last that found none
+  std::vector<HoldOutRun> hold_out_before, hold_out_after;
+  double level = 0.0;  // of roughness
+  long simulations = 0;
+};
+
+Selection select_causes(const CampaignData& data, const SelectOptions& options);
+
+/// The gain that `confidence` of all nulls stay below: the best of all trials, each allowed only
+/// its own sign where `one_sided`.
+double calc_null_threshold(const Evidence& evidence, const Score& score,
+                           const std::vector<bool>& one_sided, std::size_t nulls,
+                           double confidence);
+
+}  // namespace strut

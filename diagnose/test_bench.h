@@ -1,0 +1,70 @@
+// The model of a campaign with all hypotheses within reach: a fitted baseline, whitened residuals
+// and derivatives around it, and every effect switched off but ready to be switched on.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnose/evidence.h"
+
+namespace strut {
+
+/// A fit of a hypothesis together with all that the model may adjust.
+struct HypothesisFit {
+  std::size_t hypothesis = 0;
+  std::string failure;         // empty: it could be simulated
+  std::vector<double> values;  // of the base unknowns, then of the hypothesis' parameters
+  std::vector<double> sigma;   // of the hypothesis' parameters, everything else adjusted
+  double gain = 0.0;           // by which chi2 fell
+  std::vector<double> by_run;  // the same, by run
+};
+
+class TestBench {
+ public:
+  /// `unknowns` and `values`: of a fitted model over `runs`, those that all runs share in front.
+  /// `data` must outlive it. Throws InputError where the model cannot be simulated there.
+  TestBench(const CampaignData& data, std::vector<std::size_t> runs, std::vector<Unknown> unknowns,
+            std::vector<double> values, std::size_t shared_count,
+            std::vector<NoiseSpectrum> spectra, int threads);
+
+  /// What the beginnings of hypotheses do to the whitened readings, a column each parameter that
+  /// switches; 0 where they cannot be simulated. Appends to `trials` which is which.
+  Eigen::MatrixXd simulate_columns(const std::vector<Hypothesis>& hypotheses,
+                                   std::vector<HypothesisTrial>& trials);
+
+  /// Puts hypotheses within reach and simulates their beginnings.
+  Evidence gather(const std::vector<Hypothesis>& hypotheses);
+
+  /// Gauss-Newton from a beginning, with the baseline's derivatives as they are at its fit and the
+  /// hypothesis' own anew in every step.
+  HypothesisFit fit(const Hypothesis& hypothesis, std::size_t number,
+                    const std::vector<double>& beginning);
+
+  const Whitener& whitener() const { return *whitener_; }
+  const Eigen::VectorXd& residual() const { return residual_; }
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  const std::vector<double>& values() const { return values_; }
+  std::size_t shared_count() const { return shared_count_; }
+  long simulation_count() const { return simulations_; }
+  std::size_t run_count() const { return runs_.size(); }
+  /// Which of the campaign's runs it is.
+  std::size_t get_run(std::size_t number) const { return runs_[number]; }
+
+ private:
+  std::unique_ptr<ReadingModel> make_model(const std::vector<Hypothesis>& hypotheses) const;
+
+  const CampaignData& data_;
+  std::vector<std::size_t> runs_;
+  std::vector<Unknown> unknowns_;
+  std::vector<double> values_;
+  std::size_t shared_count_;
+  int threads_;
+  std::unique_ptr<Whitener> whitener_;
+  Eigen::VectorXd residual_;  // whitened, then priors
+  Eigen::MatrixXd jacobian_;  // by unknowns in their scale
+  Eigen::MatrixXd normal_;    // its products
+  long simulations_ = 0;
+};
+
+}  // namespace strut

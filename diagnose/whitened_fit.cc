@@ -1,0 +1,118 @@
+#include "diagnose/whitened_fit.h"
+
+#include <algorithm>
+
+#include "diagnose/compare.h"
+#include "io/input_error.h"
+
+namespace strut {
+
+SharedValues WhitenedFit::shared() const {
+  const auto count = static_cast<std::ptrdiff_t>(shared_count);
+  return {{fit.unknowns.begin(), fit.unknowns.begin() + count},
+          {fit.values.begin(), fit.values.begin() + count}};
+}
+
+namespace {
+
+/// Of a run before it meets its bump: by how much the mean square of each channel exceeds that of
+/// its sensor, over that of a road with G0 = 1 m^3; the median of the channels. 0 where too little
+/// of the run comes before.
+double measure_approach(const CampaignData& data, std::size_t run, std::size_t number,
+                        const ReadingModel& model, const NoiseSpectrum& spectrum,
+                        const Eigen::VectorXd& residual) {
+  constexpr std::size_t kEnough = 50;  // samples
+  const double end = make_time_windows(data, run).front().to;
+  const std::size_t channels = spectrum.sigma.size();
+  std::vector<double> squares(channels, 0.0), means(channels, 0.0);
+  std::vector<std::size_t> counts(channels, 0);
+  for (std::size_t k = 0; k < model.reading_count(); ++k) {
+    const ReadingPlace& place = model.readings()[k];
+    if (place.run != number || data.times(run)[place.time] >= end) continue;
+    const double r = residual(static_cast<Eigen::Index>(k));
+    squares[place.channel] += r * r;
+    means[place.channel] += r;
+    ++counts[place.channel];
+  }
+  std::vector<double> levels;
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (counts[c] < kEnough) continue;
+    double unit = 0.0;  // variance of the channel over sigma^2 per m^3
+    for (const Eigen::MatrixXcd& source : spectrum.sources) {
+      unit += 2.0 * source.row(static_cast<Eigen::Index>(c)).squaredNorm() /
+              static_cast<double>(spectrum.samples) / (spectrum.sigma[c] * spectrum.sigma[c]);
+    }
+    const auto n = static_cast<double>(counts[c]);
+    const double variance = squares[c] / n - (means[c] / n) * (means[c] / n);
+    if (unit > 0.0) levels.push_back(std::max(0.0, variance - 1.0) / unit);
+  }
+  if (levels.empty()) return 0.0;
+  std::sort(levels.begin(), levels.end());
+  return levels[levels.size() / 2];
+}
+
+/// By runs over level ground, where there are some; else by what comes before the bumps, which no
+/// effect of the car reaches.
+Roughness measure_roughness(const CampaignData& data, const std::vector<std::size_t>& runs,
+                            const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
+                            const Eigen::VectorXd& residual) {
+  std::vector<bool> is_level;
+  std::vector<double> approaches;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RoadSpec& road = data.cars[runs[i]].setup.maneuver.road;
+    is_level.push_back(road.shape == BumpShape::kNone || road.height == 0.0);
+    approaches.push_back(measure_approach(data, runs[i], i, model, spectra[i], residual));
+  }
+  if (std::find(is_level.begin(), is_level.end(), true) != is_level.end()) {
+    return fit_roughness(model, spectra, is_level, residual);
+  }
+  std::sort(approaches.begin(), approaches.end());
+  constexpr double kResponseError = 0.02;
+  return {approaches[approaches.size() / 2], kResponseError};
+}
+
+}  // namespace
+
+std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline) {
+  std::vector<NoiseSpectrum> spectra =
+      make_noise_spectra(data, baseline.runs, baseline.fit.unknowns, baseline.fit.values);
+  if (data.is_rig()) return spectra;
+  const auto model = make_reading_model(data, baseline.runs, baseline.fit.unknowns);
+  const Evaluation at = model->evaluate(baseline.fit.values);
+  if (!at.failure.empty()) throw InputError(at.failure);
+  const Roughness roughness = measure_roughness(data, baseline.runs, *model, spectra, at.residual);
+  for (NoiseSpectrum& s : spectra) {
+    s.level = roughness.level;
+    s.response_error = roughness.response_error;
+  }
+  return spectra;
+}
+
+WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
+                         const std::vector<NoiseSpectrum>& spectra,
+                         const std::vector<Unknown>& unknowns, const std::vector<double>& start,
+                         std::size_t shared_count, int threads) {
+  WhitenedFit result;
+  result.runs = runs;
+  result.spectra = spectra;
+  result.shared_count = shared_count;
+  const auto model = make_reading_model(data, runs, unknowns, threads);
+  FitOptions options;
+  options.start = start;
+  // What a band has beyond its noise is known only once the fit is there, and moves it.
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    const Whitener whitener(*model, result.spectra);
+    WhitenedModel whitened(*model, whitener);
+    result.fit = fit_readings(whitened, options);
+    options.start = result.fit.values;
+    if (round + 1 == kRounds) break;
+    result.is_dominated = result.fit.chi2_per_degree() > kDominated;
+    if (result.is_dominated) break;
+    const auto excess = measure_excess(whitener, whitened.evaluate(result.fit.values).residual);
+    for (std::size_t r = 0; r < excess.size(); ++r) result.spectra[r].excess = excess[r];
+  }
+  return result;
+}
+
+}  // namespace strut

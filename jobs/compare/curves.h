@@ -1,0 +1,39 @@
+// A run's measured curves beside those of models: a figure, and columns of a table.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/baseline.h"
+#include "io/csv.h"
+#include "jobs/report/figure.h"
+
+namespace strut {
+
+struct ModelCurves {
+  std::string name;   // "calibrated"
+  int line_type = 1;  // of figures
+  const RunEvaluation* evaluation = nullptr;
+
+  bool is_simulated() const {
+    return evaluation->failure.empty() && !evaluation->curves.channel.empty();
+  }
+};
+
+/// "run_2_chirp_A2": of a run's files.
+std::string make_run_name(const CampaignData& data, std::size_t run);
+
+/// More points are not seen, and make a report too large to mail: every so many of `count` will do.
+std::size_t choose_stride(std::size_t count);
+
+/// Every channel over time, below it what the models leave; those that could not be simulated are
+/// left out, one must not be.
+Figure make_curve_figure(const CampaignData& data, std::size_t run,
+                         const std::vector<ModelCurves>& models);
+
+/// time, and of every channel measured and simulated: "sprung_position",
+/// "sprung_position_calibrated".
+std::vector<CsvColumn> make_curve_columns(const CampaignData& data, std::size_t run,
+                                          const std::vector<ModelCurves>& models);
+
+}  // namespace strut

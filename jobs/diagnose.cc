@@ -1,0 +1,104 @@
+#include "jobs/diagnose.h"
+
+#include <filesystem>
+#include <iostream>
+#include <mutex>
+#include <system_error>
+
+#include "io/atomic_file.h"
+#include "jobs/arguments.h"
+#include "jobs/command.h"
+#include "jobs/diagnose/folder.h"
+#include "jobs/diagnose/json.h"
+#include "jobs/diagnose/report.h"
+#include "jobs/diagnose/tables.h"
+#include "jobs/interrupt.h"
+#include "jobs/open_sweep.h"
+#include "jobs/progress.h"
+
+namespace strut {
+namespace {
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut diagnose CAMPAIGN.toml -o DIR [OPTIONS]",
+      "Names what the simulation gets wrong: fits the model to the runs for fitting, tries every\n"
+      "effect of the catalogue at every place, and lets the runs held out judge. Says how sure it\n"
+      "is, what it cannot tell apart, what the extended model gains, and what to measure next.\n"
+      "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures "
+      "and\n"
+      "report.html (docs/diagnosis.md).",
+      "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
+  arguments.add_option("output,o", "DIR", "folder of the diagnosis");
+  arguments.add_option("threads", "N", "threads (default: all processors)");
+  arguments.add_switch("force", "replace the diagnosis that is in DIR");
+  arguments.add_switch("json", "print verdict.json instead of text");
+  return arguments;
+}
+
+void tell(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::cerr << "strut: " << note << "\n";
+}
+
+Diagnosis diagnose(const CampaignData& data, int threads) {
+  std::mutex mutex;
+  std::string doing = "begins";
+  const ProgressLine line([&] {
+    const std::lock_guard lock(mutex);
+    return "diagnose: " + doing;
+  });
+  DiagnoseOptions options;
+  options.threads = threads;
+  options.progress = [&](const std::string& what) {
+    const std::lock_guard lock(mutex);
+    doing = what;
+  };
+  return diagnose_campaign(data, options);
+}
+
+/// The extended model, or nothing, not even that of a diagnosis before this one.
+void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data,
+                          const Diagnosis& diagnosis) {
+  if (!diagnosis.causes.empty()) {
+    write_text_file(folder.extended_model(), make_extended_model(data, diagnosis, folder.root));
+    return;
+  }
+  std::error_code error;
+  std::filesystem::remove(folder.extended_model(), error);
+  if (error) {
+    throw EnvironmentError(folder.extended_model().string() +
+                           ": cannot be removed: " + error.message());
+  }
+}
+
+}  // namespace
+
+int run_diagnose(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  if (arguments.positional().size() != 1) {
+    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
+                                " files; expected CAMPAIGN.toml");
+  }
+  const DiagnoseFolder folder = find_diagnose_folder(arguments);
+  const CampaignData data = read_campaign_data(arguments.positional().front());
+  tell(data.notes);
+  const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
+  tell(diagnosis.notes);
+  const std::string json = make_verdict_json(data, diagnosis).dump() + "\n";
+  {
+    const InterruptGuard guard;
+    write_extended_model(folder, data, diagnosis);
+    write_text_file(folder.verdict(), json);
+    write_diagnose_tables(folder, data, diagnosis);
+    tell(write_diagnose_report(folder, data, diagnosis));
+  }
+  if (arguments.is_on("json")) {
+    std::cout << json;
+  } else {
+    std::cout << make_diagnose_text(diagnosis) << "\n" << folder.report().string() << "\n";
+  }
+  return kExitDone;
+}
+
+}  // namespace strut

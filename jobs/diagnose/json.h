@@ -1,0 +1,11 @@
+// verdict.json: keys in docs/diagnosis.md.
+#pragma once
+
+#include "diagnose/diagnosis.h"
+#include "jobs/json.h"
+
+namespace strut {
+
+Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis);
+
+}  // namespace strut

@@ -1,0 +1,86 @@
+#include "jobs/diagnose/report.h"
+
+#include "io/atomic_file.h"
+#include "jobs/diagnose/figures.h"
+#include "jobs/diagnose/tables.h"
+#include "jobs/report/figures.h"
+
+namespace strut {
+namespace {
+
+void draw_all(const FigureDrawer& drawer, const std::vector<CaptionedFigure>& figures,
+              ReportSection& section) {
+  for (const auto& [figure, caption] : figures) {
+    section.figures.push_back(drawer.draw(figure, caption));
+  }
+}
+
+std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
+  std::vector<std::string> lead = {diagnosis.sentence};
+  const std::string where = make_where_text(diagnosis.where);
+  if (!where.empty()) lead.push_back(where);
+  if (!diagnosis.next_measurement.empty()) {
+    lead.push_back("To be measured next: " + diagnosis.next_measurement);
+  }
+  if (!diagnosis.causes.empty()) {
+    lead.emplace_back(
+        "extended.toml is the model with the causes switched on at their fitted "
+        "values; it can stand wherever a model file is named.");
+  }
+  return lead;
+}
+
+ReportSection make_run_section(const CampaignData& data, const Diagnosis& diagnosis,
+                               const DiagnosedRun& run, const FigureDrawer& drawer) {
+  ReportSection section{data.campaign.runs[run.run].name + ", held out"};
+  for (const ModelCurves& model : list_model_curves(diagnosis, run)) {
+    const std::string& failure = model.evaluation->failure;
+    if (!failure.empty()) section.paragraphs.push_back(model.name + ": " + failure);
+  }
+  draw_all(drawer, make_run_figures(data, diagnosis, run), section);
+  return section;
+}
+
+void add_list(const std::string& heading, const std::vector<std::string>& texts,
+              std::vector<ReportSection>& sections) {
+  if (!texts.empty()) sections.push_back({heading, texts});
+}
+
+ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
+                     const FigureDrawer& drawer) {
+  ReportPage page{"Diagnosis: " + data.campaign.path.filename().string(),
+                  make_lead(diagnosis),
+                  {},
+                  make_report_footer()};
+  std::vector<ReportSection>& sections = page.sections;
+  const std::vector<ReportTable> causes = make_cause_tables(diagnosis);
+  if (!causes.empty()) sections.push_back({"Causes", {}, causes});
+  sections.push_back({"Gain on runs held out", {}, {make_gain_table(diagnosis)}});
+  for (const DiagnosedRun& run : diagnosis.runs) {
+    if (data.campaign.runs[run.run].use != RunUse::kHoldOut) continue;
+    sections.push_back(make_run_section(data, diagnosis, run, drawer));
+  }
+  ReportSection motion{"What is left, by the motion"};
+  draw_all(drawer, make_motion_figures(data, diagnosis), motion);
+  if (!motion.figures.empty()) sections.push_back(std::move(motion));
+  const std::vector<ReportTable> parameters = make_parameter_tables(diagnosis);
+  if (!parameters.empty()) sections.push_back({"Parameters", {}, parameters});
+  add_list("What the runs cannot tell", diagnosis.not_identifiable, sections);
+  std::vector<std::string> notes = data.notes;
+  notes.insert(notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
+  add_list("Notes", notes, sections);
+  return page;
+}
+
+}  // namespace
+
+std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
+                                               const CampaignData& data,
+                                               const Diagnosis& diagnosis) {
+  const FigureDrawer drawer(folder.figures());
+  write_text_file(folder.report(), make_html(make_page(data, diagnosis, drawer)));
+  return drawer.note().empty() ? std::vector<std::string>{}
+                               : std::vector<std::string>{drawer.note()};
+}
+
+}  // namespace strut

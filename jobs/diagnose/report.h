@@ -1,0 +1,17 @@
+// The report of a diagnosis: report.html and its figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnose/diagnosis.h"
+#include "jobs/diagnose/folder.h"
+
+namespace strut {
+
+/// Returns what could not be made, for the user. Throws EnvironmentError.
+std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
+                                               const CampaignData& data,
+                                               const Diagnosis& diagnosis);
+
+}  // namespace strut

@@ -1,0 +1,146 @@
+#include "jobs/diagnose/tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kMostOnTerminal = 4;  // runners-up
+
+std::string describe_interval(double low, double high) {
+  if (!std::isfinite(low) || !std::isfinite(high)) return "open";
+  return format_short(low) + " to " + format_short(high);
+}
+
+std::string describe_parameters(const Cause& cause) {
+  std::string text;
+  for (const CauseParameter& p : cause.parameters) {
+    const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
+    text += (text.empty() ? "" : "; ") + p.key + " = " + format_short(p.value) + unit + " (" +
+            describe_interval(p.low, p.high) + ")";
+  }
+  return text;
+}
+
+bool contains(const std::vector<Cause>& causes, const Cause& cause) {
+  return std::any_of(causes.begin(), causes.end(), [&](const Cause& other) {
+    return other.effect == cause.effect && other.place == cause.place;
+  });
+}
+
+std::vector<std::string> make_cause_row(const Cause& cause, const std::string& role) {
+  return {cause.effect,
+          cause.place,
+          role,
+          describe_parameters(cause),
+          print_number("%.3f", cause.probability),
+          print_number("%.1f", cause.gain)};
+}
+
+std::string describe_likelihood(const HoldOutGain& gain) {
+  return "Log-likelihood per sample held out: " + format_short(gain.log_likelihood_before) +
+         " -> " + format_short(gain.log_likelihood_after);
+}
+
+}  // namespace
+
+std::string make_where_text(const Where& where) {
+  std::string details;
+  for (const std::string* detail : {&where.place, &where.time, &where.band}) {
+    if (!detail->empty()) details += (details.empty() ? "" : ", ") + *detail;
+  }
+  std::string text;
+  if (!where.channel.empty()) text += " in " + where.channel;
+  if (!details.empty()) text += " (" + details + ")";
+  if (!where.depends_on.empty()) text += " over " + where.depends_on;
+  return text.empty() ? "" : "What the baseline leaves is seen best" + text + ".";
+}
+
+std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis,
+                                           std::size_t most_runners_up) {
+  ReportTable table{"Causes and their probabilities",
+                    {"effect", "place", "", "parameters (95 %)", "probability", "chi2 gain"}};
+  table.text_columns = 4;
+  for (const Cause& cause : diagnosis.causes) table.rows.push_back(make_cause_row(cause, "cause"));
+  for (const Cause& cause : diagnosis.group) {
+    if (contains(diagnosis.causes, cause)) continue;
+    table.rows.push_back(make_cause_row(cause, "not told apart"));
+  }
+  const std::size_t shown = std::min(most_runners_up, diagnosis.runners_up.size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    table.rows.push_back(make_cause_row(diagnosis.runners_up[i], "runner-up"));
+  }
+  if (shown < diagnosis.runners_up.size()) {
+    table.notes.push_back(std::to_string(diagnosis.runners_up.size() - shown) +
+                          " more runners-up: verdict.json");
+  }
+  if (table.rows.empty() && diagnosis.unknown_share == 0.0) return {};
+  table.rows.push_back(
+      {"none of the catalogue", "", "", "", print_number("%.3f", diagnosis.unknown_share), ""});
+  return {std::move(table)};
+}
+
+ReportTable make_gain_table(const Diagnosis& diagnosis) {
+  const HoldOutGain& gain = diagnosis.gain;
+  ReportTable table{
+      "Error on the runs held out: rms, and its share of the measured spread",
+      {"channel", "unit", "baseline", "extended", "noise", "share before", "share after"}};
+  table.text_columns = 2;
+  for (const ChannelGain& c : gain.channels) {
+    table.rows.push_back({c.channel, c.unit, format_short(c.rms_before), format_short(c.rms_after),
+                          format_short(c.noise_floor), format_percent(c.nrmse_before),
+                          format_percent(c.nrmse_after)});
+  }
+  if (!diagnosis.causes.empty()) {
+    table.notes.push_back("Explained of what is more than noise: " +
+                          print_number("%.1f %%", 100.0 * gain.explained));
+    table.notes.push_back(describe_likelihood(gain));
+  }
+  return table;
+}
+
+std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis) {
+  if (diagnosis.parameters.empty()) return {};
+  ReportTable table{"Parameters of the model, with 95 % intervals",
+                    {"parameter", "unit", "baseline", "95 %", "extended", "95 %"}};
+  table.text_columns = 2;
+  const auto describe = [](double value, double low, double high) {
+    return std::isfinite(value) ? describe_interval(low, high) : "";
+  };
+  for (const ParameterChange& p : diagnosis.parameters) {
+    table.rows.push_back({p.name, p.unit, format_short(p.before),
+                          describe(p.before, p.before_low, p.before_high), format_short(p.after),
+                          describe(p.after, p.after_low, p.after_high)});
+  }
+  return {std::move(table)};
+}
+
+std::string make_diagnose_text(const Diagnosis& diagnosis) {
+  std::string text = diagnosis.sentence + "\n";
+  const std::string where = make_where_text(diagnosis.where);
+  if (!where.empty()) text += where + "\n";
+  for (const ReportTable& table : make_cause_tables(diagnosis, kMostOnTerminal))
+    text += "\n" + make_text(table);
+  text += "\n" + make_text(make_gain_table(diagnosis));
+  if (!diagnosis.next_measurement.empty()) {
+    text += "\nTo be measured next: " + diagnosis.next_measurement + "\n";
+  }
+  return text;
+}
+
+std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run) {
+  std::vector<ModelCurves> models = {{"baseline", 5, &run.before}};
+  if (!diagnosis.causes.empty()) models.push_back({"extended", 2, &run.after});
+  return models;
+}
+
+void write_diagnose_tables(const DiagnoseFolder& folder, const CampaignData& data,
+                           const Diagnosis& diagnosis) {
+  for (const DiagnosedRun& run : diagnosis.runs) {
+    write_csv(folder.table(make_run_name(data, run.run)),
+              make_curve_columns(data, run.run, list_model_curves(diagnosis, run)));
+  }
+}
+
+}  // namespace strut

@@ -1,0 +1,233 @@
+// strut diagnose as a user meets it, and what it writes of a diagnosis made up here.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "io/csv.h"
+#include "jobs/diagnose/json.h"
+#include "jobs/diagnose/report.h"
+#include "jobs/diagnose/tables.h"
+#include "tests/campaign_files.h"
+#include "tests/parse_json.h"
+#include "tests/run_program.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::run_program;
+
+std::string diagnose(const std::filesystem::path& campaign, const std::filesystem::path& folder,
+                     const std::string& options = "") {
+  return "diagnose " + campaign.string() + " -o " + folder.string() + " " + options;
+}
+
+/// Two causes, a group, a runner-up; curves of the nominal model before, with another spring after.
+Diagnosis make_named(const CampaignData& data) {
+  Diagnosis d;
+  d.kind = VerdictKind::kNamed;
+  d.sentence = "The model lacks <friction> in the strut.";
+  d.causes = {{"strut_friction", "", 0.9, 321.5, {{"friction", "N", 0.5, 0.4, 0.6}}}};
+  d.group = {d.causes.front(), {"damper_asymmetry", "", 0.06, 300.0, {}}};
+  d.runners_up = {{"progressive_spring", "", 0.03, 12.0, {}}};
+  d.unknown_share = 0.01;
+  d.where = {"sprung_position", "0.8 to 1.6 s", "0.5-3 Hz", "suspension_velocity", ""};
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  d.parameters = {{"stiffness", "N/m", 900.0, 890.0, 910.0, 950.0, 940.0, 960.0},
+                  {"strut_friction_friction", "N", kNan, kNan, kNan, 0.5, -kInfinity, kInfinity}};
+  d.gain.channels = {{"sprung_position", "m", 2e-4, 1e-4, 5e-5, 0.1, 0.05}};
+  d.gain.explained = 2.0 / 3.0;
+  d.gain.log_likelihood_before = -3.0;
+  d.gain.log_likelihood_after = -1.0;
+  d.not_identifiable = {"all masses and stiffnesses scale together"};
+  d.next_measurement = "repeat at twice the amplitude";
+  d.notes = {"a note of the diagnosis"};
+  const SharedValues nominal;
+  SharedValues stiffer{make_free_unknowns(data, {0, 1}), {}};
+  for (const Unknown& u : stiffer.unknowns) {
+    stiffer.values.push_back(get_nominal(data, u) * (u.name == "stiffness" ? 1.05 : 1.0));
+  }
+  for (std::size_t run = 0; run < data.run_count(); ++run) {
+    d.runs.push_back({run, evaluate_run(data, run, nominal), evaluate_run(data, run, stiffer)});
+  }
+  return d;
+}
+
+/// A campaign of two quick runs.
+CampaignData make_data(const test::TemporaryFolder& folder) {
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  test::write_two_runs(folder, truth);
+  return read_campaign_data(test::write_campaign(folder));
+}
+
+TEST_CASE("verdict.json has the keys that scripts rely on", "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_data(folder);
+  const auto json = test::parse_json(make_verdict_json(data, make_named(data)).dump());
+  CHECK(json.get<std::string>("verdict") == "named");
+  const auto& cause = json.get_child("causes").front().second;
+  CHECK(cause.get<std::string>("effect") == "strut_friction");
+  CHECK(cause.get<std::string>("place").empty());
+  CHECK(cause.get<double>("probability") == 0.9);
+  CHECK(cause.get<double>("parameters.friction.value") == 0.5);
+  CHECK(cause.get<std::string>("parameters.friction.unit") == "N");
+  CHECK(cause.get_child("parameters.friction.ci95").front().second.get_value<double>() == 0.4);
+  CHECK(json.get_child("group").size() == 2);
+  CHECK(json.get_child("runners_up").front().second.get<double>("probability") == 0.03);
+  CHECK(json.get<double>("unknown_share") == 0.01);
+  CHECK(json.get<std::string>("where.depends_on") == "suspension_velocity");
+  CHECK(json.get<double>("parameters.before.stiffness.value") == 900.0);
+  CHECK(json.get<double>("parameters.after.stiffness.value") == 950.0);
+  // What only the extended model has is not there before; what is not known has no number.
+  CHECK(json.get_child("parameters.before").size() == 1);
+  const auto& open = json.get_child("parameters.after.strut_friction_friction.ci95");
+  CHECK(open.front().second.get_value<std::string>() == "null");
+  CHECK(json.get<double>("gain.hold_out_rms_before.sprung_position") == 2e-4);
+  CHECK(json.get<double>("gain.hold_out_rms_after.sprung_position") == 1e-4);
+  CHECK(json.get<double>("gain.noise_floor.sprung_position") == 5e-5);
+  CHECK(json.get<double>("gain.explained") == 2.0 / 3.0);
+  CHECK(json.get_child("gain.log_likelihood_per_sample").back().second.get_value<double>() == -1.0);
+  CHECK(json.get_child("not_identifiable").size() == 1);
+  CHECK(json.get<std::string>("next_measurement") == "repeat at twice the amplitude");
+  CHECK(json.get<std::string>("extended_model") == "extended.toml");
+}
+
+TEST_CASE("A verdict without causes names no extended model", "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_data(folder);
+  Diagnosis diagnosis;
+  diagnosis.sentence = "Adequate.";
+  const auto json = test::parse_json(make_verdict_json(data, diagnosis).dump());
+  CHECK(json.get<std::string>("verdict") == "adequate");
+  CHECK(json.get_child("causes").empty());
+  CHECK(json.get<std::string>("extended_model").empty());
+  CHECK(make_cause_tables(diagnosis).empty());
+  CHECK_THAT(make_diagnose_text(diagnosis), Catch::StartsWith("Adequate.\n"));
+  CHECK(make_where_text(diagnosis.where).empty());
+}
+
+TEST_CASE("The terminal is told verdict, probabilities, gain and the next measurement", "[io]") {
+  const test::TemporaryFolder folder;
+  const std::string text = make_diagnose_text(make_named(make_data(folder)));
+  CHECK_THAT(text, Catch::StartsWith("The model lacks <friction> in the strut.\n"));
+  CHECK_THAT(text, Contains("friction = 0.5 N (0.4 to 0.6)") && Contains("not told apart") &&
+                       Contains("0.030") && Contains("none of the catalogue"));
+  // A cause stands once, though it is a member of the group, too.
+  CHECK(text.find("strut_friction") == text.rfind("strut_friction"));
+  CHECK_THAT(text, Contains("10.00 %") && Contains("5.00 %") && Contains("66.7 %") &&
+                       Contains("repeat at twice the amplitude"));
+}
+
+TEST_CASE("The report is one file with the verdict first, figures inside", "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_data(folder);
+  const Diagnosis diagnosis = make_named(data);
+  const DiagnoseFolder out{std::filesystem::path(folder / "out")};
+  const auto notes = write_diagnose_report(out, data, diagnosis);
+  const std::string report = test::read_text(out.report());
+  const std::size_t verdict = report.find("The model lacks &lt;friction&gt; in the strut.");
+  REQUIRE(verdict != std::string::npos);
+  CHECK(verdict < report.find("<table"));
+  CHECK_THAT(report, Contains("b.csv, held out") && !Contains("a.csv, held out"));
+  CHECK_THAT(report, Contains("all masses and stiffnesses scale together") &&
+                         Contains("a note of the diagnosis") && Contains("</html>"));
+  CHECK_THAT(report, !Contains("src=\"http") && !Contains("<img"));
+  if (!notes.empty()) {
+    WARN("figures not checked: " << notes.front());
+    return;
+  }
+  for (const char* figure : {"run_2_b_time", "states", "force_law"}) {
+    CHECK(std::filesystem::exists(out.figures() / (std::string(figure) + ".svg")));
+  }
+  CHECK_THAT(report, Contains("<svg"));
+}
+
+TEST_CASE("The curves of every run are written beside each other", "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_data(folder);
+  const Diagnosis diagnosis = make_named(data);
+  write_diagnose_tables({folder / "."}, data, diagnosis);
+  const CsvTable table = read_csv(folder / "run_2_b.csv", MissingCells::kNan);
+  CHECK(table.row_count() == data.times(1).size());
+  const auto& measured = table.column("sprung_position").values;
+  const auto& before = table.column("sprung_position_baseline").values;
+  const auto& after = table.column("sprung_position_extended").values;
+  const std::vector<double>& residual = diagnosis.runs[1].before.residual.back();
+  CHECK(measured[100] - before[100] == Approx(residual[100]).margin(1e-12));
+  CHECK(before[400] != after[400]);
+}
+
+TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") {
+  const test::TemporaryFolder folder;
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  truth.friction = 0.5;
+  test::write_two_runs(folder, truth);
+  const auto campaign = test::write_campaign(folder);
+  const test::Outcome outcome = run_program(diagnose(campaign, folder / "out", "--json"));
+  INFO(outcome.messages);
+  REQUIRE(outcome.code == 0);
+  const auto json = test::parse_json(outcome.out);
+  CHECK(test::read_text(folder / "out" / "verdict.json") == outcome.out);
+  const std::string verdict = json.get<std::string>("verdict");
+  CHECK((verdict == "named" || verdict == "group"));
+  REQUIRE(!json.get_child("causes").empty());
+  CHECK(json.get_child("causes").front().second.get<std::string>("effect") == "strut_friction");
+  CHECK(json.get<double>("gain.hold_out_rms_after.sprung_position") <
+        0.5 * json.get<double>("gain.hold_out_rms_before.sprung_position"));
+  CHECK_THAT(test::read_text(folder / "out" / "report.html"),
+             Contains(json.get<std::string>("sentence")));
+  CHECK(std::filesystem::exists(folder / "out" / "run_2_b.csv"));
+
+  SECTION("and its extended model stands where a model is named") {
+    test::CampaignText text;
+    text.model = folder / "out" / "extended.toml";
+    text.fit = "";
+    const test::TemporaryFolder again;
+    test::write_two_runs(again, truth);
+    const test::Outcome compared =
+        run_program("compare " + test::write_campaign(again, text).string() + " --json -o " +
+                    std::string(again / "out"));
+    REQUIRE(compared.code == 0);
+    const auto other = test::parse_json(compared.out);
+    const auto& held = other.get_child("runs").back().second;
+    CHECK(held.get<double>("nominal.channels.sprung_position.rms") ==
+          Approx(json.get<double>("gain.hold_out_rms_after.sprung_position")).epsilon(0.05));
+  }
+
+  SECTION("and is not replaced without being told to") {
+    const test::Outcome refused = run_program(diagnose(campaign, folder / "out"));
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.messages, Contains("holds a diagnosis") && Contains("--force"));
+  }
+}
+
+TEST_CASE("diagnose ends with code 2 and a plain message on bad data", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder, {}, [](std::size_t row, std::array<std::string, 4>& cells) {
+    if (row == 30) cells[0] = "0.1";
+  });
+  const test::Outcome outcome = run_program(diagnose(test::write_campaign(folder), folder / "out"));
+  CHECK(outcome.code == 2);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.messages, Contains("a.csv:32") && Contains("runs backwards"));
+  CHECK(run_program("diagnose").code == 2);
+  CHECK_THAT(run_program("diagnose --help").out, Contains("-o diagnosis"));
+}
+
+TEST_CASE("diagnose ends with code 3 where its folder cannot be made", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder);
+  folder.write("file", "");
+  const auto campaign = test::write_campaign(folder);
+  CHECK(run_program(diagnose(campaign, folder / "file")).code == 2);
+  CHECK(run_program(diagnose(campaign, folder / "file" / "below")).code == 3);
+}
+
+}  // namespace
+}  // namespace strut
