@@ -8,16 +8,6 @@
 namespace strut {
 namespace {
 
-/// Variance of the noise of a channel of a run, all sources together.
-double calc_floor(const NoiseSpectrum& s, std::size_t channel) {
-  double variance = s.sigma[channel] * s.sigma[channel];
-  for (const Eigen::MatrixXcd& source : s.sources) {
-    variance += 2.0 * s.level * source.row(static_cast<Eigen::Index>(channel)).squaredNorm() /
-                static_cast<double>(s.samples);
-  }
-  return variance;
-}
-
 /// Sums over runs, of one channel.
 struct ChannelSums {
   double before = 0.0, after = 0.0, floor = 0.0, spread = 0.0, count = 0.0;
@@ -64,7 +54,7 @@ HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& select
       const auto count = static_cast<double>(count_readings(run.before.residual[k]));
       s.before += sum_squares(run.before.residual[k]);
       s.after += sum_squares(run.after.residual[k]);
-      s.floor += count * calc_floor(spectra.front(), k);
+      s.floor += count * calc_noise_variance(spectra.front(), k);
       const double spread = calc_spread(c.values);
       s.spread += count * spread * spread;
       s.count += count;

@@ -96,24 +96,6 @@ std::vector<Hypothesis> list_forces(const CampaignData& data, const SharedValues
   return chosen;
 }
 
-/// Share of a sensor's noise power that the road has in a band of a run, mean over the channels.
-double calc_road_ratio(const NoiseSpectrum& s, std::size_t band) {
-  double sum = 0.0, count = 0.0;
-  for (const Eigen::MatrixXcd& source : s.sources) {
-    for (Index f = 0; f < source.cols(); ++f) {
-      const double frequency =
-          static_cast<double>(f) / (static_cast<double>(s.samples) * s.interval);
-      if (find_noise_band(frequency) != band) continue;
-      for (Index c = 0; c < source.rows(); ++c) {
-        sum +=
-            s.level * std::norm(source(c, f)) / std::pow(s.sigma[static_cast<std::size_t>(c)], 2);
-      }
-      if (&source == &s.sources.front()) count += static_cast<double>(source.rows());
-    }
-  }
-  return count > 0.0 ? sum / count : 0.0;
-}
-
 /// How much of what stands out in the bins lies where each place can reach, less what as many
 /// directions of no meaning would hold.
 void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& bins,
@@ -160,6 +142,23 @@ void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& 
 }
 
 }  // namespace
+
+double calc_road_ratio(const NoiseSpectrum& s, std::size_t band) {
+  double sum = 0.0, count = 0.0;
+  for (const Eigen::MatrixXcd& source : s.sources) {
+    for (Index f = 0; f < source.cols(); ++f) {
+      const double frequency =
+          static_cast<double>(f) / (static_cast<double>(s.samples) * s.interval);
+      if (find_noise_band(frequency) != band) continue;
+      for (Index c = 0; c < source.rows(); ++c) {
+        sum +=
+            s.level * std::norm(source(c, f)) / std::pow(s.sigma[static_cast<std::size_t>(c)], 2);
+      }
+      if (&source == &s.sources.front()) count += static_cast<double>(source.rows());
+    }
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
 
 Leftover measure_leftover(const CampaignData& data, TestBench& bench,
                           const LeftoverOptions& options) {

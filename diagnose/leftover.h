@@ -35,8 +35,11 @@ struct LeftoverOptions {
   double noise_tolerance = 0.05;
   /// and beyond this share of the power of a rough road: records begin and end on it, and the
   /// response of a nonlinear car to it is not that of a linear one. Measured on hidden trials.
-  double road_tolerance = 0.02;
+  double road_tolerance = 0.1;
 };
+
+/// Power of the road over that of the sensor in a band of a run, mean over the channels.
+double calc_road_ratio(const NoiseSpectrum& spectrum, std::size_t band);
 
 /// Of the residual of the bench's model. Places are told only where some cell stands out.
 Leftover measure_leftover(const CampaignData& data, TestBench& bench,

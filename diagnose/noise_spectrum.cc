@@ -226,6 +226,15 @@ std::size_t find_noise_band(double frequency) {
   return band;
 }
 
+double calc_noise_variance(const NoiseSpectrum& s, std::size_t channel) {
+  double variance = s.sigma[channel] * s.sigma[channel];
+  for (const Eigen::MatrixXcd& source : s.sources) {
+    variance += 2.0 * s.level * source.row(static_cast<Eigen::Index>(channel)).squaredNorm() /
+                static_cast<double>(s.samples);
+  }
+  return variance;
+}
+
 std::size_t find_quick_length(std::size_t n) {
   const auto is_quick = [](std::size_t m) {
     for (const std::size_t factor : {2U, 3U, 5U}) {

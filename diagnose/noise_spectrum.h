@@ -46,6 +46,9 @@ struct NoiseSpectrum {
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
+/// Variance of the noise of a channel of a run, all sources together.
+double calc_noise_variance(const NoiseSpectrum& spectrum, std::size_t channel);
+
 /// The largest number up to n whose transform is quick: of factors 2, 3, 5.
 std::size_t find_quick_length(std::size_t n);
 

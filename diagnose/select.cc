@@ -137,6 +137,10 @@ SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const Hyp
   return shared;
 }
 
+bool is_level(const RoadSpec& road) {
+  return road.shape == BumpShape::kNone || road.height == 0.0;
+}
+
 double sum_chi2(const std::vector<HoldOutRun>& runs) {
   double sum = 0.0;
   for (const HoldOutRun& run : runs) sum += run.failure.empty() ? run.chi2 : 1e300;
@@ -165,7 +169,9 @@ class Selector {
     tell("judging the runs held out");
     selection_.hold_out_before = judge(selection_.base);
     selection_.hold_out_after = selection_.hold_out_before;
-    while (static_cast<int>(selection_.causes.size()) < options_.most_causes && add()) {
+    const int most = selection_.base.is_dominated ? options_.most_causes_dominated
+                                                  : options_.most_causes;
+    while (static_cast<int>(selection_.causes.size()) < most && add()) {
     }
     if (selection_.causes.size() > 1) reconsider();
     measure_left();
@@ -177,8 +183,52 @@ class Selector {
     if (options_.progress) options_.progress(what);
   }
 
+  /// Fits the runs in which something happens: those over level ground have told the noise, and
+  /// nothing but noise.
+  WhitenedFit fit_excited(const Baseline& baseline, const std::vector<NoiseSpectrum>& spectra) {
+    selection_.level = spectra.front().level;
+    std::vector<std::size_t> runs;
+    std::vector<NoiseSpectrum> chosen;
+    std::vector<int> number(baseline.runs.size(), -1);
+    for (std::size_t i = 0; i < baseline.runs.size(); ++i) {
+      if (!data_.is_rig() && is_level(data_.cars[baseline.runs[i]].setup.maneuver.road)) continue;
+      number[i] = static_cast<int>(runs.size());
+      runs.push_back(baseline.runs[i]);
+      chosen.push_back(spectra[i]);
+    }
+    if (runs.empty()) throw InputError(data_.campaign.path.string() + ": no run crosses a bump");
+    std::vector<Unknown> unknowns;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < baseline.fit.unknowns.size(); ++i) {
+      Unknown u = baseline.fit.unknowns[i];
+      if (u.run != kEveryRun) u.run = number[static_cast<std::size_t>(u.run)];
+      if (u.run == -1 && baseline.fit.unknowns[i].run != kEveryRun) continue;
+      unknowns.push_back(std::move(u));
+      values.push_back(baseline.fit.values[i]);
+    }
+    return fit_whitened(data_, runs, chosen, unknowns, values, baseline.shared_count(),
+                        options_.threads);
+  }
+
   std::vector<HoldOutRun> judge(const WhitenedFit& fit) const {
     return judge_hold_out(data_, fit.shared(), selection_.level, options_.threads);
+  }
+
+  /// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
+  double calc_negligible(const Whitener& whitener) const {
+    double power = options_.negligible * static_cast<double>(whitener.whitened_count());
+    if (data_.is_rig()) return power;
+    for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
+      const NoiseSpectrum& s = whitener.spectra()[r];
+      double ratio = 0.0;  // of the road's power to the sensors', mean over channels
+      for (std::size_t c = 0; c < s.sigma.size(); ++c) {
+        ratio += (calc_noise_variance(s, c) / (s.sigma[c] * s.sigma[c]) - 1.0) /
+                 static_cast<double>(s.sigma.size());
+      }
+      const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);
+      power += options_.negligible_road * ratio * count;
+    }
+    return power;
   }
 
   void measure_left() {
@@ -240,7 +290,7 @@ class Selector {
     round.threshold =
         std::max(options_.margin * calc_null_threshold(evidence, score, one_sided, options_.nulls,
                                                        options_.confidence),
-                 options_.negligible * static_cast<double>(now.fit.degrees));
+                 calc_negligible(bench.whitener()));
     const std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
     for (const RankedTrial& r : ranked) {
       if (round.candidates.size() == options_.fitted) break;
@@ -283,6 +333,7 @@ class Selector {
     const double gain = round.candidates.front().gain;
     if (now.is_dominated) return gain > options_.dominated_share * now.fit.chi2;
     if (gain / round.misfit < round.threshold) return false;
+    if (round.candidates.front().stability < options_.stability) return false;
     const double first = selection_.rounds.front().candidates.front().gain;
     return selection_.rounds.size() == 1 || gain > options_.second_share * first;
   }
@@ -297,8 +348,15 @@ class Selector {
     WhitenedFit fit = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
                                    e.unknowns, e.values, e.shared_count, options_.threads);
     std::vector<HoldOutRun> judged = judge(fit);
-    const double share = was_dominated ? 1.0 - 0.5 * options_.dominated_share : 1.0;
-    if (sum_chi2(judged) >= share * sum_chi2(selection_.hold_out_after)) return false;
+    const double before = sum_chi2(selection_.hold_out_after), after = sum_chi2(judged);
+    double wanted = 0.5 * options_.dominated_share * before;
+    if (!was_dominated) {
+      double readings = 0.0;
+      for (const HoldOutRun& run : judged) readings += static_cast<double>(run.count);
+      wanted = options_.hold_out_share * best.gain * readings /
+               static_cast<double>(selection_.extended.fit.degrees);
+    }
+    if (before - after < wanted) return false;
     selection_.extended = std::move(fit);
     selection_.hold_out_after = std::move(judged);
     selection_.causes.push_back(best.hypothesis);

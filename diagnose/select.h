@@ -15,7 +15,8 @@ namespace strut {
 
 struct SelectOptions {
   int threads = 1;
-  int most_causes = 3;
+  /// Where noise is what is left; and where the model lacks far more than noise.
+  int most_causes = 2, most_causes_dominated = 3;
   std::size_t fitted = 8;     // of the best by score, that are fitted
   double confidence = 0.999;  // of the threshold: share of nulls whose best effect stays below
   std::size_t nulls = 2000;
@@ -23,11 +24,15 @@ struct SelectOptions {
   /// hidden trials that hide nothing.
   double margin = 1.25;
   /// Of the noise's power: what explains less is not claimed, as no model is exact to that.
-  double negligible = 1e-3;
+  /// And of the road's power, as linear responses are not exact either.
+  double negligible = 1e-3, negligible_road = 7e-5;
   /// A second cause explains at least this share of what the first does; less is told from a first
   /// cause of another form than the catalogue's.
   double second_share = 0.1;
   LeftoverOptions leftover;
+  /// A cause gains per reading of the runs held out at least this share of what it gains per
+  /// reading of those it was fitted to, and stays among the best without as many of the runs.
+  double hold_out_share = 0.3, stability = 0.5;
   /// Where the model lacks far more than noise, a cause takes at least this share of all that is
   /// left, and half as much of what is left of the runs held out.
   double dominated_share = 0.15;

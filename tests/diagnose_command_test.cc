@@ -207,6 +207,24 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") 
   }
 }
 
+TEST_CASE("diagnose finds nothing where nothing is hidden", "[io]") {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    const test::TemporaryFolder folder;
+    test::QuarterTruth truth;
+    truth.noise = 2e-5;
+    truth.seed = seed;
+    test::write_two_runs(folder, truth);
+    const test::Outcome outcome =
+        run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
+    INFO(outcome.messages << outcome.out);
+    REQUIRE(outcome.code == 0);
+    const auto json = test::parse_json(outcome.out);
+    CHECK(json.get<std::string>("verdict") == "adequate");
+    CHECK(json.get_child("causes").empty());
+    CHECK(json.get<std::string>("extended_model").empty());
+  }
+}
+
 TEST_CASE("diagnose ends with code 2 and a plain message on bad data", "[io]") {
   const test::TemporaryFolder folder;
   test::write_two_runs(folder, {}, [](std::size_t row, std::array<std::string, 4>& cells) {
