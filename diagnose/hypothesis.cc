@@ -92,7 +92,8 @@ Beginnings choose_beginnings(const std::string& effect, const StrutMotion& m) {
   if (effect == "damper_blow_off") {
     return {{{"loss", 0.2}, {"knee", 0.3 * m.velocity}},
             {{"loss", 0.2}, {"knee", m.velocity}},
-            {{"loss", 0.2}, {"knee", 3.0 * m.velocity}}};
+            {{"loss", 0.2}, {"knee", 3.0 * m.velocity}},
+            {{"loss", -2.0}, {"knee", 0.5 * m.velocity}}};  // a bleed that is soft at low speed
   }
   if (effect == "damper_hysteresis") return {{{"lag", 0.05 / m.frequency()}}};
   if (effect == "damper_leak") return {{{"stroke", 0.02 * m.deflection}}};

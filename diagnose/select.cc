@@ -57,6 +57,13 @@ std::vector<double> make_beginning(const CampaignData& data, const Hypothesis& h
   return values;
 }
 
+/// A beginning with a fiftieth of its sizes.
+std::vector<double> reduce(const HypothesisTrial& trial, std::vector<double> beginning) {
+  constexpr double kShare = 0.02;
+  for (const std::size_t i : trial.parameters) beginning[i] *= kShare;
+  return beginning;
+}
+
 std::vector<double> make_weights(std::size_t count) { return std::vector<double>(count, 1.0); }
 
 /// Share of the runs without which the hypothesis is still within a factor of the best.
@@ -137,9 +144,7 @@ SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const Hyp
   return shared;
 }
 
-bool is_level(const RoadSpec& road) {
-  return road.shape == BumpShape::kNone || road.height == 0.0;
-}
+bool is_level(const RoadSpec& road) { return road.shape == BumpShape::kNone || road.height == 0.0; }
 
 double sum_chi2(const std::vector<HoldOutRun>& runs) {
   double sum = 0.0;
@@ -169,8 +174,8 @@ class Selector {
     tell("judging the runs held out");
     selection_.hold_out_before = judge(selection_.base);
     selection_.hold_out_after = selection_.hold_out_before;
-    const int most = selection_.base.is_dominated ? options_.most_causes_dominated
-                                                  : options_.most_causes;
+    const int most =
+        selection_.base.is_dominated ? options_.most_causes_dominated : options_.most_causes;
     while (static_cast<int>(selection_.causes.size()) < most && add()) {
     }
     if (selection_.causes.size() > 1) reconsider();
@@ -298,8 +303,15 @@ class Selector {
       const HypothesisTrial& trial = evidence.trials[r.trial];
       const Hypothesis& h = hypotheses[trial.hypothesis];
       tell("fitting " + h.describe());
-      const HypothesisFit fit =
-          bench.fit(h, trial.hypothesis, make_beginning(data_, h, trial, r.gain));
+      const std::vector<double> beginning = make_beginning(data_, h, trial, r.gain);
+      HypothesisFit fit = bench.fit(h, trial.hypothesis, beginning);
+      if (data_.is_rig() && (!fit.failure.empty() || fit.gain < 0.5 * r.gain.chi2)) {
+        // Far from what the score promised: another valley. From near the base none is in between.
+        HypothesisFit near = bench.fit(h, trial.hypothesis, reduce(trial, beginning));
+        if (near.failure.empty() && (!fit.failure.empty() || near.gain > fit.gain)) {
+          fit = std::move(near);
+        }
+      }
       if (!fit.failure.empty()) continue;
       Candidate c;
       c.hypothesis = h;
@@ -353,10 +365,13 @@ class Selector {
     if (!was_dominated) {
       double readings = 0.0;
       for (const HoldOutRun& run : judged) readings += static_cast<double>(run.count);
-      wanted = options_.hold_out_share * best.gain * readings /
-               static_cast<double>(selection_.extended.fit.degrees);
+      // What is certain need not show as much where amplitudes are smaller.
+      const bool is_certain = best.gain > 3.0 * round.threshold * round.misfit;
+      wanted = is_certain ? 0.0
+                          : options_.hold_out_share * best.gain * readings /
+                                static_cast<double>(selection_.extended.fit.degrees);
     }
-    if (before - after < wanted) return false;
+    if (before - after <= wanted) return false;
     selection_.extended = std::move(fit);
     selection_.hold_out_after = std::move(judged);
     selection_.causes.push_back(best.hypothesis);

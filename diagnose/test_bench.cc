@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "io/input_error.h"
@@ -51,6 +52,14 @@ struct Coordinate {
   bool is_logarithm = false, is_shape = false;
   double low = 0.0, high = 0.0;
 
+  /// Within the bounds, so that a step back leads back.
+  double restrain(double x) const {
+    if (is_logarithm) {
+      return std::clamp(x, std::log(std::max(low, 1e-12) / beginning), std::log(high / beginning));
+    }
+    return std::clamp(x, (low - beginning) / unit, (high - beginning) / unit);
+  }
+
   double calc_value(double x) const {
     const double value = is_logarithm ? beginning * std::exp(x) : beginning + unit * x;
     return std::clamp(value, low, high);
@@ -91,6 +100,10 @@ TestBench::TestBench(const CampaignData& data, std::vector<std::size_t> runs,
   residual_ = whitener_->apply(at.residual);
   jacobian_ = whitener_->apply(at.jacobian);
   normal_ = jacobian_.transpose() * jacobian_;
+  Eigen::MatrixXd regular = normal_;
+  regular.diagonal().array() *= 1.0 + 1e-12;
+  regular.diagonal().array() += 1e-12;
+  regular_normal_.compute(regular);
   simulations_ += model->simulation_count();
 }
 
@@ -199,10 +212,44 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
   return evidence;
 }
 
+namespace {
+
+/// Derivatives by the coordinates of a hypothesis, of whitened readings, by differences.
+template <class GetPoint>
+Eigen::MatrixXd calc_differences(ReadingModel& model, const Whitener& whitener,
+                                 const Eigen::VectorXd& x, const Eigen::VectorXd& residual,
+                                 const std::vector<Coordinate>& coordinates,
+                                 const GetPoint& get_point) {
+  constexpr double kSide = 0.02;
+  const auto m = static_cast<Index>(coordinates.size()), n = x.size() - m;
+  std::vector<std::vector<double>> points;
+  std::vector<double> widths;
+  for (Index j = 0; j < m; ++j) {
+    const Coordinate& c = coordinates[static_cast<std::size_t>(j)];
+    double width = c.is_logarithm ? kSide : kSide * std::max(1.0, std::abs(x(n + j)));
+    // Away from a bound that holds it.
+    if (c.calc_value(x(n + j) + width) == c.calc_value(x(n + j))) width = -width;
+    Eigen::VectorXd aside = x;
+    aside(n + j) += width;
+    points.push_back(get_point(aside));
+    widths.push_back(width);
+  }
+  const std::vector<Evaluation> sides = model.evaluate(points);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(residual.size(), m);
+  for (Index j = 0; j < m; ++j) {
+    const Evaluation& e = sides[static_cast<std::size_t>(j)];
+    if (!e.failure.empty()) continue;
+    columns.col(j) = (whitener.apply(e.residual) - residual) / widths[static_cast<std::size_t>(j)];
+  }
+  return columns;
+}
+
+}  // namespace
+
 HypothesisFit TestBench::fit(const Hypothesis& hypothesis, std::size_t number,
                              const std::vector<double>& beginning) {
-  constexpr int kSteps = 12;
-  constexpr double kSide = 0.02, kEnough = 0.02;
+  const int steps = data_.is_rig() ? 60 : 12;
+  constexpr double kEnough = 0.02, kEnoughShare = 1e-5;  // of chi2
   const auto model = make_model({hypothesis});
   const std::vector<Coordinate> coordinates =
       make_coordinates(hypothesis, make_unknowns(data_, hypothesis), beginning);
@@ -235,43 +282,58 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis, std::size_t number,
     residual = whitener_->apply(e.residual);
     return true;
   };
+  // What is linear at first may not stay so: less of it may be a better beginning.
   Eigen::VectorXd residual;
-  if (!evaluate(x, residual)) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double share : {1.0, 0.4, 0.15, 0.05}) {
+    Eigen::VectorXd tried = x;
+    for (Index j = 0; j < m; ++j) {
+      const Coordinate& c = coordinates[static_cast<std::size_t>(j)];
+      if (!c.is_shape && c.beginning != 0.0) tried(n + j) = (share - 1.0) * c.beginning / c.unit;
+    }
+    Eigen::VectorXd there;
+    if (!evaluate(tried, there)) continue;
+    const Eigen::VectorXd slope = jacobian_.transpose() * there;
+    const double chi2 = there.squaredNorm() - slope.dot(regular_normal_.solve(slope));
+    if (chi2 >= least) continue;
+    least = chi2;
+    x = tried;
+    residual = there;
+  }
+  if (residual.size() == 0) {
     fit.failure = "cannot be simulated";
     simulations_ += model->simulation_count();
     return fit;
   }
   double chi2 = residual.squaredNorm() + calc_shape_chi2(x), damping = 1e-6;
   Eigen::MatrixXd information;
-  for (int step = 0; step < kSteps; ++step) {
-    std::vector<std::vector<double>> points;
-    std::vector<double> widths;
-    for (Index j = 0; j < m; ++j) {
-      Eigen::VectorXd aside = x;
-      // Away from a bound that holds it.
-      const Coordinate& c = coordinates[static_cast<std::size_t>(j)];
-      double width = kSide * std::max(1.0, std::abs(x(n + j)));
-      if (c.is_logarithm) width = kSide;
-      if (c.calc_value(x(n + j) + width) == c.calc_value(x(n + j))) width = -width;
-      aside(n + j) += width;
-      points.push_back(get_point(aside));
-      widths.push_back(width);
+  for (int step = 0; step < steps; ++step) {
+    Eigen::MatrixXd columns, base_columns;
+    if (data_.is_rig()) {
+      // Cheap, and strong effects change what the other parameters do.
+      const std::vector<double> point = get_point(x);
+      const Linearization at = model->linearize(point);
+      if (!at.failure.empty()) break;
+      const Eigen::MatrixXd jacobian = whitener_->apply(at.jacobian);
+      base_columns = jacobian.leftCols(n);
+      columns = jacobian.rightCols(m);
+      for (Index j = 0; j < m; ++j) {
+        const Coordinate& c = coordinates[static_cast<std::size_t>(j)];
+        const auto i = static_cast<std::size_t>(n + j);
+        columns.col(j) *= (c.is_logarithm ? point[i] : c.unit) / model->unknowns()[i].scale;
+      }
+    } else {
+      columns = calc_differences(*model, *whitener_, x, residual, coordinates, get_point);
     }
-    const std::vector<Evaluation> sides = model->evaluate(points);
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(residual.size(), m);
-    for (Index j = 0; j < m; ++j) {
-      const Evaluation& e = sides[static_cast<std::size_t>(j)];
-      if (!e.failure.empty()) continue;
-      columns.col(j) =
-          (whitener_->apply(e.residual) - residual) / widths[static_cast<std::size_t>(j)];
-    }
+    const Eigen::MatrixXd& base_jacobian = data_.is_rig() ? base_columns : jacobian_;
     information.resize(n + m, n + m);
-    information.topLeftCorner(n, n) = normal_;
-    information.topRightCorner(n, m).noalias() = jacobian_.transpose() * columns;
+    information.topLeftCorner(n, n) =
+        data_.is_rig() ? Eigen::MatrixXd(base_columns.transpose() * base_columns) : normal_;
+    information.topRightCorner(n, m).noalias() = base_jacobian.transpose() * columns;
     information.bottomLeftCorner(m, n) = information.topRightCorner(n, m).transpose();
     information.bottomRightCorner(m, m).noalias() = columns.transpose() * columns;
     Eigen::VectorXd gradient(n + m);
-    gradient.head(n).noalias() = jacobian_.transpose() * residual;
+    gradient.head(n).noalias() = base_jacobian.transpose() * residual;
     gradient.tail(m).noalias() = columns.transpose() * residual;
     for (std::size_t i = 0; i < own; ++i) {
       if (!coordinates[i].is_shape) continue;
@@ -279,22 +341,25 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis, std::size_t number,
       gradient(n + as_index(i)) += x(n + as_index(i));
     }
     bool improved = false, done = false;
-    for (int attempt = 0; attempt < 6 && !improved; ++attempt) {
+    for (int attempt = 0; attempt < 12 && !improved; ++attempt) {
       Eigen::MatrixXd damped = information;
       damped.diagonal() *= 1.0 + damping;
       damped.diagonal().array() += 1e-12;
       const Eigen::VectorXd change = -damped.ldlt().solve(gradient);
       const double expected = -gradient.dot(change) * 2.0 - change.dot(information * change);
-      if (expected < kEnough) {
+      if (expected < std::max(kEnough, kEnoughShare * chi2)) {
         done = true;
         break;
       }
-      const Eigen::VectorXd tried = x + change;
+      Eigen::VectorXd tried = x + change;
+      for (Index j = 0; j < m; ++j) {
+        tried(n + j) = coordinates[static_cast<std::size_t>(j)].restrain(tried(n + j));
+      }
       Eigen::VectorXd next;
       if (change.allFinite() && evaluate(tried, next)) {
         const double less = next.squaredNorm() + calc_shape_chi2(tried);
         if (less < chi2) {
-          done = chi2 - less < kEnough;
+          done = chi2 - less < std::max(kEnough, 0.1 * kEnoughShare * chi2);
           x = tried;
           residual = next;
           chi2 = less;

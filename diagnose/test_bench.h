@@ -2,6 +2,7 @@
 // and derivatives around it, and every effect switched off but ready to be switched on.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,8 +37,8 @@ class TestBench {
   /// Puts hypotheses within reach and simulates their beginnings.
   Evidence gather(const std::vector<Hypothesis>& hypotheses);
 
-  /// Gauss-Newton from a beginning, with the baseline's derivatives as they are at its fit and the
-  /// hypothesis' own anew in every step.
+  /// Gauss-Newton from a beginning. Of a car with the baseline's derivatives as they are at its
+  /// fit, and the hypothesis' own anew in every step; of a rig with all anew.
   HypothesisFit fit(const Hypothesis& hypothesis, std::size_t number,
                     const std::vector<double>& beginning);
 
@@ -64,6 +65,7 @@ class TestBench {
   Eigen::VectorXd residual_;  // whitened, then priors
   Eigen::MatrixXd jacobian_;  // by unknowns in their scale
   Eigen::MatrixXd normal_;    // its products
+  Eigen::LDLT<Eigen::MatrixXd> regular_normal_;
   long simulations_ = 0;
 };
 

@@ -24,7 +24,7 @@ EffectInfo make_damper_blow_off() {
           "r 0.3 to 0.7",
           kOnStrut,
           {make_switch("loss", "1", "r: share of the rate lost far above the knee; < 0: gained",
-                       -20.0, 0.98, 0.3),
+                       -10.0, 0.98, 0.3),
            make_shape("knee", "m/s", "v_b: speed of the knee", 0.1, 0.005, 2.0, 0.1)}};
 }
 
