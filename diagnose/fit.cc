@@ -32,15 +32,14 @@ class FitProblem : public LeastSquaresProblem {
     return at.residual.squaredNorm();
   }
 
-  /// Where there is no simulation the loss is infinite: a step that is not taken.
+  /// Where there is no simulation, or none beside it, the loss is infinite: a step that is not
+  /// taken. Trial points are linearized at once: most are accepted, and then their Jacobian is
+  /// there.
   double calc_loss(const double* weights) override {
-    const std::vector<double> values = calc_values(weights);
-    const Evaluation at = values == last_values_ ? Evaluation{last_.failure, last_.residual}
-                                                 : simulator_.evaluate(values);
+    const Linearization& at = linearize(weights);
     return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
   }
 
-  /// Trial points are linearized at once: most are accepted, and then their Jacobian is there.
   const Linearization& linearize(const double* weights) {
     const std::vector<double> values = calc_values(weights);
     if (values != last_values_) {

@@ -242,6 +242,7 @@ void ReadingSimulator::evaluate_run(std::size_t run, const std::vector<std::vect
     } catch (const InputError& e) {  // out of a parameter's range
       evaluations[i].failure = runs_[run].name + ": " + e.what();
     }
+    if (!evaluations[i].failure.empty()) continue;
     Case car = remove_sensors(setups[i]);
     const auto same = std::find(cars.begin(), cars.end(), car);
     which[i] = static_cast<std::size_t>(same - cars.begin());

@@ -38,6 +38,7 @@ class ConstantModel : public ReadingModel {
   using ReadingModel::evaluate;
   std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override {
     std::vector<Evaluation> evaluations;
+    evaluations.reserve(points.size());
     for (const std::vector<double>& p : points) evaluations.push_back({"", linearize(p).residual});
     return evaluations;
   }
