@@ -10,27 +10,11 @@
 namespace strut {
 namespace {
 
-std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
-  std::vector<double> values;
-  values.reserve(unknowns.size());
-  for (const Unknown& u : unknowns) values.push_back(u.start);
-  return values;
-}
-
 void shift_readings(std::vector<MeasuredChannel>& channels, const Unknown& bias, double value) {
   for (MeasuredChannel& c : channels) {
     if (c.channel != bias.channel) continue;
     for (double& reading : c.values) reading -= value;
   }
-}
-
-MeasuredRun pin_car(MeasuredRun run, const SharedValues& shared) {
-  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
-    const Unknown& u = shared.unknowns[i];
-    if (u.kind == UnknownKind::kParameter) set_parameter(run.setup, u.name, shared.values[i]);
-    if (u.kind == UnknownKind::kBias) shift_readings(run.channels, u, shared.values[i]);
-  }
-  return run;
 }
 
 /// Shared biases back on what is simulated, so that it can be compared with the readings.
@@ -57,19 +41,17 @@ void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& eva
 }  // namespace
 
 CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared) {
-  CampaignData one;
-  one.campaign = data.campaign;
-  one.campaign.runs = {data.campaign.runs[run]};
-  one.noise = data.noise;
-  one.tables = {data.tables[run]};
+  CampaignData one = take_run(data, run);
   if (data.is_rig()) {
-    one.rigs = {set_rig_unknowns(data.rigs[run], shared.unknowns, shared.values)};
-    for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
-      if (shared.unknowns[i].kind != UnknownKind::kBias) continue;
-      shift_readings(one.rigs[0].channels, shared.unknowns[i], shared.values[i]);
-    }
+    one.rigs[0] = set_rig_unknowns(one.rigs[0], shared.unknowns, shared.values);
   } else {
-    one.cars = {pin_car(data.cars[run], shared)};
+    set_parameters(one.cars[0].setup, shared.unknowns, shared.values);
+  }
+  std::vector<MeasuredChannel>& channels =
+      data.is_rig() ? one.rigs[0].channels : one.cars[0].channels;
+  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
+    const Unknown& u = shared.unknowns[i];
+    if (u.kind == UnknownKind::kBias) shift_readings(channels, u, shared.values[i]);
   }
   return one;
 }

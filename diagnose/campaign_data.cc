@@ -291,6 +291,17 @@ std::vector<std::size_t> CampaignData::list_runs(RunUse use) const {
   return list;
 }
 
+CampaignData take_run(const CampaignData& data, std::size_t run) {
+  CampaignData one;
+  one.campaign = data.campaign;
+  one.campaign.runs = {data.campaign.runs[run]};
+  one.noise = data.noise;
+  one.tables = {data.tables[run]};
+  if (data.is_rig()) one.rigs = {data.rigs[run]};
+  if (!data.is_rig()) one.cars = {data.cars[run]};
+  return one;
+}
+
 CampaignData read_campaign_data(const std::filesystem::path& path) {
   CampaignData data;
   data.campaign = read_campaign(path);

@@ -39,6 +39,9 @@ struct CampaignData {
   std::vector<std::size_t> list_runs(RunUse use) const;
 };
 
+/// The campaign of one of its runs.
+CampaignData take_run(const CampaignData& data, std::size_t run);
+
 /// Reads the campaign, its model with what `[fit] fix` sets, and every run. Throws InputError for
 /// whatever campaign.h, measured_table.h and check_campaign_data.h refuse.
 CampaignData read_campaign_data(const std::filesystem::path& path);

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "diagnose/gain.h"
 #include "diagnose/leftover.h"
 #include "diagnose/next_measurement.h"
 #include "diagnose/probability.h"
 #include "io/config.h"
+#include "train/interval.h"
 
 namespace strut {
 namespace {
-
-constexpr double kInterval = 1.959963984540054;  // standard deviations of a 95 % interval
 
 std::string join(const std::vector<std::string>& names, const std::string& between) {
   std::string text;
@@ -21,15 +19,13 @@ std::string join(const std::vector<std::string>& names, const std::string& betwe
   return text;
 }
 
-std::string describe(const Cause& cause) {
-  return cause.effect + (cause.place.empty() ? "" : " at " + cause.place);
-}
+std::string describe(const Cause& cause) { return describe_effect(cause.effect, cause.place); }
 
 CauseParameter make_parameter_of(const CampaignData& data, const Hypothesis& h, std::size_t i,
                                  double value, double sigma) {
   const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
   const EffectParameter& p = *parameters[i];
-  CauseParameter c{p.name, p.unit, value, value - kInterval * sigma, value + kInterval * sigma};
+  CauseParameter c{p.name, p.unit, value, value - kNormal95 * sigma, value + kNormal95 * sigma};
   c.low = std::clamp(c.low, p.low, std::max(p.low, value));
   c.high = std::clamp(c.high, std::min(p.high, value), p.high);
   return c;
@@ -98,22 +94,21 @@ std::string describe_band(std::size_t band) {
                   : format_rounded(from) + "-" + format_rounded(to) + " Hz";
 }
 
-std::vector<ParameterChange> list_changes(const CampaignData& data, const Selection& selection) {
+std::vector<ParameterChange> list_changes(const Selection& selection) {
   std::vector<ParameterChange> changes;
   const WhitenedFit &before = selection.base, &after = selection.extended;
   for (std::size_t i = 0; i < before.shared_count; ++i) {
     const Unknown& u = before.fit.unknowns[i];
-    const double spread = kInterval * before.fit.widened.sigma[i];
+    const double spread = kNormal95 * before.fit.widened.sigma[i];
     ParameterChange c{u.name, u.unit, before.fit.values[i], 0.0, 0.0, 0.0, 0.0, 0.0};
     c.before_low = c.before - spread;
     c.before_high = c.before + spread;
-    const double after_spread = kInterval * after.fit.widened.sigma[i];
+    const double after_spread = kNormal95 * after.fit.widened.sigma[i];
     c.after = after.fit.values[i];
     c.after_low = c.after - after_spread;
     c.after_high = c.after + after_spread;
     changes.push_back(std::move(c));
   }
-  (void)data;
   return changes;
 }
 
@@ -170,7 +165,7 @@ class Diagnoser {
     tell("measuring what is left");
     left_ = selection.left;
     judge();
-    diagnosis_.parameters = list_changes(data_, selection);
+    diagnosis_.parameters = list_changes(selection);
     for (const NullDirection& direction : selection.extended.fit.widened.null_directions) {
       diagnosis_.not_identifiable.push_back(
           describe_direction(direction, selection.extended.fit.unknowns));

@@ -123,13 +123,6 @@ class FitProblem : public LeastSquaresProblem {
   NormalEquations normal_;  // of last_
 };
 
-std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
-  std::vector<double> values;
-  values.reserve(unknowns.size());
-  for (const Unknown& u : unknowns) values.push_back(u.start);
-  return values;
-}
-
 /// Weights where the search begins: the unknowns' own start, the measuring clocks set.
 std::vector<double> make_start(ReadingModel& simulator, const FitOptions& options) {
   std::vector<double> weights =

@@ -4,17 +4,6 @@
 #include "io/input_error.h"
 
 namespace strut {
-namespace {
-
-std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
-  std::vector<double> values;
-  values.reserve(unknowns.size());
-  for (const Unknown& u : unknowns) values.push_back(u.start);
-  return values;
-}
-
-}  // namespace
-
 std::vector<HoldOutRun> judge_hold_out(const CampaignData& data, const SharedValues& shared,
                                        double level, int threads) {
   std::vector<HoldOutRun> judged;

@@ -173,7 +173,21 @@ std::vector<std::vector<double>> make_beginnings(
 
 }  // namespace
 
-std::string Hypothesis::describe() const { return effect + (place.empty() ? "" : " at " + place); }
+std::string describe_effect(const std::string& effect, const std::string& place) {
+  return effect + (place.empty() ? "" : " at " + place);
+}
+
+std::string Hypothesis::describe() const { return describe_effect(effect, place); }
+
+std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h) {
+  std::vector<Unknown> unknowns;
+  unknowns.reserve(h.parameters.size());
+  for (const HypothesisParameter& p : h.parameters) {
+    unknowns.push_back(data.is_rig() ? make_rig_unknown(data.rigs, p.name)
+                                     : make_parameter(data.cars, p.name));
+  }
+  return unknowns;
+}
 
 bool is_corner(const std::string& place) {
   return place == "front_left" || place == "front_right" || place == "rear_left" ||
@@ -189,10 +203,7 @@ EffectSettings list_effects_on(const CampaignData& data, const SharedValues& sha
     return set_rig_unknowns(data.rigs[0], shared.unknowns, shared.values).setup.effects;
   }
   Case c = data.cars[0].setup;
-  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
-    if (shared.unknowns[i].kind != UnknownKind::kParameter) continue;
-    set_parameter(c, shared.unknowns[i].name, shared.values[i]);
-  }
+  set_parameters(c, shared.unknowns, shared.values);
   return c.vehicle.effects;
 }
 

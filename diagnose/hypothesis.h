@@ -17,6 +17,9 @@ struct HypothesisParameter {
   bool switches = true;  // the effect vanishes where all that switch are neutral; else a mere shape
 };
 
+/// "damper_asymmetry at rear"; on a rig without the place.
+std::string describe_effect(const std::string& effect, const std::string& place);
+
 struct Hypothesis {
   std::string effect, place;
   std::vector<HypothesisParameter> parameters;
@@ -24,9 +27,11 @@ struct Hypothesis {
   /// decides where its effect is seen, so several are tried.
   std::vector<std::vector<double>> beginnings;
 
-  /// "damper_asymmetry at rear"
   std::string describe() const;
 };
+
+/// An unknown for each parameter of a hypothesis, that all runs share.
+std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h);
 
 /// All that exist in the campaign's model and are not switched on in `model_effects` already, nor
 /// at a place that holds one that is. Sizes are shares of the strut's forces, deflections and

@@ -166,7 +166,6 @@ Leftover measure_leftover(const CampaignData& data, TestBench& bench,
   const Whitener& whitener = bench.whitener();
   const std::size_t bands = kNoiseBands.size();
   std::vector<std::vector<Cell>> cells(bench.run_count(), std::vector<Cell>(bands));
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<Cell>> channels;
   for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {
     const ReadingPlace& place = whitener.places()[i];
     const std::size_t band = find_noise_band(whitener.get_frequency(place));
@@ -175,10 +174,6 @@ Leftover measure_leftover(const CampaignData& data, TestBench& bench,
     const double share = whitener.get_share(place.run);
     cells[place.run][band].chi2 += chi2;
     cells[place.run][band].count += share;
-    std::vector<Cell>& by_channel = channels[{place.run, band}];
-    by_channel.resize(std::max(by_channel.size(), place.channel + 1));
-    by_channel[place.channel].chi2 += chi2;
-    by_channel[place.channel].count += share;
   }
   Leftover left;
   std::vector<std::vector<bool>> stands_out(cells.size(), std::vector<bool>(bands, false));
@@ -194,13 +189,7 @@ Leftover measure_leftover(const CampaignData& data, TestBench& bench,
       if (stands_out[r][b]) left.energy += cell.chi2 - cell.count;
       if (significance <= left.significance) continue;
       left.significance = significance;
-      left.run = r;
       left.band = b;
-      const std::vector<Cell>& of = channels[{r, b}];
-      const auto most = std::max_element(of.begin(), of.end(), [](const Cell& x, const Cell& y) {
-        return x.chi2 - x.count < y.chi2 - y.count;
-      });
-      left.channel = static_cast<int>(most - of.begin());
     }
   }
   if (left.significance < significant) return left;

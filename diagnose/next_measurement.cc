@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "io/config.h"
-#include "sweep/parameters.h"
 
 namespace strut {
 namespace {
@@ -15,17 +14,6 @@ struct Proposal {
   std::string description;
   CampaignData data;  // of that run alone
 };
-
-CampaignData take_run(const CampaignData& data, std::size_t run) {
-  CampaignData one;
-  one.campaign = data.campaign;
-  one.campaign.runs = {data.campaign.runs[run]};
-  one.noise = data.noise;
-  one.tables = {data.tables[run]};
-  if (data.is_rig()) one.rigs = {data.rigs[run]};
-  if (!data.is_rig()) one.cars = {data.cars[run]};
-  return one;
-}
 
 void add_car_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
   constexpr double kKilometersPerHour = 3.6;
@@ -55,9 +43,7 @@ void add_rig_proposals(const CampaignData& data, std::size_t run, std::vector<Pr
     CampaignData one = take_run(data, run);
     for (InputSignal& input : one.rigs[0].inputs) {
       if (input.channel == "temperature") continue;
-      for (SignalCell& cell : input.cells) {
-        for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
-      }
+      scale_signal(input, factor);
     }
     menu.push_back({"repeat " + data.campaign.runs[run].name + " at " + format_rounded(factor) +
                         " times its amplitude",
@@ -98,16 +84,14 @@ std::string propose_measurement(const CampaignData& data, const Selection& selec
   if (group.size() < 2) {
     return selection.causes.empty()
                ? "none is needed to judge these runs; larger bumps or amplitudes would show "
-                 "effects "
-                 "that are hidden here"
+                 "effects that are hidden here"
                : "repeat one of the runs held out at another speed or amplitude: the name should "
                  "stay, and its parameters";
   }
   const std::optional<SharedValues> a = find_values(selection, group[0]);
   const std::optional<SharedValues> b = find_values(selection, group[1]);
-  const std::string pair =
-      group[0].effect + (group[0].place.empty() ? "" : " at " + group[0].place) + " from " +
-      group[1].effect + (group[1].place.empty() ? "" : " at " + group[1].place);
+  const std::string pair = describe_effect(group[0].effect, group[0].place) + " from " +
+                           describe_effect(group[1].effect, group[1].place);
   if (!a || !b) return "separate " + pair;
   std::vector<Proposal> menu;
   double already = 0.0;

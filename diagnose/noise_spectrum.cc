@@ -56,7 +56,7 @@ double calc_pulse_transform(double frequency) {
   return 0.5 * kPulseTime * sinc / (1.0 - x * x);
 }
 
-/// Where a small pulse is, in time: s after t = 0 at which an axle is over its center.
+/// Which axles meet the pulse.
 enum class PulseAxle { kBoth, kRear };
 
 /// Of a car's run over a small pulse under one track; under the rear axle alone, or first under
@@ -149,11 +149,7 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   s.level = 0.0;
   s.fades = true;
   Case c = data.cars[run].setup;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Unknown& u = unknowns[i];
-    if (u.kind != UnknownKind::kParameter || (u.run != kEveryRun && u.run != number)) continue;
-    set_parameter(c, u.name, values[i]);
-  }
+  set_parameters(c, unknowns, values, number);
   // The road's faults have no place on this one, and at rest friction would hold the car.
   c.vehicle.effects.clear();
   const auto& channels = data.channels(run);
@@ -226,13 +222,17 @@ std::size_t find_noise_band(double frequency) {
   return band;
 }
 
-double calc_noise_variance(const NoiseSpectrum& s, std::size_t channel) {
-  double variance = s.sigma[channel] * s.sigma[channel];
+double calc_source_variance(const NoiseSpectrum& s, std::size_t channel) {
+  double variance = 0.0;
   for (const Eigen::MatrixXcd& source : s.sources) {
-    variance += 2.0 * s.level * source.row(static_cast<Eigen::Index>(channel)).squaredNorm() /
+    variance += 2.0 * source.row(static_cast<Eigen::Index>(channel)).squaredNorm() /
                 static_cast<double>(s.samples);
   }
   return variance;
+}
+
+double calc_noise_variance(const NoiseSpectrum& s, std::size_t channel) {
+  return s.sigma[channel] * s.sigma[channel] + s.level * calc_source_variance(s, channel);
 }
 
 std::size_t find_quick_length(std::size_t n) {

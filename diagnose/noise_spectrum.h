@@ -46,7 +46,9 @@ struct NoiseSpectrum {
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
-/// Variance of the noise of a channel of a run, all sources together.
+/// Variance that the sources give a channel of a run, at level 1.
+double calc_source_variance(const NoiseSpectrum& spectrum, std::size_t channel);
+/// Variance of the noise of a channel of a run, the sensor's own and that of its sources.
 double calc_noise_variance(const NoiseSpectrum& spectrum, std::size_t channel);
 
 /// The largest number up to n whose transform is quick: of factors 2, 3, 5.

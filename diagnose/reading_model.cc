@@ -92,16 +92,4 @@ NormalEquations calc_normal_equations(const ReadingModel& model, const Lineariza
   return normal;
 }
 
-Eigen::MatrixXd calc_products(const ReadingModel& model, const Eigen::MatrixXd& jacobian,
-                              const Eigen::MatrixXd& columns) {
-  const auto readings = static_cast<Eigen::Index>(model.reading_count());
-  const Eigen::Index priors = jacobian.rows() - readings;
-  Eigen::MatrixXd products = jacobian.bottomRows(priors).transpose() * columns.bottomRows(priors);
-  for (const RunBlock& block : list_blocks(model)) {
-    products(block.unknowns, Eigen::all) +=
-        get_block(jacobian, block).transpose() * columns.middleRows(block.begin, block.count);
-  }
-  return products;
-}
-
 }  // namespace strut

@@ -86,8 +86,4 @@ struct NormalEquations {
 };
 NormalEquations calc_normal_equations(const ReadingModel& model, const Linearization& at);
 
-/// J'C of readings and priors, by the same saving.
-Eigen::MatrixXd calc_products(const ReadingModel& model, const Eigen::MatrixXd& jacobian,
-                              const Eigen::MatrixXd& columns);
-
 }  // namespace strut

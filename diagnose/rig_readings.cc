@@ -56,9 +56,7 @@ void scale_input(const RigRun& run, RigVariant& variant, int input, double gain)
   const std::string& name = list_rig_inputs(run.setup.kind)[static_cast<std::size_t>(input)].name;
   for (InputSignal& signal : variant.scaled) {
     if (signal.channel != name) continue;
-    for (SignalCell& cell : signal.cells) {
-      for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= gain;
-    }
+    scale_signal(signal, gain);
   }
 }
 
@@ -235,6 +233,12 @@ double calc_fastest_mode(const RigSpec& spec) {
 
 double get_rig_parameter(const RigSpec& spec, const std::string& name) {
   return find_rig_parameter(spec.kind, name).get(spec);
+}
+
+void scale_signal(InputSignal& signal, double factor) {
+  for (SignalCell& cell : signal.cells) {
+    for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
+  }
 }
 
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,

@@ -39,6 +39,9 @@ struct RigOptions {
   int threads = 1;              // no result depends on it
 };
 
+/// The whole signal times a factor.
+void scale_signal(InputSignal& signal, double factor);
+
 /// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
 /// std::invalid_argument as make_signal does.
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,

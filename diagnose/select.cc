@@ -99,9 +99,9 @@ ExtendedUnknowns extend(const CampaignData& data, const WhitenedFit& base, const
   const auto shared = static_cast<std::ptrdiff_t>(base.shared_count);
   e.unknowns.assign(base.fit.unknowns.begin(), base.fit.unknowns.begin() + shared);
   e.values.assign(base_values.begin(), base_values.begin() + shared);
-  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
-    Unknown u = data.is_rig() ? make_rig_unknown(data.rigs, h.parameters[i].name)
-                              : make_parameter(data.cars, h.parameters[i].name);
+  std::vector<Unknown> own = make_unknowns(data, h);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    Unknown& u = own[i];
     // Steps and sizes are counted in what was found.
     if (parameters[i] != 0.0) u.scale = std::abs(parameters[i]);
     if (!h.parameters[i].switches)
@@ -143,8 +143,6 @@ SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const Hyp
   }
   return shared;
 }
-
-bool is_level(const RoadSpec& road) { return road.shape == BumpShape::kNone || road.height == 0.0; }
 
 double sum_chi2(const std::vector<HoldOutRun>& runs) {
   double sum = 0.0;
@@ -188,33 +186,6 @@ class Selector {
     if (options_.progress) options_.progress(what);
   }
 
-  /// Fits the runs in which something happens: those over level ground have told the noise, and
-  /// nothing but noise.
-  WhitenedFit fit_excited(const Baseline& baseline, const std::vector<NoiseSpectrum>& spectra) {
-    selection_.level = spectra.front().level;
-    std::vector<std::size_t> runs;
-    std::vector<NoiseSpectrum> chosen;
-    std::vector<int> number(baseline.runs.size(), -1);
-    for (std::size_t i = 0; i < baseline.runs.size(); ++i) {
-      if (!data_.is_rig() && is_level(data_.cars[baseline.runs[i]].setup.maneuver.road)) continue;
-      number[i] = static_cast<int>(runs.size());
-      runs.push_back(baseline.runs[i]);
-      chosen.push_back(spectra[i]);
-    }
-    if (runs.empty()) throw InputError(data_.campaign.path.string() + ": no run crosses a bump");
-    std::vector<Unknown> unknowns;
-    std::vector<double> values;
-    for (std::size_t i = 0; i < baseline.fit.unknowns.size(); ++i) {
-      Unknown u = baseline.fit.unknowns[i];
-      if (u.run != kEveryRun) u.run = number[static_cast<std::size_t>(u.run)];
-      if (u.run == -1 && baseline.fit.unknowns[i].run != kEveryRun) continue;
-      unknowns.push_back(std::move(u));
-      values.push_back(baseline.fit.values[i]);
-    }
-    return fit_whitened(data_, runs, chosen, unknowns, values, baseline.shared_count(),
-                        options_.threads);
-  }
-
   std::vector<HoldOutRun> judge(const WhitenedFit& fit) const {
     return judge_hold_out(data_, fit.shared(), selection_.level, options_.threads);
   }
@@ -227,8 +198,8 @@ class Selector {
       const NoiseSpectrum& s = whitener.spectra()[r];
       double ratio = 0.0;  // of the road's power to the sensors', mean over channels
       for (std::size_t c = 0; c < s.sigma.size(); ++c) {
-        ratio += (calc_noise_variance(s, c) / (s.sigma[c] * s.sigma[c]) - 1.0) /
-                 static_cast<double>(s.sigma.size());
+        ratio += s.level * calc_source_variance(s, c) /
+                 (s.sigma[c] * s.sigma[c] * static_cast<double>(s.sigma.size()));
       }
       const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);
       power += options_.negligible_road * ratio * count;
@@ -304,10 +275,10 @@ class Selector {
       const Hypothesis& h = hypotheses[trial.hypothesis];
       tell("fitting " + h.describe());
       const std::vector<double> beginning = make_beginning(data_, h, trial, r.gain);
-      HypothesisFit fit = bench.fit(h, trial.hypothesis, beginning);
+      HypothesisFit fit = bench.fit(h, beginning);
       if (data_.is_rig() && (!fit.failure.empty() || fit.gain < 0.5 * r.gain.chi2)) {
         // Far from what the score promised: another valley. From near the base none is in between.
-        HypothesisFit near = bench.fit(h, trial.hypothesis, reduce(trial, beginning));
+        HypothesisFit near = bench.fit(h, reduce(trial, beginning));
         if (near.failure.empty() && (!fit.failure.empty() || near.gain > fit.gain)) {
           fit = std::move(near);
         }

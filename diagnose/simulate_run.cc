@@ -54,10 +54,7 @@ void read_history(const LaneRun& simulated, const EffectSettings& effects,
 Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                const std::vector<double>& values, double hit_time) {
   Case c = run.setup;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    if (unknowns[i].kind != UnknownKind::kParameter || !is_of_this_run(unknowns[i])) continue;
-    set_parameter(c, unknowns[i].name, values[i]);
-  }
+  set_parameters(c, unknowns, values, 0);
   constexpr double kMargin = 0.02;  // s
   const Range& allowed = find_parameter("duration").allowed;
   const double last = std::min(run.times.back() + hit_time + kMargin, c.maneuver.duration);

@@ -15,18 +15,7 @@ using Index = Eigen::Index;
 
 Index as_index(std::size_t i) { return static_cast<Index>(i); }
 
-/// An unknown for each parameter of a hypothesis.
-std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h) {
-  std::vector<Unknown> unknowns;
-  unknowns.reserve(h.parameters.size());
-  for (const HypothesisParameter& p : h.parameters) {
-    unknowns.push_back(data.is_rig() ? make_rig_unknown(data.rigs, p.name)
-                                     : make_parameter(data.cars, p.name));
-  }
-  return unknowns;
-}
-
-/// J'J less what the last `own` of its unknowns can take (their Schur complement).
+/// Products less what `count` of the unknowns from `begin` on can take (their Schur complement).
 Eigen::MatrixXd eliminate(const Eigen::MatrixXd& products, Index begin, Index count) {
   const Index rest = products.rows() - begin - count;
   Eigen::MatrixXd kept(begin + rest, begin + rest), mixed(count, begin + rest);
@@ -95,11 +84,12 @@ TestBench::TestBench(const CampaignData& data, std::vector<std::size_t> runs,
       threads_(threads) {
   const auto model = make_reading_model(data_, runs_, unknowns_, threads_);
   whitener_ = std::make_unique<Whitener>(*model, std::move(spectra));
-  const Linearization at = model->linearize(values_);
+  WhitenedModel whitened(*model, *whitener_);
+  Linearization at = whitened.linearize(values_);
   if (!at.failure.empty()) throw InputError(at.failure);
-  residual_ = whitener_->apply(at.residual);
-  jacobian_ = whitener_->apply(at.jacobian);
-  normal_ = jacobian_.transpose() * jacobian_;
+  normal_ = calc_normal_equations(whitened, at).information;
+  residual_ = std::move(at.residual);
+  jacobian_ = std::move(at.jacobian);
   Eigen::MatrixXd regular = normal_;
   regular.diagonal().array() *= 1.0 + 1e-12;
   regular.diagonal().array() += 1e-12;
@@ -246,8 +236,7 @@ Eigen::MatrixXd calc_differences(ReadingModel& model, const Whitener& whitener,
 
 }  // namespace
 
-HypothesisFit TestBench::fit(const Hypothesis& hypothesis, std::size_t number,
-                             const std::vector<double>& beginning) {
+HypothesisFit TestBench::fit(const Hypothesis& hypothesis, const std::vector<double>& beginning) {
   const int steps = data_.is_rig() ? 60 : 12;
   constexpr double kEnough = 0.02, kEnoughShare = 1e-5;  // of chi2
   const auto model = make_model({hypothesis});
@@ -275,7 +264,6 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis, std::size_t number,
     return chi2;
   };
   HypothesisFit fit;
-  fit.hypothesis = number;
   const auto evaluate = [&](const Eigen::VectorXd& at, Eigen::VectorXd& residual) {
     const Evaluation e = model->evaluate(get_point(at));
     if (!e.failure.empty()) return false;
@@ -376,12 +364,6 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis, std::size_t number,
   // A coordinate that was carried beyond its bound stays on it.
   fit.values = get_point(x);
   fit.gain = residual_.squaredNorm() - chi2;
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const auto begin = as_index(whitener_->run_begin()[r]);
-    const auto length = as_index(whitener_->run_begin()[r + 1]) - begin;
-    fit.by_run.push_back(residual_.segment(begin, length).squaredNorm() -
-                         residual.segment(begin, length).squaredNorm());
-  }
   Eigen::MatrixXd regular = information;
   regular.diagonal().array() += 1e-12;
   const Eigen::MatrixXd covariance = regular.ldlt().solve(Eigen::MatrixXd::Identity(n + m, n + m));

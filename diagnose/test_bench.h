@@ -13,12 +13,10 @@ namespace strut {
 
 /// A fit of a hypothesis together with all that the model may adjust.
 struct HypothesisFit {
-  std::size_t hypothesis = 0;
   std::string failure;         // empty: it could be simulated
   std::vector<double> values;  // of the base unknowns, then of the hypothesis' parameters
   std::vector<double> sigma;   // of the hypothesis' parameters, everything else adjusted
   double gain = 0.0;           // by which chi2 fell
-  std::vector<double> by_run;  // the same, by run
 };
 
 class TestBench {
@@ -39,8 +37,7 @@ class TestBench {
 
   /// Gauss-Newton from a beginning. Of a car with the baseline's derivatives as they are at its
   /// fit, and the hypothesis' own anew in every step; of a rig with all anew.
-  HypothesisFit fit(const Hypothesis& hypothesis, std::size_t number,
-                    const std::vector<double>& beginning);
+  HypothesisFit fit(const Hypothesis& hypothesis, const std::vector<double>& beginning);
 
   const Whitener& whitener() const { return *whitener_; }
   const Eigen::VectorXd& residual() const { return residual_; }

@@ -98,6 +98,22 @@ std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
   return list;
 }
 
+std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
+  std::vector<double> values;
+  values.reserve(unknowns.size());
+  for (const Unknown& u : unknowns) values.push_back(u.start);
+  return values;
+}
+
+void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
+                    const std::vector<double>& values, int run) {
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    if (u.kind != UnknownKind::kParameter || (u.run != kEveryRun && u.run != run)) continue;
+    set_parameter(c, u.name, values[i]);
+  }
+}
+
 void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count) {
   if (unknowns.empty()) throw InputError("fit: nothing is free");
   for (const Unknown& u : unknowns) {

@@ -66,6 +66,14 @@ std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
                                     const NuisanceSigmas& sigmas,
                                     const std::vector<Unknown>& chosen = {});
 
+/// Where the search of each begins.
+std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
+
+/// Sets the parameters among the unknowns that belong to a run: to all of them, or to that alone.
+/// Throws what set_parameter throws.
+void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
+                    const std::vector<double>& values, int run = kEveryRun);
+
 /// Throws InputError where one is named twice, belongs to no run, starts out of its bounds, or has
 /// a prior whose sigma is not positive.
 void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count);

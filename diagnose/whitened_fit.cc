@@ -37,11 +37,8 @@ double measure_approach(const CampaignData& data, std::size_t run, std::size_t n
   std::vector<double> levels;
   for (std::size_t c = 0; c < channels; ++c) {
     if (counts[c] < kEnough) continue;
-    double unit = 0.0;  // variance of the channel over sigma^2 per m^3
-    for (const Eigen::MatrixXcd& source : spectrum.sources) {
-      unit += 2.0 * source.row(static_cast<Eigen::Index>(c)).squaredNorm() /
-              static_cast<double>(spectrum.samples) / (spectrum.sigma[c] * spectrum.sigma[c]);
-    }
+    // Variance of the channel over sigma^2 per m^3.
+    const double unit = calc_source_variance(spectrum, c) / (spectrum.sigma[c] * spectrum.sigma[c]);
     const auto n = static_cast<double>(counts[c]);
     const double variance = squares[c] / n - (means[c] / n) * (means[c] / n);
     if (unit > 0.0) levels.push_back(std::max(0.0, variance - 1.0) / unit);

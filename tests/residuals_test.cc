@@ -28,6 +28,7 @@ std::vector<double> make_times(std::size_t count, double interval) {
 TEST_CASE("Sines fall into their bands with their own rms", "[unit]") {
   const std::vector<double> times = make_times(4000, 0.005);
   std::vector<double> y;
+  y.reserve(times.size());
   for (const double t : times) {
     y.push_back(std::sin(2 * kPi * 2.0 * t) + 0.5 * std::sin(2 * kPi * 5.0 * t) +
                 0.1 * std::sin(2 * kPi * 30.0 * t) + 7.0);

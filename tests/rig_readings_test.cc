@@ -91,8 +91,7 @@ TEST_CASE("The Jacobian of a rig agrees with differences of its residuals", "[un
                                    make_rig_unknown(data.rigs, "sprung_position_bias")};
   for (Unknown& u : make_run_unknowns(data, runs, unknowns)) unknowns.push_back(u);
   const auto model = make_reading_model(data, runs, unknowns, 2);
-  std::vector<double> values;
-  for (const Unknown& u : unknowns) values.push_back(u.start);
+  std::vector<double> values = list_starts(unknowns);
   values[2] = 1e-4;
   const Linearization at = model->linearize(values);
   REQUIRE(at.failure.empty());

@@ -1,14 +1,13 @@
 #include "jobs/compare/json.h"
 
 #include "jobs/compare/tables.h"
+#include "train/interval.h"
 
 namespace strut {
 namespace {
 
-constexpr double kCi95 = 1.959963984540054;
-
 Json make_interval(double value, double sigma) {
-  return Json::array().push(value - kCi95 * sigma).push(value + kCi95 * sigma);
+  return Json::array().push(value - kNormal95 * sigma).push(value + kNormal95 * sigma);
 }
 
 Json make_parameters(const Baseline& baseline) {

@@ -210,7 +210,8 @@ TEST_CASE("Hidden data: the car's heave and pitch frequencies are the textbook's
     if (which == 0) y[CarState::kPosition + 2] += step;
     if (which == 1) y[CarState::kQuaternion + 2] += 0.5 * step;
     for (int side = 0; side < 2 && which > 1; ++side) {
-      y[static_cast<std::size_t>(CarState::kTravel + 2 * (which - 2) + side)] += step;
+      const int travel = CarState::kTravel + 2 * (which - 2) + side;
+      y[static_cast<std::size_t>(travel)] += step;
     }
     model.calc_rates(Drive{}, y, dy);
     return Eigen::Vector4d(dy[CarState::kVelocity + 2], dy[CarState::kRate + 1],
