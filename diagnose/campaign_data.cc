@@ -373,6 +373,12 @@ std::vector<Unknown> make_run_unknowns(const CampaignData& data,
                        : make_car_unknowns(data, runs, chosen);
 }
 
+bool meets_bump(const CampaignData& data, std::size_t run) {
+  if (data.is_rig()) return true;
+  const RoadSpec& road = data.cars[run].setup.maneuver.road;
+  return road.shape != BumpShape::kNone && road.height != 0.0;
+}
+
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads) {

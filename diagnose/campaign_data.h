@@ -42,6 +42,9 @@ struct CampaignData {
 /// The campaign of one of its runs.
 CampaignData take_run(const CampaignData& data, std::size_t run);
 
+/// Whether a run's wheels meet more than a road's roughness; those of rigs always do.
+bool meets_bump(const CampaignData& data, std::size_t run);
+
 /// Reads the campaign, its model with what `[fit] fix` sets, and every run. Throws InputError for
 /// whatever campaign.h, measured_table.h and check_campaign_data.h refuse.
 CampaignData read_campaign_data(const std::filesystem::path& path);

@@ -26,7 +26,7 @@ class FitProblem : public LeastSquaresProblem {
     const auto n = static_cast<Eigen::Index>(weight_count());
     const Linearization& at = linearize(weights);
     if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
-    const NormalEquations normal = get_free_normal(weights);
+    const NormalEquations normal = free_unknowns(normal_, list_beyond(weights));
     Eigen::Map<Eigen::MatrixXd>(h, n, n) = normal.information;
     Eigen::Map<Eigen::VectorXd>(gradient, n) = normal.gradient;
     return at.residual.squaredNorm();
@@ -66,22 +66,22 @@ class FitProblem : public LeastSquaresProblem {
     return value < u.low || value > u.high;
   }
 
-  /// sqrt(g' H^-1 g) over the unknowns that no bound holds: how far the linear model sees the
-  /// minimum, in standard deviations.
   double calc_distance(const double* weights) {
     const Linearization& at = linearize(weights);
     if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
-    const NormalEquations normal = get_free_normal(weights);
-    const InformationInverse inverse = invert_information(normal.information);
-    return std::sqrt(std::max(0.0, normal.gradient.dot(inverse.covariance * normal.gradient)));
+    return strut::calc_distance(free_unknowns(normal_, list_beyond(weights)));
   }
 
-  /// How much larger standard deviations are by what the model leaves beyond noise.
   double calc_widening(const double* weights) {
     const Linearization& at = linearize(weights);
-    const double degrees = residual_count() - static_cast<double>(weight_count());
-    if (!at.failure.empty() || !(degrees > 0.0)) return 1.0;
-    return std::sqrt(std::max(1.0, at.residual.squaredNorm() / degrees));
+    return at.failure.empty() ? strut::calc_widening(simulator_, at) : 1.0;
+  }
+
+  std::vector<bool> list_beyond(const double* weights) const {
+    std::vector<bool> beyond;
+    beyond.reserve(weight_count());
+    for (std::size_t i = 0; i < weight_count(); ++i) beyond.push_back(is_beyond(weights, i));
+    return beyond;
   }
 
   /// Brings weights beyond a bound back to it; returns whether the slope would lead inwards from
@@ -104,19 +104,6 @@ class FitProblem : public LeastSquaresProblem {
   }
 
  private:
-  /// At the last linearization, without what a bound holds.
-  NormalEquations get_free_normal(const double* weights) const {
-    NormalEquations normal = normal_;
-    for (std::size_t i = 0; i < weight_count(); ++i) {
-      if (!is_beyond(weights, i)) continue;
-      const auto at = static_cast<Eigen::Index>(i);
-      normal.information.row(at).setZero();
-      normal.information.col(at).setZero();
-      normal.gradient(at) = 0.0;
-    }
-    return normal;
-  }
-
   ReadingModel& simulator_;
   std::vector<double> last_values_;
   Linearization last_;
@@ -213,31 +200,51 @@ Uncertainty calc_widened(const NormalEquations& normal, const FitResult& result)
                           result.unknowns);
 }
 
-/// The result at the end of the search.
-void describe(const ReadingModel& simulator, FitProblem& problem,
-              const std::vector<double>& weights, FitResult& result) {
-  result.unknowns = simulator.unknowns();
-  result.values = problem.calc_values(weights.data());
-  const Linearization& at = problem.linearize(weights.data());
-  result.at_bound.reserve(weights.size());
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    result.at_bound.push_back(problem.is_beyond(weights.data(), i));
+}  // namespace
+
+NormalEquations free_unknowns(NormalEquations normal, const std::vector<bool>& at_bound) {
+  for (std::size_t i = 0; i < at_bound.size(); ++i) {
+    if (!at_bound[i]) continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    normal.information.row(at).setZero();
+    normal.information.col(at).setZero();
+    normal.gradient(at) = 0.0;
   }
-  const NormalEquations normal = calc_normal_equations(simulator, at);
-  result.uncertainty = calc_uncertainty(normal.information, result.unknowns);
-  result.chi2 = at.residual.squaredNorm();
-  result.degrees = static_cast<long>(simulator.reading_count() + simulator.prior_count()) -
-                   result.uncertainty.rank;
-  result.widened = calc_widened(normal, result);
-  result.channels = judge_channels(simulator, at.residual);
-  result.distance = problem.calc_distance(weights.data());
-  result.distance /= problem.calc_widening(weights.data());
-  result.converged = result.distance < (result.at_kink ? kKinkTolerance : kFitTolerance);
-  result.simulations = simulator.simulation_count();
-  result.outside = static_cast<long>(simulator.outside_count());
+  return normal;
 }
 
-}  // namespace
+double calc_distance(const NormalEquations& normal) {
+  const InformationInverse inverse = invert_information(normal.information);
+  return std::sqrt(std::max(0.0, normal.gradient.dot(inverse.covariance * normal.gradient)));
+}
+
+double calc_widening(const ReadingModel& model, const Linearization& at) {
+  const double degrees = static_cast<double>(model.reading_count() + model.prior_count()) -
+                         static_cast<double>(model.unknowns().size());
+  return degrees > 0.0 ? std::sqrt(std::max(1.0, at.residual.squaredNorm() / degrees)) : 1.0;
+}
+
+FitResult describe_fit(const ReadingModel& model, const Linearization& at,
+                       std::vector<double> values, std::vector<bool> at_bound, bool at_kink) {
+  FitResult result;
+  result.unknowns = model.unknowns();
+  result.values = std::move(values);
+  result.at_bound = std::move(at_bound);
+  result.at_kink = at_kink;
+  const NormalEquations normal = calc_normal_equations(model, at);
+  result.uncertainty = calc_uncertainty(normal.information, result.unknowns);
+  result.chi2 = at.residual.squaredNorm();
+  result.degrees =
+      static_cast<long>(model.reading_count() + model.prior_count()) - result.uncertainty.rank;
+  result.widened = calc_widened(normal, result);
+  result.channels = judge_channels(model, at.residual);
+  result.distance =
+      calc_distance(free_unknowns(normal, result.at_bound)) / calc_widening(model, at);
+  result.converged = result.distance < (at_kink ? kKinkTolerance : kFitTolerance);
+  result.simulations = model.simulation_count();
+  result.outside = static_cast<long>(model.outside_count());
+  return result;
+}
 
 double FitResult::chi2_per_degree() const {
   return degrees > 0 ? chi2 / static_cast<double>(degrees) : 0.0;
@@ -253,9 +260,12 @@ FitResult fit_readings(ReadingModel& model, const FitOptions& options) {
   const std::vector<double> start = make_start(model, options);
   const std::string failure = problem.linearize(start.data()).failure;
   if (!failure.empty()) throw InputError(failure + "; the fit starts there: start it elsewhere");
-  FitResult result;
-  const std::vector<double> weights = search(problem, options, start, result);
-  describe(model, problem, weights, result);
+  FitResult ended;
+  const std::vector<double> weights = search(problem, options, start, ended);
+  FitResult result =
+      describe_fit(model, problem.linearize(weights.data()), problem.calc_values(weights.data()),
+                   problem.list_beyond(weights.data()), ended.at_kink);
+  result.iterations = ended.iterations;
   return result;
 }
 

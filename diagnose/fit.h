@@ -74,6 +74,20 @@ struct FitResult {
 /// the start cannot be simulated.
 FitResult fit_readings(ReadingModel& model, const FitOptions& options = {});
 
+/// Of the linear model without the unknowns that a bound holds.
+NormalEquations free_unknowns(NormalEquations normal, const std::vector<bool>& at_bound);
+
+/// sqrt(g' H^-1 g): how far the linear model sees its minimum, in standard deviations.
+double calc_distance(const NormalEquations& normal);
+
+/// By how much what the model leaves beyond noise widens standard deviations: sqrt(chi2 / degrees),
+/// at least 1.
+double calc_widening(const ReadingModel& model, const Linearization& at);
+
+/// The result of a search that ended at `values`, where the model is linearized.
+FitResult describe_fit(const ReadingModel& model, const Linearization& at,
+                       std::vector<double> values, std::vector<bool> at_bound, bool at_kink);
+
 /// Fits. Simulations that fail on the way are steps not taken. Deterministic for any number of
 /// threads. Throws InputError for unusable runs or unknowns, and where the start cannot be
 /// simulated.

@@ -2,20 +2,24 @@
 
 #include "diagnose/fit.h"
 #include "io/input_error.h"
+#include "model/parallel/team.h"
 
 namespace strut {
 std::vector<HoldOutRun> judge_hold_out(const CampaignData& data, const SharedValues& shared,
                                        double level, int threads) {
-  std::vector<HoldOutRun> judged;
-  for (const std::size_t r : data.list_runs(RunUse::kHoldOut)) {
-    HoldOutRun run;
+  const std::vector<std::size_t> runs = data.list_runs(RunUse::kHoldOut);
+  std::vector<HoldOutRun> judged(runs.size());
+  // Each alone on a thread: its few unknowns do not fill several.
+  share_items(threads, runs.size(), [&](std::size_t i, int /*thread*/) {
+    const std::size_t r = runs[i];
+    HoldOutRun& run = judged[i];
     run.run = r;
     const CampaignData one = pin_run(data, r, shared);
     const std::vector<Unknown> unknowns = make_run_unknowns(one, {0}, shared.unknowns);
     std::vector<NoiseSpectrum> spectra =
         make_noise_spectra(one, {0}, unknowns, list_starts(unknowns));
     if (!data.is_rig()) spectra.front().level = level;
-    const auto model = make_reading_model(one, {0}, unknowns, threads);
+    const auto model = make_reading_model(one, {0}, unknowns);
     const Whitener whitener(*model, spectra);
     WhitenedModel whitened(*model, whitener);
     try {
@@ -27,8 +31,7 @@ std::vector<HoldOutRun> judge_hold_out(const CampaignData& data, const SharedVal
     } catch (const InputError& e) {
       run.failure = e.what();
     }
-    judged.push_back(std::move(run));
-  }
+  });
   return judged;
 }
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "diagnose/run_readings.h"
 #include "io/input_error.h"
 #include "model/effects/catalogue.h"
 #include "model/effects/sensors.h"
+#include "model/parallel/team.h"
 #include "model/vehicle/channels.h"
 #include "model/vehicle/model_error.h"
 #include "sweep/parameters.h"
@@ -41,16 +44,19 @@ std::vector<Variant> list_variants(const std::vector<Unknown>& unknowns, std::si
 }
 
 SampledRun get_channels(const MeasuredRun& run, const LaneRun& result) {
-  const auto count = static_cast<std::size_t>(result.results->sample_count);
   SampledRun sampled;
   sampled.reserve(run.channels.size());
-  for (const MeasuredChannel& c : run.channels) {
-    std::vector<double> series(count);
-    const auto channel = static_cast<std::size_t>(c.channel);
-    for (std::size_t i = 0; i < count; ++i) series[i] = result.get(i, channel);
-    sampled.push_back(std::move(series));
-  }
+  for (const MeasuredChannel& c : run.channels) sampled.push_back(result.get_series(c.channel));
   return sampled;
+}
+
+/// Channels that any of the runs reads.
+std::vector<int> list_recorded(const std::vector<MeasuredRun>& runs) {
+  std::set<int> channels;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) channels.insert(c.channel);
+  }
+  return {channels.begin(), channels.end()};
 }
 
 bool is_sensor(const EffectSetting& setting) {
@@ -100,6 +106,7 @@ ReadingSimulator::ReadingSimulator(std::vector<MeasuredRun> runs, std::vector<Un
     for (const MeasuredChannel& c : runs_[r].channels) channels_[r].push_back(c.channel);
     choose_readings(r);
   }
+  align_durations();
   finish(runs_.front().name);
 }
 
@@ -132,6 +139,18 @@ void ReadingSimulator::choose_readings(std::size_t r) {
                    format_number(driven) + " s: no reading can be compared");
 }
 
+/// Only cases of one duration share lanes: runs nearly as long as the longest are simulated as
+/// long.
+void ReadingSimulator::align_durations() {
+  constexpr double kNearly = 0.7;
+  double longest = 0.0;
+  for (const MeasuredRun& run : runs_) longest = std::max(longest, run.setup.maneuver.duration);
+  for (MeasuredRun& run : runs_) {
+    double& duration = run.setup.maneuver.duration;
+    if (duration > kNearly * longest) duration = longest;
+  }
+}
+
 Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& values) const {
   Case c = runs_[run].setup;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
@@ -142,43 +161,60 @@ Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& va
   return c;
 }
 
-void ReadingSimulator::sample(std::size_t run, const std::vector<Case>& setups,
-                              std::vector<SampledRun>& sampled,
+void ReadingSimulator::sample(const std::vector<RunSetup>& setups, std::vector<SampledRun>& sampled,
                               std::vector<std::string>& failures) {
   SamplePlan plan;
   plan.interval = 1.0 / options_.rate;
   plan.snapshot = false;
-  const std::size_t first = sampled.size();
-  sampled.resize(first + setups.size());
-  failures.resize(first + setups.size());
-  // As many at a time as keep their histories, of all channels, in some hundred megabytes.
-  constexpr std::size_t kAtOnce = 32;
+  plan.recorded = list_recorded(runs_);
+  sampled.assign(setups.size(), {});
+  failures.assign(setups.size(), "");
+  // As many at a time as keep their histories in some hundred megabytes.
+  constexpr std::size_t kAtOnce = 128;
   for (std::size_t begin = 0; begin < setups.size(); begin += kAtOnce) {
-    const std::size_t end = std::min(begin + kAtOnce, setups.size());
+    const std::size_t count = std::min(kAtOnce, setups.size() - begin);
+    std::vector<std::optional<PreparedCase>> prepared(count);
+    const auto prepare = [&](std::size_t i, CasePreparer& preparer) {
+      const RunSetup& s = setups[begin + i];
+      try {
+        prepared[i] = preparer.prepare(remove_sensors(s.setup));
+      } catch (const ModelError& e) {
+        failures[begin + i] = runs_[s.run].name + ": " + e.what();
+      } catch (const std::invalid_argument& e) {  // the road's
+        failures[begin + i] = runs_[s.run].name + ": " + e.what();
+      }
+    };
+    // Each run's first is the point that the others are near.
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t run = setups[begin + i].run;
+      if (begin + i == 0 || setups[begin + i - 1].run != run) {
+        prepare(i, preparers_[run]);
+      } else {
+        others.push_back(i);
+      }
+    }
+    share_items(options_.threads, others.size(), [&](std::size_t k, int /*thread*/) {
+      // A copy: what changes the mechanism must not drive the base point's out of the preparer.
+      CasePreparer preparer = preparers_[setups[begin + others[k]].run];
+      prepare(others[k], preparer);
+    });
     std::vector<PreparedCase> cases;
     std::vector<std::size_t> places;
-    for (std::size_t i = begin; i < end; ++i) {
-      try {
-        // A copy: what changes the mechanism must not drive the base point's out of the preparer.
-        CasePreparer own = preparers_[run];
-        CasePreparer& preparer = i == 0 ? preparers_[run] : own;
-        cases.push_back(preparer.prepare(remove_sensors(setups[i])));
-        places.push_back(i);
-      } catch (const ModelError& e) {
-        failures[first + i] = runs_[run].name + ": " + e.what();
-      } catch (const std::invalid_argument& e) {  // the road's
-        failures[first + i] = runs_[run].name + ": " + e.what();
-      }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!prepared[i]) continue;
+      cases.push_back(std::move(*prepared[i]));
+      places.push_back(begin + i);
     }
     const std::vector<LaneRun> results =
         run_prepared(cases, options_.integrate, plan, options_.threads);
     simulation_count_ += static_cast<long>(cases.size());
     for (std::size_t k = 0; k < results.size(); ++k) {
-      const std::size_t i = places[k];
+      const std::size_t i = places[k], run = setups[i].run;
       if (results[k].status() != RunStatus::kDone) {
-        failures[first + i] = explain_failure(runs_[run].name, results[k]);
+        failures[i] = explain_failure(runs_[run].name, results[k]);
       } else {
-        sampled[first + i] = get_channels(runs_[run], results[k]);
+        sampled[i] = get_channels(runs_[run], results[k]);
       }
     }
   }
@@ -191,75 +227,77 @@ std::string ReadingSimulator::sample_variants(const std::vector<double>& values,
                                               std::vector<SampledRun>& sampled) {
   const std::vector<Variant> variants =
       list_variants(varied, runs_.size(), values, options_.relative_step);
-  std::vector<std::string> failures;
-  for (std::size_t run = 0; run < runs_.size(); ++run) {
-    std::vector<Case> setups;
-    for (const Variant& v : variants) {
-      if (v.run != run) continue;
-      std::vector<double> at = values;
-      if (v.unknown != kNoUnknown) at[v.unknown] = v.value;
-      try {
-        setups.push_back(make_setup(run, at));
-      } catch (const ModelError& e) {
-        return runs_[run].name + ": " + e.what();
-      } catch (const InputError& e) {  // out of a parameter's range
-        return runs_[run].name + ": " + e.what();
-      }
-    }
-    const std::size_t first = sampled.size();
-    sample(run, setups, sampled, failures);
-    for (std::size_t i = 0; i < setups.size(); ++i) {
-      sampled[first + i] =
-          read_sensors(setups[i], runs_[run], 1.0 / options_.rate, std::move(sampled[first + i]));
+  std::vector<RunSetup> setups;
+  setups.reserve(variants.size());
+  for (const Variant& v : variants) {
+    std::vector<double> at = values;
+    if (v.unknown != kNoUnknown) at[v.unknown] = v.value;
+    try {
+      setups.push_back({v.run, make_setup(v.run, at)});
+    } catch (const ModelError& e) {
+      return runs_[v.run].name + ": " + e.what();
+    } catch (const InputError& e) {  // out of a parameter's range
+      return runs_[v.run].name + ": " + e.what();
     }
   }
-  for (const std::string& failure : failures) {
-    if (!failure.empty()) return failure;
+  std::vector<std::string> failures;
+  sample(setups, sampled, failures);
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    if (!failures[i].empty()) return failures[i];
+    sampled[i] = read_sensors(setups[i].setup, runs_[setups[i].run], 1.0 / options_.rate,
+                              std::move(sampled[i]));
   }
   return "";
 }
 
 std::vector<Evaluation> ReadingSimulator::evaluate(const std::vector<std::vector<double>>& points) {
-  std::vector<Evaluation> evaluations(points.size());
   const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
+  std::vector<Evaluation> evaluations(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     evaluations[i].residual = Eigen::VectorXd::Zero(rows);
     fill_prior_residuals(points[i], evaluations[i].residual);
   }
-  for (std::size_t run = 0; run < runs_.size(); ++run) evaluate_run(run, points, evaluations);
-  return evaluations;
-}
-
-void ReadingSimulator::evaluate_run(std::size_t run, const std::vector<std::vector<double>>& points,
-                                    std::vector<Evaluation>& evaluations) {
-  std::vector<Case> cars, setups(points.size());  // cars without their sensors, each once
-  std::vector<std::size_t> which(points.size());  // of the cars
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    try {
-      setups[i] = make_setup(run, points[i]);
-    } catch (const ModelError& e) {
-      evaluations[i].failure = runs_[run].name + ": " + e.what();
-    } catch (const InputError& e) {  // out of a parameter's range
-      evaluations[i].failure = runs_[run].name + ": " + e.what();
+  // Of a point and a run: its setup, and which of the cars it is without its sensors.
+  struct Place {
+    Case setup;
+    std::size_t car = 0;
+  };
+  std::vector<Place> places(points.size() * runs_.size());
+  std::vector<RunSetup> cars;
+  for (std::size_t run = 0; run < runs_.size(); ++run) {
+    const std::size_t first = cars.size();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Place& place = places[run * points.size() + i];
+      try {
+        place.setup = make_setup(run, points[i]);
+      } catch (const ModelError& e) {
+        evaluations[i].failure = runs_[run].name + ": " + e.what();
+      } catch (const InputError& e) {  // out of a parameter's range
+        evaluations[i].failure = runs_[run].name + ": " + e.what();
+      }
+      if (!evaluations[i].failure.empty()) continue;
+      Case car = remove_sensors(place.setup);
+      place.car = first;
+      while (place.car < cars.size() && !(cars[place.car].setup == car)) ++place.car;
+      if (place.car == cars.size()) cars.push_back({run, std::move(car)});
     }
-    if (!evaluations[i].failure.empty()) continue;
-    Case car = remove_sensors(setups[i]);
-    const auto same = std::find(cars.begin(), cars.end(), car);
-    which[i] = static_cast<std::size_t>(same - cars.begin());
-    if (same == cars.end()) cars.push_back(std::move(car));
   }
   std::vector<SampledRun> sampled;
   std::vector<std::string> failures;
-  sample(run, cars, sampled, failures);
+  sample(cars, sampled, failures);
   const double interval = 1.0 / options_.rate;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Evaluation& e = evaluations[i];
-    if (e.failure.empty()) e.failure = failures[which[i]];
-    if (!e.failure.empty()) continue;
-    const RunReadings readings(unknowns_, points[i], runs_[run], run, interval, readings_);
-    readings.fill_residual(read_sensors(setups[i], runs_[run], interval, sampled[which[i]]),
-                           points[i], e.residual);
+    for (std::size_t run = 0; run < runs_.size() && e.failure.empty(); ++run) {
+      const Place& place = places[run * points.size() + i];
+      e.failure = failures[place.car];
+      if (!e.failure.empty()) break;
+      const RunReadings readings(unknowns_, points[i], runs_[run], run, interval, readings_);
+      readings.fill_residual(read_sensors(place.setup, runs_[run], interval, sampled[place.car]),
+                             points[i], e.residual);
+    }
   }
+  return evaluations;
 }
 
 Linearization ReadingSimulator::linearize(const std::vector<double>& values) {

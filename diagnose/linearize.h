@@ -59,13 +59,16 @@ class ReadingSimulator : public ReadingModel {
 
  private:
   void choose_readings(std::size_t run);
+  void align_durations();
   /// The car and maneuver of a run at these values; throws what the parameters throw.
   Case make_setup(std::size_t run, const std::vector<double>& values) const;
-  /// What the sensors of a run read of some setups, simulated in lanes; of each why not.
-  void sample(std::size_t run, const std::vector<Case>& setups, std::vector<SampledRun>& sampled,
+  struct RunSetup {
+    std::size_t run;
+    Case setup;
+  };
+  /// What is measured of some setups, simulated in lanes, before their sensors; of each why not.
+  void sample(const std::vector<RunSetup>& setups, std::vector<SampledRun>& sampled,
               std::vector<std::string>& failures);
-  void evaluate_run(std::size_t run, const std::vector<std::vector<double>>& points,
-                    std::vector<Evaluation>& evaluations);
   std::string sample_variants(const std::vector<double>& values, const std::vector<Unknown>& varied,
                               std::vector<SampledRun>& sampled);
 

@@ -83,13 +83,8 @@ std::vector<std::vector<double>> simulate_pulse(Case c, const NoiseSpectrum& s,
     throw InputError("the car cannot be simulated on a level road");
   }
   std::vector<std::vector<double>> responses;
-  const auto count = static_cast<std::size_t>(runs.front().results->sample_count);
-  for (const MeasuredChannel& channel : channels) {
-    responses.emplace_back();
-    for (std::size_t i = 0; i < count; ++i) {
-      responses.back().push_back(runs.front().get(i, static_cast<std::size_t>(channel.channel)));
-    }
-  }
+  responses.reserve(channels.size());
+  for (const MeasuredChannel& c : channels) responses.push_back(runs.front().get_series(c.channel));
   return responses;
 }
 

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "io/input_error.h"
+#include "model/parallel/team.h"
 #include "train/noise.h"
 
 namespace strut {
@@ -166,8 +168,7 @@ class Selector {
     }
     const std::vector<NoiseSpectrum> spectra = measure_noise(data_, baseline);
     selection_.level = spectra.front().level;
-    selection_.base = fit_whitened(data_, baseline.runs, spectra, baseline.fit.unknowns,
-                                   baseline.fit.values, baseline.shared_count(), options_.threads);
+    selection_.base = fit_excited(baseline, spectra);
     selection_.extended = selection_.base;
     tell("judging the runs held out");
     selection_.hold_out_before = judge(selection_.base);
@@ -182,6 +183,36 @@ class Selector {
   }
 
  private:
+  /// The fit over the runs that meet a bump: level ones, often long, tell the roughness of the road
+  /// and hardly more. All runs where none meets one.
+  WhitenedFit fit_excited(const Baseline& baseline, const std::vector<NoiseSpectrum>& spectra) {
+    std::vector<std::size_t> runs;
+    std::vector<NoiseSpectrum> chosen;
+    std::vector<std::optional<int>> number(baseline.runs.size());
+    const bool all = std::none_of(baseline.runs.begin(), baseline.runs.end(),
+                                  [&](std::size_t run) { return meets_bump(data_, run); });
+    for (std::size_t i = 0; i < baseline.runs.size(); ++i) {
+      if (!all && !meets_bump(data_, baseline.runs[i])) continue;
+      number[i] = static_cast<int>(runs.size());
+      runs.push_back(baseline.runs[i]);
+      chosen.push_back(spectra[i]);
+    }
+    std::vector<Unknown> unknowns;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < baseline.fit.unknowns.size(); ++i) {
+      Unknown u = baseline.fit.unknowns[i];
+      if (u.run != kEveryRun) {
+        const std::optional<int> kept = number[static_cast<std::size_t>(u.run)];
+        if (!kept) continue;
+        u.run = *kept;
+      }
+      unknowns.push_back(std::move(u));
+      values.push_back(baseline.fit.values[i]);
+    }
+    return fit_whitened(data_, runs, chosen, unknowns, values, baseline.shared_count(),
+                        options_.threads);
+  }
+
   void tell(const std::string& what) const {
     if (options_.progress) options_.progress(what);
   }
@@ -209,8 +240,7 @@ class Selector {
 
   void measure_left() {
     const WhitenedFit& now = selection_.extended;
-    TestBench bench(data_, now.runs, now.fit.unknowns, now.fit.values, now.shared_count,
-                    now.spectra, options_.threads);
+    TestBench bench(data_, now, options_.threads);
     selection_.left = measure_leftover(data_, bench, options_.leftover);
     selection_.simulations += bench.simulation_count();
     selection_.is_left = selection_.left.significance >= options_.leftover.significant;
@@ -247,13 +277,39 @@ class Selector {
     }
   }
 
+  /// The fit of one effect, values empty where it cannot be simulated.
+  Candidate fit_candidate(const TestBench& bench, const Hypothesis& h, const HypothesisTrial& trial,
+                          const Gain& gain) const {
+    const std::vector<double> beginning = make_beginning(data_, h, trial, gain);
+    HypothesisFit fit = bench.fit(h, beginning);
+    Candidate c;
+    c.simulations = fit.simulations;
+    if (data_.is_rig() && (!fit.failure.empty() || fit.gain < 0.5 * gain.chi2)) {
+      // Far from what the score promised: another valley. From near the base none is in between.
+      HypothesisFit near = bench.fit(h, reduce(trial, beginning));
+      c.simulations += near.simulations;
+      if (near.failure.empty() && (!fit.failure.empty() || near.gain > fit.gain)) {
+        fit = std::move(near);
+      }
+    }
+    c.hypothesis = h;
+    c.score = gain.chi2;
+    c.gain = fit.gain;
+    c.sigma = fit.sigma;
+    if (!fit.failure.empty()) return c;
+    const auto base = static_cast<std::ptrdiff_t>(bench.values().size());
+    c.base_values.assign(fit.values.begin(), fit.values.begin() + base);
+    c.values.assign(fit.values.begin() + base, fit.values.end());
+    c.shared = make_shared(selection_.extended, h, fit);
+    return c;
+  }
+
   /// One round; whether a cause was added.
   bool add() {
     const WhitenedFit& now = selection_.extended;
     tell("testing every effect" +
          (selection_.causes.empty() ? "" : " beside " + selection_.causes.back().describe()));
-    TestBench bench(data_, now.runs, now.fit.unknowns, now.fit.values, now.shared_count,
-                    now.spectra, options_.threads);
+    TestBench bench(data_, now, options_.threads);
     const SharedValues shared = now.shared();
     const std::vector<Hypothesis> hypotheses =
         list_hypotheses(data_, shared, list_effects_on(data_, shared), shared.unknowns);
@@ -267,36 +323,21 @@ class Selector {
         std::max(options_.margin * calc_null_threshold(evidence, score, one_sided, options_.nulls,
                                                        options_.confidence),
                  calc_negligible(bench.whitener()));
-    const std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
-    for (const RankedTrial& r : ranked) {
-      if (round.candidates.size() == options_.fitted) break;
-      if (r.gain.chi2 < 0.3 * round.threshold) break;
-      const HypothesisTrial& trial = evidence.trials[r.trial];
-      const Hypothesis& h = hypotheses[trial.hypothesis];
-      tell("fitting " + h.describe());
-      const std::vector<double> beginning = make_beginning(data_, h, trial, r.gain);
-      HypothesisFit fit = bench.fit(h, beginning);
-      if (data_.is_rig() && (!fit.failure.empty() || fit.gain < 0.5 * r.gain.chi2)) {
-        // Far from what the score promised: another valley. From near the base none is in between.
-        HypothesisFit near = bench.fit(h, reduce(trial, beginning));
-        if (near.failure.empty() && (!fit.failure.empty() || near.gain > fit.gain)) {
-          fit = std::move(near);
-        }
-      }
-      if (!fit.failure.empty()) continue;
-      Candidate c;
-      c.hypothesis = h;
-      c.score = r.gain.chi2;
-      c.gain = fit.gain;
-      c.values.assign(fit.values.begin() + static_cast<std::ptrdiff_t>(bench.values().size()),
-                      fit.values.end());
-      c.sigma = fit.sigma;
-      c.shared = make_shared(now, h, fit);
-      c.stability = calc_stability(evidence, one_sided, trial.hypothesis);
-      base_values_[h.describe()] = {
-          fit.values.begin(),
-          fit.values.begin() + static_cast<std::ptrdiff_t>(bench.values().size())};
-      round.candidates.push_back(std::move(c));
+    std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
+    ranked.resize(std::min(ranked.size(), options_.fitted));
+    std::erase_if(ranked,
+                  [&](const RankedTrial& r) { return r.gain.chi2 < 0.3 * round.threshold; });
+    tell("fitting the best " + std::to_string(ranked.size()));
+    // Each alone on a thread: one fit does not fill several.
+    std::vector<Candidate> fitted(ranked.size());
+    share_items(options_.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
+      const HypothesisTrial& trial = evidence.trials[ranked[i].trial];
+      fitted[i] = fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain);
+      fitted[i].stability = calc_stability(evidence, one_sided, trial.hypothesis);
+    });
+    for (Candidate& c : fitted) {
+      selection_.simulations += c.simulations;
+      if (!c.values.empty()) round.candidates.push_back(std::move(c));
     }
     std::stable_sort(round.candidates.begin(), round.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
@@ -324,8 +365,8 @@ class Selector {
   bool accept(const SelectRound& round) {
     if (!is_large(round)) return false;
     const Candidate& best = round.candidates.front();
-    const ExtendedUnknowns e = extend(data_, selection_.extended, best.hypothesis,
-                                      base_values_[best.hypothesis.describe()], best.values);
+    const ExtendedUnknowns e =
+        extend(data_, selection_.extended, best.hypothesis, best.base_values, best.values);
     tell("fitting with " + best.hypothesis.describe());
     const bool was_dominated = selection_.extended.is_dominated;
     WhitenedFit fit = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
@@ -354,7 +395,6 @@ class Selector {
   const CampaignData& data_;
   const SelectOptions& options_;
   Selection selection_;
-  std::map<std::string, std::vector<double>> base_values_;
 };
 
 }  // namespace

@@ -45,8 +45,10 @@ struct Candidate {
   double score = 0.0;                 // chi2's fall to first order
   double gain = 0.0;                  // of the fit
   std::vector<double> values, sigma;  // of its parameters
+  std::vector<double> base_values;    // of the base's unknowns in the same fit
   SharedValues shared;                // all that runs share, the hypothesis' parameters behind
   double stability = 0.0;             // share of the runs without which it stays among the best
+  long simulations = 0;
 };
 
 /// One round: what was tried upon the model of that round.

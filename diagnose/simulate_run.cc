@@ -33,17 +33,15 @@ double find_hit_time_value(const std::vector<Unknown>& unknowns,
 void read_history(const LaneRun& simulated, const EffectSettings& effects,
                   const std::vector<double>& times, double hit_time, double step,
                   RunCurves& curves) {
-  const auto count = static_cast<std::size_t>(simulated.results->sample_count);
   curves.channel.assign(CarChannel::kCount, std::vector<double>(times.size(), kNan));
   for (std::size_t c = 0; c < curves.channel.size(); ++c) {
-    std::vector<double> series(count);
-    for (std::size_t i = 0; i < count; ++i) series[i] = simulated.get(i, c);
-    series = read_sensor(effects, list_car_channels()[c].name, step, std::move(series));
+    const std::vector<double> series = read_sensor(effects, list_car_channels()[c].name, step,
+                                                   simulated.get_series(static_cast<int>(c)));
     for (std::size_t t = 0; t < times.size(); ++t) {
       const double at = (times[t] + hit_time) / step, index = std::floor(at);
       if (index < static_cast<double>(kCurveMargin)) continue;
       const auto i = static_cast<std::size_t>(index);
-      if (i + 1 + kCurveMargin >= count) continue;
+      if (i + 1 + kCurveMargin >= series.size()) continue;
       const auto get = [&](std::size_t sample) { return series[sample]; };
       curves.channel[c][t] = interpolate_curve(get, i, at - index, step).value;
     }

@@ -73,20 +73,20 @@ std::vector<Coordinate> make_coordinates(const Hypothesis& h, const std::vector<
 
 }  // namespace
 
-TestBench::TestBench(const CampaignData& data, std::vector<std::size_t> runs,
-                     std::vector<Unknown> unknowns, std::vector<double> values,
-                     std::size_t shared_count, std::vector<NoiseSpectrum> spectra, int threads)
+TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threads)
     : data_(data),
-      runs_(std::move(runs)),
-      unknowns_(std::move(unknowns)),
-      values_(std::move(values)),
-      shared_count_(shared_count),
+      runs_(fit.runs),
+      unknowns_(fit.fit.unknowns),
+      values_(fit.fit.values),
+      shared_count_(fit.shared_count),
       threads_(threads) {
   const auto model = make_reading_model(data_, runs_, unknowns_, threads_);
-  whitener_ = std::make_unique<Whitener>(*model, std::move(spectra));
-  WhitenedModel whitened(*model, *whitener_);
-  Linearization at = whitened.linearize(values_);
-  if (!at.failure.empty()) throw InputError(at.failure);
+  whitener_ = std::make_unique<Whitener>(*model, fit.spectra);
+  const WhitenedModel whitened(*model, *whitener_);
+  std::shared_ptr<const Linearization> given = fit.linearization;
+  if (!given) given = std::make_shared<const Linearization>(model->linearize(values_));
+  if (!given->failure.empty()) throw InputError(given->failure);
+  Linearization at = {"", whitener_->apply(given->residual), whitener_->apply(given->jacobian)};
   normal_ = calc_normal_equations(whitened, at).information;
   residual_ = std::move(at.residual);
   jacobian_ = std::move(at.jacobian);
@@ -97,18 +97,18 @@ TestBench::TestBench(const CampaignData& data, std::vector<std::size_t> runs,
   simulations_ += model->simulation_count();
 }
 
-std::unique_ptr<ReadingModel> TestBench::make_model(
-    const std::vector<Hypothesis>& hypotheses) const {
+std::unique_ptr<ReadingModel> TestBench::make_model(const std::vector<Hypothesis>& hypotheses,
+                                                    int threads) const {
   std::vector<Unknown> all = unknowns_;
   for (const Hypothesis& h : hypotheses) {
     for (Unknown& u : make_unknowns(data_, h)) all.push_back(std::move(u));
   }
-  return make_reading_model(data_, runs_, std::move(all), threads_);
+  return make_reading_model(data_, runs_, std::move(all), threads);
 }
 
 Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypotheses,
                                             std::vector<HypothesisTrial>& trials) {
-  const auto model = make_model(hypotheses);
+  const auto model = make_model(hypotheses, threads_);
   std::vector<double> neutral = values_;
   for (std::size_t i = values_.size(); i < model->unknowns().size(); ++i) {
     neutral.push_back(model->unknowns()[i].start);
@@ -236,10 +236,11 @@ Eigen::MatrixXd calc_differences(ReadingModel& model, const Whitener& whitener,
 
 }  // namespace
 
-HypothesisFit TestBench::fit(const Hypothesis& hypothesis, const std::vector<double>& beginning) {
+HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
+                             const std::vector<double>& beginning) const {
   const int steps = data_.is_rig() ? 60 : 12;
   constexpr double kEnough = 0.02, kEnoughShare = 1e-5;  // of chi2
-  const auto model = make_model({hypothesis});
+  const auto model = make_model({hypothesis}, 1);
   const std::vector<Coordinate> coordinates =
       make_coordinates(hypothesis, make_unknowns(data_, hypothesis), beginning);
   const std::size_t base = values_.size(), own = coordinates.size();
@@ -290,7 +291,7 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis, const std::vector<dou
   }
   if (residual.size() == 0) {
     fit.failure = "cannot be simulated";
-    simulations_ += model->simulation_count();
+    fit.simulations = model->simulation_count();
     return fit;
   }
   double chi2 = residual.squaredNorm() + calc_shape_chi2(x), damping = 1e-6;
@@ -360,7 +361,7 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis, const std::vector<dou
     }
     if (done || !improved) break;
   }
-  simulations_ += model->simulation_count();
+  fit.simulations = model->simulation_count();
   // A coordinate that was carried beyond its bound stays on it.
   fit.values = get_point(x);
   fit.gain = residual_.squaredNorm() - chi2;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "diagnose/evidence.h"
+#include "diagnose/whitened_fit.h"
 
 namespace strut {
 
@@ -17,15 +18,14 @@ struct HypothesisFit {
   std::vector<double> values;  // of the base unknowns, then of the hypothesis' parameters
   std::vector<double> sigma;   // of the hypothesis' parameters, everything else adjusted
   double gain = 0.0;           // by which chi2 fell
+  long simulations = 0;
 };
 
 class TestBench {
  public:
-  /// `unknowns` and `values`: of a fitted model over `runs`, those that all runs share in front.
-  /// `data` must outlive it. Throws InputError where the model cannot be simulated there.
-  TestBench(const CampaignData& data, std::vector<std::size_t> runs, std::vector<Unknown> unknowns,
-            std::vector<double> values, std::size_t shared_count,
-            std::vector<NoiseSpectrum> spectra, int threads);
+  /// Around a fit. `data` must outlive it. Throws InputError where the model cannot be simulated
+  /// there.
+  TestBench(const CampaignData& data, const WhitenedFit& fit, int threads);
 
   /// What the beginnings of hypotheses do to the whitened readings, a column each parameter that
   /// switches; 0 where they cannot be simulated. Appends to `trials` which is which.
@@ -36,8 +36,9 @@ class TestBench {
   Evidence gather(const std::vector<Hypothesis>& hypotheses);
 
   /// Gauss-Newton from a beginning. Of a car with the baseline's derivatives as they are at its
-  /// fit, and the hypothesis' own anew in every step; of a rig with all anew.
-  HypothesisFit fit(const Hypothesis& hypothesis, const std::vector<double>& beginning);
+  /// fit, and the hypothesis' own anew in every step; of a rig with all anew. One thread, and
+  /// several fits may run at once.
+  HypothesisFit fit(const Hypothesis& hypothesis, const std::vector<double>& beginning) const;
 
   const Whitener& whitener() const { return *whitener_; }
   const Eigen::VectorXd& residual() const { return residual_; }
@@ -50,7 +51,8 @@ class TestBench {
   std::size_t get_run(std::size_t number) const { return runs_[number]; }
 
  private:
-  std::unique_ptr<ReadingModel> make_model(const std::vector<Hypothesis>& hypotheses) const;
+  std::unique_ptr<ReadingModel> make_model(const std::vector<Hypothesis>& hypotheses,
+                                           int threads) const;
 
   const CampaignData& data_;
   std::vector<std::size_t> runs_;

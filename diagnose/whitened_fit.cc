@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "diagnose/chord_search.h"
 #include "diagnose/compare.h"
 #include "io/input_error.h"
 
@@ -56,8 +57,7 @@ Roughness measure_roughness(const CampaignData& data, const std::vector<std::siz
   std::vector<bool> is_level;
   std::vector<double> approaches;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const RoadSpec& road = data.cars[runs[i]].setup.maneuver.road;
-    is_level.push_back(road.shape == BumpShape::kNone || road.height == 0.0);
+    is_level.push_back(!meets_bump(data, runs[i]));
     approaches.push_back(measure_approach(data, runs[i], i, model, spectra[i], residual));
   }
   if (std::find(is_level.begin(), is_level.end(), true) != is_level.end()) {
@@ -85,6 +85,71 @@ std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baselin
   return spectra;
 }
 
+namespace {
+
+// What a band has beyond its noise is known only once the fit is there, and moves it.
+constexpr int kRounds = 2;
+
+void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened, WhitenedFit& result) {
+  const auto excess = measure_excess(whitener, whitened);
+  for (std::size_t r = 0; r < excess.size(); ++r) result.spectra[r].excess = excess[r];
+}
+
+void fit_rig(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
+  FitOptions options;
+  options.start = start;
+  for (int round = 0; round < kRounds; ++round) {
+    const Whitener whitener(model, result.spectra);
+    WhitenedModel whitened(model, whitener);
+    result.fit = fit_readings(whitened, options);
+    options.start = result.fit.values;
+    if (round + 1 == kRounds) break;
+    result.is_dominated = result.fit.chi2_per_degree() > kDominated;
+    if (result.is_dominated) break;
+    count_excess(whitener, whitened.evaluate(result.fit.values).residual, result);
+  }
+}
+
+/// The fit where the search stands, with derivatives of there; searches on where they see more of
+/// a way than it should be.
+void conclude(ChordSearch& search, ReadingModel& model, const Whitener& whitener,
+              WhitenedFit& result) {
+  constexpr int kTries = 3;
+  const WhitenedModel whitened(model, whitener);
+  for (int i = 0; i < kTries; ++i) {
+    if (i > 0) search.search(whitener);
+    search.renew();
+    result.linearization = search.linearization();
+    const Linearization at = {"", whitener.apply(search.residual()),
+                              whitener.apply(result.linearization->jacobian)};
+    result.fit = describe_fit(whitened, at, search.values(), search.list_at_bound(), false);
+    if (result.fit.converged) break;
+  }
+  result.fit.iterations = search.steps();
+  result.fit.simulations = model.simulation_count();
+}
+
+void fit_car(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
+  ChordSearch search(model, start);
+  for (int round = 0; round < kRounds; ++round) {
+    const Whitener whitener(model, result.spectra);
+    search.search(whitener);
+    const Eigen::VectorXd residual = whitener.apply(search.residual());
+    if (round == 0) {
+      result.is_dominated =
+          residual.squaredNorm() > kDominated * static_cast<double>(residual.size());
+      if (!result.is_dominated) {
+        count_excess(whitener, residual, result);
+        continue;
+      }
+    }
+    conclude(search, model, whitener, result);
+    break;
+  }
+}
+
+}  // namespace
+
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
                          const std::vector<NoiseSpectrum>& spectra,
                          const std::vector<Unknown>& unknowns, const std::vector<double>& start,
@@ -94,20 +159,10 @@ WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t
   result.spectra = spectra;
   result.shared_count = shared_count;
   const auto model = make_reading_model(data, runs, unknowns, threads);
-  FitOptions options;
-  options.start = start;
-  // What a band has beyond its noise is known only once the fit is there, and moves it.
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
-    const Whitener whitener(*model, result.spectra);
-    WhitenedModel whitened(*model, whitener);
-    result.fit = fit_readings(whitened, options);
-    options.start = result.fit.values;
-    if (round + 1 == kRounds) break;
-    result.is_dominated = result.fit.chi2_per_degree() > kDominated;
-    if (result.is_dominated) break;
-    const auto excess = measure_excess(whitener, whitened.evaluate(result.fit.values).residual);
-    for (std::size_t r = 0; r < excess.size(); ++r) result.spectra[r].excess = excess[r];
+  if (data.is_rig()) {
+    fit_rig(*model, start, result);
+  } else {
+    fit_car(*model, start, result);
   }
   return result;
 }

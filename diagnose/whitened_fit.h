@@ -1,6 +1,7 @@
 // The fit of a campaign's model that weighs its readings by all their noise, roads included.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "diagnose/whitener.h"
@@ -15,6 +16,8 @@ struct WhitenedFit {
   std::vector<NoiseSpectrum> spectra;
   std::size_t shared_count = 0;
   FitResult fit;  // the shared unknowns first, then each run's own
+  /// Of a car, at the fit, not whitened; null of a rig.
+  std::shared_ptr<const Linearization> linearization;
   /// What the model lacks is far larger than the noise: all of it counts alike, nothing as noise.
   bool is_dominated = false;
 

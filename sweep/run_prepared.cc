@@ -1,6 +1,7 @@
 #include "sweep/run_prepared.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "model/parallel/team.h"
 
@@ -40,6 +41,23 @@ LaneResults run_group(const std::vector<PreparedCase>& cases, const Group& group
 }
 
 }  // namespace
+
+std::vector<double> LaneRun::get_series(int channel) const {
+  const std::vector<int>& recorded = results->recorded;
+  const auto lanes = static_cast<std::size_t>(results->lanes);
+  std::size_t row = CarChannel::kCount, column = static_cast<std::size_t>(channel);
+  if (!recorded.empty()) {
+    row = recorded.size();
+    column = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), channel) -
+                                      recorded.begin());
+    if (column == row) throw std::logic_error("history: a channel that was not recorded");
+  }
+  std::vector<double> series(static_cast<std::size_t>(results->sample_count));
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    series[i] = results->history[(i * row + column) * lanes + static_cast<std::size_t>(lane)];
+  }
+  return series;
+}
 
 std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,
                                   const IntegrateRequest& integrate, const SamplePlan& plan,

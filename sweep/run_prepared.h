@@ -18,12 +18,14 @@ struct LaneRun {
   RunStatus status() const {
     return static_cast<RunStatus>(results->status[static_cast<std::size_t>(lane)]);
   }
-  /// A car channel of a history sample.
+  /// A car channel of a history sample, of a plan that records all.
   double get(std::size_t sample, std::size_t channel) const {
     const auto lanes = static_cast<std::size_t>(results->lanes);
     return results
         ->history[(sample * CarChannel::kCount + channel) * lanes + static_cast<std::size_t>(lane)];
   }
+  /// The history of a car channel that the plan records.
+  std::vector<double> get_series(int channel) const;
 };
 
 /// All runs, in the cases' order, on some threads; no result depends on how many. Always in lanes,

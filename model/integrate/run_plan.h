@@ -30,6 +30,11 @@ struct SamplePlan {
   bool snapshot = true;
   int channel_count = 0;
   int parts = 1;  // samples an interval; every parts-th is, bit for bit, that of a plan with one
+  std::vector<int> recorded;  // channels of the history, in this order; empty: all
+
+  int recorded_count() const {
+    return recorded.empty() ? channel_count : static_cast<int>(recorded.size());
+  }
 };
 
 /// History samples of a plan, the one at t = 0 included.
@@ -58,7 +63,8 @@ struct LaneResults {
   std::vector<double> failure_time;  // s; duration where done
   std::vector<double> event_time;    // s; NaN where the trigger never changed sign
   std::vector<double> snapshot;      // [channel][lane]
-  std::vector<double> history;       // [sample][channel][lane]
+  std::vector<double> history;       // [sample][recorded channel][lane]
+  std::vector<int> recorded;         // as the plan's
   std::vector<double> final_state;   // [component][lane]
   std::vector<double> loop_error;    // m per lane, largest over the run (systems with loops)
   int sample_count = 0;

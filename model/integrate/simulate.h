@@ -60,7 +60,9 @@ class Simulation {
     results_.event_time.assign(lanes, std::nan(""));
     results_.snapshot.assign(channels * lanes, std::nan(""));
     results_.sample_count = count_samples(plan_);
-    results_.history.assign(static_cast<std::size_t>(results_.sample_count) * channels * lanes,
+    results_.recorded = plan_.recorded;
+    history_row_ = static_cast<std::size_t>(plan_.recorded_count()) * lanes;
+    results_.history.assign(static_cast<std::size_t>(results_.sample_count) * history_row_,
                             std::nan(""));
     channel_.resize(channels);
     x_ring_[0] = x0;
@@ -315,7 +317,16 @@ class Simulation {
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!get_mask_lane(lanes, lane)) continue;
       const auto sample = static_cast<std::size_t>(get_lane(next_sample_, lane));
-      store_channels(results_.history.data() + sample * channel_.size() * kLanes, lane);
+      double* row = results_.history.data() + sample * history_row_;
+      if (plan_.recorded.empty()) {
+        store_channels(row, lane);
+        continue;
+      }
+      row += lane;
+      for (const int c : plan_.recorded) {
+        *row = get_lane(channel_[static_cast<std::size_t>(c)], lane);
+        row += kLanes;
+      }
     }
     next_sample_ = select(lanes, next_sample_ + T(1.0), next_sample_);
   }
@@ -405,6 +416,7 @@ class Simulation {
   T time_, end_, h_, past_count_, past_step_, step_count_, next_sample_, trigger_, trigger1_,
       triggered_;
   std::vector<T> channel_;
+  std::size_t history_row_ = 0;  // numbers a history sample
 };
 
 }  // namespace strut

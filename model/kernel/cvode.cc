@@ -7,6 +7,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -138,7 +139,9 @@ class ReferenceRun {
     results_.event_time.assign(1, std::nan(""));
     results_.snapshot.assign(CarChannel::kCount, std::nan(""));
     results_.sample_count = count_samples(plan_);
-    results_.history.assign(static_cast<std::size_t>(results_.sample_count) * CarChannel::kCount,
+    results_.recorded = plan_.recorded;
+    results_.history.assign(static_cast<std::size_t>(results_.sample_count) *
+                                static_cast<std::size_t>(plan_.recorded_count()),
                             std::nan(""));
   }
 
@@ -152,7 +155,12 @@ class ReferenceRun {
   void record_due(double t) {
     while (sample_ < results_.sample_count &&
            calc_sample_time<double>(plan_, sample_) <= t + 1e-12) {
-      observe(t, results_.history.data() + static_cast<std::size_t>(sample_) * CarChannel::kCount);
+      std::array<double, CarChannel::kCount> all;
+      observe(t, all.data());
+      double* row = results_.history.data() + static_cast<std::size_t>(sample_) *
+                                                  static_cast<std::size_t>(plan_.recorded_count());
+      if (plan_.recorded.empty()) std::copy(all.begin(), all.end(), row);
+      for (const int c : plan_.recorded) *row++ = all[static_cast<std::size_t>(c)];
       ++sample_;
     }
   }

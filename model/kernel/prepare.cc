@@ -24,14 +24,23 @@ Case strip_to_mechanism(const Case& c) {
   return key;
 }
 
-std::shared_ptr<const Mechanism> make_mechanism(const Case& c) {
+bool shares_surface(const Mechanism& other, const Case& key) {
+  const auto &a = other.vehicle.tire, &b = key.vehicle.tire;
+  return other.maneuver.road == key.maneuver.road && a.contact == b.contact &&
+         a.unloaded_radius == b.unloaded_radius && a.footprint == b.footprint;
+}
+
+/// `other`: a mechanism of which parts may serve here, or null.
+std::shared_ptr<const Mechanism> make_mechanism(const Case& c, const Case& key,
+                                                const Mechanism* other) {
   auto mechanism = std::make_shared<Mechanism>();
-  const Case key = strip_to_mechanism(c);
   mechanism->vehicle = key.vehicle;
   mechanism->maneuver = key.maneuver;
   mechanism->car = assemble_vehicle(c.vehicle, c.maneuver);
-  mechanism->tables = tabulate_corners(mechanism->car);
-  mechanism->surface = make_surface(c.vehicle, c.maneuver);
+  mechanism->tables =
+      other && other->vehicle == key.vehicle ? other->tables : tabulate_corners(mechanism->car);
+  mechanism->surface =
+      other && shares_surface(*other, key) ? other->surface : make_surface(c.vehicle, c.maneuver);
   return mechanism;
 }
 
@@ -67,7 +76,7 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   const Case key = strip_to_mechanism(c);
   if (!mechanism_ || !(mechanism_->vehicle == key.vehicle) ||
       !(mechanism_->maneuver == key.maneuver)) {
-    mechanism_ = make_mechanism(c);
+    mechanism_ = make_mechanism(c, key, mechanism_.get());
   }
   const AssembledVehicle& car = mechanism_->car;
   PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, make_flat_road()}, {}};
