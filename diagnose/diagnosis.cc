@@ -87,13 +87,6 @@ void fill_probabilities(const CampaignData& data, const SelectRound& round,
   }
 }
 
-std::string describe_band(std::size_t band) {
-  const double from = band == 0 ? 0.0 : kNoiseBands[band - 1];
-  const double to = kNoiseBands[band];
-  return to > 1e8 ? "> " + format_rounded(from) + " Hz"
-                  : format_rounded(from) + "-" + format_rounded(to) + " Hz";
-}
-
 std::vector<ParameterChange> list_changes(const Selection& selection) {
   std::vector<ParameterChange> changes;
   const WhitenedFit &before = selection.base, &after = selection.extended;
@@ -177,7 +170,7 @@ class Diagnoser {
     diagnosis_.where.place = left_place_;
     if (diagnosis_.kind == VerdictKind::kUnknown ||
         diagnosis_.kind == VerdictKind::kFormIncomplete) {
-      diagnosis_.where.band = describe_band(left_.band);
+      diagnosis_.where.band = strut::describe(left_.band);
     }
     diagnosis_.next_measurement = propose_measurement(data_, selection, diagnosis_.group);
     diagnosis_.sentence = write_sentence();
@@ -276,7 +269,7 @@ class Diagnoser {
   std::string describe_left() const {
     std::string text;
     if (!left_place_.empty()) text += ", acting at " + left_place_;
-    text += ", at " + describe_band(left_.band);
+    text += ", at " + strut::describe(left_.band);
     return text;
   }
 

@@ -189,6 +189,20 @@ std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h
   return unknowns;
 }
 
+bool is_plausible(const CampaignData& data, const Hypothesis& h,
+                  const std::vector<double>& values) {
+  constexpr double kMost = 10.0;
+  if (data.is_rig()) return true;
+  const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EffectParameter& p = *parameters[i];
+    if (p.switches && std::abs(values[i] - p.neutral) > kMost * std::abs(p.typical - p.neutral)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool is_corner(const std::string& place) {
   return place == "front_left" || place == "front_right" || place == "rear_left" ||
          place == "rear_right";

@@ -41,6 +41,10 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
                                         const EffectSettings& model_effects,
                                         const std::vector<Unknown>& free = {});
 
+/// Whether parameters of these values may be those of a car: what switches is within ten times its
+/// ordinary size. Anything on a rig, which has no ordinary size.
+bool is_plausible(const CampaignData& data, const Hypothesis& h, const std::vector<double>& values);
+
 /// "front_left", ...: one corner of an axle.
 bool is_corner(const std::string& place);
 

@@ -12,9 +12,77 @@ namespace {
 
 using Index = Eigen::Index;
 
+/// Whitened numbers that are judged together.
 struct Cell {
   double chi2 = 0.0, count = 0.0;
+  double allowed = 0.0;  // of chi2: the count and what the noise's level may be off
+
+  void add(const Cell& other) {
+    chi2 += other.chi2;
+    count += other.count;
+    allowed += other.allowed;
+  }
+  /// In standard deviations of noise: the cube root of chi2 is nearly normal (E. B. Wilson and M.
+  /// M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931)).
+  double calc_significance() const {
+    if (count < 1.0) return 0.0;
+    const double variance = 2.0 / (9.0 * count);
+    return (std::cbrt(chi2 / allowed) - (1.0 - variance)) / std::sqrt(variance);
+  }
 };
+
+/// The bands of the noise, and lines two steps of the shortest run's spectrum wide, half over each
+/// other: a tone is seen in a line of its own long before it is in a band.
+std::vector<FrequencyBand> list_bands(const Whitener& whitener) {
+  std::vector<FrequencyBand> bands;
+  for (std::size_t b = 0; b < kNoiseBands.size(); ++b) {
+    bands.push_back({b == 0 ? 0.0 : kNoiseBands[b - 1], kNoiseBands[b]});
+  }
+  double step = 0.0, highest = 0.0;
+  for (const NoiseSpectrum& s : whitener.spectra()) {
+    step = std::max(step, 1.0 / (static_cast<double>(s.samples) * s.interval));
+  }
+  for (const ReadingPlace& place : whitener.places()) {
+    highest = std::max(highest, whitener.get_frequency(place));
+  }
+  for (double from = 0.0; from < highest; from += step) bands.push_back({from, from + 2.0 * step});
+  return bands;
+}
+
+/// Each whitened number with what it may be.
+std::vector<Cell> list_numbers(const CampaignData& data, const TestBench& bench,
+                               const LeftoverOptions& options) {
+  const Whitener& whitener = bench.whitener();
+  std::vector<std::vector<double>> allowed(bench.run_count());  // by run and band
+  for (std::size_t r = 0; r < allowed.size(); ++r) {
+    for (std::size_t b = 0; b < kNoiseBands.size(); ++b) {
+      const double road = data.is_rig() ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
+      allowed[r].push_back(1.0 + options.noise_tolerance + options.road_tolerance * road);
+    }
+  }
+  std::vector<Cell> numbers;
+  numbers.reserve(whitener.whitened_count());
+  for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {
+    const ReadingPlace& place = whitener.places()[i];
+    const std::size_t band = find_noise_band(whitener.get_frequency(place));
+    const double w = bench.residual()(static_cast<Index>(i));
+    const double share = whitener.get_share(place.run);
+    numbers.push_back({w * w * whitener.spectra()[place.run].excess[band], share,
+                       share * allowed[place.run][band]});
+  }
+  return numbers;
+}
+
+/// Of all runs.
+Cell sum_band(const Whitener& whitener, const std::vector<Cell>& numbers,
+              const FrequencyBand& band) {
+  Cell sum;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double frequency = whitener.get_frequency(whitener.places()[i]);
+    if (frequency >= band.from && frequency < band.to) sum.add(numbers[i]);
+  }
+  return sum;
+}
 
 /// Whitened numbers of one run at one frequency: rows begin, begin + 1 the real and imaginary part
 /// of the first channel, and so on.
@@ -162,41 +230,43 @@ double calc_road_ratio(const NoiseSpectrum& s, std::size_t band) {
 
 Leftover measure_leftover(const CampaignData& data, TestBench& bench,
                           const LeftoverOptions& options) {
-  const double significant = options.significant;
+  const std::vector<Cell> numbers = list_numbers(data, bench, options);
   const Whitener& whitener = bench.whitener();
-  const std::size_t bands = kNoiseBands.size();
-  std::vector<std::vector<Cell>> cells(bench.run_count(), std::vector<Cell>(bands));
-  for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {
+  std::vector<std::vector<Cell>> cells(bench.run_count(), std::vector<Cell>(kNoiseBands.size()));
+  Cell all;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
     const ReadingPlace& place = whitener.places()[i];
-    const std::size_t band = find_noise_band(whitener.get_frequency(place));
-    const double w = bench.residual()(static_cast<Index>(i));
-    const double chi2 = w * w * whitener.spectra()[place.run].excess[band];
-    const double share = whitener.get_share(place.run);
-    cells[place.run][band].chi2 += chi2;
-    cells[place.run][band].count += share;
+    cells[place.run][find_noise_band(whitener.get_frequency(place))].add(numbers[i]);
+    all.add(numbers[i]);
   }
   Leftover left;
-  std::vector<std::vector<bool>> stands_out(cells.size(), std::vector<bool>(bands, false));
-  for (std::size_t r = 0; r < cells.size(); ++r) {
-    for (std::size_t b = 0; b < bands; ++b) {
-      const Cell& cell = cells[r][b];
-      if (cell.count < 1.0) continue;
-      const double road = data.is_rig() ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
-      const double tolerance = options.noise_tolerance + options.road_tolerance * road;
-      const double excess = cell.chi2 - (1.0 + tolerance) * cell.count;
-      const double significance = excess / std::sqrt(2.0 * cell.count);
-      stands_out[r][b] = significance > 0.5 * significant;
-      if (stands_out[r][b]) left.energy += cell.chi2 - cell.count;
-      if (significance <= left.significance) continue;
-      left.significance = significance;
-      left.band = b;
-    }
+  const auto judge = [&](const Cell& cell, const FrequencyBand& band) {
+    const double significance = cell.calc_significance();
+    if (significance <= left.significance) return;
+    left.significance = significance;
+    left.band = band;
+  };
+  judge(all, {0.0, kNoiseBands.back()});
+  const std::vector<FrequencyBand> bands = list_bands(whitener);
+  for (const FrequencyBand& band : bands) {
+    judge(sum_band(whitener, numbers, band), band);
   }
-  if (left.significance < significant) return left;
+  for (const std::vector<Cell>& run : cells) {
+    for (std::size_t b = 0; b < run.size(); ++b) judge(run[b], bands[b]);
+  }
+  if (left.significance < options.significant) return left;
+  const auto stands_out = [&](const ReadingPlace& place) {
+    const double frequency = whitener.get_frequency(place);
+    if (frequency >= left.band.from && frequency < left.band.to) return true;
+    return cells[place.run][find_noise_band(frequency)].calc_significance() >
+           0.5 * options.significant;
+  };
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (stands_out(whitener.places()[i])) left.energy += numbers[i].chi2 - numbers[i].count;
+  }
   std::vector<Bin> bins;
   for (const Bin& bin : list_bins(whitener)) {
-    const std::size_t band = find_noise_band(whitener.get_frequency(bin.place));
-    if (stands_out[bin.place.run][band]) bins.push_back(bin);
+    if (stands_out(bin.place)) bins.push_back(bin);
   }
   locate(data, bench, bins, left.places);
   std::stable_sort(

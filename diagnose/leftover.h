@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/residuals.h"
 #include "diagnose/test_bench.h"
 
 namespace strut {
@@ -18,18 +19,16 @@ struct LeftoverPlace {
 };
 
 struct Leftover {
-  /// Largest excess of chi2 in a band of a run, in standard deviations of noise, the uncertainty of
-  /// the noise's own level taken off.
+  /// Largest excess of chi2 in standard deviations of noise, the uncertainty of the noise's own
+  /// level taken off: in a band of a run, in a band or a narrow line of all runs, in everything.
   double significance = 0.0;
-  double energy = 0.0;                // chi2 beyond noise, of all cells that stand out
-  std::size_t run = 0;                // of the bench, of that cell
-  std::size_t band = 0;               // of kNoiseBands
-  int channel = -1;                   // of the run, with the largest excess in that cell
+  FrequencyBand band;                 // where that is
+  double energy = 0.0;                // chi2 beyond noise, of all that stands out
   std::vector<LeftoverPlace> places;  // best first
 };
 
 struct LeftoverOptions {
-  /// What is left stands out by this many standard deviations in some band of some run ...
+  /// What is left stands out by this many standard deviations ...
   double significant = 6.0;
   /// ... beyond what the noise's own level may be off, relative, of chi2,
   double noise_tolerance = 0.05;

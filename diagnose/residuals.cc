@@ -103,9 +103,11 @@ void fill_signs(std::span<const double> state, std::span<const double> residual,
 }  // namespace
 
 std::string describe(const FrequencyBand& band) {
-  if (band.from == 0.0) return "< " + format_number(band.to) + " Hz";
-  if (band.to > 1e6) return "> " + format_number(band.from) + " Hz";
-  return format_number(band.from) + "-" + format_number(band.to) + " Hz";
+  const bool is_open = band.to > 1e6;
+  if (band.from == 0.0 && is_open) return "all frequencies";
+  if (band.from == 0.0) return "< " + format_rounded(band.to) + " Hz";
+  if (is_open) return "> " + format_rounded(band.from) + " Hz";
+  return format_rounded(band.from) + "-" + format_rounded(band.to) + " Hz";
 }
 
 std::vector<WindowResidual> calc_window_residuals(std::span<const double> times,

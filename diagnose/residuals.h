@@ -26,7 +26,7 @@ struct FrequencyBand {
 };
 inline constexpr std::array<FrequencyBand, 5> kBands = {
     {{0.0, 0.5}, {0.5, 3.0}, {3.0, 8.0}, {8.0, 20.0}, {20.0, 1e9}}};
-/// "0.5-3 Hz", "> 20 Hz"
+/// "0.5-3 Hz", "> 20 Hz", "all frequencies"
 std::string describe(const FrequencyBand& band);
 
 struct BandResidual {

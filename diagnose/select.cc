@@ -277,7 +277,7 @@ class Selector {
     }
   }
 
-  /// The fit of one effect, values empty where it cannot be simulated.
+  /// The fit of one effect, values empty where it cannot be simulated or cannot be.
   Candidate fit_candidate(const TestBench& bench, const Hypothesis& h, const HypothesisTrial& trial,
                           const Gain& gain) const {
     const std::vector<double> beginning = make_beginning(data_, h, trial, gain);
@@ -300,6 +300,7 @@ class Selector {
     const auto base = static_cast<std::ptrdiff_t>(bench.values().size());
     c.base_values.assign(fit.values.begin(), fit.values.begin() + base);
     c.values.assign(fit.values.begin() + base, fit.values.end());
+    if (!is_plausible(data_, h, c.values)) c.values.clear();
     c.shared = make_shared(selection_.extended, h, fit);
     return c;
   }
