@@ -44,7 +44,8 @@ struct ChannelGain {
 
 struct HoldOutGain {
   std::vector<ChannelGain> channels;
-  double explained = 0.0;  // mean of (before - after) / (before - floor), where there is room
+  /// (before - after) / (before - floor) of the rms, summed over channels in units of their floors.
+  double explained = 0.0;
   double log_likelihood_before = 0.0, log_likelihood_after = 0.0;  // per sample
 };
 

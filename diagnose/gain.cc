@@ -13,6 +13,30 @@ struct ChannelSums {
   double before = 0.0, after = 0.0, floor = 0.0, spread = 0.0, count = 0.0;
 };
 
+/// How far over its floor a channel of a perfect model may be, relative: the noise's level is known
+/// to `uncertainty`, a record has but `count` readings of it, and every road is its own.
+double calc_floor_tolerance(const ChannelSums& s, double uncertainty, double sensor_variance) {
+  constexpr double kRoad = 0.1;
+  const double road = 1.0 - std::min(1.0, sensor_variance * s.count / s.floor);
+  return 2.0 * std::hypot(uncertainty, 1.0 / std::sqrt(2.0 * s.count)) + kRoad * road;
+}
+
+/// What is gone of what was above the floors, each channel in units of its own; 0 where nothing
+/// was.
+class ExplainedShare {
+ public:
+  void add(const ChannelGain& c, double tolerance) {
+    gained_ += (c.rms_before - c.rms_after) / c.noise_floor;
+    left_ += std::max(0.0, c.rms_after / c.noise_floor - 1.0 - tolerance);
+  }
+  double get() const {
+    return gained_ + left_ > 0.0 ? std::max(-1.0, gained_ / (gained_ + left_)) : 0.0;
+  }
+
+ private:
+  double gained_ = 0.0, left_ = 0.0;
+};
+
 double sum_squares(const std::vector<double>& residual) {
   double sum = 0.0;
   for (const double r : residual) {
@@ -60,7 +84,7 @@ HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& select
       s.count += count;
     }
   }
-  double explained = 0.0, room = 0.0;
+  ExplainedShare explained;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const ChannelSums& s = sums[i];
     if (!(s.count > 0.0)) continue;
@@ -75,16 +99,11 @@ HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& select
       c.nrmse_before = c.rms_before / spread;
       c.nrmse_after = c.rms_after / spread;
     }
-    // A channel that is at its floor already has nothing to gain.
-    constexpr double kRoom = 0.05;
-    if (c.rms_before > (1.0 + kRoom) * c.noise_floor) {
-      explained +=
-          std::clamp((c.rms_before - c.rms_after) / (c.rms_before - c.noise_floor), -1.0, 1.0);
-      ++room;
-    }
+    const NoiseEstimate& noise = data.find_noise(channels[i]);
+    explained.add(c, calc_floor_tolerance(s, noise.uncertainty, noise.sigma * noise.sigma));
     gain.channels.push_back(std::move(c));
   }
-  gain.explained = room > 0.0 ? explained / room : 0.0;
+  gain.explained = explained.get();
   double before = 0.0, after = 0.0, count = 0.0;
   for (std::size_t i = 0; i < selection.hold_out_before.size(); ++i) {
     const HoldOutRun &b = selection.hold_out_before[i], &a = selection.hold_out_after[i];

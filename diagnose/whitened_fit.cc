@@ -87,27 +87,19 @@ std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baselin
 
 namespace {
 
-// What a band has beyond its noise is known only once the fit is there, and moves it.
-constexpr int kRounds = 2;
-
 void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened, WhitenedFit& result) {
   const auto excess = measure_excess(whitener, whitened);
   for (std::size_t r = 0; r < excess.size(); ++r) result.spectra[r].excess = excess[r];
 }
 
+/// What a rig has beyond its sensors' noise is what is looked for: nothing of it counts as noise.
 void fit_rig(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
   FitOptions options;
   options.start = start;
-  for (int round = 0; round < kRounds; ++round) {
-    const Whitener whitener(model, result.spectra);
-    WhitenedModel whitened(model, whitener);
-    result.fit = fit_readings(whitened, options);
-    options.start = result.fit.values;
-    if (round + 1 == kRounds) break;
-    result.is_dominated = result.fit.chi2_per_degree() > kDominated;
-    if (result.is_dominated) break;
-    count_excess(whitener, whitened.evaluate(result.fit.values).residual, result);
-  }
+  const Whitener whitener(model, result.spectra);
+  WhitenedModel whitened(model, whitener);
+  result.fit = fit_readings(whitened, options);
+  result.is_dominated = result.fit.chi2_per_degree() > kDominated;
 }
 
 /// The fit where the search stands, with derivatives of there; searches on where they see more of
@@ -129,7 +121,10 @@ void conclude(ChordSearch& search, ReadingModel& model, const Whitener& whitener
   result.fit.simulations = model.simulation_count();
 }
 
+/// A rough road excites what is not linear, too: what a band has beyond its noise counts as noise.
+/// It is known only once the fit is there, and moves it.
 void fit_car(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
+  constexpr int kRounds = 2;
   ChordSearch search(model, start);
   for (int round = 0; round < kRounds; ++round) {
     const Whitener whitener(model, result.spectra);

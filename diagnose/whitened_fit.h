@@ -27,8 +27,8 @@ struct WhitenedFit {
 /// Spectra of the runs with the level of roughness that the residual of `baseline` has.
 std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline);
 
-/// Fits `unknowns` (those that all runs share in front) beginning at `start`; and again with what
-/// the first fit leaves in each band beyond its noise counted as noise.
+/// Fits `unknowns` (those that all runs share in front) beginning at `start`; of a car again with
+/// what the first fit leaves in each band beyond its noise counted as noise.
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
                          const std::vector<NoiseSpectrum>& spectra,
                          const std::vector<Unknown>& unknowns, const std::vector<double>& start,
