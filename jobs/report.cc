@@ -7,6 +7,7 @@
 #include "jobs/arguments.h"
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
+#include "jobs/report/page_file.h"
 #include "jobs/report/sweep.h"
 #include "jobs/study/report.h"
 
@@ -31,6 +32,12 @@ Written report_sweep(const fs::path& root) {
   return {folder.root / "report.html", write_sweep_report(folder)};
 }
 
+/// What keeps its page: drawn and written anew.
+Written report_page(const fs::path& root) {
+  const PageFolder folder{root.lexically_normal()};
+  return {folder.report(), write_page_again(folder)};
+}
+
 /// A kind of folder, told by a file that only it has.
 struct ReportKind {
   const char* name;
@@ -39,7 +46,9 @@ struct ReportKind {
 };
 
 constexpr ReportKind kKinds[] = {{"study", "study.toml", &report_study},
-                                 {"sweep", "plan.h5", &report_sweep}};
+                                 {"sweep", "plan.h5", &report_sweep},
+                                 {"diagnosis", "verdict.json", &report_page},
+                                 {"comparison", "compare.json", &report_page}};
 
 const ReportKind& find_kind(const fs::path& root) {
   std::vector<std::string> kinds;
@@ -55,9 +64,10 @@ const ReportKind& find_kind(const fs::path& root) {
 
 int run_report(const std::vector<std::string>& words) {
   Arguments arguments("strut report DIR",
-                      "Writes DIR/report.html, one file that needs no other, about the study or "
-                      "the sweep in DIR, from what\nis there: nothing is simulated or trained.",
-                      "  strut report study\n  strut report sweep");
+                      "Writes DIR/report.html, one file that needs no other, about the study, "
+                      "sweep, diagnosis or comparison\nin DIR, from what is there: nothing is "
+                      "simulated or trained.",
+                      "  strut report study\n  strut report sweep\n  strut report diagnosis");
   if (!arguments.parse(words)) return kExitDone;
   const auto& names = arguments.positional();
   if (names.size() != 1) {

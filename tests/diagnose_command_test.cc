@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "io/atomic_file.h"
 #include "io/csv.h"
 #include "jobs/diagnose/json.h"
 #include "jobs/diagnose/report.h"
@@ -145,6 +146,32 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
     CHECK(std::filesystem::exists(out.figures() / (std::string(figure) + ".svg")));
   }
   CHECK_THAT(report, Contains("<svg"));
+}
+
+TEST_CASE("strut report makes a diagnosis' page again from what its folder holds", "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_data(folder);
+  const DiagnoseFolder out{std::filesystem::path(folder / "out")};
+  const bool has_figures = write_diagnose_report(out, data, make_named(data)).empty();
+  write_text_file(out.verdict(), "{}\n");
+  const std::string report = test::read_text(out.report());
+  const std::string make_again = " " STRUT_PROGRAM " report " + out.root.string();
+
+  const test::Outcome bare =
+      test::run_shell("PATH=" + std::string(folder / "nothing") + make_again);
+  CHECK(bare.code == 0);
+  CHECK_THAT(bare.messages, Contains("gnuplot cannot be started"));
+  CHECK_THAT(test::read_text(out.report()), Contains("Left out, gnuplot is not there"));
+
+  const test::Outcome whole = test::run_shell(make_again);
+  CHECK(whole.code == 0);
+  CHECK(whole.out == out.report().string() + "\n");
+  if (has_figures) CHECK(test::read_text(out.report()) == report);
+
+  write_text_file(out.root / "report.json", "{ \"title\": \"cut off\" }\n");
+  const test::Outcome broken = test::run_shell(make_again);
+  CHECK(broken.code == 2);
+  CHECK_THAT(broken.messages, Contains("report.json") && Contains("lead"));
 }
 
 TEST_CASE("The curves of every run are written beside each other", "[io]") {

@@ -145,7 +145,7 @@ TEST_CASE("Figures on one page share no name", "[unit]") {
       "<?xml version=\"1.0\"?><svg><defs><g id='p'/></defs><use xlink:href='#p'/>"
       "<a fill=\"url(#p)\"/></svg>";
   ReportPage page;
-  page.sections = {{"Two", {}, {}, {{svg, "one"}, {svg, "other"}}}};
+  page.sections = {{"Two", {}, {}, {{"a", svg, "one"}, {"b", svg, "other"}}}};
   const std::string html = make_html(page);
   CHECK_THAT(html, Contains("id='f1-p'") && Contains("href='#f1-p'") && Contains("url(#f1-p)"));
   CHECK_THAT(html, Contains("id='f2-p'") && Contains("href='#f2-p'") && Contains("url(#f2-p)"));
@@ -170,10 +170,12 @@ TEST_CASE("A figure that gnuplot cannot draw is told with gnuplot's words", "[io
   }
   const TemporaryFolder folder;
   Figure figure{"broken", 300, 200, "plot nonsense(\n"};
-  CHECK_THROWS_WITH(draw_figure(folder / "", figure), Contains("broken.gp"));
+  write_figure_script(folder / "", figure);
+  CHECK_THROWS_WITH(draw_figure(folder / "", figure.name), Contains("broken.gp"));
   CHECK_FALSE(fs::exists(folder / "broken.svg"));
   figure.commands = "plot x\n";
-  draw_figure(folder / "", figure);
+  write_figure_script(folder / "", figure);
+  draw_figure(folder / "", figure.name);
   CHECK_THAT(test::read_text(folder / "broken.svg"), Contains("</svg>"));
   CHECK(folder.file_count() == 2);
 }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "io/atomic_file.h"
 #include "jobs/compare/figures.h"
 #include "jobs/compare/tables.h"
 #include "jobs/report/figures.h"
+#include "jobs/report/page_file.h"
 
 namespace strut {
 namespace {
@@ -39,9 +39,8 @@ std::vector<std::string> write_compare_report(const CompareFolder& folder, const
     page.sections.push_back(make_run_section(data, run, drawer));
   }
   page.footer = make_report_footer();
-  write_text_file(folder.report(), make_html(page));
-  return drawer.note().empty() ? std::vector<std::string>{}
-                               : std::vector<std::string>{drawer.note()};
+  write_page({folder.root}, page);
+  return drawer.list_notes();
 }
 
 }  // namespace strut

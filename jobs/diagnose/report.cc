@@ -1,9 +1,9 @@
 #include "jobs/diagnose/report.h"
 
-#include "io/atomic_file.h"
 #include "jobs/diagnose/figures.h"
 #include "jobs/diagnose/tables.h"
 #include "jobs/report/figures.h"
+#include "jobs/report/page_file.h"
 
 namespace strut {
 namespace {
@@ -78,9 +78,8 @@ std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
                                                const CampaignData& data,
                                                const Diagnosis& diagnosis) {
   const FigureDrawer drawer(folder.figures());
-  write_text_file(folder.report(), make_html(make_page(data, diagnosis, drawer)));
-  return drawer.note().empty() ? std::vector<std::string>{}
-                               : std::vector<std::string>{drawer.note()};
+  write_page({folder.root}, make_page(data, diagnosis, drawer));
+  return drawer.list_notes();
 }
 
 }  // namespace strut

@@ -110,10 +110,13 @@ std::string make_words(std::string name) {
 
 bool has_gnuplot() { return run_gnuplot("--version", {"/dev/null", "/dev/null"}) == 0; }
 
-void draw_figure(const fs::path& folder, const Figure& figure) {
-  const fs::path script = folder / (figure.name + ".gp");
-  write_text_file(script, make_script(figure));
-  AtomicFile svg(folder / (figure.name + ".svg"));
+void write_figure_script(const fs::path& folder, const Figure& figure) {
+  write_text_file(folder / (figure.name + ".gp"), make_script(figure));
+}
+
+void draw_figure(const fs::path& folder, const std::string& name) {
+  const fs::path script = folder / (name + ".gp");
+  AtomicFile svg(folder / (name + ".svg"));
   const ScratchFile messages(svg.temporary().string() + ".messages");
   const int code = run_gnuplot(script.string(), {svg.temporary(), messages.path()});
   if (code < 0) throw EnvironmentError(kMissing);

@@ -31,8 +31,11 @@ std::string make_words(std::string name);
 /// Whether a program gnuplot can be started.
 bool has_gnuplot();
 
-/// Writes FOLDER/NAME.gp and draws FOLDER/NAME.svg of it; `gnuplot NAME.gp > NAME.svg` does the
-/// same. Throws EnvironmentError where gnuplot is missing or fails; it says what gnuplot said.
-void draw_figure(const std::filesystem::path& folder, const Figure& figure);
+/// Writes FOLDER/NAME.gp. Throws EnvironmentError.
+void write_figure_script(const std::filesystem::path& folder, const Figure& figure);
+
+/// Draws FOLDER/NAME.svg by FOLDER/NAME.gp; `gnuplot NAME.gp > NAME.svg` does the same. Throws
+/// EnvironmentError where gnuplot is missing or fails; it says what gnuplot said.
+void draw_figure(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace strut

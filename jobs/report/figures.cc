@@ -19,9 +19,18 @@ FigureDrawer::FigureDrawer(std::filesystem::path folder) : folder_(std::move(fol
 }
 
 ReportFigure FigureDrawer::draw(const Figure& figure, const std::string& caption) const {
-  if (!note_.empty()) return {"", "Left out, gnuplot is not there: " + caption};
-  draw_figure(folder_, figure);
-  return {read_text_file(folder_ / (figure.name + ".svg")), caption};
+  write_figure_script(folder_, figure);
+  return draw_script(figure.name, caption);
+}
+
+ReportFigure FigureDrawer::draw_script(const std::string& name, const std::string& caption) const {
+  if (!note_.empty()) return {name, "", caption};
+  draw_figure(folder_, name);
+  return {name, read_text_file(folder_ / (name + ".svg")), caption};
+}
+
+std::vector<std::string> FigureDrawer::list_notes() const {
+  return note_.empty() ? std::vector<std::string>{} : std::vector<std::string>{note_};
 }
 
 std::string make_report_footer() {

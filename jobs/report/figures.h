@@ -16,10 +16,12 @@ class FigureDrawer {
  public:
   explicit FigureDrawer(std::filesystem::path folder);
 
-  /// The drawn figure; without gnuplot one without a picture, whose caption says so.
+  /// The drawn figure; without gnuplot one without a picture, whose script waits in the folder.
   ReportFigure draw(const Figure& figure, const std::string& caption) const;
-  /// Empty where figures are drawn.
-  const std::string& note() const { return note_; }
+  /// The same of a script that is in the folder already.
+  ReportFigure draw_script(const std::string& name, const std::string& caption) const;
+  /// For the user: none where figures are drawn.
+  std::vector<std::string> list_notes() const;
 
  private:
   std::filesystem::path folder_;

@@ -168,8 +168,9 @@ std::string make_html(const ReportPage& page) {
             escape_html(section.heading) + "</h2>\n" + make_paragraphs(section.paragraphs);
     for (const ReportTable& table : section.tables) text += make_table(table);
     for (const ReportFigure& f : section.figures) {
+      const std::string missing = f.svg.empty() ? "Left out, gnuplot is not there: " : "";
       text += "<figure>\n" + make_inline(f.svg, ++figure) + "<figcaption>" +
-              escape_html(f.caption) + "</figcaption>\n</figure>\n";
+              escape_html(missing + f.caption) + "</figcaption>\n</figure>\n";
     }
     text += "</section>\n";
   }

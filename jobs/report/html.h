@@ -27,7 +27,8 @@ struct ReportTable {
 };
 
 struct ReportFigure {
-  std::string svg;  // the whole file; empty: could not be drawn
+  std::string name;  // of its files
+  std::string svg;   // the whole file; empty: could not be drawn
   std::string caption;
 };
 

@@ -219,8 +219,7 @@ std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   page.sections.push_back({"Plan", {}, {make_fact_table(plan)}});
   page.footer = make_report_footer();
   write_text_file(folder.root / "report.html", make_html(page));
-  return drawer.note().empty() ? std::vector<std::string>{}
-                               : std::vector<std::string>{drawer.note()};
+  return drawer.list_notes();
 }
 
 }  // namespace strut

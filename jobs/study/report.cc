@@ -186,7 +186,7 @@ StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& re
   write_text_file(folder.results(), make_json(request, output.results).dump() + "\n");
   write_text_file(folder.tables(), make_csv(request, output.results));
   const FigureDrawer drawer(folder.figures());
-  if (!drawer.note().empty()) output.notes.push_back(drawer.note());
+  for (std::string& note : drawer.list_notes()) output.notes.push_back(std::move(note));
   ReportPage page;
   page.title = request.title;
   for (const StudySummary& s : summarize(request, output.results))

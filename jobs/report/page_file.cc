@@ -1,0 +1,116 @@
+#include "jobs/report/page_file.h"
+
+#include <boost/property_tree/json_parser.hpp>
+#include <boost/property_tree/ptree.hpp>
+
+#include "io/atomic_file.h"
+#include "io/input_error.h"
+#include "jobs/json.h"
+#include "jobs/report/figures.h"
+
+namespace strut {
+namespace {
+
+using Tree = boost::property_tree::ptree;
+
+Json make_json(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const std::string& text : texts) list.push(text);
+  return list;
+}
+
+/// Of each element what `make` makes of it.
+template <class T, class Make>
+Json make_list(const std::vector<T>& elements, const Make& make) {
+  Json list = Json::array();
+  for (const T& element : elements) list.push(make(element));
+  return list;
+}
+
+Json make_table_json(const ReportTable& table) {
+  return Json::object()
+      .set("caption", table.caption)
+      .set("header", make_json(table.header))
+      .set("rows", make_list(table.rows, &make_json))
+      .set("notes", make_json(table.notes))
+      .set("text_columns", static_cast<long>(table.text_columns));
+}
+
+Json make_section_json(const ReportSection& section) {
+  return Json::object()
+      .set("heading", section.heading)
+      .set("paragraphs", make_json(section.paragraphs))
+      .set("tables", make_list(section.tables, &make_table_json))
+      .set("figures", make_list(section.figures, [](const ReportFigure& figure) {
+             return Json::object().set("name", figure.name).set("caption", figure.caption);
+           }));
+}
+
+Json make_page_json(const ReportPage& page) {
+  return Json::object()
+      .set("title", page.title)
+      .set("lead", make_json(page.lead))
+      .set("sections", make_list(page.sections, &make_section_json))
+      .set("footer", page.footer);
+}
+
+/// The elements of a list, each read by `read`.
+template <class Read>
+auto read_list(const Tree& tree, const char* key, const Read& read) {
+  std::vector<decltype(read(tree))> list;
+  for (const auto& [name, element] : tree.get_child(key)) list.push_back(read(element));
+  return list;
+}
+
+std::string read_text(const Tree& tree) { return tree.data(); }
+
+std::vector<std::string> read_row(const Tree& tree) {
+  std::vector<std::string> row;
+  for (const auto& [name, element] : tree) row.push_back(element.data());
+  return row;
+}
+
+ReportTable read_table(const Tree& tree) {
+  return {tree.get<std::string>("caption"), read_list(tree, "header", &read_text),
+          read_list(tree, "rows", &read_row), read_list(tree, "notes", &read_text),
+          tree.get<std::size_t>("text_columns")};
+}
+
+ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
+  ReportPage page;
+  page.title = tree.get<std::string>("title");
+  page.lead = read_list(tree, "lead", &read_text);
+  page.footer = tree.get<std::string>("footer");
+  page.sections = read_list(tree, "sections", [&](const Tree& section) {
+    return ReportSection{section.get<std::string>("heading"),
+                         read_list(section, "paragraphs", &read_text),
+                         read_list(section, "tables", &read_table),
+                         read_list(section, "figures", [&](const Tree& figure) {
+                           return drawer.draw_script(figure.get<std::string>("name"),
+                                                     figure.get<std::string>("caption"));
+                         })};
+  });
+  return page;
+}
+
+}  // namespace
+
+void write_page(const PageFolder& folder, const ReportPage& page) {
+  write_text_file(folder.page(), make_page_json(page).dump() + "\n");
+  write_text_file(folder.report(), make_html(page));
+}
+
+std::vector<std::string> write_page_again(const PageFolder& folder) {
+  const FigureDrawer drawer(folder.figures());
+  try {
+    Tree tree;
+    boost::property_tree::read_json(folder.page().string(), tree);
+    write_text_file(folder.report(), make_html(read_page(tree, drawer)));
+  } catch (const boost::property_tree::ptree_error& e) {
+    throw InputError(folder.page().string() + ": " + e.what() +
+                     "; must be as strut compare or strut diagnose wrote it");
+  }
+  return drawer.list_notes();
+}
+
+}  // namespace strut

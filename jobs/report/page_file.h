@@ -1,0 +1,28 @@
+// A page kept beside its figures, so that it can be made again where they could not be drawn.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "jobs/report/html.h"
+
+namespace strut {
+
+/// A folder of one report: report.html, the page as report.json, figures as scripts and pictures.
+struct PageFolder {
+  std::filesystem::path root;
+
+  std::filesystem::path report() const { return root / "report.html"; }
+  std::filesystem::path page() const { return root / "report.json"; }
+  std::filesystem::path figures() const { return root / "figures"; }
+};
+
+/// Writes report.json and report.html.
+void write_page(const PageFolder& folder, const ReportPage& page);
+
+/// Draws the figures of report.json by their scripts and writes report.html. Returns what could not
+/// be made, for the user. Throws InputError where report.json is missing or none of ours.
+std::vector<std::string> write_page_again(const PageFolder& folder);
+
+}  // namespace strut
