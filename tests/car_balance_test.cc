@@ -1,0 +1,164 @@
+// The balance of a car's body: what it says of the struts where bump and tires are not the model's.
+#include "diagnose/car_balance.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/campaign_files.h"
+#include "tests/fit_case.h"
+#include "tests/tolerance.h"
+
+namespace strut {
+namespace {
+
+using Settings = std::vector<std::pair<std::string, double>>;
+
+const Settings kWorn = {{"front_stiffness", 37000.0},
+                        {"front_damping", 1850.0},
+                        {"rear_stiffness", 33000.0},
+                        {"rear_damping", 1750.0}};
+// A bump 5 % higher than surveyed, tires 15 % stiffer than the file's.
+const Settings kOtherRoad = {{"bump_height", 0.0525}, {"tire_stiffness", 230000.0}};
+constexpr double kRate = 500.0;
+
+struct Sensor {
+  std::string channel;
+  double noise;
+};
+
+const std::vector<Sensor> kSensors = {{"imu_acceleration_z", 0.02},
+                                      {"imu_rate_x", 1e-3},
+                                      {"imu_rate_y", 1e-3},
+                                      {"front_left_suspension_deflection", 3e-4},
+                                      {"front_right_suspension_deflection", 3e-4},
+                                      {"rear_left_suspension_deflection", 3e-4},
+                                      {"rear_right_suspension_deflection", 3e-4}};
+
+int find_car_channel(const std::string& name) {
+  const auto& channels = list_car_channels();
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].name == name) return static_cast<int>(i);
+  }
+  FAIL("no channel " << name);
+  return 0;
+}
+
+/// The paper's car, worn, over its bump, with what else the truth has, as its sensors record it.
+void write_crossing(const test::TemporaryFolder& folder, const std::string& name,
+                    const Settings& truth, std::uint64_t seed) {
+  Case c = test::make_paper_case();
+  for (const auto& [parameter, value] : kWorn) set_parameter(c, parameter, value);
+  for (const auto& [parameter, value] : truth) set_parameter(c, parameter, value);
+  const LaneResults results = test::simulate_truth(c, kRate, false);
+  std::string text = "time";
+  for (const Sensor& s : kSensors) text += "," + s.channel;
+  for (int i = 0; i < results.sample_count; ++i) {
+    text += "\n" + test::print_number(i / kRate);
+    for (std::size_t k = 0; k < kSensors.size(); ++k) {
+      const double value =
+          test::get_history(results, i, find_car_channel(kSensors[k].channel)) +
+          kSensors[k].noise * test::calc_normal(seed, k, static_cast<std::uint64_t>(i));
+      text += "," + test::print_number(value);
+    }
+  }
+  folder.write(name, text + "\n");
+}
+
+CampaignData make_campaign(const test::TemporaryFolder& folder, const Settings& truth,
+                           const std::string& more_free = "", const std::string& more_run = "") {
+  const std::string examples = STRUT_SOURCE_DIR "/examples/";
+  std::string text =
+      "model = \"" + examples + "vehicles/paper_sedan.toml\"\n[columns]\ntime = {}\n";
+  for (const Sensor& s : kSensors) {
+    text += s.channel + " = { noise = " + test::print_number(s.noise) + " }\n";
+  }
+  text +=
+      "[fit]\nfree = [\"front_stiffness\", \"front_damping\", \"rear_stiffness\", "
+      "\"rear_damping\"" +
+      more_free + "]\n";
+  std::uint64_t seed = 1;
+  for (const char* run : {"fit", "hold_out"}) {
+    write_crossing(folder, std::string(run) + ".csv", truth, seed++);
+    text += std::string("[[run]]\nfile = \"") + run + ".csv\"\nuse = \"" + run +
+            "\"\nmaneuver = \"" + examples + "maneuvers/bump_20mps.toml\"\n" + more_run;
+  }
+  return read_campaign_data(folder.write("campaign.toml", text));
+}
+
+/// What the whole fit and the balance of its run say.
+struct Answers {
+  std::vector<double> fit;
+  CarBalance balance;
+};
+
+Answers ask(const Settings& truth) {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_campaign(folder, truth);
+  const Baseline baseline = calibrate_baseline(data);
+  const auto balance =
+      calc_car_balance(data, 0, baseline.calibrated, evaluate_run(data, 0, baseline.calibrated));
+  REQUIRE(balance);
+  REQUIRE(balance->parameters.size() == kWorn.size());
+  return {baseline.calibrated.values, *balance};
+}
+
+TEST_CASE("A wrong bump and wrong tires hardly move what a car's balance says of its struts",
+          "[regression]") {
+  const Answers right = ask({}), wrong = ask(kOtherRoad);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < kWorn.size(); ++i) {
+    const BalanceParameter &r = right.balance.parameters[i], &w = wrong.balance.parameters[i];
+    INFO(r.name << " " << r.value << " +- " << r.sigma << ", " << w.value);
+    CHECK(r.name == kWorn[i].first);
+    // Four standard deviations.
+    CHECK(std::abs(r.value - kWorn[i].second) < test::tolerance(4.0 * r.sigma));
+    // The same noise in both: what moves is the balance.
+    CHECK(std::abs(w.value / r.value - 1.0) < test::tolerance(2e-3));
+    largest = std::max(largest, std::abs(wrong.fit[i] / right.fit[i] - 1.0));
+  }
+  // The fit of all readings takes the bump for the struts.
+  CHECK(largest > 0.02);
+}
+
+TEST_CASE("A car's balance sees a wrong strut and no wrong tire", "[regression]") {
+  const double null = ask({}).balance.chi2_per_reading;
+  const double road = ask(kOtherRoad).balance.chi2_per_reading;
+  const double strut = ask({{"rear_damper_asymmetry", 0.3}}).balance.chi2_per_reading;
+  INFO("left over noise: " << null << ", other bump and tires " << road << ", strut " << strut);
+  CHECK(null == Approx(1.0).margin(test::tolerance(0.1)));
+  CHECK(road < 1.5);
+  CHECK(strut > 3.0 * road);
+}
+
+TEST_CASE("With bump and tires free the whole fit is immune to them, too", "[regression]") {
+  const auto fit = [](const Settings& truth) {
+    const test::TemporaryFolder folder;
+    return calibrate_baseline(make_campaign(folder, truth, ", \"tire_stiffness\"",
+                                            "bump_height = [0.05, 0.005]\n"))
+        .calibrated.values;
+  };
+  const std::vector<double> right = fit({}), wrong = fit(kOtherRoad);
+  for (std::size_t i = 0; i < kWorn.size(); ++i) {
+    CAPTURE(kWorn[i].first, right[i], wrong[i]);
+    CHECK(std::abs(wrong[i] / right[i] - 1.0) < test::tolerance(2e-3));
+  }
+}
+
+TEST_CASE("Without measured deflections there is no balance of a car", "[unit]") {
+  const test::TemporaryFolder folder;
+  CampaignData data = make_campaign(folder, {});
+  RunEvaluation at;
+  const SharedValues nominal;
+  const int rear = find_car_channel("rear_left_suspension_deflection");
+  std::erase_if(data.cars[0].channels, [&](const MeasuredChannel& c) { return c.channel >= rear; });
+  CHECK(!calc_car_balance(data, 0, nominal, at));
+  at.failure = "not simulated";
+  CHECK(!calc_car_balance(data, 1, nominal, at));
+}
+
+}  // namespace
+}  // namespace strut
