@@ -8,10 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "jobs/compare/json.h"
+#include "jobs/compare/tables.h"
 #include "sweep/read_maneuver.h"
 #include "sweep/read_vehicle.h"
 #include "tests/campaign_files.h"
 #include "tests/fit_case.h"
+#include "tests/parse_json.h"
 #include "tests/tolerance.h"
 
 namespace strut {
@@ -179,6 +182,28 @@ TEST_CASE("Without measured deflections there is no balance of a car", "[regress
   CHECK(!calc_car_balance(data, 0, nominal, at));
   at.failure = "not simulated";
   CHECK(!calc_car_balance(data, 1, nominal, at));
+}
+
+TEST_CASE("compare.json and the report have a car's balance", "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_campaign(folder, {});
+  Comparison comparison;
+  comparison.runs.resize(1);
+  CarBalance balance;
+  balance.parameters = {{"front_stiffness", "N/m", 37000.0, 100.0}};
+  balance.chi2_per_reading = 4.0;
+  comparison.runs.front().car_balance = balance;
+  const auto json = test::parse_json(make_compare_json(data, comparison).dump());
+  const auto& told = json.get_child("runs").front().second.get_child("balance");
+  CHECK(told.get<double>("chi2_per_reading") == 4.0);
+  CHECK(told.get<double>("parameters.front_stiffness.value") == 37000.0);
+  // 1.96 sigma to either side.
+  CHECK(told.get_child("parameters.front_stiffness.ci95").back().second.get_value<double>() ==
+        Approx(37196.0).epsilon(1e-6));
+  const ReportTable table = make_run_tables(data, comparison.runs.front()).back();
+  REQUIRE(table.rows.size() == 2);
+  CHECK(table.rows[0].back() == "2");  // times the noise
+  CHECK(table.rows[1].front() == "front_stiffness");
 }
 
 }  // namespace
