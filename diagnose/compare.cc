@@ -127,6 +127,8 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
       run.balance = calc_body_balance(
           set_rig_unknowns(data.rigs[r], baseline.calibrated.unknowns, baseline.calibrated.values));
     }
+    run.car_balance =
+        calc_car_balance(data, r, baseline.calibrated, run.calibrated.evaluation, threads);
     comparison.runs.push_back(std::move(run));
   }
   return comparison;

@@ -8,6 +8,7 @@
 
 #include "diagnose/baseline.h"
 #include "diagnose/body_balance.h"
+#include "diagnose/car_balance.h"
 #include "diagnose/residuals.h"
 
 namespace strut {
@@ -44,7 +45,9 @@ struct RunComparison {
   std::size_t run = 0;
   std::vector<TimeWindow> windows;
   ModelComparison nominal, calibrated;
-  std::optional<BodyBalance> balance;  // where the channels allow, at the calibrated values
+  // Where the channels allow, at the calibrated values; of a quarter car, of a car.
+  std::optional<BodyBalance> balance;
+  std::optional<CarBalance> car_balance;
 };
 
 struct Comparison {

@@ -123,6 +123,17 @@ Json make_balance(const BodyBalance& b) {
       .set("kinematics", kinematics);
 }
 
+Json make_balance(const CarBalance& b) {
+  Json parameters = Json::object();
+  for (const BalanceParameter& p : b.parameters) {
+    parameters.set(p.name, Json::object()
+                               .set("value", p.value)
+                               .set("ci95", make_interval(p.value, p.sigma))
+                               .set("unit", p.unit));
+  }
+  return Json::object().set("chi2_per_reading", b.chi2_per_reading).set("parameters", parameters);
+}
+
 Json make_runs(const CampaignData& data, const Comparison& comparison) {
   Json runs = Json::array();
   for (const RunComparison& run : comparison.runs) {
@@ -133,6 +144,7 @@ Json make_runs(const CampaignData& data, const Comparison& comparison) {
         .set("nominal", make_model(data, run.nominal))
         .set("calibrated", make_model(data, run.calibrated));
     if (run.balance) json.set("balance", make_balance(*run.balance));
+    if (run.car_balance) json.set("balance", make_balance(*run.car_balance));
     runs.push(json);
   }
   return runs;

@@ -5,6 +5,7 @@
 
 #include "io/csv.h"
 #include "jobs/compare/curves.h"
+#include "train/interval.h"
 
 namespace strut {
 namespace {
@@ -143,9 +144,9 @@ ReportTable make_balance_table(const BodyBalance& b) {
                 {"of the strut's force", format_percent(b.nrmse)},
                 {"noise alone", format_short(b.noise_rms) + " N"},
                 {"stiffness", format_short(b.stiffness) + " +- " +
-                                  format_short(1.96 * b.stiffness_sigma) + " N/m"},
+                                  format_short(kNormal95 * b.stiffness_sigma) + " N/m"},
                 {"damping", format_short(b.damping) + " +- " +
-                                format_short(1.96 * b.damping_sigma) + " N s/m"}};
+                                format_short(kNormal95 * b.damping_sigma) + " N s/m"}};
   for (const StateResidual& state : b.states) {
     table.rows.push_back({"explained by " + state.state, format_percent(state.explained)});
   }
@@ -153,6 +154,16 @@ ReportTable make_balance_table(const BodyBalance& b) {
     table.rows.push_back(
         {k.channel + " against the position's",
          "gain " + format_short(k.gain) + ", rest " + format_short(k.rms) + " m/s^2"});
+  }
+  return table;
+}
+
+ReportTable make_balance_table(const CarBalance& b) {
+  ReportTable table{"Body balance, no road in it", {"", "value"}};
+  table.rows = {{"left over noise", format_short(std::sqrt(b.chi2_per_reading))}};
+  for (const BalanceParameter& p : b.parameters) {
+    table.rows.push_back({p.name, format_short(p.value) + " +- " +
+                                      format_short(kNormal95 * p.sigma) + " " + p.unit});
   }
   return table;
 }
@@ -194,6 +205,7 @@ std::vector<ReportTable> make_compare_tables(const CampaignData& data,
 std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComparison& run) {
   std::vector<ReportTable> tables = {make_window_table(data, run), make_band_table(data, run)};
   if (run.balance) tables.push_back(make_balance_table(*run.balance));
+  if (run.car_balance) tables.push_back(make_balance_table(*run.car_balance));
   return tables;
 }
 
