@@ -1,6 +1,7 @@
 #include "diagnose/noise_spectrum.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <unsupported/Eigen/FFT>
@@ -84,7 +85,7 @@ std::vector<std::vector<double>> simulate_pulse(Case c, const NoiseSpectrum& s,
   }
   std::vector<std::vector<double>> responses;
   responses.reserve(channels.size());
-  for (const MeasuredChannel& c : channels) responses.push_back(runs.front().get_series(c.channel));
+  for (const MeasuredChannel& m : channels) responses.push_back(runs.front().get_series(m.channel));
   return responses;
 }
 
@@ -117,8 +118,11 @@ TrackResponse calc_track_response(const Case& c, const NoiseSpectrum& s,
   return response;
 }
 
-void add_wheel_source(const std::vector<Spectrum>& response, double speed, NoiseSpectrum& s) {
-  constexpr double kLongestWave = 50.0;  // m; longer ones move no channel
+constexpr double kLongestWave = 50.0;  // m; longer ones move no channel
+
+/// The road under one wheel alone.
+Eigen::MatrixXcd make_wheel_source(const std::vector<Spectrum>& response, double speed,
+                                   const NoiseSpectrum& s) {
   Eigen::MatrixXcd source = make_source(s);
   const double rate = 1.0 / s.interval;
   for (Eigen::Index f = 0; f < source.cols(); ++f) {
@@ -134,7 +138,42 @@ void add_wheel_source(const std::vector<Spectrum>& response, double speed, Noise
           amplitude * response[k][static_cast<std::size_t>(f)];
     }
   }
-  s.sources.push_back(std::move(source));
+  return source;
+}
+
+/// How alike two tracks of an isotropic road are, as far as it is relied upon (NoiseSpectrum).
+double calc_track_coherence(double wave_number, double track) {
+  constexpr double kTrusted = 0.9;
+  const double x = 2.0 * kPi * wave_number * track;
+  return x < 1e-6 ? kTrusted : kTrusted * x * std::cyl_bessel_k(1.0, std::min(x, 50.0));
+}
+
+/// The sources of both tracks under both axles as four that are independent of each other: columns
+/// times the Cholesky factors of the coherence along a track and between the tracks.
+void add_road_sources(const std::array<std::array<Eigen::MatrixXcd, 2>, 2>& wheels, double speed,
+                      double wheelbase, double track, NoiseSpectrum& s) {
+  constexpr double kTrusted = 0.95, kDelayError = 1e-3;  // s
+  std::array<Eigen::MatrixXcd, 4> sources;
+  sources.fill(make_source(s));
+  const double rate = 1.0 / s.interval;
+  for (Eigen::Index f = 0; f < sources[0].cols(); ++f) {
+    const double frequency = static_cast<double>(f) * rate / static_cast<double>(s.samples);
+    const double off = 2.0 * kPi * frequency * kDelayError;
+    const double same = kTrusted * std::exp(-0.5 * off * off);
+    const std::complex<double> later = std::polar(same, -2.0 * kPi * frequency * wheelbase / speed);
+    const double other = std::sqrt(1.0 - same * same);
+    const double alike =
+        calc_track_coherence(std::max(frequency / speed, 1.0 / kLongestWave), track);
+    const double apart = std::sqrt(1.0 - alike * alike);
+    const auto& [left, right] = wheels;
+    const Eigen::VectorXcd left_both = left[0].col(f) + later * left[1].col(f);
+    const Eigen::VectorXcd right_both = right[0].col(f) + later * right[1].col(f);
+    sources[0].col(f) = left_both + alike * right_both;
+    sources[1].col(f) = other * (left[1].col(f) + alike * right[1].col(f));
+    sources[2].col(f) = apart * right_both;
+    sources[3].col(f) = apart * other * right[1].col(f);
+  }
+  for (Eigen::MatrixXcd& source : sources) s.sources.push_back(std::move(source));
 }
 
 NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int number,
@@ -147,12 +186,18 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   set_parameters(c, unknowns, values, number);
   // The road's faults have no place on this one, and at rest friction would hold the car.
   c.vehicle.effects.clear();
-  const auto& channels = data.channels(run);
-  for (const BumpSide side : {BumpSide::kLeft, BumpSide::kRight}) {
-    const TrackResponse response = calc_track_response(c, s, channels, side);
-    add_wheel_source(response.front, c.maneuver.speed, s);
-    add_wheel_source(response.rear, c.maneuver.speed, s);
+  const double speed = c.maneuver.speed;
+  std::array<std::array<Eigen::MatrixXcd, 2>, 2> wheels;  // by track and axle
+  for (const auto& [side, axles] :
+       {std::pair{BumpSide::kLeft, &wheels[0]}, std::pair{BumpSide::kRight, &wheels[1]}}) {
+    const TrackResponse response = calc_track_response(c, s, data.channels(run), side);
+    (*axles)[0] = make_wheel_source(response.front, speed, s);
+    (*axles)[1] = make_wheel_source(response.rear, speed, s);
   }
+  const WholeCarSpec& whole = c.vehicle.whole;
+  const auto& [front, rear] = c.vehicle.suspension;
+  add_road_sources(wheels, speed, whole.centroid_to_front + whole.centroid_to_rear,
+                   front.wheel_center_y + rear.wheel_center_y, s);
   return s;
 }
 

@@ -5,13 +5,20 @@
 //   S(f) = diag(sigma^2) + sum_l h_l(f) h_l(f)^*
 //
 // h_l: response of the channels to one independent source l, as amplitudes of the unitary discrete
-// transform. Sources of a car: the road under each wheel, with the density
+// transform. Sources of a car: the road under its wheels, with the density
 //
 //   G(n) = G0 (n / n0)^-2, n0 = 0.1 1/m (ISO 8608)
 //
-// That the tracks are alike in long waves, and that the rear wheels follow in the tracks of the
-// front ones, is not used: the coherence of a road's tracks is not known, and at wheel hop the
-// delay would have to be known to a millisecond. Sources of a rig: the white noise of each input.
+// the rear wheels in the tracks of the front ones, a wheelbase later, and the tracks, B apart, as
+// alike as those of an isotropic road with this density (C. J. Dodds, J. D. Robson, J. Sound Vib. 31
+// (1973)):
+//
+//   coherence gamma(n) = x K_1(x), x = 2 pi n B
+//
+// Of either, part is relied upon, 0.95 and 0.9, no more: no road is isotropic, no rear wheel runs in
+// the track to the centimeter, and the delay is known to a millisecond. Without it long waves would
+// twist the car, which no road does, and the measured level would pay for that. Sources of a rig:
+// the white noise of each input.
 // Responses are the model's own, to a pulse so small that it is linear.
 #pragma once
 
