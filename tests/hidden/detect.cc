@@ -345,26 +345,29 @@ std::vector<Nuisance> make_nuisances(const Kit& kit) {
 
 Detector::Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, double roughness)
     : whitener_(kit, roughness) {
-  VectorXd prior(static_cast<Eigen::Index>(nuisances.size()));
+  prior_.resize(static_cast<Eigen::Index>(nuisances.size()));
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
     const VectorXd column = whitener_.whiten(nuisances[i].deviation);
-    if (i == 0) jacobian_.resize(column.size(), prior.size());
+    if (i == 0) jacobian_.resize(column.size(), prior_.size());
     jacobian_.col(static_cast<Eigen::Index>(i)) = column;
-    prior[static_cast<Eigen::Index>(i)] = nuisances[i].has_prior ? 1.0 : 0.0;
+    prior_[static_cast<Eigen::Index>(i)] = nuisances[i].has_prior ? 1.0 : 0.0;
   }
   MatrixXd normal = jacobian_.transpose() * jacobian_;
-  normal.diagonal() += prior;
+  normal.diagonal() += prior_;
   normal_.compute(normal);
 }
 
-SignalToNoise Detector::calc(const Runs& deviation) const {
+SignalToNoise Detector::calc(const Runs& deviation, bool with_priors) const {
   const VectorXd d = whitener_.whiten(deviation);
-  const VectorXd r = d - jacobian_ * normal_.solve(jacobian_.transpose() * d);
-  const auto calc_ratio = [&](const VectorXd& x) {
-    const double variance = whitener_.calc_variance(x);
-    return variance > 0.0 ? x.squaredNorm() / std::sqrt(variance) : 0.0;
+  const VectorXd taken = normal_.solve(jacobian_.transpose() * d);
+  const VectorXd r = d - jacobian_ * taken;
+  const double stray = with_priors ? taken.cwiseProduct(prior_).squaredNorm() : 0.0;
+  const auto calc_ratio = [&](const VectorXd& x, double more) {
+    const double variance = whitener_.calc_variance(x) + more;
+    return variance > 0.0 ? (x.squaredNorm() + more) / std::sqrt(variance) : 0.0;
   };
-  return {calc_ratio(r), std::sqrt(whitener_.calc_joint_square(r)), calc_ratio(d)};
+  return {calc_ratio(r, stray), std::sqrt(whitener_.calc_joint_square(r) + stray),
+          calc_ratio(d, 0.0)};
 }
 
 }  // namespace strut::hidden

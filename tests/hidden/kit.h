@@ -38,6 +38,7 @@ struct RunPlan {
   double distance = 0.0;   // m, bump ahead of the front wheels when the recording begins
   double amplitude = 0.0;  // m, of rigs
   double low_frequency = 0.0, high_frequency = 0.0;  // Hz
+  bool recorded = true;                              // false: simulated, but not given out
 };
 
 struct Kit {
@@ -60,6 +61,7 @@ struct Truth {
   std::vector<double> speed_error;  // of each run, 1
   double roughness = 0.0;           // m^3 at 0.1 cycles/m; 0: smooth
   std::uint64_t seed = 0;           // of the roughness
+  double force_scale = 1.0;         // of the car's masses, inertias, stiffnesses and dampings
 };
 
 /// "car", "quarter_car" or "dyno"; throws std::invalid_argument for others.
