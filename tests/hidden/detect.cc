@@ -345,29 +345,26 @@ std::vector<Nuisance> make_nuisances(const Kit& kit) {
 
 Detector::Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, double roughness)
     : whitener_(kit, roughness) {
-  prior_.resize(static_cast<Eigen::Index>(nuisances.size()));
+  VectorXd prior(static_cast<Eigen::Index>(nuisances.size()));
   for (std::size_t i = 0; i < nuisances.size(); ++i) {
     const VectorXd column = whitener_.whiten(nuisances[i].deviation);
-    if (i == 0) jacobian_.resize(column.size(), prior_.size());
+    if (i == 0) jacobian_.resize(column.size(), prior.size());
     jacobian_.col(static_cast<Eigen::Index>(i)) = column;
-    prior_[static_cast<Eigen::Index>(i)] = nuisances[i].has_prior ? 1.0 : 0.0;
+    prior[static_cast<Eigen::Index>(i)] = nuisances[i].has_prior ? 1.0 : 0.0;
   }
   MatrixXd normal = jacobian_.transpose() * jacobian_;
-  normal.diagonal() += prior_;
+  normal.diagonal() += prior;
   normal_.compute(normal);
 }
 
-SignalToNoise Detector::calc(const Runs& deviation, bool with_priors) const {
+SignalToNoise Detector::calc(const Runs& deviation) const {
   const VectorXd d = whitener_.whiten(deviation);
-  const VectorXd taken = normal_.solve(jacobian_.transpose() * d);
-  const VectorXd r = d - jacobian_ * taken;
-  const double stray = with_priors ? taken.cwiseProduct(prior_).squaredNorm() : 0.0;
-  const auto calc_ratio = [&](const VectorXd& x, double more) {
-    const double variance = whitener_.calc_variance(x) + more;
-    return variance > 0.0 ? (x.squaredNorm() + more) / std::sqrt(variance) : 0.0;
+  const VectorXd r = d - jacobian_ * normal_.solve(jacobian_.transpose() * d);
+  const auto calc_ratio = [&](const VectorXd& x) {
+    const double variance = whitener_.calc_variance(x);
+    return variance > 0.0 ? x.squaredNorm() / std::sqrt(variance) : 0.0;
   };
-  return {calc_ratio(r, stray), std::sqrt(whitener_.calc_joint_square(r) + stray),
-          calc_ratio(d, 0.0)};
+  return {calc_ratio(r), std::sqrt(whitener_.calc_joint_square(r)), calc_ratio(d)};
 }
 
 }  // namespace strut::hidden

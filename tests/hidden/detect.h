@@ -82,15 +82,11 @@ struct SignalToNoise {
 class Detector {
  public:
   Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, double roughness);
-  /// `with_priors`: that a fit strays from what is known beforehand counts as seen, too; for faults
-  /// that fits take over whole.
-  SignalToNoise calc(const std::vector<std::vector<Signal>>& deviation,
-                     bool with_priors = false) const;
+  SignalToNoise calc(const std::vector<std::vector<Signal>>& deviation) const;
 
  private:
   Whitener whitener_;
   Eigen::MatrixXd jacobian_;  // one column a nuisance
-  Eigen::VectorXd prior_;     // 1 where a nuisance has a prior, else 0
   Eigen::LDLT<Eigen::MatrixXd> normal_;
 };
 

@@ -69,7 +69,7 @@ struct FaultInfo {
   bool either_sign;
   double car, rig;              // magnitudes at which a search begins
   bool newer = false;           // hidden by seeds from kNewerFaults on
-  bool seen_by_priors = false;  // fits take it over and stray from what is known of a run
+  bool seen_by_speeds = false;  // fits take it over and stray from what is known of the speeds
 };
 
 /// Seeds below it hide what they hid before the newer faults were added.

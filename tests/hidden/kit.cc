@@ -70,9 +70,10 @@ void warm(const Kit& kit, const FaultSetting& s, std::size_t run, StrutLaw& law)
   law.damping *= 1.0 - s.magnitude * static_cast<double>(run) / last;
 }
 
-/// A speedometer that is right at a standstill and wrong in proportion to the speed.
-double calc_speed_factor(const Truth& truth, double speed) {
-  return 1.0 + find_magnitude(truth, Fault::kSpeedometer) * speed / (20.0 * kKmh);
+/// A speedometer that is right at a standstill and wrong in proportion to the speed: relative
+/// error.
+double calc_speed_error(const FaultSetting& setting, double speed) {
+  return setting.fault == Fault::kSpeedometer ? setting.magnitude * speed / (20.0 * kKmh) : 0.0;
 }
 
 void scale_forces(Car& car, double scale) {
@@ -120,7 +121,10 @@ std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::si
   const CarModel model(car);
   const double front = car.wheel[0].position.x(), rear = car.wheel[2].position.x();
   Drive drive;
-  drive.speed = run.speed * (1.0 + truth.speed_error[number]) * calc_speed_factor(truth, run.speed);
+  drive.speed = run.speed * (1.0 + truth.speed_error[number]);
+  for (const FaultSetting& s : truth.faults) {
+    drive.speed += run.speed * calc_speed_error(s, run.speed);
+  }
   Curve bump;
   if (run.excitation == Excitation::kBump) {
     bump = make_true_bump(kit, truth, run, car.wheel[0].tire.radius);
@@ -405,6 +409,16 @@ Truth make_nominal_truth(const Kit& kit) {
   truth.factors.assign(kit.parameters.size(), 1.0);
   truth.speed_error.assign(kit.runs.size(), 0.0);
   return truth;
+}
+
+double calc_speed_stray(const Kit& kit, const FaultSetting& setting) {
+  double square = 0.0;
+  for (const RunPlan& run : kit.runs) {
+    // Level ground does not tell how fast it is crossed.
+    if (!run.fit || run.excitation != Excitation::kBump) continue;
+    square += std::pow(calc_speed_error(setting, run.speed) / kit.speed_sigma, 2);
+  }
+  return std::sqrt(square);
 }
 
 Car make_car(const Kit& kit, const Truth& truth) {

@@ -75,6 +75,10 @@ Truth make_nominal_truth(const Kit& kit);
 std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
                                  double margin);
 
+/// By how many of the speeds' sigma, all crossings for fitting together, fits that take over what
+/// the speedometer says wrong stray from it.
+double calc_speed_stray(const Kit& kit, const FaultSetting& setting);
+
 /// The car of a truth; its nominal one in the file.
 Car make_car(const Kit& kit, const Truth& truth);
 inline constexpr double kFootprint = 0.12;  // m

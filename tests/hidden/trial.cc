@@ -158,18 +158,25 @@ std::vector<FaultSetting> Sampler::draw_faults(std::uint64_t seed, Category cate
   return settings;
 }
 
+SignalToNoise Sampler::measure(const FaultSetting& setting, const Truth& without,
+                               const std::vector<std::vector<Signal>>& base) const {
+  if (get_info(setting.fault).seen_by_speeds) {
+    const double stray = calc_speed_stray(kit_, setting);
+    return {stray, stray, stray};
+  }
+  Truth with = without;
+  with.faults = {setting};
+  return get_detector(without.roughness).calc(subtract(simulate_fit_runs(kit_, with), base));
+}
+
 HiddenFault Sampler::size_fault(FaultSetting setting, double target, const Truth& without,
                                 const std::vector<std::vector<Signal>>& base) const {
   const FaultInfo& info = get_info(setting.fault);
-  const Detector& detector = get_detector(without.roughness);
   // Nearly in proportion; thresholds need the bracket, too.
   double low = get_floor(kit_, info), high = get_cap(kit_, info);
   HiddenFault hidden{setting, {}};
   for (int i = 0; i < 9; ++i) {
-    Truth with = without;
-    with.faults = {hidden.setting};
-    hidden.noise =
-        detector.calc(subtract(simulate_fit_runs(kit_, with), base), info.seen_by_priors);
+    hidden.noise = measure(hidden.setting, without, base);
     const double size = std::fabs(hidden.setting.magnitude), ratio = hidden.noise.ratio;
     if (std::fabs(ratio / target - 1.0) < 0.05) break;
     (ratio < target ? low : high) = size;
