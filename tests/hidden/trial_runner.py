@@ -147,7 +147,6 @@ class Run:
         if self.stopped:
             return
         verdicts = self.folder / part.kit / "verdicts"
-        # A name of its own: a program that outlived its killed runner writes into nothing of ours.
         place = pathlib.Path(tempfile.mkdtemp(prefix=f".{trial.name}.", dir=verdicts))
         begin = time.monotonic()
         with open(place / "log", "wb") as log:
@@ -175,8 +174,10 @@ class Run:
         with self.guard:
             if self.stopped:
                 raise KeyboardInterrupt
-            child = subprocess.Popen(["nice", "-n", str(NICE), *(str(word) for word in command)],
-                                     stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+            # What is started ends with us, even where we are killed: nobody writes on in the folder.
+            prefix = ["setpriv", "--pdeathsig", "KILL", "nice", "-n", str(NICE)]
+            child = subprocess.Popen(prefix + [str(word) for word in command], stdout=log,
+                                     stderr=log, stdin=subprocess.DEVNULL)
             self.children.add(child)
             return child
 
