@@ -52,13 +52,15 @@ Limits make_limits(const Score& score) {
   for (const Gate& gate : list_gates()) {
     const Cell cell = pool(score, gate.metric, gate.grades);
     if (cell.total == 0) continue;
-    const Interval usual = calc_wilson(cell.hits, cell.total, 1.0);
-    // Rounding must not turn a bound that is a whole number into the next one.
-    constexpr double kRounding = 1e-9;
-    const double bound = gate.at_least ? std::floor(usual.low * cell.total + kRounding)
-                                       : std::ceil(usual.high * cell.total - kRounding);
-    made.limits.push_back({get_name(gate.metric), gate.grades, gate.at_least,
-                           static_cast<int>(bound), cell.total, cell.hits});
+    const Interval usual = calc_wilson(cell.hits, cell.total, 0.5);
+    const auto count = [&](double share) {
+      return static_cast<int>(std::lround(share * cell.total));
+    };
+    const int bound = gate.at_least ? std::min(count(usual.low), cell.hits - 1)
+                                    : std::max(count(usual.high), cell.hits + 1);
+    if (bound <= 0) continue;
+    made.limits.push_back(
+        {get_name(gate.metric), gate.grades, gate.at_least, bound, cell.total, cell.hits});
   }
   return made;
 }

@@ -24,8 +24,10 @@ struct Limits {
   std::vector<Limit> limits;
 };
 
-/// Limits for the gates' cells as they came out: the hits less what Wilson's interval of one
-/// standard deviation leaves, so that a tool as good passes and a worse one does not.
+/// Limits for the gates' cells as they came out: the nearer end of Wilson's interval of half a
+/// standard deviation, in whole trials, but one trial worse than measured at least: the same trials
+/// are answered again, so that little moves but by changes of the tool. A cell that may be empty
+/// then has no limit.
 Limits make_limits(const Score& score);
 
 /// What of the score lies beyond its limit, a line each; other trials than the limits were set for

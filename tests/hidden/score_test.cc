@@ -1,6 +1,7 @@
 // The scorer: intervals, and who wins and loses.
 #include "tests/hidden/score.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -244,7 +245,7 @@ TEST_CASE("Hidden data: limits pass the tool they were set by and one as good", 
   Verdicts verdicts = answer_all(trials, make_perfect);
   const Limits limits = make_limits(calc_score(trials, verdicts));
   CHECK(find_misses(limits, calc_score(trials, verdicts)).empty());
-  // 30 of 30: Wilson's interval of one standard deviation ends at 30 / 31, 29.03 of 30.
+  // 0 of 30: Wilson's interval of half a standard deviation ends at 0.25 / 30.25, 0.25 of 30.
   REQUIRE(limits.limits.front().score == get_name(Metric::kFalseAlarm));
   CHECK(limits.limits.front().count == 1);
   verdicts["0"] = always_name(trials[0]);
@@ -254,6 +255,13 @@ TEST_CASE("Hidden data: limits pass the tool they were set by and one as good", 
   REQUIRE(misses.size() == 2);  // the second false alarm, and the second confident wrong name
   CHECK_THAT(misses[0], Catch::Contains("false alarm (-): at most 1 of 30, measured 2 of 30"));
   CHECK_THAT(misses[1], Catch::Contains("wrong, confident (ABCD-): at most 1 of 78"));
+  // 28 of 28 in the group: none of them may be lost but one a grade.
+  const Cell named = pool(calc_score(trials, verdicts), Metric::kInGroup, "A");
+  const auto group = std::find_if(limits.limits.begin(), limits.limits.end(), [](const Limit& l) {
+    return l.score == get_name(Metric::kInGroup) && l.grades == "A";
+  });
+  REQUIRE(group != limits.limits.end());
+  CHECK(group->count == named.total - 1);
 }
 
 TEST_CASE("Hidden data: limits fail missing verdicts and other trials", "[unit]") {
@@ -277,6 +285,10 @@ TEST_CASE("Hidden data: limits are read as they were written", "[io]") {
   const Limits read = read_limits(path);
   CHECK(read.contents == limits.contents);
   REQUIRE(read.limits.size() == limits.limits.size());
+  for (std::size_t i = 0; i < read.limits.size(); ++i) {
+    CHECK(read.limits[i].count == limits.limits[i].count);
+    CHECK(read.limits[i].at_least == limits.limits[i].at_least);
+  }
   CHECK(make_limits_json(read) == make_limits_json(limits));
   folder.write("limits.json", "{\"trials\": {}}");
   CHECK_THROWS_WITH(read_limits(path), Catch::Contains("limits.json"));
