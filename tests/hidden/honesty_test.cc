@@ -47,7 +47,7 @@ std::filesystem::path write_campaign(const Kit& kit, const Trial& trial,
          "campaign.toml";
 }
 
-/// One crossing for fitting and level ground, on a smooth road: a tenth of a diagnosis' time.
+/// One crossing for fitting and level ground, on a smooth road: a third of a diagnosis' time.
 Verdict diagnose_small_car(Kit kit, Trial trial) {
   ablate(Ablation::kOneCrossing, kit, trial);
   const test::TemporaryFolder folder;
@@ -72,12 +72,15 @@ TEST_CASE("Hidden data: the same fault at the other axle moves the answer there"
   const Kit kit = make_kit("car");
   const std::array<const char*, 2> places = {"front", "rear"};
   for (int axle = 0; axle < 2; ++axle) {
-    const Verdict v =
-        diagnose_small_car(kit, make_trial(kit, {{Fault::kAsymmetry, axle, 0.3, 0.0}}));
+    Trial trial = make_trial(kit, {{Fault::kAsymmetry, axle, 0.1, 0.0}});
+    trial.truth.roughness = 1e-6;
+    const test::TemporaryFolder folder;
+    const Verdict v = read_verdict(diagnose(write_campaign(kit, trial, folder)));
     INFO(describe(v));
     REQUIRE(!v.causes.empty());
     CHECK(v.causes.front().effect == "damper_asymmetry");
     CHECK(v.causes.front().place == places[static_cast<std::size_t>(axle)]);
+    for (const Claim& c : v.causes) CHECK(c.place != places[static_cast<std::size_t>(1 - axle)]);
   }
 }
 
