@@ -80,7 +80,9 @@ void write_model(const Kit& kit, const fs::path& folder) {
   const Car car = make_nominal_car();
   write_file(folder / "model.toml", make_vehicle_file(car, kFootprint, "tire.tir"));
   write_file(folder / "tire.tir", make_tire_file(car.wheel[0].tire, 3000.0));
-  for (const RunPlan& run : kit.runs) write_file(folder / (run.name + ".toml"), make_maneuver(run));
+  for (const RunPlan& run : kit.runs) {
+    if (run.recorded) write_file(folder / (run.name + ".toml"), make_maneuver(run));
+  }
 }
 
 // --- the campaign -------------------------------------------------------------------------------
@@ -88,6 +90,7 @@ void write_model(const Kit& kit, const fs::path& folder) {
 void add_columns(const Kit& kit, std::ostringstream& out) {
   out << "[columns]\ntime = { column = \"Time\" }\n";
   for (const Sensor& s : kit.sensors) {
+    if (!s.recorded) continue;
     out << s.channel << " = { column = \"" << s.column << "\", unit = \"" << s.unit << "\"";
     if (s.input) out << ", role = \"input\"";
     out << " }\n";
@@ -131,7 +134,9 @@ std::string make_campaign(const Kit& kit) {
   out << "model = \"model.toml\"\n\n";
   add_columns(kit, out);
   add_fit(kit, out);
-  for (const RunPlan& run : kit.runs) add_run(kit, run, out);
+  for (const RunPlan& run : kit.runs) {
+    if (run.recorded) add_run(kit, run, out);
+  }
   return out.str();
 }
 
@@ -154,6 +159,7 @@ std::string make_table(const Kit& kit, const Trial& trial, std::size_t run) {
   std::vector<std::vector<double>> columns = {stamps};
   std::string text = "Time";
   for (std::size_t c = 0; c < kit.sensors.size(); ++c) {
+    if (!kit.sensors[c].recorded) continue;
     text += "," + kit.sensors[c].column;
     columns.push_back(read_sensor(kit.sensors[c], signals[c], trial.clocks[run], stamps,
                                   trial.bias[c], trial.seed, plan.name));
@@ -190,6 +196,10 @@ std::string make_trial_name(std::uint64_t seed) {
   return std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
 }
 
+fs::path find_truth(const fs::path& folder, std::uint64_t seed) {
+  return folder / "truths" / (make_trial_name(seed) + ".json");
+}
+
 std::string make_truth(const Kit& kit, const Trial& trial) {
   std::ostringstream out;
   out << "{\"seed\": " << trial.seed << ", \"kit\": " << quote(kit.name)
@@ -219,10 +229,14 @@ void write_trial(const Kit& kit, const Trial& trial, const fs::path& folder) {
   fs::create_directories(folder / "truths");
   write_model(kit, place);
   for (std::size_t r = 0; r < kit.runs.size(); ++r) {
+    if (!kit.runs[r].recorded) continue;
     write_file(place / (kit.runs[r].name + ".csv"), make_table(kit, trial, r));
   }
   write_file(place / "campaign.toml", make_campaign(kit));
-  write_file(folder / "truths" / (name + ".json"), make_truth(kit, trial));
+  // Last and at once: a trial whose truth is there is whole.
+  const fs::path begun = folder / "truths" / (name + ".part");
+  write_file(begun, make_truth(kit, trial));
+  fs::rename(begun, find_truth(folder, trial.seed));
 }
 
 void seal_truths(const fs::path& folder) {

@@ -1,6 +1,7 @@
 // A trial written down: what the user of the tested program has, and, elsewhere, the truth.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -12,6 +13,9 @@ namespace strut::hidden {
 /// DIR/truths/SEED.json. Nothing in the first tells of the second.
 /// Throws std::runtime_error for a file that cannot be written.
 void write_trial(const Kit& kit, const Trial& trial, const std::filesystem::path& folder);
+
+/// DIR/truths/SEED.json; it is written last and at once, so where it is the trial is whole.
+std::filesystem::path find_truth(const std::filesystem::path& folder, std::uint64_t seed);
 
 /// The truth as JSON: category, grade, faults with place, magnitude and ratios, true parameters.
 std::string make_truth(const Kit& kit, const Trial& trial);

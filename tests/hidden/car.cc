@@ -291,6 +291,11 @@ CarSample CarModel::calc_sample(const Drive& drive, const std::vector<double>& y
   s.imu_acceleration = calc_point(car_.imu) - gravity;
   s.imu_acceleration.z() += 0.9 * dy[S::kBend + 1];
   s.imu_rate = omega;
+  if (car_.imu_lean != 0.0) {
+    const Matrix3d lean = Eigen::AngleAxisd(-car_.imu_lean, Vector3d::UnitY()).toRotationMatrix();
+    s.imu_acceleration = lean * s.imu_acceleration;
+    s.imu_rate = lean * s.imu_rate;
+  }
   for (int i = 0; i < kWheels; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double shape = car_.bending.compliance > 0.0 ? bend_shape_[k] : 0.0;

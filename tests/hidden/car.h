@@ -69,6 +69,7 @@ struct Car {
   std::array<Wheel, kWheels> wheel;
   Eigen::Vector3d imu{0.1, 0.0, -0.1};  // m from the centroid
   // What is wrong:
+  double imu_lean = 0.0;                       // rad, of the inertial sensor, nose down
   double payload = 0.0;                        // kg on the body
   Eigen::Vector3d payload_at{-0.9, 0.0, 0.1};  // m
   double center_shift = 0.0;                   // m, of the body's center of mass, forward

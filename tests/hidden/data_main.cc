@@ -10,52 +10,78 @@
 #include <thread>
 #include <vector>
 
+#include "tests/hidden/ablation.h"
 #include "tests/hidden/campaign_files.h"
 
 namespace strut::hidden {
 
 constexpr char kUsage[] =
-    "Usage: strut_hidden_data KIT FROM:TO DIR [THREADS]\n\n"
-    "Writes the trials of the seeds FROM to TO, TO not included, into DIR/trials and their truths\n"
-    "into DIR/truths. KIT: car, quarter_car or dyno. The files depend on the seeds alone.\n\n"
+    "Usage: strut_hidden_data KIT SEEDS DIR [THREADS [ABLATION]]\n\n"
+    "Writes the trials of the seeds into DIR/trials and their truths into DIR/truths; those that\n"
+    "are there already stay. KIT: car, quarter_car or dyno. SEEDS: FROM:TO, TO not included, or\n"
+    "such ranges and single seeds with commas between. ABLATION: none, no_roughness,\n"
+    "no_deflection, body_only or one_crossing. The files depend on seeds and ablation alone.\n\n"
     "Example: strut_hidden_data quarter_car 0:39 hidden 2\n";
 
 namespace {
 
 struct Request {
   Kit kit;
-  std::uint64_t from = 0, to = 0;
+  std::vector<std::uint64_t> seeds;
   std::filesystem::path folder;
   unsigned threads = 1;
+  Ablation ablation = Ablation::kNone;
 };
 
+/// "3", "1:4" or "1:4,9"
+std::vector<std::uint64_t> parse_seeds(const std::string& text) {
+  std::vector<std::uint64_t> seeds;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string part = text.substr(at, end - at);
+    const std::size_t colon = part.find(':');
+    const std::uint64_t from = std::stoull(part.substr(0, colon));
+    const std::uint64_t to =
+        colon == std::string::npos ? from + 1 : std::stoull(part.substr(colon + 1));
+    for (std::uint64_t seed = from; seed < to; ++seed) seeds.push_back(seed);
+    at = end + 1;
+  }
+  return seeds;
+}
+
 Request parse(const std::vector<std::string>& words) {
-  if (words.size() < 3 || words.size() > 4) throw std::invalid_argument("three or four arguments");
+  if (words.size() < 3 || words.size() > 5) throw std::invalid_argument("three to five arguments");
   Request request;
   request.kit = make_kit(words[0]);
-  const std::size_t colon = words[1].find(':');
-  if (colon == std::string::npos) throw std::invalid_argument("seeds: FROM:TO");
-  request.from = std::stoull(words[1].substr(0, colon));
-  request.to = std::stoull(words[1].substr(colon + 1));
+  request.seeds = parse_seeds(words[1]);
   request.folder = words[2];
   if (words.size() > 3) request.threads = static_cast<unsigned>(std::stoul(words[3]));
+  if (words.size() > 4) request.ablation = make_ablation(words[4]);
   return request;
+}
+
+void write_one(const Request& request, const Sampler& sampler, std::uint64_t seed) {
+  if (std::filesystem::exists(find_truth(request.folder, seed))) return;
+  Kit kit = request.kit;
+  Trial trial = sampler.draw(seed);
+  ablate(request.ablation, kit, trial);
+  write_trial(kit, trial, request.folder);
 }
 
 void write_trials(const Request& request) {
   const Sampler sampler(request.kit);
-  std::atomic<std::uint64_t> next = request.from;
+  std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex guard;
   const auto work = [&] {
     try {
-      for (std::uint64_t seed = next++; seed < request.to; seed = next++) {
-        write_trial(request.kit, sampler.draw(seed), request.folder);
+      for (std::size_t i = next++; i < request.seeds.size(); i = next++) {
+        write_one(request, sampler, request.seeds[i]);
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(guard);
       failure = std::current_exception();
-      next = request.to;
+      next = request.seeds.size();
     }
   };
   std::vector<std::thread> team;

@@ -32,6 +32,10 @@ double StrutFaults::*find_field(Fault fault) {
       return &StrutFaults::side_friction;
     case Fault::kInerter:
       return &StrutFaults::inerter;
+    case Fault::kPlay:
+      return &StrutFaults::play;
+    case Fault::kGas:
+      return &StrutFaults::gas;
     default:
       return nullptr;
   }
@@ -101,6 +105,14 @@ const std::vector<FaultInfo>& list_faults() {
       {Fault::kSeatedPassenger, "passenger on a seat", "", "", W::kBody, kInCar, false, 40.0, 0.0},
       {Fault::kInerter, "inerter", "", "", W::kStrut, kInQuarterCar, false, 0.0, 0.05},
       {Fault::kHum, "hum of a fan", "", "", W::kBody, kInQuarterCar, false, 0.0, 0.3},
+      {Fault::kPlay, "worn joint", "joint_play", "play", W::kStrut, kAll, false, 1e-3, 2e-4, true},
+      {Fault::kImuPosition, "leaning sensor elsewhere", "sensor_position", "x", W::kBody, kInCar,
+       true, 0.05, 0.0, true},
+      {Fault::kSpeedometer, "speedometer wrong at speed", "speed_error", "", W::kRoad, kInCar, true,
+       0.02, 0.0, true, true},
+      {Fault::kWarming, "damper warming from run to run", "", "", W::kStrut, kAll, false, 0.1, 0.1,
+       true},
+      {Fault::kGas, "compressed gas", "", "", W::kStrut, kAll, false, 0.1, 0.1, true},
   };
   return list;
 }
@@ -118,6 +130,11 @@ void apply(const FaultSetting& s, Car& car) {
   if (s.fault == Fault::kPayload) car.payload = s.magnitude;
   if (s.fault == Fault::kCenterShift) car.center_shift = s.magnitude;
   if (s.fault == Fault::kPitchInertia) car.pitch_inertia = s.magnitude;
+  if (s.fault == Fault::kImuPosition) {
+    constexpr double kLean = 0.2;  // rad/m: a bracket that reaches farther leans farther
+    car.imu.x() += s.magnitude;
+    car.imu_lean = kLean * s.magnitude;
+  }
   if (s.fault == Fault::kBodyBending) car.bending.compliance = s.magnitude;
   if (s.fault == Fault::kSeatedPassenger) {
     car.passenger = {s.magnitude, {-0.2, 0.35, 0.1}, 4.5, 0.3, false};

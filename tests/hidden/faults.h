@@ -1,6 +1,7 @@
 // What a trial may hide: the names, the sizes, and where each is set in the generator's own models.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,12 @@ enum class Fault : int {
   kSeatedPassenger,
   kInerter,
   kHum,
+  // Hidden by seeds from kNewerFaults on:
+  kPlay,
+  kImuPosition,
+  kSpeedometer,
+  kWarming,
+  kGas,
   kCount
 };
 
@@ -60,9 +67,13 @@ struct FaultInfo {
   Where where;
   unsigned kits;
   bool either_sign;
-  double car, rig;  // magnitudes at which a search begins
-  double parameter_scale = 1.0;
+  double car, rig;              // magnitudes at which a search begins
+  bool newer = false;           // hidden by seeds from kNewerFaults on
+  bool seen_by_speeds = false;  // fits take it over and stray from what is known of the speeds
 };
+
+/// Seeds below it hide what they hid before the newer faults were added.
+inline constexpr std::uint64_t kNewerFaults = 1000;
 
 const std::vector<FaultInfo>& list_faults();
 const FaultInfo& get_info(Fault fault);

@@ -62,6 +62,31 @@ Curve make_true_bump(const Kit& kit, const Truth& truth, const RunPlan& run, dou
   return spread > 0.0 ? spread_cams(felt, spread) : felt;
 }
 
+/// Takes from a warming damper's rate what it has lost by this run: it falls evenly from the first
+/// run to the last. Other faults take nothing.
+void warm(const Kit& kit, const FaultSetting& s, std::size_t run, StrutLaw& law) {
+  if (s.fault != Fault::kWarming) return;
+  const double last = static_cast<double>(kit.runs.size()) - 1.0;
+  law.damping *= 1.0 - s.magnitude * static_cast<double>(run) / last;
+}
+
+/// A speedometer that is right at a standstill and wrong in proportion to the speed: relative
+/// error.
+double calc_speed_error(const FaultSetting& setting, double speed) {
+  return setting.fault == Fault::kSpeedometer ? setting.magnitude * speed / (20.0 * kKmh) : 0.0;
+}
+
+void scale_forces(Car& car, double scale) {
+  car.mass *= scale;
+  car.inertia *= scale;
+  for (Wheel& w : car.wheel) {
+    for (double* value : {&w.mass, &w.transverse_inertia, &w.spin_inertia, &w.tire.stiffness,
+                          &w.tire.damping, &w.strut.stiffness, &w.strut.damping}) {
+      *value *= scale;
+    }
+  }
+}
+
 std::vector<double> select_channel(const std::vector<CarSample>& samples, const std::string& name) {
   static const std::vector<std::string> corners = {"front_left_", "front_right_", "rear_left_",
                                                    "rear_right_"};
@@ -87,11 +112,19 @@ std::vector<double> select_channel(const std::vector<CarSample>& samples, const 
 std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::size_t number,
                                      double rate, double margin) {
   const RunPlan& run = kit.runs[number];
-  const Car car = make_car(kit, truth);
+  Car car = make_car(kit, truth);
+  for (const FaultSetting& s : truth.faults) {
+    for (std::size_t i = 0; i < kWheels; ++i) {
+      if (static_cast<int>(i / 2) == s.place) warm(kit, s, number, car.wheel[i].strut);
+    }
+  }
   const CarModel model(car);
   const double front = car.wheel[0].position.x(), rear = car.wheel[2].position.x();
   Drive drive;
   drive.speed = run.speed * (1.0 + truth.speed_error[number]);
+  for (const FaultSetting& s : truth.faults) {
+    drive.speed += run.speed * calc_speed_error(s, run.speed);
+  }
   Curve bump;
   if (run.excitation == Excitation::kBump) {
     bump = make_true_bump(kit, truth, run, car.wheel[0].tire.radius);
@@ -199,7 +232,7 @@ RoadMotion make_drive(const RunPlan& run, const Truth& truth, std::size_t number
 
 const StrutScale kRigScale{0.012, 0.15, 15.0, 8000.0, 1e-4, 15.0, 0.05, 0.006};
 
-QuarterCar make_quarter_car(const Kit& kit, const Truth& truth) {
+QuarterCar make_quarter_car(const Kit& kit, const Truth& truth, std::size_t run) {
   QuarterCar car;
   const auto value = [&](std::size_t i) { return kit.parameters[i].nominal * truth.factors[i]; };
   car.sprung_mass = value(0);
@@ -209,7 +242,10 @@ QuarterCar make_quarter_car(const Kit& kit, const Truth& truth) {
   car.tire_stiffness = value(4);
   car.tire_damping = value(5);
   car.strut.scale = kRigScale;
-  for (const FaultSetting& s : truth.faults) apply(s, car);
+  for (const FaultSetting& s : truth.faults) {
+    apply(s, car);
+    warm(kit, s, run, car.strut);
+  }
   return car;
 }
 
@@ -227,13 +263,16 @@ std::vector<Signal> simulate_rig_run(const Kit& kit, const Truth& truth, std::si
     StrutLaw law;
     law.stiffness = kit.parameters[0].nominal * truth.factors[0];
     law.damping = kit.parameters[1].nominal * truth.factors[1];
-    for (const FaultSetting& s : truth.faults) apply(s, law);
+    for (const FaultSetting& s : truth.faults) {
+      apply(s, law);
+      warm(kit, s, number, law);
+    }
     signals[1].value = simulate_strut(law, drive, times);
     for (const double t : times) signals[0].value.push_back(drive.position(t));
     return signals;
   }
   for (const QuarterCarSample& s :
-       simulate_quarter_car(make_quarter_car(kit, truth), drive, times)) {
+       simulate_quarter_car(make_quarter_car(kit, truth, number), drive, times)) {
     signals[0].value.push_back(s.road / gain);
     signals[1].value.push_back(s.unsprung);
     signals[2].value.push_back(s.sprung);
@@ -372,6 +411,16 @@ Truth make_nominal_truth(const Kit& kit) {
   return truth;
 }
 
+double calc_speed_stray(const Kit& kit, const FaultSetting& setting) {
+  double square = 0.0;
+  for (const RunPlan& run : kit.runs) {
+    // Level ground does not tell how fast it is crossed.
+    if (!run.fit || run.excitation != Excitation::kBump) continue;
+    square += std::pow(calc_speed_error(setting, run.speed) / kit.speed_sigma, 2);
+  }
+  return std::sqrt(square);
+}
+
 Car make_car(const Kit& kit, const Truth& truth) {
   Car car = make_nominal_car();
   car.mass *= find_factor(kit, truth, "mass");
@@ -380,6 +429,7 @@ Car make_car(const Kit& kit, const Truth& truth) {
     car.wheel[i].strut.stiffness *= find_factor(kit, truth, axle + "_stiffness");
     car.wheel[i].strut.damping *= find_factor(kit, truth, axle + "_damping");
   }
+  scale_forces(car, truth.force_scale);
   for (const FaultSetting& s : truth.faults) apply(s, car);
   return car;
 }

@@ -38,6 +38,7 @@ struct RunPlan {
   double distance = 0.0;   // m, bump ahead of the front wheels when the recording begins
   double amplitude = 0.0;  // m, of rigs
   double low_frequency = 0.0, high_frequency = 0.0;  // Hz
+  bool recorded = true;                              // false: simulated, but not given out
 };
 
 struct Kit {
@@ -60,6 +61,7 @@ struct Truth {
   std::vector<double> speed_error;  // of each run, 1
   double roughness = 0.0;           // m^3 at 0.1 cycles/m; 0: smooth
   std::uint64_t seed = 0;           // of the roughness
+  double force_scale = 1.0;         // of the car's masses, inertias, stiffnesses and dampings
 };
 
 /// "car", "quarter_car" or "dyno"; throws std::invalid_argument for others.
@@ -72,6 +74,10 @@ Truth make_nominal_truth(const Kit& kit);
 /// `margin` [s] before the recording and ends as much after it; sensor faults included.
 std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
                                  double margin);
+
+/// By how many of the speeds' sigma, all crossings for fitting together, fits that take over what
+/// the speedometer says wrong stray from it.
+double calc_speed_stray(const Kit& kit, const FaultSetting& setting);
 
 /// The car of a truth; its nominal one in the file.
 Car make_car(const Kit& kit, const Truth& truth);

@@ -8,6 +8,7 @@
 
 #include "tests/hidden/car.h"
 #include "tests/hidden/dormand_prince.h"
+#include "tests/hidden/faults.h"
 #include "tests/hidden/rigs.h"
 #include "tests/tolerance.h"
 
@@ -142,6 +143,8 @@ TEST_CASE("Hidden data: every faulty strut keeps within the tolerance of a finer
   check("selective", {.selective = 0.4});
   check("side friction", {.side_friction = 2.0});
   check("inerter", {.inerter = 0.1});
+  check("play", {.play = 5e-4});
+  check("gas", {.gas = 0.3});
 }
 
 TEST_CASE("Hidden data: friction, knee, asymmetry and stop have the forces they promise",
@@ -178,6 +181,46 @@ TEST_CASE("Hidden data: a leaking damper is idle for its stroke after each rever
   CHECK(force[50] == Approx(800.0).epsilon(tolerance(1e-6)));
   CHECK(force[103] == Approx(0.0).margin(tolerance(1e-9)));
   CHECK(force[150] == Approx(-800.0).epsilon(tolerance(1e-6)));
+}
+
+TEST_CASE("Hidden data: behind a worn joint the damper stands while the rod crosses the gap",
+          "[unit]") {
+  StrutLaw law;
+  law.damping = 1000.0;
+  law.faults.play = 4e-3;
+  // From the middle of the gap half of it, after the reversal all of it; then metal, which yields
+  // by less than 800 N over 3e6 N/m and gives the joint another 0.5 ms.
+  const auto drive = RoadMotion{[](double t) { return 0.8 * std::fmin(t, 0.2 - t); },
+                                [](double t) { return t < 0.1 ? 0.8 : -0.8; }};
+  const auto force = simulate_strut(law, drive, make_times(0.0, 0.2, 1e-3));
+  CHECK(force[2] == Approx(0.0).margin(tolerance(1e-9)));
+  CHECK(force[50] == Approx(800.0).epsilon(tolerance(1e-6)));
+  CHECK(force[104] == Approx(0.0).margin(tolerance(1e-9)));
+  CHECK(force[150] == Approx(-800.0).epsilon(tolerance(1e-6)));
+}
+
+TEST_CASE("Hidden data: compressed gas is stiffer than drawn-out gas and nothing at rest",
+          "[unit]") {
+  StrutLaw law;
+  law.faults.gas = 0.1;
+  CHECK(calc_gas_force(law, 0.0) == 0.0);
+  // 200 N at rest, a column of 0.24 m, halved.
+  CHECK(calc_gas_force(law, 0.12) ==
+        Approx(200.0 * (std::pow(2.0, 1.35) - 1.0)).epsilon(tolerance(1e-12)));
+  CHECK(calc_gas_force(law, 0.03) > -calc_gas_force(law, -0.03));
+}
+
+TEST_CASE("Hidden data: a leaning sensor reads gravity forward", "[unit]") {
+  Car car = make_nominal_car();
+  const CarModel straight(car);
+  apply({Fault::kImuPosition, 0, 0.1, 0.0}, car);
+  const CarModel leaning(car);
+  const Drive flat;
+  const auto before = straight.calc_sample(flat, straight.make_start(0.0, 0.0)).imu_acceleration;
+  const auto after = leaning.calc_sample(flat, leaning.make_start(0.0, 0.0)).imu_acceleration;
+  // 0.02 rad nose down: the x axis looks down, and reads less of the acceleration upward.
+  CHECK(after.x() - before.x() == Approx(-9.81 * std::sin(0.02)).epsilon(tolerance(1e-3)));
+  CHECK(after.norm() == Approx(before.norm()).epsilon(tolerance(1e-12)));
 }
 
 TEST_CASE("Hidden data: the car at rest carries its weight where statics say", "[reference]") {

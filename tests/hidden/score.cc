@@ -5,15 +5,23 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <limits>
 #include <set>
+#include <utility>
 
 namespace strut::hidden {
 namespace {
 
 constexpr double kConfident = 0.8;
 
+/// A lost stroke and a worn joint are one motion in two sizes: the catalogue says so.
+std::string merge_aliases(const std::string& effect) {
+  return effect == "joint_play" ? "damper_leak" : effect;
+}
+
 bool is_truth(const Claim& claim, const TrueFault& fault) {
-  return claim.effect == fault.effect && claim.place == fault.place;
+  return !fault.effect.empty() && merge_aliases(claim.effect) == merge_aliases(fault.effect) &&
+         claim.place == fault.place;
 }
 
 bool names(const std::vector<Claim>& claims, const TrueFault& fault) {
@@ -46,7 +54,7 @@ double find_probability(const Verdict& v, const TrueFault& fault) {
 /// Effects with an alias that no run of the kits tells apart.
 bool is_splittable(const TrueFault& fault) {
   static const std::set<std::string> kAliases = {"sensor_delay", "sensor_lowpass", "damper_leak",
-                                                 "strut_friction"};
+                                                 "joint_play", "strut_friction"};
   return kAliases.count(fault.effect) == 0;
 }
 
@@ -56,6 +64,8 @@ bool says_place(const Verdict& v, const TrueFault& fault) {
   return std::any_of(v.causes.begin(), v.causes.end(), there) ||
          v.where.find(fault.place) != std::string::npos;
 }
+
+bool explains(const Verdict& v, double share) { return v.has_gain && v.explained >= share; }
 
 bool is_strut_rate(const std::string& name) {
   return name.find("tire") == std::string::npos &&
@@ -69,8 +79,15 @@ void add_baseline(const TrueTrial& trial, const Verdict& v, bool named, Score& s
     const Estimate& e = found->second;
     score.cells[Metric::kBaseCovered][trial.grade].add(e.low <= truth && truth <= e.high);
     if (!is_strut_rate(name)) continue;
-    if (trial.category == "none") score.null_error.push_back(e.value / truth - 1.0);
-    if (named) score.named_error.push_back(e.value / truth - 1.0);
+    const double error = e.value / truth - 1.0, sigma = (e.high - e.low) / (2.0 * 1.96);
+    if (trial.category == "none") {
+      score.null_error.push_back(error);
+      if (sigma > 0.0) score.null_pull.push_back((e.value - truth) / sigma);
+    }
+    if (!named) continue;
+    constexpr double kSmooth = 1e-6, kClassA = 16e-6;  // m^3
+    if (trial.roughness <= kSmooth) score.smooth_error.push_back(error);
+    if (trial.roughness == kClassA) score.rough_error.push_back(error);
   }
 }
 
@@ -82,11 +99,12 @@ void add_one(const TrueTrial& trial, const Verdict& v, Score& score) {
   const bool exact = claimed && !v.causes.empty() && is_truth(v.causes.front(), fault);
   score.cells[Metric::kDetected][grade].add(claimed);
   score.cells[Metric::kInGroup][grade].add(in_group);
+  score.cells[Metric::kInPrintedGroup][grade].add(
+      claimed && is_in_group(v, fault, std::numeric_limits<std::size_t>::max()));
   if (is_splittable(fault)) score.cells[Metric::kExact][grade].add(exact);
-  if (grade <= 'B') {
-    score.probability_on_truth.push_back(find_probability(v, fault));
-    if (v.has_gain) score.explained.push_back(v.explained);
-  }
+  if (grade <= 'B') score.probability_on_truth.push_back(find_probability(v, fault));
+  score.cells[Metric::kExplained95][grade].add(explains(v, 0.95));
+  score.cells[Metric::kExplained80][grade].add(explains(v, 0.80));
   if (!exact || fault.parameter.empty()) return;
   const auto found = v.causes.front().parameters.find(fault.parameter);
   if (found == v.causes.front().parameters.end()) return;
@@ -106,6 +124,7 @@ void add_two(const TrueTrial& trial, const Verdict& v, Score& score) {
 void add_unknown(const TrueTrial& trial, const Verdict& v, Score& score) {
   const bool flagged = v.verdict == "unknown" || v.verdict == "form_incomplete";
   score.cells[Metric::kUnknownFlagged][trial.grade].add(flagged);
+  score.cells[Metric::kMapExplained70][trial.grade].add(explains(v, 0.70));
   if (flagged) {
     score.cells[Metric::kUnknownPlaced][trial.grade].add(says_place(v, trial.faults.front()));
   }
@@ -129,6 +148,12 @@ void add_claims(const TrueTrial& trial, const Verdict& v, Score& score) {
   }
 }
 
+std::string describe(const Claim& c) {
+  std::array<char, 16> probability{};
+  std::snprintf(probability.data(), probability.size(), " %.2f", c.probability);
+  return " " + c.effect + (c.place.empty() ? "" : "@") + c.place + probability.data();
+}
+
 std::string describe(const TrueTrial& trial, const Verdict& v) {
   std::string line = trial.name + " " + trial.grade + ": ";
   if (trial.faults.empty()) line += "nothing hidden";
@@ -137,11 +162,15 @@ std::string describe(const TrueTrial& trial, const Verdict& v) {
             f.place;
   }
   line += "; said: " + (v.verdict.empty() ? std::string("nothing") : v.verdict);
-  for (const Claim& c : v.causes) {
-    char probability[16];
-    std::snprintf(probability, sizeof probability, " %.2f", c.probability);
-    line += " " + c.effect + (c.place.empty() ? "" : "@") + c.place + probability;
-  }
+  for (const Claim& c : v.causes) line += describe(c);
+  constexpr std::size_t kListed = 3;
+  const auto add = [&](const char* title, const std::vector<Claim>& claims) {
+    for (std::size_t i = 0; i < std::min(claims.size(), kListed); ++i) {
+      line += (i == 0 ? title : ",") + describe(claims[i]);
+    }
+  };
+  add("; group:", v.group);
+  add("; then:", v.runners_up);
   return line;
 }
 
@@ -175,52 +204,50 @@ double calc_quantile(std::vector<double> values, double share) {
   return values[rank];
 }
 
-template <class... Numbers>
-std::string print(const char* form, Numbers... numbers) {
-  std::array<char, 256> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), form, numbers...);
-  return buffer.data();
-}
-
-std::string print_cell(const Cell& cell) {
-  if (cell.total == 0) return " - |";
-  const Interval i = calc_wilson(cell.hits, cell.total);
-  return print(" %d/%d %.3f [%.3f, %.3f] |", cell.hits, cell.total,
-               static_cast<double>(cell.hits) / cell.total, i.low, i.high);
-}
-
-std::string make_table(const Score& score) {
-  std::string out = "| metric | A | B | C | D | none |\n|---|---|---|---|---|---|\n";
-  for (int m = 0; m < static_cast<int>(Metric::kCount); ++m) {
-    const auto metric = static_cast<Metric>(m);
-    out += std::string("| ") + get_name(metric) + " |";
-    for (const char grade : {'A', 'B', 'C', 'D', '-'}) {
-      out += print_cell(pool(score, metric, std::string(1, grade)));
-    }
-    out += "\n";
-  }
-  return out;
-}
-
 }  // namespace
 
 const char* get_name(Metric metric) {
   constexpr std::array<const char*, static_cast<std::size_t>(Metric::kCount)> kNames = {
-      "false alarm",      "detected",       "truth in group",      "exact effect and place",
-      "unknown flagged",  "unknown placed", "two: both named",     "two: one named",
-      "wrong, confident", "overclaimed",    "effect covered 95 %", "baseline covered 95 %"};
+      "false alarm",
+      "detected",
+      "truth in group",
+      "truth in printed group",
+      "exact effect and place",
+      "unknown flagged",
+      "unknown placed",
+      "two: both named",
+      "two: one named",
+      "wrong, confident",
+      "overclaimed",
+      "effect covered 95 %",
+      "baseline covered 95 %",
+      "one: 95 % explained on hold-out",
+      "one: 80 % explained on hold-out",
+      "unknown: 70 % explained on hold-out"};
   return kNames[static_cast<std::size_t>(metric)];
 }
 
 const std::vector<Gate>& list_gates() {
   static const std::vector<Gate> gates = {
-      {Metric::kFalseAlarm, "-", 0.01, false},    {Metric::kDetected, "AB", 0.99, true},
-      {Metric::kDetected, "C", 0.80, true},       {Metric::kInGroup, "A", 0.98, true},
-      {Metric::kInGroup, "B", 0.95, true},        {Metric::kInGroup, "C", 0.80, true},
-      {Metric::kExact, "AB", 0.90, true},         {Metric::kUnknownFlagged, "AB", 0.95, true},
-      {Metric::kUnknownPlaced, "AB", 0.85, true}, {Metric::kBothNamed, "AB", 0.70, true},
-      {Metric::kOneOfTwoNamed, "AB", 0.95, true}, {Metric::kWrongConfident, "ABCD-", 0.02, false},
-      {Metric::kOverclaimed, "D", 0.10, false},   {Metric::kEffectCovered, "AB", 0.90, true},
+      {Metric::kFalseAlarm, "-", 0.01, false},
+      {Metric::kDetected, "AB", 0.99, true},
+      {Metric::kDetected, "C", 0.80, true},
+      {Metric::kInGroup, "A", 0.98, true},
+      {Metric::kInGroup, "B", 0.95, true},
+      {Metric::kInGroup, "C", 0.80, true},
+      {Metric::kInPrintedGroup, "AB", 0.99, true},
+      {Metric::kExact, "AB", 0.90, true},
+      {Metric::kUnknownFlagged, "AB", 0.95, true},
+      {Metric::kUnknownPlaced, "AB", 0.85, true},
+      {Metric::kWrongConfident, "ABCD-", 0.02, false},
+      {Metric::kBothNamed, "AB", 0.70, true},
+      {Metric::kOneOfTwoNamed, "AB", 0.95, true},
+      {Metric::kOverclaimed, "D", 0.10, false},
+      {Metric::kEffectCovered, "AB", 0.90, true},
+      // Medians and a tenth as proportions: at least half, or nine tenths, explain so much.
+      {Metric::kExplained95, "AB", 0.50, true},
+      {Metric::kExplained80, "AB", 0.90, true},
+      {Metric::kMapExplained70, "AB", 0.50, true},
   };
   return gates;
 }
@@ -232,6 +259,7 @@ Score calc_score(const std::vector<TrueTrial>& trials,
     const auto found = verdicts.find(trial.name);
     const Verdict v = found == verdicts.end() ? Verdict{} : found->second;
     if (v.verdict.empty()) ++score.missing;
+    ++score.contents[trial.category][trial.grade];
     const bool named = trial.category == "one" && v.verdict == "named" && !v.causes.empty() &&
                        is_truth(v.causes.front(), trial.faults.front());
     if (trial.category == "none") {
@@ -280,35 +308,25 @@ bool passes(const Gate& gate, const Cell& cell) {
   return gate.at_least ? i.high >= gate.target : i.low <= gate.target;
 }
 
-std::string make_report(const Score& score, bool& passed) {
-  passed = score.missing == 0;
-  std::string out =
-      make_table(score) + "\n| gate | grades | target | measured | |\n|---|---|---|---|---|\n";
-  for (const Gate& gate : list_gates()) {
-    const Cell cell = pool(score, gate.metric, gate.grades);
-    const bool ok = passes(gate, cell);
-    passed = passed && ok;
-    out += print("| %s | %s | %s %.2f |", get_name(gate.metric), gate.grades.c_str(),
-                 gate.at_least ? ">=" : "<=", gate.target) +
-           print_cell(cell) + (ok ? " |\n" : " FAILS |\n");
-  }
-  out += print("\nmean probability on the truth, A and B (target 0.85): %.3f of %zu\n",
-               calc_mean(score.probability_on_truth), score.probability_on_truth.size());
-  out += print("calibration error (target 0.05): %.3f of %zu first causes\n",
-               calc_calibration_error(score.confidence), score.confidence.size());
-  out += print("stiffness and damping, rms relative: %.5f nothing hidden (%zu), %.5f named (%zu)\n",
-               calc_rms(score.null_error), score.null_error.size(), calc_rms(score.named_error),
-               score.named_error.size());
-  out += print("effect's parameter, median relative: %.4f (%zu)\n",
-               calc_quantile(score.effect_error, 0.5), score.effect_error.size());
-  out += print(
-      "explained on hold-out, A and B: median %.3f (target 0.95), 10 %% below %.3f (0.80), %zu\n",
-      calc_quantile(score.explained, 0.5), calc_quantile(score.explained, 0.1),
-      score.explained.size());
-  out += print("verdicts missing: %d\n", score.missing);
-  out += print("\n%zu trials not answered right\n", score.failures.size());
-  for (const std::string& line : score.failures) out += "- " + line + "\n";
-  return out;
+std::vector<Quantity> list_quantities(const Score& score) {
+  const auto calc_median_size = [](std::vector<double> values) {
+    for (double& v : values) v = std::fabs(v);
+    return calc_quantile(std::move(values), 0.5);
+  };
+  return {{"mean probability on the truth, A and B", calc_mean(score.probability_on_truth),
+           score.probability_on_truth.size(), 0.85, true},
+          {"calibration error of first causes", calc_calibration_error(score.confidence),
+           score.confidence.size(), 0.05, false},
+          {"stiffness and damping, named, smooth: rms relative", calc_rms(score.smooth_error),
+           score.smooth_error.size(), 0.003, false},
+          {"stiffness and damping, named, road of class A: rms relative",
+           calc_rms(score.rough_error), score.rough_error.size(), 0.01, false},
+          {"stiffness and damping, nothing hidden: rms over the stated 1 sigma",
+           calc_rms(score.null_pull), score.null_pull.size(), 1.2, false},
+          {"stiffness and damping, nothing hidden: rms relative", calc_rms(score.null_error),
+           score.null_error.size(), 0.01, false},
+          {"effect's parameter, named exactly: median relative error",
+           calc_median_size(score.effect_error), score.effect_error.size(), 0.1, false}};
 }
 
 }  // namespace strut::hidden

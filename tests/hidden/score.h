@@ -1,8 +1,10 @@
-// How good verdicts are, against the truth: the table and the gates of the evaluation protocol.
+// How good verdicts are, against the truth: what the evaluation protocol counts, and its targets.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/hidden/verdicts.h"
@@ -15,6 +17,7 @@ enum class Metric {
   kFalseAlarm,      // nothing hidden, something claimed
   kDetected,        // one of the catalogue hidden, not called adequate
   kInGroup,         // one: the truth is a cause or in the group, of at most kLargestGroup
+  kInPrintedGroup,  // one: the truth is a cause or in the group, however large
   kExact,           // one, effects that the kits can tell apart: the first cause is the truth
   kUnknownFlagged,  // unknown hidden: verdict unknown or form_incomplete
   kUnknownPlaced,   // unknown, flagged: the place is named
@@ -24,6 +27,9 @@ enum class Metric {
   kOverclaimed,     // grade D: one cause named with more than 0.8
   kEffectCovered,   // named exactly: 95 % interval holds the effect's parameter
   kBaseCovered,     // parameters of the baseline
+  kExplained95,     // one: explains at least 95 % of what can be explained on the runs held out
+  kExplained80,     // one: at least 80 %
+  kMapExplained70,  // unknown: at least 70 %
   kCount
 };
 const char* get_name(Metric metric);
@@ -40,14 +46,16 @@ struct Cell {
 };
 
 struct Score {
-  std::map<Metric, std::map<char, Cell>> cells;     // by grade, '-' for nothing hidden
-  std::vector<double> probability_on_truth;         // one, A and B
-  std::vector<double> explained;                    // one, A and B
-  std::vector<double> null_error, named_error;      // relative, of stiffnesses and dampings
-  std::vector<double> effect_error;                 // relative, of effects named exactly
-  std::vector<std::pair<double, bool>> confidence;  // of each first cause, and whether it is right
-  std::vector<std::string> failures;                // a line a trial
-  int missing = 0;                                  // trials without a verdict
+  std::map<Metric, std::map<char, Cell>> cells;         // by grade, '-' for nothing hidden
+  std::vector<double> probability_on_truth;             // one, A and B
+  std::vector<double> null_error;                       // relative, of stiffnesses and dampings
+  std::vector<double> null_pull;                        // the same over the stated 1 sigma
+  std::vector<double> smooth_error, rough_error;        // relative, named; roads up to 1e-6, 16e-6
+  std::vector<double> effect_error;                     // relative, of effects named exactly
+  std::vector<std::pair<double, bool>> confidence;      // of each first cause, and whether right
+  std::vector<std::string> failures;                    // a line a trial, with the runners-up
+  std::map<std::string, std::map<char, int>> contents;  // trials by category and grade
+  int missing = 0;                                      // trials without a verdict
 };
 
 /// `verdicts` by the trials' names; a trial without one counts against the tool everywhere.
@@ -70,7 +78,16 @@ Cell pool(const Score& score, Metric metric, const std::string& grades);
 /// A cell fails when its whole Wilson interval lies on the wrong side of the target.
 bool passes(const Gate& gate, const Cell& cell);
 
-/// The table in Markdown with what failed. `passed`: all gates, no verdict missing.
-std::string make_report(const Score& score, bool& passed);
+/// A score that is no proportion, with its target.
+struct Quantity {
+  std::string name;
+  double value = 0.0;
+  std::size_t count = 0;  // it comes from
+  double target = 0.0;
+  bool at_least = true;
+
+  bool passes() const { return count == 0 || (at_least ? value >= target : value <= target); }
+};
+std::vector<Quantity> list_quantities(const Score& score);
 
 }  // namespace strut::hidden

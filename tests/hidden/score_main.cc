@@ -1,44 +1,126 @@
 // strut_hidden_score: verdicts against the sealed truths.
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "tests/hidden/score.h"
+#include "tests/hidden/limits.h"
+#include "tests/hidden/report.h"
 
+namespace strut::hidden {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
-    "Usage: strut_hidden_score TRUTHS VERDICTS\n\n"
+    "Usage: strut_hidden_score [OPTION] TRUTHS VERDICTS [TRUTHS VERDICTS...]\n\n"
     "Prints how the verdicts VERDICTS/SEED/verdict.json answer the truths TRUTHS/SEED.json, per\n"
-    "grade of the signal-to-noise ratio with 95 % Wilson intervals. Exit status 1 where the whole\n"
-    "interval of a gate lies on the wrong side of its target, or a verdict is missing.\n\n"
-    "Example: strut_hidden_score hidden/truths verdicts\n";
+    "grade of the signal-to-noise ratio with 95 % Wilson intervals, trials of several kits\n"
+    "together and kit by kit. Exit status 1 where the whole interval of a gate lies on the wrong\n"
+    "side of its target, a score without interval does, or a verdict is missing.\n\n"
+    "  --limits FILE       exit status 1 where a score lies beyond its limit in FILE instead, or\n"
+    "                      where the limits would let an impostor pass\n"
+    "  --set-limits FILE   writes FILE from this run\n"
+    "  --json              prints counts and values as JSON; exit status 0\n\n"
+    "Example: strut_hidden_score hidden/truths hidden/verdicts\n";
 
-int score(const fs::path& truths, const fs::path& folder) {
-  const auto trials = strut::hidden::read_truths(truths);
-  std::map<std::string, strut::hidden::Verdict> verdicts;
-  for (const auto& trial : trials) {
-    const fs::path path = folder / trial.name / "verdict.json";
-    if (fs::exists(path)) verdicts[trial.name] = strut::hidden::read_verdict(path);
+struct Request {
+  std::string option, limits;
+  std::vector<fs::path> folders;
+};
+
+struct Trials {
+  std::vector<TrueTrial> truths;
+  std::map<std::string, Verdict> verdicts;
+};
+
+Request parse(std::vector<std::string> words) {
+  Request request;
+  if (!words.empty() && words.front().rfind("--", 0) == 0) {
+    request.option = words.front();
+    words.erase(words.begin());
+    if (request.option == "--limits" || request.option == "--set-limits") {
+      if (words.empty()) throw std::invalid_argument(request.option + ": file is missing");
+      request.limits = words.front();
+      words.erase(words.begin());
+    } else if (request.option != "--json") {
+      throw std::invalid_argument(request.option + ": no such option");
+    }
+  }
+  if (words.empty() || words.size() % 2 != 0) {
+    throw std::invalid_argument("pairs of folders are asked for");
+  }
+  request.folders.assign(words.begin(), words.end());
+  return request;
+}
+
+Trials read_trials(const std::vector<fs::path>& folders) {
+  Trials trials;
+  for (std::size_t i = 0; i + 1 < folders.size(); i += 2) {
+    for (TrueTrial& truth : read_truths(folders[i])) {
+      const fs::path path = folders[i + 1] / truth.name / "verdict.json";
+      truth.name = truth.kit + " " + truth.name;
+      if (fs::exists(path)) trials.verdicts[truth.name] = read_verdict(path);
+      trials.truths.push_back(truth);
+    }
+  }
+  return trials;
+}
+
+/// Impostors that the limits do not tell from the tool.
+std::vector<std::string> find_passing_impostors(const Limits& limits, const Trials& trials) {
+  std::vector<std::string> passing;
+  for (const Impostor& impostor : make_impostors(trials.truths, trials.verdicts)) {
+    if (find_misses(limits, calc_score(trials.truths, impostor.verdicts)).empty()) {
+      passing.push_back("the limits let pass " + impostor.name);
+    }
+  }
+  return passing;
+}
+
+int judge(const Limits& limits, const Trials& trials) {
+  const Score score = calc_score(trials.truths, trials.verdicts);
+  std::cout << "\n" << make_limits_table(limits, score) << "\n";
+  std::vector<std::string> misses = find_misses(limits, score);
+  for (const std::string& line : find_passing_impostors(limits, trials)) misses.push_back(line);
+  for (const std::string& line : misses) std::cout << "MISSED: " << line << "\n";
+  if (misses.empty()) std::cout << "every limit is kept\n";
+  return misses.empty() ? 0 : 1;
+}
+
+int run(const Request& request) {
+  const Trials trials = read_trials(request.folders);
+  if (request.option == "--json") {
+    std::cout << make_score_json(calc_score(trials.truths, trials.verdicts));
+    return 0;
   }
   bool passed = false;
-  std::cout << strut::hidden::make_report(strut::hidden::calc_score(trials, verdicts), passed);
+  std::cout << make_report(trials.truths, trials.verdicts, passed);
+  if (request.option == "--limits") return judge(read_limits(request.limits), trials);
+  if (request.option == "--set-limits") {
+    const Limits limits = make_limits(calc_score(trials.truths, trials.verdicts));
+    std::ofstream out(request.limits, std::ios::binary);
+    out << make_limits_json(limits);
+    out.close();
+    if (!out) throw std::runtime_error(request.limits + ": cannot be written");
+    return judge(limits, trials);
+  }
   return passed ? 0 : 1;
 }
 
 }  // namespace
+}  // namespace strut::hidden
 
 int main(int count, char** words) {
-  if (count != 3) {
-    std::cerr << kUsage;
-    return 2;
-  }
   try {
-    return score(words[1], words[2]);
+    return strut::hidden::run(strut::hidden::parse({words + 1, words + count}));
+  } catch (const std::invalid_argument& e) {
+    std::cerr << "strut_hidden_score: " << e.what() << "\n\n" << strut::hidden::kUsage;
+    return 2;
   } catch (const std::exception& e) {
     std::cerr << "strut_hidden_score: " << e.what() << "\n";
     return 2;

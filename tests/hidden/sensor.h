@@ -20,6 +20,7 @@ struct Sensor {
   double quantum = 0.0;      // SI, of the converter
   double range = 1e30;       // SI, reading saturates at +-
   bool input = false;        // drives the model
+  bool recorded = true;      // false: simulated, but not given out
 };
 
 /// The clock of a file: stamps are exact to a microsecond, the samples are not.

@@ -26,10 +26,21 @@ double calc_engagement(double leak, double left) {
   return std::clamp(1.0 - left / (0.1 * leak), 0.0, 1.0);
 }
 
-/// Speed of the damper behind the mount: damper(w) + m w = k x + k3 x^3 + m v, by Newton.
-double solve_mount(const StrutLaw& law, double rate, double x, double speed, double& force) {
+/// Rate of the mount, or of a bare joint's metal on metal [N/m].
+double get_mount_rate(const StrutLaw& law) {
+  constexpr double kMetal = 10.0;
+  return law.faults.mount > 0.0 ? law.scale.mount_rate / law.faults.mount
+                                : kMetal * law.scale.mount_rate;
+}
+
+/// Speed of the damper behind the mount: damper(w) + m w = k x + k3 x^3 + m v, by Newton; x beyond
+/// the joint's gap, in which the damper stands.
+double solve_mount(const StrutLaw& law, double rate, double place, double speed, double& force) {
+  const double gap = 0.5 * law.faults.play;
+  const double x = std::copysign(std::max(std::fabs(place) - gap, 0.0), place);
   const double cubic = rate / std::pow(0.02 * law.scale.travel, 2);
-  const double viscous = 0.05 * law.damping;
+  const double touch = gap > 0.0 ? std::min(std::fabs(x) / (0.1 * gap), 1.0) : 1.0;
+  const double viscous = 0.05 * law.damping * touch;
   const double spring = rate * x + cubic * x * x * x;
   double w = speed;
   for (int i = 0; i < 30; ++i) {
@@ -49,8 +60,8 @@ double calc_fast_damper(const StrutLaw& law, double speed, const double* states,
   const StrutFaults& f = law.faults;
   double seen = speed, force = 0.0;
   rates[kMount] = 0.0;
-  if (f.mount > 0.0) {
-    seen = solve_mount(law, law.scale.mount_rate / f.mount, states[kMount], speed, force);
+  if (f.mount > 0.0 || f.play > 0.0) {
+    seen = solve_mount(law, get_mount_rate(law), states[kMount], speed, force);
     rates[kMount] = speed - seen;
   } else {
     force = calc_damper_force(law, speed);
@@ -93,6 +104,13 @@ double calc_stop_force(const StrutLaw& law, double travel, double speed) {
   return law.faults.stop * table * (1.0 + 0.25 * turn);
 }
 
+double calc_gas_force(const StrutLaw& law, double travel) {
+  constexpr double kExponent = 1.35;
+  const double column = 4.0 * law.scale.travel;
+  const double left = std::max(1.0 - travel / column, 0.2);
+  return law.faults.gas * law.scale.force * (std::pow(left, -kExponent) - 1.0);
+}
+
 double calc_strut_force(const StrutLaw& law, double travel, double speed, const double* states,
                         double* rates) {
   const StrutFaults& f = law.faults;
@@ -110,6 +128,7 @@ double calc_strut_force(const StrutLaw& law, double travel, double speed, const 
     force += f.hardening * law.stiffness * law.scale.travel * (std::sinh(u) - u);
   }
   if (f.stop != 0.0) force += calc_stop_force(law, travel, speed);
+  if (f.gas != 0.0) force += calc_gas_force(law, travel);
   rates[kBristle] = 0.0;
   const double sliding =
       f.friction + f.side_friction * std::min(std::pow(travel / law.scale.travel, 2), 4.0);

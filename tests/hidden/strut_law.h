@@ -18,10 +18,12 @@ struct StrutFaults {
   double stop = 0.0;       // 1, multiple of the stop's table
   double mount = 0.0;      // 1, compliance of the mount over the scale's
   double gas_lag = 0.0;    // s, first-order lag of the damper's force
+  double play = 0.0;       // m, gap of the joint in series with the damper, from stop to stop
   // Unknown to every catalogue:
   double selective = 0.0;      // 1, share of the damping that acts only at low frequency
   double side_friction = 0.0;  // N, friction that grows with the stroke it stands at
   double inerter = 0.0;        // kg, force in proportion to the acceleration of compression
+  double gas = 0.0;            // 1, gas behind the damper's piston at rest over the scale's force
 };
 
 /// Lengths, speeds and forces of the size that the strut meets: shapes are scaled by them.
@@ -54,6 +56,10 @@ double calc_damper_force(const StrutLaw& law, double speed);
 /// Force of the stop at a compression from rest and its rate: table with linear sections times
 /// 1 + 0.25 v / (|v| + 0.1 speed) [N].
 double calc_stop_force(const StrutLaw& law, double travel, double speed);
+
+/// Gas compressed along a column of four travels, polytropic with exponent 1.35, beyond its force
+/// at rest [N].
+double calc_gas_force(const StrutLaw& law, double travel);
 
 /// Force beyond the static one, positive where it pushes the ends apart, of a compression from rest
 /// [m] and its rate [m/s]; fills the rates of the inner states. Without the inerter's, which

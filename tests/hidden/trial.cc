@@ -31,7 +31,10 @@ double get_cap(const Kit& kit, const FaultInfo& info) {
     case Fault::kSelectiveDamper:
       return 0.8;
     case Fault::kSaturation:
+    case Fault::kWarming:
       return 0.6;
+    case Fault::kSpeedometer:
+      return 0.06;
     case Fault::kParabola:
     case Fault::kTruncatedRamp:
       return 1.2;
@@ -48,7 +51,9 @@ double get_cap(const Kit& kit, const FaultInfo& info) {
 /// Below it the equations become stiffer than the integrator likes, or nothing is left.
 double get_floor(const Kit& kit, const FaultInfo& info) {
   const double start = get_start(kit, info);
-  return info.fault == Fault::kMount || info.fault == Fault::kLag ? 0.02 * start : 3e-4 * start;
+  const bool is_stiff =
+      info.fault == Fault::kMount || info.fault == Fault::kLag || info.fault == Fault::kPlay;
+  return is_stiff ? 0.02 * start : 3e-4 * start;
 }
 
 /// Largest reading of a sensor in all runs.
@@ -125,6 +130,7 @@ std::vector<FaultSetting> Sampler::draw_faults(std::uint64_t seed, Category cate
   std::vector<const FaultInfo*> candidates;
   for (const FaultInfo& info : list_faults()) {
     const bool wanted = is_known(info) != (category == Category::kUnknown);
+    if (info.newer && seed < kNewerFaults) continue;
     if (wanted && (info.kits & kit_.bit) != 0) candidates.push_back(&info);
   }
   RandomStream draws(seed, "faults");
@@ -152,17 +158,25 @@ std::vector<FaultSetting> Sampler::draw_faults(std::uint64_t seed, Category cate
   return settings;
 }
 
+SignalToNoise Sampler::measure(const FaultSetting& setting, const Truth& without,
+                               const std::vector<std::vector<Signal>>& base) const {
+  if (get_info(setting.fault).seen_by_speeds) {
+    const double stray = calc_speed_stray(kit_, setting);
+    return {stray, stray, stray};
+  }
+  Truth with = without;
+  with.faults = {setting};
+  return get_detector(without.roughness).calc(subtract(simulate_fit_runs(kit_, with), base));
+}
+
 HiddenFault Sampler::size_fault(FaultSetting setting, double target, const Truth& without,
                                 const std::vector<std::vector<Signal>>& base) const {
   const FaultInfo& info = get_info(setting.fault);
-  const Detector& detector = get_detector(without.roughness);
   // Nearly in proportion; thresholds need the bracket, too.
   double low = get_floor(kit_, info), high = get_cap(kit_, info);
   HiddenFault hidden{setting, {}};
   for (int i = 0; i < 9; ++i) {
-    Truth with = without;
-    with.faults = {hidden.setting};
-    hidden.noise = detector.calc(subtract(simulate_fit_runs(kit_, with), base));
+    hidden.noise = measure(hidden.setting, without, base);
     const double size = std::fabs(hidden.setting.magnitude), ratio = hidden.noise.ratio;
     if (std::fabs(ratio / target - 1.0) < 0.05) break;
     (ratio < target ? low : high) = size;

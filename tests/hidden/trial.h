@@ -48,6 +48,8 @@ class Sampler {
   std::vector<FaultSetting> draw_faults(std::uint64_t seed, Category category) const;
   HiddenFault size_fault(FaultSetting setting, double target, const Truth& without,
                          const std::vector<std::vector<Signal>>& base) const;
+  SignalToNoise measure(const FaultSetting& setting, const Truth& without,
+                        const std::vector<std::vector<Signal>>& base) const;
   const Detector& get_detector(double roughness) const;
 
   Kit kit_;

@@ -1,10 +1,12 @@
 // What the sampler draws, how it grades, what it writes.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
 
+#include "tests/hidden/ablation.h"
 #include "tests/hidden/campaign_files.h"
 #include "tests/hidden/random_stream.h"
 #include "tests/hidden/sha256.h"
@@ -47,6 +49,130 @@ TEST_CASE("Hidden data: 780 trials hide nothing 300 times and something unknown 
   CHECK(count[Category::kOne] == 280);
   CHECK(count[Category::kTwo] == 100);
   CHECK(count[Category::kUnknown] == 100);
+}
+
+TEST_CASE("Hidden data: seeds of earlier measurements hide what they hid", "[regression]") {
+  const Sampler sampler(make_kit("dyno"));
+  std::string hidden;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    for (const HiddenFault& f : sampler.draw(seed).faults) {
+      CHECK_FALSE(get_info(f.setting.fault).newer);
+      hidden += std::to_string(seed) + " " + get_info(f.setting.fault).name + "; ";
+    }
+  }
+  CHECK(hidden ==
+        "0 sensor low-pass; 1 friction by stroke; 3 idle stroke; 3 LuGre friction; "
+        "6 idle stroke; 11 lag; ");
+  int newer = 0;
+  for (std::uint64_t seed = kNewerFaults; seed < kNewerFaults + 39; ++seed) {
+    for (const HiddenFault& f : sampler.draw(seed).faults) {
+      newer += get_info(f.setting.fault).newer ? 1 : 0;
+    }
+  }
+  CHECK(newer > 0);
+}
+
+TEST_CASE("Hidden data: every name is listed at its place", "[unit]") {
+  const auto& list = list_faults();
+  REQUIRE(list.size() == static_cast<std::size_t>(Fault::kCount));
+  for (std::size_t i = 0; i < list.size(); ++i) CHECK(list[i].fault == static_cast<Fault>(i));
+}
+
+TEST_CASE("Hidden data: a warming damper loses from run to run, the first keeps all", "[unit]") {
+  const Kit kit = make_kit("dyno");
+  const Truth warming = with_fault(kit, {Fault::kWarming, 0, 0.2, 0.0});
+  // At most 1 of the crank's sine the damper's force is that of its rate: 20 % less in the last
+  // run.
+  for (const auto& [run, share] : {std::pair<std::size_t, double>{0, 1.0}, {2, 0.9}, {4, 0.8}}) {
+    Truth weaker = make_nominal_truth(kit);
+    weaker.factors[1] = share;
+    const auto a = simulate_run(kit, warming, run, kit.rate, 0.0);
+    const auto b = simulate_run(kit, weaker, run, kit.rate, 0.0);
+    for (std::size_t i = 0; i < a[1].value.size(); i += 50) {
+      REQUIRE(a[1].value[i] == Approx(b[1].value[i]).margin(tolerance(1e-6)));
+    }
+  }
+}
+
+TEST_CASE("Hidden data: a wrong speedometer is another speed in every run", "[unit]") {
+  const Kit kit = make_kit("car");
+  const FaultSetting wrong{Fault::kSpeedometer, 0, 0.02, 0.0};
+  // 12, 20, 30, 30 and 15 km/h are off by 2 % times v / 20 km/h, their sigma is 0.45 %.
+  const double known = 0.02 / 0.0045 * std::sqrt(0.36 + 1.0 + 2.25 + 2.25 + 0.5625);
+  CHECK(calc_speed_stray(kit, wrong) == Approx(known).epsilon(tolerance(1e-12)));
+  const std::size_t run = 3;
+  REQUIRE(kit.runs[run].speed == Approx(30.0 / 3.6));
+  Truth faster = make_nominal_truth(kit);
+  faster.speed_error[run] = 0.03;
+  const auto a = simulate_run(kit, with_fault(kit, wrong), run, 100.0, 0.0);
+  const auto b = simulate_run(kit, faster, run, 100.0, 0.0);
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    for (std::size_t i = 0; i < a[c].value.size(); ++i) {
+      // Speeds that differ in their last digit: what the adaptive steps make of it.
+      REQUIRE(a[c].value[i] ==
+              Approx(b[c].value[i]).margin(tolerance(0.01 * kit.sensors[c].noise)));
+    }
+  }
+}
+
+TEST_CASE("Hidden data: ablations leave out what they say and keep the rest", "[unit]") {
+  Kit kit = make_kit("car");
+  Trial trial;
+  trial.category = Category::kTwo;
+  trial.truth = make_nominal_truth(kit);
+  trial.truth.roughness = 16e-6;
+  const auto lost = static_cast<int>(
+      std::find_if(kit.sensors.begin(), kit.sensors.end(),
+                   [](const Sensor& s) { return s.channel == "rear_left_suspension_deflection"; }) -
+      kit.sensors.begin());
+  trial.truth.faults = {{Fault::kSensorGain, lost, 0.03, 0.0}, {Fault::kPayload, 0, 40.0, 0.0}};
+  for (const FaultSetting& s : trial.truth.faults) trial.faults.push_back({s, {20.0, 0.0, 0.0}});
+  const Trial whole = trial;
+  const auto count_sensors = [&] {
+    return std::count_if(kit.sensors.begin(), kit.sensors.end(),
+                         [](const Sensor& s) { return s.recorded; });
+  };
+  SECTION("no roughness") {
+    ablate(Ablation::kNoRoughness, kit, trial);
+    CHECK(trial.truth.roughness == 0.0);
+    CHECK(count_sensors() == 12);
+    CHECK(trial.faults.size() == 2);
+  }
+  SECTION("no deflections, and the fault of one of them is nowhere") {
+    ablate(Ablation::kNoDeflection, kit, trial);
+    CHECK(count_sensors() == 8);
+    CHECK(trial.category == Category::kOne);
+    REQUIRE(trial.truth.faults.size() == 1);
+    CHECK(trial.truth.faults[0].fault == Fault::kPayload);
+    CHECK(trial.get_grade() == whole.get_grade());
+  }
+  SECTION("the body's sensors alone") {
+    ablate(Ablation::kBodyOnly, kit, trial);
+    CHECK(count_sensors() == 4);
+  }
+  SECTION("one crossing, the level road and what is held out") {
+    ablate(Ablation::kOneCrossing, kit, trial);
+    std::string left;
+    for (const RunPlan& run : kit.runs) left += run.recorded ? run.name + " " : "";
+    CHECK(left == "middle_20 flat_20 middle_22 low_14 high_24 ");
+  }
+  CHECK_THROWS_WITH(make_ablation("no_sensor"), Catch::Contains("body_only"));
+}
+
+TEST_CASE("Hidden data: what is left out is in no file", "[io]") {
+  const Sampler sampler(make_kit("quarter_car"));
+  Kit kit = sampler.kit();
+  Trial trial = sampler.draw(0);
+  ablate(Ablation::kBodyOnly, kit, trial);
+  ablate(Ablation::kOneCrossing, kit, trial);
+  const test::TemporaryFolder folder;
+  write_trial(kit, trial, folder / "x");
+  const auto files = read_folder(std::filesystem::path(folder / "x") / "trials" / "000000");
+  CHECK(files.count("chirp_A.csv") == 0);
+  CHECK(files.count("chirp_B.csv") == 1);
+  CHECK(files.at("rough_A.csv").rfind("Time,z_plate,z_body\n", 0) == 0);
+  CHECK(files.at("campaign.toml").find("unsprung_position") == std::string::npos);
+  CHECK(files.at("campaign.toml").find("chirp_A") == std::string::npos);
 }
 
 TEST_CASE("Hidden data: a fault's ratio grows in proportion to its magnitude", "[property]") {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "tests/hidden/sha256.h"
-#include "tests/parse_json.h"
 
 namespace strut::hidden {
 namespace {
@@ -21,14 +20,6 @@ std::string read_bytes(const fs::path& path) {
   text << in.rdbuf();
   if (!in) throw std::runtime_error(path.string() + ": cannot be read");
   return text.str();
-}
-
-JsonTree read_tree(const fs::path& path) {
-  try {
-    return test::parse_json(read_bytes(path));
-  } catch (const boost::property_tree::ptree_error& e) {
-    throw std::runtime_error(path.string() + ": " + e.what());
-  }
 }
 
 /// {"value": v, "ci95": [low, high]}
@@ -66,13 +57,22 @@ std::vector<Claim> get_claims(const JsonTree& tree, const std::string& key) {
 
 }  // namespace
 
+JsonTree read_json(const fs::path& path) {
+  try {
+    return test::parse_json(read_bytes(path));
+  } catch (const boost::property_tree::ptree_error& e) {
+    throw std::runtime_error(path.string() + ": " + e.what());
+  }
+}
+
 TrueTrial read_truth(const fs::path& path) {
-  const JsonTree tree = read_tree(path);
+  const JsonTree tree = read_json(path);
   TrueTrial trial;
   trial.name = path.stem().string();
   trial.kit = tree.get<std::string>("kit", "");
   trial.category = tree.get<std::string>("category", "");
   trial.grade = tree.get<std::string>("grade", "-").front();
+  trial.roughness = tree.get<double>("roughness", 0.0);
   if (trial.category.empty()) throw std::runtime_error(path.string() + ": category: is missing");
   for (const auto& entry : tree.get_child("faults")) {
     const JsonTree& f = entry.second;
@@ -87,7 +87,7 @@ TrueTrial read_truth(const fs::path& path) {
 }
 
 Verdict read_verdict(const fs::path& path) {
-  const JsonTree tree = read_tree(path);
+  const JsonTree tree = read_json(path);
   Verdict v;
   v.verdict = tree.get<std::string>("verdict", "");
   v.causes = get_claims(tree, "causes");

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/parse_json.h"
+
 namespace strut::hidden {
 
 struct Estimate {
@@ -37,11 +39,13 @@ struct TrueFault {
 struct TrueTrial {
   std::string name, kit, category;
   char grade = '-';
+  double roughness = 0.0;  // m^3
   std::vector<TrueFault> faults;
   std::map<std::string, double> parameters;
 };
 
 /// Throws std::runtime_error with the file's name for what is no such file.
+test::JsonTree read_json(const std::filesystem::path& path);
 TrueTrial read_truth(const std::filesystem::path& path);
 Verdict read_verdict(const std::filesystem::path& path);
 
