@@ -1,6 +1,5 @@
 #include "diagnose/fit_force_map.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -28,21 +27,6 @@ CampaignData add_map(const CampaignData& data, const ForceMap& map) {
   for (std::size_t r = 0; r < data.run_count(); ++r)
     add_map_part(get_force_maps(with, r), map, 1.0);
   return with;
-}
-
-/// The fit's values without its map, to linearize anew.
-WhitenedFit drop_map(const WhitenedFit& fit) {
-  WhitenedFit without;
-  without.runs = fit.runs;
-  without.spectra = fit.spectra;
-  without.is_dominated = fit.is_dominated;
-  for (std::size_t i = 0; i < fit.fit.unknowns.size(); ++i) {
-    if (fit.fit.unknowns[i].kind == UnknownKind::kForceMap) continue;
-    without.fit.unknowns.push_back(fit.fit.unknowns[i]);
-    without.fit.values.push_back(fit.fit.values[i]);
-    if (i < fit.shared_count) ++without.shared_count;
-  }
-  return without;
 }
 
 std::string name_shape(const std::string& place, std::size_t number) {
@@ -77,54 +61,138 @@ Eigen::MatrixXd simulate_shapes(TestBench& bench, const MapBasis& basis, double 
   return bench.simulate_columns(shapes, points) / size;
 }
 
-/// The linear model's shapes and the best of their combinations.
-struct MapStart {
-  Eigen::MatrixXd factors;  // of the shapes, columns as combine_shapes has them
-  Eigen::VectorXd values;   // of the combinations, at their posterior mean
-  double log_likelihood = 0.0;
-};
+/// Gauss-Newton on the factors of the shapes and all that a fit adjusts; sizes of the shapes and
+/// the noise of the bands are found anew in every step.
+class MapSearch {
+ public:
+  MapSearch(const CampaignData& data, const WhitenedFit& base, const MapBasis& basis, double force,
+            int threads)
+      : data_(data),
+        basis_(basis),
+        force_(force),
+        threads_(threads),
+        now_(base),
+        factors_(Eigen::VectorXd::Zero(static_cast<Index>(basis.shapes.size()))) {}
 
-/// `known`: factors of the shapes that the bench's model has already.
-MapStart find_start(TestBench& bench, const MapBasis& basis, double force,
-                    const Eigen::VectorXd& known) {
-  const Eigen::MatrixXd columns = simulate_shapes(bench, basis, force);
-  const MapEvidence evidence =
-      eliminate_base(columns, bench.jacobian(), bench.residual() - columns * known);
-  const MapPrior prior = choose_map_prior(evidence, basis.shapes);
-  MapStart start{combine_shapes(evidence, prior), {}, prior.log_likelihood};
-  const Index n = start.factors.cols();
-  const Eigen::MatrixXd information =
-      start.factors.transpose() * evidence.information * start.factors +
-      Eigen::MatrixXd::Identity(n, n);
-  start.values = -information.ldlt().solve(start.factors.transpose() * evidence.gradient);
-  return start;
-}
-
-/// The fit of combinations of shapes together with everything that `base` adjusts.
-WhitenedFit fit_combinations(const CampaignData& data, const WhitenedFit& base,
-                             const MapBasis& basis, const MapStart& start,
-                             const std::vector<double>& values, int threads) {
-  const auto shared = static_cast<std::ptrdiff_t>(base.shared_count);
-  std::vector<Unknown> unknowns = base.fit.unknowns;
-  std::vector<double> all = base.fit.values;
-  const std::vector<Unknown> own = make_map_unknowns(basis, start.factors, {0.0, 1.0});
-  unknowns.insert(unknowns.begin() + shared, own.begin(), own.end());
-  all.insert(all.begin() + shared, values.begin(), values.end());
-  return fit_whitened(data, base.runs, base.spectra, unknowns, all, base.shared_count + own.size(),
-                      threads);
-}
-
-std::vector<double> get_map_values(const WhitenedFit& fit) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < fit.fit.unknowns.size(); ++i) {
-    if (fit.fit.unknowns[i].kind == UnknownKind::kForceMap) values.push_back(fit.fit.values[i]);
+  /// A step. Returns ln of the odds that the readings ask for a map.
+  double step() {
+    const CampaignData with = add_map(data_, add_shapes(basis_, factors_));
+    TestBench bench(with, now_, threads_);
+    const Eigen::MatrixXd columns = simulate_shapes(bench, basis_, force_);
+    const Eigen::MatrixXd& jacobian = bench.jacobian();
+    evidence_ = eliminate_base(columns, jacobian, bench.residual() - columns * factors_);
+    prior_ = choose_map_prior(evidence_, basis_.shapes);
+    const Eigen::VectorXd change = calc_map_mean(evidence_, prior_) - factors_;
+    const Eigen::VectorXd base_change =
+        -factor_base(jacobian).solve(jacobian.transpose() * (bench.residual() + columns * change));
+    now_.linearization.reset();
+    move(bench, change, base_change);
+    return prior_.log_likelihood;
   }
-  return values;
-}
 
-Eigen::VectorXd as_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
-}
+  /// Whether the last step led on.
+  bool moved() const { return moved_; }
+
+  /// The fit where the search stands: the shapes in combinations, of those that the readings tell.
+  WhitenedFit conclude() const {
+    const Eigen::MatrixXd combinations = combine_shapes(evidence_, prior_);
+    // In units of the prior they are orthonormal.
+    const Eigen::VectorXd unit =
+        prior_.weights.unaryExpr([](double w) { return w > 0.0 ? 1.0 / w : 0.0; });
+    const Eigen::VectorXd found =
+        (unit.asDiagonal() * combinations).transpose() * unit.cwiseProduct(factors_);
+    const auto shared = static_cast<std::ptrdiff_t>(now_.shared_count);
+    WhitenedFit fit = now_;
+    std::vector<Unknown> unknowns = now_.fit.unknowns;
+    std::vector<double> values = now_.fit.values;
+    const std::vector<Unknown> own = make_map_unknowns(basis_, combinations, {0.0, 1.0});
+    unknowns.insert(unknowns.begin() + shared, own.begin(), own.end());
+    values.insert(values.begin() + shared, found.data(), found.data() + found.size());
+    fit.shared_count += own.size();
+    const auto model = make_reading_model(data_, fit.runs, unknowns, threads_);
+    Linearization at = model->linearize(values);
+    if (!at.failure.empty()) throw InputError(at.failure);
+    const Whitener whitener(*model, fit.spectra);
+    const WhitenedModel whitened(*model, whitener);
+    const Linearization seen = {"", whitener.apply(at.residual), whitener.apply(at.jacobian)};
+    if (!data_.is_rig()) {
+      fit.linearization = std::make_shared<const Linearization>(std::move(at));
+    }
+    fit.fit = describe_fit(whitened, seen, values, std::vector<bool>(values.size(), false), false);
+    return fit;
+  }
+
+ private:
+  static constexpr double kEnough = 1.0;  // of chi2: less is no way to go
+
+  /// As far along a step as it leads down.
+  void move(const TestBench& bench, const Eigen::VectorXd& change,
+            const Eigen::VectorXd& base_change) {
+    const double before = bench.residual().squaredNorm() + calc_penalty(factors_);
+    moved_ = false;
+    for (const double share : {1.0, 0.5, 0.2, 0.05}) {
+      const Eigen::VectorXd factors = factors_ + share * change;
+      const std::vector<double> values = move_base(share * base_change);
+      const auto residual = evaluate(factors, values, bench.whitener());
+      if (!residual) continue;
+      const double gained = before - residual->squaredNorm() - calc_penalty(factors);
+      if (!(gained > 0.0)) continue;
+      factors_ = factors;
+      now_.fit.values = values;
+      moved_ = gained > kEnough;
+      if (!now_.is_dominated) count_excess(bench.whitener(), *residual);
+      return;
+    }
+  }
+
+  /// Of a prior; a size of 0 leaves nothing to pay for.
+  double calc_penalty(const Eigen::VectorXd& factors) const {
+    double penalty = 0.0;
+    for (Index i = 0; i < factors.size(); ++i) {
+      const double w = prior_.weights(i);
+      if (w > 0.0) penalty += factors(i) * factors(i) / (w * w);
+    }
+    return penalty;
+  }
+
+  std::vector<double> move_base(const Eigen::VectorXd& change) const {
+    std::vector<double> values = now_.fit.values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Unknown& u = now_.fit.unknowns[i];
+      values[i] = std::clamp(values[i] + u.scale * change(static_cast<Index>(i)), u.low, u.high);
+    }
+    return values;
+  }
+
+  /// Whitened residual; nothing where it cannot be simulated.
+  std::optional<Eigen::VectorXd> evaluate(const Eigen::VectorXd& factors,
+                                          std::vector<double> values,
+                                          const Whitener& whitener) const {
+    std::vector<Unknown> unknowns = now_.fit.unknowns;
+    auto map = std::make_shared<const ForceMap>(add_shapes(basis_, factors));
+    unknowns.push_back(make_map_unknown("force_map", std::move(map), {}));
+    values.push_back(1.0);
+    const auto model = make_reading_model(data_, now_.runs, std::move(unknowns), threads_);
+    const Evaluation e = model->evaluate(values);
+    if (!e.failure.empty()) return std::nullopt;
+    return whitener.apply(e.residual);
+  }
+
+  void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened) {
+    const auto excess = measure_excess(whitener, whitened);
+    for (std::size_t r = 0; r < excess.size(); ++r) now_.spectra[r].excess = excess[r];
+  }
+
+  const CampaignData& data_;
+  const MapBasis& basis_;
+  double force_;
+  int threads_;
+  WhitenedFit now_;          // without the map
+  Eigen::VectorXd factors_;  // of the shapes
+  MapEvidence evidence_;
+  MapPrior prior_;
+  bool moved_ = false;
+};
 
 /// The map that is at a place already; null where there is none.
 const ForceMap* find_own_map(const ForceMaps& maps, const std::string& place) {
@@ -171,22 +239,13 @@ std::optional<WhitenedFit> fit_force_map(const CampaignData& data, const Whitene
   const MapBasis basis = make_map_basis(states, find_own_map(given, states.place), options.grid);
   if (basis.shapes.empty()) return std::nullopt;
   try {
-    TestBench bench(data, base, options.threads);
-    const auto n = static_cast<Index>(basis.shapes.size());
-    const MapStart start = find_start(bench, basis, states.force, Eigen::VectorXd::Zero(n));
-    if (start.log_likelihood < options.log_odds) return std::nullopt;
-    // From no map: the linear model may promise one that cannot be simulated.
-    const std::vector<double> none(static_cast<std::size_t>(start.factors.cols()), 0.0);
-    WhitenedFit fit = fit_combinations(data, base, basis, start, none, options.threads);
-    const Eigen::VectorXd known = start.factors * as_vector(get_map_values(fit));
-    const CampaignData with = add_map(data, add_shapes(basis, known));
-    const WhitenedFit around = drop_map(fit);
-    TestBench again(with, around, options.threads);
-    const MapStart better = find_start(again, basis, states.force, known);
-    if (better.log_likelihood < options.log_odds) return std::nullopt;
-    const std::vector<double> values(better.values.data(),
-                                     better.values.data() + better.values.size());
-    return fit_combinations(data, around, basis, better, values, options.threads);
+    constexpr int kMostSteps = 5;
+    MapSearch search(data, base, basis, states.force, options.threads);
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (search.step() < options.log_odds) return std::nullopt;
+      if (step > 0 && !search.moved()) break;
+    }
+    return search.conclude();
   } catch (const InputError&) {  // cannot be simulated with that map
     return std::nullopt;
   }

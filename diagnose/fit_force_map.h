@@ -2,8 +2,8 @@
 // velocity (model/effects/force_map.h) together with all that the model may adjust.
 //
 // Shapes of the map are chosen where the strut was (map_basis.h), their sizes by the readings
-// (map_prior.h); Gauss-Newton fits what the readings tell of them, and the sizes are chosen once
-// more around the map found. Runs held out decide between places, and whether there is a map.
+// (map_prior.h), anew in every step of Gauss-Newton. Runs held out decide between places, and
+// whether there is a map.
 #pragma once
 
 #include <functional>

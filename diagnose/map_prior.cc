@@ -1,6 +1,5 @@
 #include "diagnose/map_prior.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -47,13 +46,17 @@ double find_unit(const MapEvidence& e, const std::vector<MapShape>& shapes, MapS
 
 }  // namespace
 
+Eigen::LDLT<Eigen::MatrixXd> factor_base(const Eigen::MatrixXd& jacobian) {
+  Eigen::MatrixXd information = jacobian.transpose() * jacobian;
+  // Unknowns of which the readings say nothing leave zeros.
+  information.diagonal().array() *= 1.0 + 1e-12;
+  information.diagonal().array() += 1e-12;
+  return Eigen::LDLT<Eigen::MatrixXd>(information);
+}
+
 MapEvidence eliminate_base(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& jacobian,
                            const Eigen::VectorXd& residual) {
-  Eigen::MatrixXd own = jacobian.transpose() * jacobian;
-  // Unknowns of which the readings say nothing leave zeros.
-  own.diagonal().array() *= 1.0 + 1e-12;
-  own.diagonal().array() += 1e-12;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(own);
+  const Eigen::LDLT<Eigen::MatrixXd> factor = factor_base(jacobian);
   const Eigen::MatrixXd mixed = jacobian.transpose() * columns;
   const Eigen::VectorXd slope = jacobian.transpose() * residual;
   MapEvidence e;
@@ -100,6 +103,13 @@ MapPrior choose_map_prior(const MapEvidence& evidence, const std::vector<MapShap
     }
   }
   return prior;
+}
+
+Eigen::VectorXd calc_map_mean(const MapEvidence& evidence, const MapPrior& prior) {
+  const auto weights = prior.weights.asDiagonal();
+  Eigen::MatrixXd inner = weights * evidence.information * weights;
+  inner.diagonal().array() += 1.0;
+  return -(weights * inner.ldlt().solve(weights * evidence.gradient));
 }
 
 Eigen::MatrixXd combine_shapes(const MapEvidence& evidence, const MapPrior& prior) {

@@ -12,12 +12,15 @@
 // Soc. B 73 (2011), 3).
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
 #include <array>
 
 #include "diagnose/map_basis.h"
 
 namespace strut {
+
+/// J'J of what else may be adjusted, factored.
+Eigen::LDLT<Eigen::MatrixXd> factor_base(const Eigen::MatrixXd& jacobian);
 
 /// The linear model of a map with all else eliminated.
 struct MapEvidence {
@@ -39,6 +42,9 @@ struct MapPrior {
 };
 
 MapPrior choose_map_prior(const MapEvidence& evidence, const std::vector<MapShape>& shapes);
+
+/// The factors of the shapes where their posterior is highest.
+Eigen::VectorXd calc_map_mean(const MapEvidence& evidence, const MapPrior& prior);
 
 /// Shapes that the readings tell, combined so that each has the prior N(0, 1) of readings whose
 /// noise is 1: columns of factors of the shapes, the best told first.

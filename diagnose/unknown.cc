@@ -94,8 +94,9 @@ Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap
 void add_map_part(ForceMaps& maps, const ForceMap& part, double factor) {
   const auto found = std::find_if(maps.begin(), maps.end(),
                                   [&](const ForceMap& map) { return map.place == part.place; });
-  ForceMap& map = found != maps.end() ? *found : maps.emplace_back(part);
-  if (found == maps.end()) map.coefficients.assign(part.coefficients.size(), 0.0);
+  const bool is_new = found == maps.end();
+  ForceMap& map = is_new ? maps.emplace_back(part) : *found;
+  if (is_new) map.coefficients.assign(part.coefficients.size(), 0.0);
   ForceMap grid = part;
   grid.coefficients = map.coefficients;
   if (!(grid == map)) {
