@@ -97,10 +97,13 @@ struct Side {
 };
 
 Side make_side(const MapCurve& curve, double reach, double sign) {
+  // Nearer to rest splines round a step off: what is flat from here on is a step.
+  constexpr double kInner = 0.08;
   constexpr std::size_t kPoints = 41;
   Side side;
   for (std::size_t i = 0; i < kPoints; ++i) {
-    const double x = reach * static_cast<double>(i) / (kPoints - 1);
+    const double share = static_cast<double>(i) / (kPoints - 1);
+    const double x = reach * (kInner + (1.0 - kInner) * share);
     side.x.push_back(x);
     side.force.push_back(sign * interpolate(curve, sign * x));
   }
@@ -196,7 +199,7 @@ std::string describe_curve(const MapCurve& curve, MapVariable variable) {
   const double odd_power = odd.calc_power_beside_ray();
   const double even_power = even.calc_power() - even.mean * even.mean;
   const double all = odd_power + even_power, bends = up.bend + down.bend;
-  constexpr double kPieces = 0.1, kOneDirection = 0.85, kClear = 0.8;
+  constexpr double kPieces = 0.03, kOneDirection = 0.85, kClear = 0.8;
   if (all <= kStraight * (up.calc_power() + down.calc_power())) return "";
   if (0.5 * bends < kPieces * all) return describe_rest(up, down, variable);
   const std::string out = name_outward(variable);

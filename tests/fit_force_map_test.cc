@@ -76,8 +76,10 @@ TEST_CASE("Shapes of a map leave preload, stiffness and damping to the model", "
     INFO(i);
     if (shape.share == MapShare::kJoint) continue;
     ++own;
-    // What was never visited counts 1e-4 of the rest.
-    CHECK(columns.col(i).squaredNorm() / n == Approx(1.0).margin(tolerance(0.05)));
+    // What was never visited counts 1e-4 of the rest, and takes part of the roughest shapes.
+    const double power = columns.col(i).squaredNorm() / n;
+    CHECK(power <= 1.0 + tolerance(1e-9));
+    if (shape.roughness < 1e4) CHECK(power == Approx(1.0).margin(tolerance(0.05)));
     CHECK(std::abs(columns.col(i).mean()) < tolerance(0.01));
     const Eigen::VectorXd& line = shape.share == MapShare::kVelocity ? v : d;
     CHECK(std::abs(columns.col(i).dot(line)) < tolerance(0.01) * std::sqrt(n) * line.norm());
@@ -112,34 +114,34 @@ TEST_CASE("What the model may adjust is taken off a map's evidence", "[unit]") {
   CHECK(e.count == 57.0);
 }
 
-/// The linear model of readings that are the force itself, noise of 1 N.
-MapEvidence make_evidence(const MapBasis& basis, const VisitedStates& states,
-                          const Eigen::VectorXd& residual) {
-  Eigen::MatrixXd jacobian(residual.size(), 3);
-  jacobian << Eigen::VectorXd::Ones(residual.size()), as_vector(states.velocity),
+/// Constant, velocity and deflection: what the model may adjust.
+Eigen::MatrixXd make_lines(const VisitedStates& states) {
+  Eigen::MatrixXd lines(static_cast<Index>(states.velocity.size()), 3);
+  lines << Eigen::VectorXd::Ones(lines.rows()), as_vector(states.velocity),
       as_vector(states.deflection);
-  return eliminate_base(calc_columns(basis, states), jacobian, residual);
+  return lines;
 }
 
 TEST_CASE("The readings say what a map depends on, and how rough it is", "[unit]") {
   const VisitedStates states = make_states();
   const MapBasis basis = make_map_basis(states);
   const Eigen::VectorXd v = as_vector(states.velocity), d = as_vector(states.deflection);
-  const Eigen::VectorXd noise = draw(v.size(), 5);
+  const Eigen::VectorXd noise = draw(v.size(), 5);  // N
+  const Eigen::MatrixXd columns = calc_columns(basis, states), lines = make_lines(states);
 
   SECTION("nothing") {
-    // ln of the likelihood of three sizes that are free: above 3 in less than 2 % of nulls.
+    // Three sizes at their best beat none by 3 in less than 2 % of nulls.
     int above = 0;
-    for (std::uint64_t seed = 0; seed < 20; ++seed) {
-      const MapEvidence e = make_evidence(basis, states, draw(v.size(), 100 + seed));
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      const MapEvidence e = eliminate_base(columns, lines, draw(v.size(), 100 + seed));
       above += choose_map_prior(e, basis.shapes).log_likelihood > 3.0 ? 1 : 0;
     }
-    CHECK(above <= 2);
+    CHECK(above <= 1);
   }
 
   SECTION("velocity") {
     const Eigen::VectorXd truth = (v.array() / 0.05).tanh() * 10.0;
-    const MapEvidence e = make_evidence(basis, states, noise - truth);
+    const MapEvidence e = eliminate_base(columns, lines, noise - truth);
     const MapPrior prior = choose_map_prior(e, basis.shapes);
     CHECK(prior.log_likelihood > 100.0);
     CHECK(prior.size[0] > 10.0 * prior.size[1]);
@@ -154,14 +156,12 @@ TEST_CASE("The readings say what a map depends on, and how rough it is", "[unit]
     const Eigen::VectorXd of_combinations =
         -factors * seen.ldlt().solve(factors.transpose() * e.gradient);
     CHECK((of_combinations - mean).norm() < tolerance(0.05) * mean.norm());
-    const Eigen::VectorXd found = calc_columns(basis, states) * mean;
+    const Eigen::VectorXd found = columns * mean;
     // Up to the line and constant that the model has anyway.
-    Eigen::MatrixXd plain(v.size(), 3);
-    plain << Eigen::VectorXd::Ones(v.size()), v, d;
-    const auto qr = plain.householderQr();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(lines);
     const Eigen::VectorXd off = truth - found;
-    const Eigen::VectorXd rest = off - plain * qr.solve(off);
-    const Eigen::VectorXd curved = truth - plain * qr.solve(truth);
+    const Eigen::VectorXd rest = off - lines * qr.solve(off);
+    const Eigen::VectorXd curved = truth - lines * qr.solve(truth);
     // Noise of 1 N, and some 20 shapes on 2000 readings leave 0.1 N; splines 0.02 m/s apart more.
     CHECK(rest.norm() < tolerance(0.05) * curved.norm());
   }
@@ -169,7 +169,7 @@ TEST_CASE("The readings say what a map depends on, and how rough it is", "[unit]
   SECTION("deflection") {
     const Eigen::VectorXd truth = (d.array() / 0.02).cube() * 10.0;
     const MapPrior prior =
-        choose_map_prior(make_evidence(basis, states, noise - truth), basis.shapes);
+        choose_map_prior(eliminate_base(columns, lines, noise - truth), basis.shapes);
     CHECK(prior.log_likelihood > 100.0);
     CHECK(prior.size[1] > 0.0);
     CHECK(prior.size[0] < 0.1 * prior.size[1]);
@@ -178,7 +178,7 @@ TEST_CASE("The readings say what a map depends on, and how rough it is", "[unit]
   SECTION("both together") {
     const Eigen::VectorXd truth = d.array() * v.array() * 1000.0;
     const MapPrior prior =
-        choose_map_prior(make_evidence(basis, states, noise - truth), basis.shapes);
+        choose_map_prior(eliminate_base(columns, lines, noise - truth), basis.shapes);
     CHECK(prior.log_likelihood > 100.0);
     CHECK(prior.size[2] > prior.size[0]);
     CHECK(prior.size[2] > prior.size[1]);
