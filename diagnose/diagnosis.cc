@@ -297,15 +297,21 @@ class Diagnoser {
       }
       case VerdictKind::kFormIncomplete:
         return "The model lacks " + what + ", but that is not all: more is left than noise" +
-               describe_left() + "; " + (diagnosis_.force ? "with both, " : "so far ") + gain + ".";
+               describe_left() + "; " + (diagnosis_.force ? describe_share() : "so far " + gain) +
+               ".";
       case VerdictKind::kUnknown:
         break;
     }
     std::string sentence =
         "The model lacks something that the catalogue does not have" + describe_left();
     if (!what.empty()) sentence += "; nearest: " + what;
-    if (diagnosis_.is_extended()) sentence += "; with the extended model, " + gain;
-    return sentence + ".";
+    if (diagnosis_.force) return sentence + "; " + describe_share() + ".";
+    return sentence + (what.empty() ? "." : ", " + gain + ".");
+  }
+
+  std::string describe_share() const {
+    return "its map takes " + format_rounded(std::round(100.0 * diagnosis_.force->share)) +
+           " % of what the runs held out still had beyond noise";
   }
 
   std::string describe_left() const {
