@@ -270,7 +270,8 @@ std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Sele
       map.judged = judge_hold_out(data, map.fit.shared(), selection.level, options.threads);
       const Judgment judged(map.judged);
       if (!judged.is_whole || judged.calc_log_odds(now) < options.log_odds) continue;
-      map.share = (now.chi2 - judged.chi2) / std::max(now.chi2 - now.count, 1e-9);
+      // Where noise happens to be small, more than all of it is taken.
+      map.share = std::min(1.0, (now.chi2 - judged.chi2) / std::max(now.chi2 - now.count, 1e-9));
       if (map.share < options.least_share) continue;
       if (best) {
         // What was named stays unless a map alone is clearly better.
