@@ -155,8 +155,8 @@ class Diagnoser {
     select.progress = options_.progress;
     diagnosis_.selection = select_causes(data_, select);
     const Selection& selection = diagnosis_.selection;
-    tell("measuring what is left");
     left_ = selection.left;
+    if (selection.is_left) find_force();
     judge();
     diagnosis_.parameters = list_changes(selection);
     for (const NullDirection& direction : selection.extended.fit.widened.null_directions) {
@@ -168,6 +168,11 @@ class Diagnoser {
     diagnosis_.gain = calc_hold_out_gain(data_, selection, diagnosis_.runs);
     diagnosis_.where = find_where(data_, selection);
     diagnosis_.where.place = left_place_;
+    if (diagnosis_.force) {
+      diagnosis_.where.place = diagnosis_.force->place;
+      diagnosis_.where.depends_on =
+          diagnosis_.force->states.describe() + " " + diagnosis_.force->depends.words;
+    }
     if (diagnosis_.kind == VerdictKind::kUnknown ||
         diagnosis_.kind == VerdictKind::kFormIncomplete) {
       diagnosis_.where.band = strut::describe(left_.band);
@@ -180,6 +185,30 @@ class Diagnoser {
  private:
   void tell(const std::string& what) const {
     if (options_.progress) options_.progress(what);
+  }
+
+  /// What is left may be a force in a strut: then the extended model has its map, beside the causes
+  /// or, where it does better without them, instead.
+  void find_force() {
+    Selection& selection = diagnosis_.selection;
+    ForceMapOptions options;
+    options.threads = options_.threads;
+    options.progress = options_.progress;
+    std::optional<ForceMapFit> found = choose_force_map(data_, selection, options);
+    if (!found) return;
+    if (found->replaces_causes) {
+      selection.causes.clear();
+      selection.round_of.clear();
+      selection.gains.clear();
+    }
+    selection.extended = std::move(found->fit);
+    selection.hold_out_after = std::move(found->judged);
+    const std::string place = found->states.place;
+    const ForceMaps maps = list_force_maps_on(data_, selection.extended.shared());
+    UnknownForce force{
+        place, *find_force_map(maps, place), std::move(found->states), {}, found->share};
+    force.depends = measure_dependence(force.map, force.states);
+    diagnosis_.force = std::move(force);
   }
 
   void judge() {
@@ -217,7 +246,10 @@ class Diagnoser {
       }
     }
     if (is_left) {
-      diagnosis_.kind = unknown > 0.5 ? VerdictKind::kUnknown : VerdictKind::kFormIncomplete;
+      // A map beside the causes that takes most of what is left leaves them their names.
+      const bool is_named = diagnosis_.force && diagnosis_.force->share > 0.5;
+      diagnosis_.kind =
+          unknown > 0.5 && !is_named ? VerdictKind::kUnknown : VerdictKind::kFormIncomplete;
     } else {
       diagnosis_.kind = diagnosis_.group.empty() ? VerdictKind::kNamed : VerdictKind::kGroup;
     }
@@ -258,15 +290,29 @@ class Diagnoser {
       }
       case VerdictKind::kFormIncomplete:
         return "The model lacks " + what + ", but that is not all: more is left than noise" +
-               describe_left() + "; so far " + gain + ".";
+               describe_left() + "; " + (diagnosis_.force ? describe_share() : "so far " + gain) +
+               ".";
       case VerdictKind::kUnknown:
         break;
     }
-    return "The model lacks something that the catalogue does not have" + describe_left() +
-           (what.empty() ? "." : "; nearest: " + what + ", " + gain + ".");
+    std::string sentence =
+        "The model lacks something that the catalogue does not have" + describe_left();
+    if (!what.empty()) sentence += "; nearest: " + what;
+    if (diagnosis_.force) return sentence + "; " + describe_share() + ".";
+    return sentence + (what.empty() ? "." : ", " + gain + ".");
+  }
+
+  std::string describe_share() const {
+    return "its map takes " + format_rounded(std::round(100.0 * diagnosis_.force->share)) +
+           " % of what the runs held out still had beyond noise";
   }
 
   std::string describe_left() const {
+    if (diagnosis_.force) {
+      const UnknownForce& force = *diagnosis_.force;
+      return ": a force in the " + (force.place.empty() ? "" : force.place + " ") +
+             (force.place.empty() ? "strut" : "struts") + " that depends on " + force.depends.words;
+    }
     std::string text;
     if (!left_place_.empty()) text += ", acting at " + left_place_;
     text += ", at " + strut::describe(left_.band);

@@ -4,10 +4,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnose/compare.h"
+#include "diagnose/fit_force_map.h"
+#include "diagnose/map_shape.h"
 #include "diagnose/select.h"
 
 namespace strut {
@@ -54,6 +57,15 @@ struct Where {
   std::string channel, time, band, depends_on, place;
 };
 
+/// A force of a strut that the catalogue does not have.
+struct UnknownForce {
+  std::string place;      // as a force map's
+  ForceMap map;           // as the extended model has it
+  VisitedStates states;   // where the strut was in the runs for fitting
+  MapDependence depends;  // of the map on these
+  double share = 0.0;     // of what the runs held out have beyond noise that the map takes
+};
+
 /// Curves of one run for the report: measured, and the readings of the calibrated and the extended
 /// model.
 struct DiagnosedRun {
@@ -69,6 +81,7 @@ struct Diagnosis {
   std::vector<Cause> runners_up;  // the rest that was fitted
   double unknown_share = 0.0;     // probability that the cause is none of the catalogue
   Where where;
+  std::optional<UnknownForce> force;  // what the extended model has beside the causes
   std::vector<ParameterChange> parameters;
   HoldOutGain gain;
   std::vector<std::string> not_identifiable;
@@ -76,6 +89,9 @@ struct Diagnosis {
   Selection selection;
   std::vector<DiagnosedRun> runs;
   std::vector<std::string> notes;  // for the user
+
+  /// Whether there is an extended model.
+  bool is_extended() const { return !causes.empty() || force.has_value(); }
 };
 
 struct DiagnoseOptions {
@@ -85,9 +101,9 @@ struct DiagnoseOptions {
 
 Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& options = {});
 
-/// The model's file with the causes switched on at their fitted values and the parameters that the
-/// diagnosis fitted; it can stand wherever a model file is named. `folder`: where it will lie; the
-/// files that the model names are named from there.
+/// The model's file with the causes switched on at their fitted values, the force map, and the
+/// parameters that the diagnosis fitted; it can stand wherever a model file is named. `folder`:
+/// where it will lie; the files that the model names are named from there.
 std::string make_extended_model(const CampaignData& data, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder);
 

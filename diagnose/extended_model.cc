@@ -4,6 +4,7 @@
 #include "sweep/parameters.h"
 #include "sweep/read_effects.h"
 #include "sweep/read_fitted.h"
+#include "sweep/read_force_maps.h"
 #include "sweep/read_rig.h"
 
 namespace strut {
@@ -58,7 +59,8 @@ std::string make_extended_model(const CampaignData& data, const Diagnosis& diagn
   std::string text = read_text_file(data.campaign.model);
   if (!data.is_rig()) text = move_tire_file(text, data.campaign.model, folder);
   const ModelKind kind = get_model_kind(data);
-  return replace_effects(replace_fitted(text, fitted), list_effects_on(data, shared), kind);
+  text = replace_effects(replace_fitted(text, fitted), list_effects_on(data, shared), kind);
+  return diagnosis.force ? replace_force_maps(text, list_force_maps_on(data, shared), kind) : text;
 }
 
 }  // namespace strut

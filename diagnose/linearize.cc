@@ -154,7 +154,12 @@ void ReadingSimulator::align_durations() {
 Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& values) const {
   Case c = runs_[run].setup;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (!is_parameter_of(unknowns_[i], run)) continue;
+    const Unknown& u = unknowns_[i];
+    if (!is_parameter_of(u, run)) continue;
+    if (u.kind == UnknownKind::kForceMap) {
+      add_map_part(c.vehicle.force_maps, *u.part, values[i]);
+      continue;
+    }
     // What stays as it is is not touched: a corner's neutral effect would replace the axle's.
     if (values[i] != parameters_[i]->get(runs_[run].setup)) parameters_[i]->set(c, values[i]);
   }

@@ -67,6 +67,9 @@ RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>
     const Unknown& u = unknowns[i];
     if (!belongs(u, index)) continue;
     if (u.kind == UnknownKind::kParameter) set_rig_parameter(variant.spec, u.name, values[i]);
+    if (u.kind == UnknownKind::kForceMap) {
+      add_map_part(variant.spec.force_maps, *u.part, values[i]);
+    }
     if (u.kind == UnknownKind::kInputGain) scale_input(run, variant, u.channel, values[i]);
     if (u.kind == UnknownKind::kInitialState) {
       const bool rate = u.channel >= kRigCoordinates;

@@ -16,7 +16,7 @@ bool belongs(const Unknown& u, std::size_t run) {
 }  // namespace
 
 bool is_parameter_of(const Unknown& u, std::size_t run) {
-  return u.kind == UnknownKind::kParameter && belongs(u, run);
+  return is_of_simulation(u) && belongs(u, run);
 }
 
 std::size_t find_hit_time(const std::vector<Unknown>& unknowns, std::size_t run) {

@@ -97,24 +97,44 @@ TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threa
   simulations_ += model->simulation_count();
 }
 
-std::unique_ptr<ReadingModel> TestBench::make_model(const std::vector<Hypothesis>& hypotheses,
+std::unique_ptr<ReadingModel> TestBench::make_model(const std::vector<Unknown>& added,
                                                     int threads) const {
   std::vector<Unknown> all = unknowns_;
-  for (const Hypothesis& h : hypotheses) {
-    for (Unknown& u : make_unknowns(data_, h)) all.push_back(std::move(u));
-  }
+  all.insert(all.end(), added.begin(), added.end());
   return make_reading_model(data_, runs_, std::move(all), threads);
+}
+
+Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Unknown>& added,
+                                            const std::vector<std::vector<double>>& points) {
+  const auto model = make_model(added, threads_);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(residual_.size(), as_index(points.size()));
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
+    const std::size_t end = std::min(begin + kAtOnce, points.size());
+    std::vector<std::vector<double>> all(end - begin, values_);
+    for (std::size_t i = begin; i < end; ++i) {
+      all[i - begin].insert(all[i - begin].end(), points[i].begin(), points[i].end());
+    }
+    const std::vector<Evaluation> evaluations = model->evaluate(all);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Evaluation& e = evaluations[i - begin];
+      if (!e.failure.empty()) continue;  // no such size: a column of zeros is no hypothesis
+      columns.col(as_index(i)) = whitener_->apply(e.residual) - residual_;
+    }
+  }
+  simulations_ += model->simulation_count();
+  return columns;
 }
 
 Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypotheses,
                                             std::vector<HypothesisTrial>& trials) {
-  const auto model = make_model(hypotheses, threads_);
-  std::vector<double> neutral = values_;
-  for (std::size_t i = values_.size(); i < model->unknowns().size(); ++i) {
-    neutral.push_back(model->unknowns()[i].start);
+  std::vector<Unknown> added;
+  for (const Hypothesis& h : hypotheses) {
+    for (Unknown& u : make_unknowns(data_, h)) added.push_back(std::move(u));
   }
+  const std::vector<double> neutral = list_starts(added);
   std::vector<std::vector<double>> points;
-  std::size_t first = values_.size();
+  std::size_t first = 0;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = hypotheses[h];
     for (std::size_t b = 0; b < hypothesis.beginnings.size(); ++b) {
@@ -134,20 +154,7 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypot
     }
     first += hypothesis.parameters.size();
   }
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(residual_.size(), as_index(points.size()));
-  constexpr std::size_t kAtOnce = 64;
-  for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
-    const std::size_t end = std::min(begin + kAtOnce, points.size());
-    const std::vector<Evaluation> evaluations = model->evaluate(std::vector<std::vector<double>>(
-        points.begin() + as_index(begin), points.begin() + as_index(end)));
-    for (std::size_t i = begin; i < end; ++i) {
-      const Evaluation& e = evaluations[i - begin];
-      if (!e.failure.empty()) continue;  // no such size: a column of zeros is no hypothesis
-      columns.col(as_index(i)) = whitener_->apply(e.residual) - residual_;
-    }
-  }
-  simulations_ += model->simulation_count();
-  return columns;
+  return simulate_columns(added, points);
 }
 
 Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
@@ -240,7 +247,7 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
                              const std::vector<double>& beginning) const {
   const int steps = data_.is_rig() ? 60 : 12;
   constexpr double kEnough = 0.02, kEnoughShare = 1e-5;  // of chi2
-  const auto model = make_model({hypothesis}, 1);
+  const auto model = make_model(make_unknowns(data_, hypothesis), 1);
   const std::vector<Coordinate> coordinates =
       make_coordinates(hypothesis, make_unknowns(data_, hypothesis), beginning);
   const std::size_t base = values_.size(), own = coordinates.size();

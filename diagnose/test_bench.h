@@ -32,6 +32,11 @@ class TestBench {
   Eigen::MatrixXd simulate_columns(const std::vector<Hypothesis>& hypotheses,
                                    std::vector<HypothesisTrial>& trials);
 
+  /// What values of further unknowns that all runs share do to the whitened readings: a column each
+  /// point; 0 where it cannot be simulated. The unknowns have no priors.
+  Eigen::MatrixXd simulate_columns(const std::vector<Unknown>& added,
+                                   const std::vector<std::vector<double>>& points);
+
   /// Puts hypotheses within reach and simulates their beginnings.
   Evidence gather(const std::vector<Hypothesis>& hypotheses);
 
@@ -42,6 +47,8 @@ class TestBench {
 
   const Whitener& whitener() const { return *whitener_; }
   const Eigen::VectorXd& residual() const { return residual_; }
+  /// Of the residual by the unknowns, counted in their scale.
+  const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   const std::vector<double>& values() const { return values_; }
   std::size_t shared_count() const { return shared_count_; }
@@ -51,8 +58,7 @@ class TestBench {
   std::size_t get_run(std::size_t number) const { return runs_[number]; }
 
  private:
-  std::unique_ptr<ReadingModel> make_model(const std::vector<Hypothesis>& hypotheses,
-                                           int threads) const;
+  std::unique_ptr<ReadingModel> make_model(const std::vector<Unknown>& added, int threads) const;
 
   const CampaignData& data_;
   std::vector<std::size_t> runs_;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "io/config.h"
 #include "io/input_error.h"
 #include "model/vehicle/channels.h"
+#include "model/vehicle/model_error.h"
 #include "sweep/parameters.h"
 
 namespace strut {
@@ -75,6 +77,37 @@ Unknown make_bias(int run, int channel, const Prior& prior) {
   return u;
 }
 
+Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
+                         const Prior& prior) {
+  Unknown u;
+  u.kind = UnknownKind::kForceMap;
+  u.name = name;
+  u.unit = "1";
+  u.start = prior.mean;
+  u.low = -kInfinity;
+  u.high = kInfinity;
+  u.prior = prior;
+  u.part = std::move(part);
+  return u;
+}
+
+void add_map_part(ForceMaps& maps, const ForceMap& part, double factor) {
+  const auto found = std::find_if(maps.begin(), maps.end(),
+                                  [&](const ForceMap& map) { return map.place == part.place; });
+  const bool is_new = found == maps.end();
+  ForceMap& map = is_new ? maps.emplace_back(part) : *found;
+  if (is_new) map.coefficients.assign(part.coefficients.size(), 0.0);
+  ForceMap grid = part;
+  grid.coefficients = map.coefficients;
+  if (!(grid == map)) {
+    throw ModelError("force map" + (part.place.empty() ? "" : " at " + part.place) +
+                     ": what is added has another grid");
+  }
+  for (std::size_t i = 0; i < part.coefficients.size(); ++i) {
+    map.coefficients[i] += factor * part.coefficients[i];
+  }
+}
+
 std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
                                     const NuisanceSigmas& sigmas,
                                     const std::vector<Unknown>& chosen) {
@@ -109,8 +142,12 @@ void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
                     const std::vector<double>& values, int run) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
-    if (u.kind != UnknownKind::kParameter || (u.run != kEveryRun && u.run != run)) continue;
-    set_parameter(c, u.name, values[i]);
+    if (!is_of_simulation(u) || (u.run != kEveryRun && u.run != run)) continue;
+    if (u.kind == UnknownKind::kForceMap) {
+      add_map_part(c.vehicle.force_maps, *u.part, values[i]);
+    } else {
+      set_parameter(c, u.name, values[i]);
+    }
   }
 }
 

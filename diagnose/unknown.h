@@ -2,10 +2,12 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "diagnose/measured_run.h"
+#include "model/effects/force_map.h"
 
 namespace strut {
 
@@ -15,6 +17,7 @@ enum class UnknownKind {
   kBias,          // what is to be added to a simulated channel, in its unit
   kInputGain,     // of a rig: what its measured input is to be multiplied by
   kInitialState,  // of a rig: offset of its start from rest [m], [m/s]
+  kForceMap,      // how many times its part is in the force map of a strut
 };
 
 /// What is known beforehand: a Gaussian; sigma infinite: nothing.
@@ -39,7 +42,13 @@ struct Unknown {
   double scale = 1.0;  // 100 % of it: its size, or the sigma of its prior where it starts from 0
   double low = 0.0, high = 0.0;  // bounds
   Prior prior;
+  std::shared_ptr<const ForceMap> part{};  // of kForceMap
 };
+
+/// Whether it changes what is simulated for a car in a maneuver, not only how that is read.
+inline bool is_of_simulation(const Unknown& u) {
+  return u.kind == UnknownKind::kParameter || u.kind == UnknownKind::kForceMap;
+}
 
 /// A parameter, bounded by what is plausible, starting at the value of the run's setup (kEveryRun:
 /// of the first). Throws InputError with the nearest known name, or where it cannot be fitted.
@@ -60,6 +69,14 @@ struct NuisanceSigmas {
   SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
 };
 
+/// How many times a part is in the map at its place: begins at 0, without bounds.
+Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
+                         const Prior& prior);
+
+/// Adds `factor` times a part to the map at its place; where there is none the map is that alone.
+/// Throws ModelError where the map there has another grid.
+void add_map_part(ForceMaps& maps, const ForceMap& part, double factor);
+
 /// Hit time, speed and biases of every run, as far as their sigma is not 0; the speed only where no
 /// unknown of `chosen` is the speed.
 std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
@@ -69,7 +86,8 @@ std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
 /// Where the search of each begins.
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
 
-/// Sets the parameters among the unknowns that belong to a run: to all of them, or to that alone.
+/// Sets the parameters and force maps among the unknowns that belong to a run: to all of them, or
+/// to that alone.
 /// Throws what set_parameter throws.
 void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
                     const std::vector<double>& values, int run = kEveryRun);

@@ -59,7 +59,7 @@ Diagnosis diagnose(const CampaignData& data, int threads) {
 /// The extended model, or nothing, not even that of a diagnosis before this one.
 void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data,
                           const Diagnosis& diagnosis) {
-  if (!diagnosis.causes.empty()) {
+  if (diagnosis.is_extended()) {
     write_text_file(folder.extended_model(), make_extended_model(data, diagnosis, folder.root));
     return;
   }

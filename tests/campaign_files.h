@@ -24,7 +24,8 @@ struct QuarterTruth {
   std::array<double, 4> start{};                       // z_u, z_s [m], rates [m/s]
   double noise = 0.0;                                  // m, 1 sigma of both positions
   std::uint64_t seed = 1;
-  double amplitude = 0.002;  // m, of the road's chirp
+  double amplitude = 0.002;      // m, of the road's chirp
+  double stroke_friction = 0.0;  // N/m, friction by the strut's deflection, smoothed alike
 };
 
 struct QuarterRecord {
@@ -59,8 +60,9 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
   };
   const auto derive = [&](double t, const State& x) {
     const double length = x[1] - x[0], speed = x[3] - x[2];
-    const double strut = -truth.stiffness * length - truth.cubic * length * length * length -
-                         truth.damping * speed - truth.friction * std::tanh(speed / 0.01);
+    const double strut =
+        -truth.stiffness * length - truth.cubic * length * length * length - truth.damping * speed -
+        (truth.friction + truth.stroke_friction * std::abs(length)) * std::tanh(speed / 0.01);
     const double tire = truth.tire_stiffness * (calc_test_road(truth, t, duration) - x[0]) +
                         truth.tire_damping * (road_rate(t) - x[2]);
     return State{x[2], x[3], (tire - strut) / truth.unsprung_mass, strut / truth.sprung_mass};

@@ -189,6 +189,22 @@ TEST_CASE("The curves of every run are written beside each other", "[io]") {
   CHECK(before[400] != after[400]);
 }
 
+/// The rms that `strut compare` finds on the run held out with a file as its model, nothing fitted
+/// but where the run starts.
+double compare_held_out(const std::filesystem::path& model, const test::QuarterTruth& truth) {
+  test::CampaignText text;
+  text.model = model;
+  text.fit = "";
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder, truth);
+  const test::Outcome compared =
+      run_program("compare " + test::write_campaign(folder, text).string() + " --json -o " +
+                  std::string(folder / "out"));
+  REQUIRE(compared.code == 0);
+  const auto json = test::parse_json(compared.out);
+  return json.get_child("runs").back().second.get<double>("nominal.channels.sprung_position.rms");
+}
+
 TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
@@ -212,18 +228,7 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") 
   CHECK(std::filesystem::exists(folder / "out" / "run_2_b.csv"));
 
   SECTION("and its extended model stands where a model is named") {
-    test::CampaignText text;
-    text.model = folder / "out" / "extended.toml";
-    text.fit = "";
-    const test::TemporaryFolder again;
-    test::write_two_runs(again, truth);
-    const test::Outcome compared =
-        run_program("compare " + test::write_campaign(again, text).string() + " --json -o " +
-                    std::string(again / "out"));
-    REQUIRE(compared.code == 0);
-    const auto other = test::parse_json(compared.out);
-    const auto& held = other.get_child("runs").back().second;
-    CHECK(held.get<double>("nominal.channels.sprung_position.rms") ==
+    CHECK(compare_held_out(folder / "out" / "extended.toml", truth) ==
           Approx(json.get<double>("gain.hold_out_rms_after.sprung_position")).epsilon(0.05));
   }
 
@@ -232,6 +237,34 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") 
     CHECK(refused.code == 2);
     CHECK_THAT(refused.messages, Contains("holds a diagnosis") && Contains("--force"));
   }
+}
+
+TEST_CASE("diagnose gives an effect outside of its catalogue a force map", "[io]") {
+  const test::TemporaryFolder folder;
+  test::QuarterTruth truth;
+  truth.noise = 1e-6;
+  truth.stroke_friction = 150.0;
+  test::write_two_runs(folder, truth);
+  const test::Outcome outcome =
+      run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
+  INFO(outcome.messages << outcome.out);
+  REQUIRE(outcome.code == 0);
+  const auto json = test::parse_json(outcome.out);
+  const std::string verdict = json.get<std::string>("verdict");
+  CHECK((verdict == "unknown" || verdict == "form_incomplete"));
+  CHECK_THAT(json.get<std::string>("sentence"), Contains("a force in the strut that depends on"));
+  CHECK_THAT(json.get<std::string>("where.depends_on"), Catch::StartsWith("strut "));
+  CHECK(json.get<double>("force_map.share_of_velocity") > 0.3);
+  CHECK(json.get<double>("force_map.hold_out_share") > 0.3);
+  CHECK(json.get<std::string>("extended_model") == "extended.toml");
+  const double after = json.get<double>("gain.hold_out_rms_after.sprung_position");
+  CHECK(after < 0.5 * json.get<double>("gain.hold_out_rms_before.sprung_position"));
+  CHECK_THAT(test::read_text(folder / "out" / "report.html"), Contains("Force map of the strut"));
+  // Coefficients are printed to the last digit; where a run starts is fitted in another metric.
+  CHECK(compare_held_out(folder / "out" / "extended.toml", truth) == Approx(after).epsilon(0.05));
+  const CsvTable table = read_csv(folder / "out" / "force_map.csv");
+  CHECK(table.row_count() == 15 * 41);
+  CHECK(table.column("force_sigma").values.front() > 0.0);
 }
 
 TEST_CASE("diagnose finds nothing where nothing is hidden", "[io]") {

@@ -7,6 +7,7 @@
 
 #include "diagnose/model_states.h"
 #include "jobs/compare/figures.h"
+#include "jobs/diagnose/force_map.h"
 #include "jobs/diagnose/tables.h"
 #include "jobs/report/panels.h"
 
@@ -212,6 +213,14 @@ std::vector<CaptionedFigure> make_run_figures(const CampaignData& data, const Di
       "Body balance without road: the force that the sprung mass shows and the strut does not "
       "give.");
   return figures;
+}
+
+std::vector<CaptionedFigure> make_map_figures(const Diagnosis& diagnosis) {
+  if (!diagnosis.force) return {};
+  return {{make_force_map_figure(*diagnosis.force),
+           "Force map of the " + diagnosis.force->states.describe() +
+               " beside its spring and damper: over velocity, over deflection, as far as the runs "
+               "for fitting went; and where they went."}};
 }
 
 std::vector<CaptionedFigure> make_motion_figures(const CampaignData& data,

@@ -17,6 +17,9 @@ using CaptionedFigure = std::pair<Figure, std::string>;
 std::vector<CaptionedFigure> make_run_figures(const CampaignData& data, const Diagnosis& diagnosis,
                                               const DiagnosedRun& run);
 
+/// The force map, where there is one.
+std::vector<CaptionedFigure> make_map_figures(const Diagnosis& diagnosis);
+
 /// All runs held out together: residuals over deflection and velocity; forces of spring and damper
 /// over them. Nothing where none could be simulated.
 std::vector<CaptionedFigure> make_motion_figures(const CampaignData& data,

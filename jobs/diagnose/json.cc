@@ -40,6 +40,20 @@ Json make_where(const Where& where) {
       .set("place", where.place);
 }
 
+/// The map's coefficients are in the extended model, its values in force_map.csv.
+Json make_force(const std::optional<UnknownForce>& force) {
+  if (!force) return {};
+  const MapDependence& depends = force->depends;
+  return Json::object()
+      .set("place", force->place)
+      .set("words", depends.words)
+      .set("share_of_velocity", depends.of_velocity)
+      .set("share_of_deflection", depends.of_deflection)
+      .set("share_of_both", depends.of_both)
+      .set("spread", depends.spread)
+      .set("hold_out_share", force->share);
+}
+
 /// What only one of the models has is left out of the other.
 Json make_parameters(const std::vector<ParameterChange>& parameters) {
   Json before = Json::object(), after = Json::object();
@@ -96,12 +110,13 @@ Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis) {
       .set("runners_up", make_causes(diagnosis.runners_up))
       .set("unknown_share", diagnosis.unknown_share)
       .set("where", make_where(diagnosis.where))
+      .set("force_map", make_force(diagnosis.force))
       .set("parameters", make_parameters(diagnosis.parameters))
       .set("gain", make_gain(diagnosis.gain))
       .set("not_identifiable", make_texts(diagnosis.not_identifiable))
       .set("next_measurement", diagnosis.next_measurement)
       .set("notes", notes)
-      .set("extended_model", diagnosis.causes.empty() ? "" : "extended.toml");
+      .set("extended_model", diagnosis.is_extended() ? "extended.toml" : "");
 }
 
 }  // namespace strut

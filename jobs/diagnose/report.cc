@@ -22,10 +22,11 @@ std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
   if (!diagnosis.next_measurement.empty()) {
     lead.push_back("To be measured next: " + diagnosis.next_measurement);
   }
-  if (!diagnosis.causes.empty()) {
+  if (diagnosis.is_extended()) {
     lead.emplace_back(
         "extended.toml is the model with the causes switched on at their fitted "
-        "values; it can stand wherever a model file is named.");
+        "values and the force map, where there is one; it can stand wherever a model file is "
+        "named.");
   }
   return lead;
 }
@@ -55,6 +56,9 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
   std::vector<ReportSection>& sections = page.sections;
   const std::vector<ReportTable> causes = make_cause_tables(diagnosis);
   if (!causes.empty()) sections.push_back({"Causes", {}, causes});
+  ReportSection map{"Force map"};
+  draw_all(drawer, make_map_figures(diagnosis), map);
+  if (!map.figures.empty()) sections.push_back(std::move(map));
   sections.push_back({"Gain on runs held out", {}, {make_gain_table(diagnosis)}});
   for (const DiagnosedRun& run : diagnosis.runs) {
     if (data.campaign.runs[run.run].use != RunUse::kHoldOut) continue;

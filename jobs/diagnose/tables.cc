@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "jobs/diagnose/force_map.h"
+
 namespace strut {
 namespace {
 
@@ -92,7 +94,7 @@ ReportTable make_gain_table(const Diagnosis& diagnosis) {
                           format_short(c.noise_floor), format_percent(c.nrmse_before),
                           format_percent(c.nrmse_after)});
   }
-  if (!diagnosis.causes.empty()) {
+  if (diagnosis.is_extended()) {
     table.notes.push_back("Explained of what is more than noise: " +
                           print_number("%.1f %%", 100.0 * gain.explained));
     table.notes.push_back(describe_likelihood(gain));
@@ -131,7 +133,7 @@ std::string make_diagnose_text(const Diagnosis& diagnosis) {
 
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run) {
   std::vector<ModelCurves> models = {{"baseline", 5, &run.before}};
-  if (!diagnosis.causes.empty()) models.push_back({"extended", 2, &run.after});
+  if (diagnosis.is_extended()) models.push_back({"extended", 2, &run.after});
   return models;
 }
 
@@ -141,6 +143,9 @@ void write_diagnose_tables(const DiagnoseFolder& folder, const CampaignData& dat
     write_csv(folder.table(make_run_name(data, run.run)),
               make_curve_columns(data, run.run, list_model_curves(diagnosis, run)));
   }
+  if (!diagnosis.force) return;
+  write_csv(folder.table("force_map"),
+            make_force_map_columns(*diagnosis.force, diagnosis.selection.extended));
 }
 
 }  // namespace strut

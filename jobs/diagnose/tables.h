@@ -26,11 +26,11 @@ std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis);
 /// What the terminal shows: verdict, probabilities, gain, next measurement.
 std::string make_diagnose_text(const Diagnosis& diagnosis);
 
-/// Baseline; extended where there are causes.
+/// Baseline; extended where there is such a model.
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run);
 
-/// For every run NAME.csv: time, and of every channel measured, baseline, extended. Throws
-/// EnvironmentError.
+/// For every run NAME.csv: time, and of every channel measured, baseline, extended; of a force map
+/// force_map.csv. Throws EnvironmentError.
 void write_diagnose_tables(const DiagnoseFolder& folder, const CampaignData& data,
                            const Diagnosis& diagnosis);
 

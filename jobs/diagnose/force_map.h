@@ -1,0 +1,21 @@
+// The force map of a diagnosis as a figure and as a table.
+#pragma once
+
+#include <vector>
+
+#include "diagnose/diagnosis.h"
+#include "io/csv.h"
+#include "jobs/report/figure.h"
+
+namespace strut {
+
+/// Force over velocity at three deflections and over deflection at three velocities, as far as the
+/// strut was near both in the runs for fitting; and where it was.
+Figure make_force_map_figure(const UnknownForce& force);
+
+/// deflection, velocity, force, 1 sigma of it, and how many samples of the runs for fitting lie
+/// around: a row a point of an even grid over all that was visited, the velocities of one
+/// deflection behind each other.
+std::vector<CsvColumn> make_force_map_columns(const UnknownForce& force, const WhitenedFit& fit);
+
+}  // namespace strut
