@@ -213,17 +213,14 @@ void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& 
 
 double calc_road_ratio(const NoiseSpectrum& s, std::size_t band) {
   double sum = 0.0, count = 0.0;
-  for (const Eigen::MatrixXcd& source : s.sources) {
-    for (Index f = 0; f < source.cols(); ++f) {
-      const double frequency =
-          static_cast<double>(f) / (static_cast<double>(s.samples) * s.interval);
-      if (find_noise_band(frequency) != band) continue;
-      for (Index c = 0; c < source.rows(); ++c) {
-        sum +=
-            s.level * std::norm(source(c, f)) / std::pow(s.sigma[static_cast<std::size_t>(c)], 2);
-      }
-      if (&source == &s.sources.front()) count += static_cast<double>(source.rows());
+  for (std::size_t f = 0; f < s.common.size(); ++f) {
+    const double frequency = static_cast<double>(f) / (static_cast<double>(s.samples) * s.interval);
+    if (find_noise_band(frequency) != band) continue;
+    const Eigen::VectorXd power = s.common[f].diagonal().real();
+    for (Index c = 0; c < power.size(); ++c) {
+      sum += s.level * power(c) / std::pow(s.sigma[static_cast<std::size_t>(c)], 2);
     }
+    count += static_cast<double>(power.size());
   }
   return count > 0.0 ? sum / count : 0.0;
 }

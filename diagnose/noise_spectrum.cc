@@ -38,9 +38,10 @@ NoiseSpectrum make_white(const CampaignData& data, std::size_t run) {
   return s;
 }
 
-Eigen::MatrixXcd make_source(const NoiseSpectrum& s) {
+/// Channels by frequencies of a transform of `length` samples.
+Eigen::MatrixXcd make_source(const NoiseSpectrum& s, std::size_t length) {
   return Eigen::MatrixXcd::Zero(static_cast<Eigen::Index>(s.sigma.size()),
-                                static_cast<Eigen::Index>(s.samples / 2 + 1));
+                                static_cast<Eigen::Index>(length / 2 + 1));
 }
 
 // --- cars ---------------------------------------------------------------------------------------
@@ -48,6 +49,9 @@ Eigen::MatrixXcd make_source(const NoiseSpectrum& s) {
 constexpr double kPulseTime = 0.016, kPulseStart = 0.1;  // s; first zero of its spectrum: 125 Hz
 constexpr double kPulseHeight = 1e-4;                    // m
 constexpr double kHighest = 100.0;  // Hz; beyond, a road moves nothing that is measured
+/// Responses are computed at so many frequencies for each of a run's transform: a run is short, and
+/// its ends spread every frequency over the next ones.
+constexpr std::size_t kFiner = 4;
 
 /// Transform of h / 2 (1 + cos(2 pi t / T)), abs(t) < T / 2, over h.
 double calc_pulse_transform(double frequency) {
@@ -73,7 +77,8 @@ std::vector<std::vector<double>> simulate_pulse(Case c, const NoiseSpectrum& s,
   c.maneuver.road.side = side;
   c.maneuver.bump_distance = kPulseStart * c.maneuver.speed;
   if (axle == PulseAxle::kRear) c.maneuver.bump_distance -= wheelbase;
-  c.maneuver.duration = std::min(kLongestResponse, static_cast<double>(s.samples) * s.interval);
+  c.maneuver.duration =
+      std::min(kLongestResponse, static_cast<double>(kFiner * s.samples) * s.interval);
   SamplePlan plan;
   plan.interval = s.interval;
   plan.snapshot = false;
@@ -105,11 +110,11 @@ TrackResponse calc_track_response(const Case& c, const NoiseSpectrum& s,
     std::vector<double> of_both(both[k]), of_rear(rear[k]);
     for (std::size_t i = 0; i < of_both.size(); ++i) of_both[i] -= rest[k][i];
     for (std::size_t i = 0; i < of_rear.size(); ++i) of_rear[i] -= rest[k][i];
-    Spectrum front = calc_transform(of_both, s.samples);
-    const Spectrum later = calc_transform(of_rear, s.samples);
+    Spectrum front = calc_transform(of_both, kFiner * s.samples);
+    const Spectrum later = calc_transform(of_rear, kFiner * s.samples);
     for (std::size_t f = 0; f < front.size(); ++f) {
       const double frequency =
-          static_cast<double>(f) / (static_cast<double>(s.samples) * s.interval);
+          static_cast<double>(f) / (static_cast<double>(kFiner * s.samples) * s.interval);
       front[f] -= std::polar(1.0, -2.0 * kPi * frequency * wheelbase / c.maneuver.speed) * later[f];
     }
     response.front.push_back(std::move(front));
@@ -123,10 +128,11 @@ constexpr double kLongestWave = 50.0;  // m; longer ones move no channel
 /// The road under one wheel alone.
 Eigen::MatrixXcd make_wheel_source(const std::vector<Spectrum>& response, double speed,
                                    const NoiseSpectrum& s) {
-  Eigen::MatrixXcd source = make_source(s);
+  Eigen::MatrixXcd source = make_source(s, kFiner * s.samples);
   const double rate = 1.0 / s.interval;
   for (Eigen::Index f = 0; f < source.cols(); ++f) {
-    const double frequency = static_cast<double>(f) * rate / static_cast<double>(s.samples);
+    const double frequency =
+        static_cast<double>(f) * rate / static_cast<double>(kFiner * s.samples);
     if (frequency > kHighest) break;
     const double n = std::max(frequency / speed, 1.0 / kLongestWave);
     // Two-sided density over time of a road with G0 = 1 m^3; n0 = 0.1 1/m.
@@ -148,32 +154,67 @@ double calc_track_coherence(double wave_number, double track) {
   return x < 1e-6 ? kTrusted : kTrusted * x * std::cyl_bessel_k(1.0, std::min(x, 50.0));
 }
 
-/// The sources of both tracks under both axles as four that are independent of each other: columns
-/// times the Cholesky factors of the coherence along a track and between the tracks.
-void add_road_sources(const std::array<std::array<Eigen::MatrixXcd, 2>, 2>& wheels, double speed,
-                      double wheelbase, double track, NoiseSpectrum& s) {
-  constexpr double kTrusted = 0.95, kDelayError = 1e-3;  // s
-  std::array<Eigen::MatrixXcd, 4> sources;
-  sources.fill(make_source(s));
-  const double rate = 1.0 / s.interval;
-  for (Eigen::Index f = 0; f < sources[0].cols(); ++f) {
-    const double frequency = static_cast<double>(f) * rate / static_cast<double>(s.samples);
+/// Responses to the road by track and axle.
+using WheelSources = std::array<std::array<Eigen::MatrixXcd, 2>, 2>;
+
+/// By frequency of the sources, what four wheels in two tracks do together.
+std::vector<Eigen::MatrixXcd> calc_road_covariance(const WheelSources& wheels, double step,
+                                                   double speed, double wheelbase, double track) {
+  constexpr double kTrusted = 0.9, kDelayError = 10e-3;  // s
+  const auto& [left, right] = wheels;
+  std::vector<Eigen::MatrixXcd> covariance;
+  for (Eigen::Index f = 0; f < left[0].cols(); ++f) {
+    const double frequency = static_cast<double>(f) * step;
+    if (frequency > kHighest) break;
     const double off = 2.0 * kPi * frequency * kDelayError;
-    const double same = kTrusted * std::exp(-0.5 * off * off);
-    const std::complex<double> later = std::polar(same, -2.0 * kPi * frequency * wheelbase / speed);
-    const double other = std::sqrt(1.0 - same * same);
+    const std::complex<double> rear_to_front = std::polar(
+        kTrusted * std::exp(-0.5 * off * off), -2.0 * kPi * frequency * wheelbase / speed);
     const double alike =
         calc_track_coherence(std::max(frequency / speed, 1.0 / kLongestWave), track);
-    const double apart = std::sqrt(1.0 - alike * alike);
-    const auto& [left, right] = wheels;
-    const Eigen::VectorXcd left_both = left[0].col(f) + later * left[1].col(f);
-    const Eigen::VectorXcd right_both = right[0].col(f) + later * right[1].col(f);
-    sources[0].col(f) = left_both + alike * right_both;
-    sources[1].col(f) = other * (left[1].col(f) + alike * right[1].col(f));
-    sources[2].col(f) = apart * right_both;
-    sources[3].col(f) = apart * other * right[1].col(f);
+    Eigen::Matrix2cd along, across;
+    along << 1.0, std::conj(rear_to_front), rear_to_front, 1.0;
+    across << 1.0, alike, alike, 1.0;
+    Eigen::MatrixXcd h(left[0].rows(), 4);
+    h << left[0].col(f), left[1].col(f), right[0].col(f), right[1].col(f);
+    Eigen::Matrix4cd coherence;
+    coherence << across(0, 0) * along, across(0, 1) * along, across(1, 0) * along,
+        across(1, 1) * along;
+    covariance.emplace_back(h * coherence * h.adjoint());
   }
-  for (Eigen::MatrixXcd& source : sources) s.sources.push_back(std::move(source));
+  return covariance;
+}
+
+/// Of a faded record: what its ends spread over the neighbors of each frequency.
+std::vector<Eigen::MatrixXcd> spread_covariance(const std::vector<Eigen::MatrixXcd>& fine,
+                                                std::size_t samples) {
+  constexpr std::size_t kReach = 12 * kFiner;  // of the finer frequencies, to either side
+  const Spectrum window = calc_transform(make_fade(samples, true), kFiner * samples);
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (std::size_t m = 0; m <= std::min(kReach, window.size() - 1); ++m) {
+    weights.push_back(std::norm(window[m]));
+    sum += (m == 0 ? 1.0 : 2.0) * weights.back();
+  }
+  std::vector<Eigen::MatrixXcd> spread;
+  for (std::size_t k = 0; kFiner * k < fine.size(); ++k) {
+    Eigen::MatrixXcd at = Eigen::MatrixXcd::Zero(fine[0].rows(), fine[0].cols());
+    const auto middle = static_cast<std::ptrdiff_t>(kFiner * k);
+    const auto reach = static_cast<std::ptrdiff_t>(weights.size()) - 1;
+    for (std::ptrdiff_t m = -reach; m <= reach; ++m) {
+      const std::ptrdiff_t f = middle + m;
+      const auto place = static_cast<std::size_t>(std::abs(f));
+      if (place >= fine.size()) continue;
+      const double weight = weights[static_cast<std::size_t>(std::abs(m))] / sum;
+      // Negative frequencies are the conjugates of positive ones.
+      if (f < 0) {
+        at += weight * fine[place].conjugate();
+      } else {
+        at += weight * fine[place];
+      }
+    }
+    spread.push_back(std::move(at));
+  }
+  return spread;
 }
 
 NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int number,
@@ -187,7 +228,7 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   // The road's faults have no place on this one, and at rest friction would hold the car.
   c.vehicle.effects.clear();
   const double speed = c.maneuver.speed;
-  std::array<std::array<Eigen::MatrixXcd, 2>, 2> wheels;  // by track and axle
+  WheelSources wheels;
   for (const auto& [side, axles] :
        {std::pair{BumpSide::kLeft, &wheels[0]}, std::pair{BumpSide::kRight, &wheels[1]}}) {
     const TrackResponse response = calc_track_response(c, s, data.channels(run), side);
@@ -196,12 +237,26 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   }
   const WholeCarSpec& whole = c.vehicle.whole;
   const auto& [front, rear] = c.vehicle.suspension;
-  add_road_sources(wheels, speed, whole.centroid_to_front + whole.centroid_to_rear,
-                   front.wheel_center_y + rear.wheel_center_y, s);
+  const double step = 1.0 / (static_cast<double>(kFiner * s.samples) * s.interval);
+  s.common = spread_covariance(
+      calc_road_covariance(wheels, step, speed, whole.centroid_to_front + whole.centroid_to_rear,
+                           front.wheel_center_y + rear.wheel_center_y),
+      s.samples);
   return s;
 }
 
 // --- rigs ---------------------------------------------------------------------------------------
+
+/// What one more source does to all channels.
+void add_source(const Eigen::MatrixXcd& source, NoiseSpectrum& s) {
+  if (s.common.empty()) {
+    s.common.assign(static_cast<std::size_t>(source.cols()),
+                    Eigen::MatrixXcd::Zero(source.rows(), source.rows()));
+  }
+  for (Eigen::Index f = 0; f < source.cols(); ++f) {
+    s.common[static_cast<std::size_t>(f)] += source.col(f) * source.col(f).adjoint();
+  }
+}
 
 /// The response to one wrong sample of an input, on its way through whatever smooths it.
 NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
@@ -238,7 +293,7 @@ NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
     }
     const RigCurves curves = simulate_rig_run(rig, 0, {}, {});
     if (!curves.failure.empty()) throw InputError(curves.failure);
-    Eigen::MatrixXcd source = make_source(s);
+    Eigen::MatrixXcd source = make_source(s, s.samples);
     for (std::size_t k = 0; k < data.channels(run).size(); ++k) {
       std::vector<double> series =
           curves.channel[static_cast<std::size_t>(data.channels(run)[k].channel)];
@@ -249,7 +304,7 @@ NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
         source(static_cast<Eigen::Index>(k), f) = gain * of[static_cast<std::size_t>(f)];
       }
     }
-    s.sources.push_back(std::move(source));
+    add_source(source, s);
   }
   return s;
 }
@@ -262,17 +317,29 @@ std::size_t find_noise_band(double frequency) {
   return band;
 }
 
-double calc_source_variance(const NoiseSpectrum& s, std::size_t channel) {
+std::vector<double> make_fade(std::size_t count, bool fades) {
+  constexpr double kShare = 0.05;
+  std::vector<double> fade(count, 1.0);
+  if (!fades) return fade;
+  const auto length = static_cast<std::size_t>(kShare * static_cast<double>(count));
+  for (std::size_t i = 0; i < length; ++i) {
+    const double way = (static_cast<double>(i) + 0.5) / static_cast<double>(length);
+    fade[i] = fade[count - 1 - i] = 0.5 - 0.5 * std::cos(kPi * way);
+  }
+  return fade;
+}
+
+double calc_common_variance(const NoiseSpectrum& s, std::size_t channel) {
   double variance = 0.0;
-  for (const Eigen::MatrixXcd& source : s.sources) {
-    variance += 2.0 * source.row(static_cast<Eigen::Index>(channel)).squaredNorm() /
-                static_cast<double>(s.samples);
+  const auto at = static_cast<Eigen::Index>(channel);
+  for (const Eigen::MatrixXcd& covariance : s.common) {
+    variance += 2.0 * covariance(at, at).real() / static_cast<double>(s.samples);
   }
   return variance;
 }
 
 double calc_noise_variance(const NoiseSpectrum& s, std::size_t channel) {
-  return s.sigma[channel] * s.sigma[channel] + s.level * calc_source_variance(s, channel);
+  return s.sigma[channel] * s.sigma[channel] + s.level * calc_common_variance(s, channel);
 }
 
 std::size_t find_quick_length(std::size_t n) {

@@ -10,16 +10,16 @@
 //   G(n) = G0 (n / n0)^-2, n0 = 0.1 1/m (ISO 8608)
 //
 // the rear wheels in the tracks of the front ones, a wheelbase later, and the tracks, B apart, as
-// alike as those of an isotropic road with this density (C. J. Dodds, J. D. Robson, J. Sound Vib. 31
-// (1973)):
+// alike as those of an isotropic road with this density (C. J. Dodds, J. D. Robson, J. Sound Vib.
+// 31 (1973)):
 //
 //   coherence gamma(n) = x K_1(x), x = 2 pi n B
 //
-// Of either, part is relied upon, 0.95 and 0.9, no more: no road is isotropic, no rear wheel runs in
-// the track to the centimeter, and the delay is known to a millisecond. Without it long waves would
-// twist the car, which no road does, and the measured level would pay for that. Sources of a rig:
-// the white noise of each input.
-// Responses are the model's own, to a pulse so small that it is linear.
+// Of either, part is relied upon, 0.95 and 0.9, no more: no road is isotropic, no rear wheel runs
+// in the track to the centimeter, and the delay is known to a millisecond. Without it long waves
+// would twist the car, which no road does, and the measured level would pay for that. Sources of a
+// rig: the white noise of each input. Responses are the model's own, to a pulse so small that it is
+// linear.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,11 +39,13 @@ struct NoiseSpectrum {
   std::size_t samples = 0;    // of the transform: the first of the run's
   double interval = 0.0;      // s between them
   std::vector<double> sigma;  // of each channel's white noise
-  /// By source: channels x frequencies 0, 1, ... / (samples interval), per sqrt(level).
-  std::vector<Eigen::MatrixXcd> sources;
-  /// What the responses are to be multiplied by: of a car G0 [m^3], of a rig 1.
+  /// By frequency 0, 1, ... / (samples interval), per level: the covariance of the channels by all
+  /// that reaches them at once, in a record that is faded in and out where it is. None beyond the
+  /// end.
+  std::vector<Eigen::MatrixXcd> common;
+  /// What `common` is to be multiplied by: of a car G0 [m^3], of a rig 1.
   double level = 1.0;
-  /// Of a source's response: how far the model's own may be from the car's, relative. The linear
+  /// How far the responses of the model may be from those of the car, relative. The linear
   /// response of a nonlinear car is not exact, and must not be relied on to the last digit.
   double response_error = 0.01;
   /// A rough road's spectrum is red: a record that is cut off must be faded out.
@@ -53,9 +55,14 @@ struct NoiseSpectrum {
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
-/// Variance that the sources give a channel of a run, at level 1.
-double calc_source_variance(const NoiseSpectrum& spectrum, std::size_t channel);
-/// Variance of the noise of a channel of a run, the sensor's own and that of its sources.
+/// What samples of a run are multiplied by, by a quarter of a cosine over a twentieth of it at
+/// either end; 1 where it is not faded.
+std::vector<double> make_fade(std::size_t count, bool fades);
+
+/// Variance that `common` gives a channel of a run, at level 1.
+double calc_common_variance(const NoiseSpectrum& spectrum, std::size_t channel);
+/// Variance of the noise of a channel of a run, the sensor's own and what it has in common with
+/// others.
 double calc_noise_variance(const NoiseSpectrum& spectrum, std::size_t channel);
 
 /// The largest number up to n whose transform is quick: of factors 2, 3, 5.

@@ -229,7 +229,7 @@ class Selector {
       const NoiseSpectrum& s = whitener.spectra()[r];
       double ratio = 0.0;  // of the road's power to the sensors', mean over channels
       for (std::size_t c = 0; c < s.sigma.size(); ++c) {
-        ratio += s.level * calc_source_variance(s, c) /
+        ratio += s.level * calc_common_variance(s, c) /
                  (s.sigma[c] * s.sigma[c] * static_cast<double>(s.sigma.size()));
       }
       const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);

@@ -39,7 +39,7 @@ double measure_approach(const CampaignData& data, std::size_t run, std::size_t n
   for (std::size_t c = 0; c < channels; ++c) {
     if (counts[c] < kEnough) continue;
     // Variance of the channel over sigma^2 per m^3.
-    const double unit = calc_source_variance(spectrum, c) / (spectrum.sigma[c] * spectrum.sigma[c]);
+    const double unit = calc_common_variance(spectrum, c) / (spectrum.sigma[c] * spectrum.sigma[c]);
     const auto n = static_cast<double>(counts[c]);
     const double variance = squares[c] / n - (means[c] / n) * (means[c] / n);
     if (unit > 0.0) levels.push_back(std::max(0.0, variance - 1.0) / unit);

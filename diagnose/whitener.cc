@@ -12,32 +12,19 @@ namespace strut {
 namespace {
 
 constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
-constexpr double kPi = 3.14159265358979323846;
-
-std::vector<double> make_fade(std::size_t count, double share, bool fades) {
-  std::vector<double> fade(count, 1.0);
-  if (!fades) return fade;
-  const auto length = static_cast<std::size_t>(share * static_cast<double>(count));
-  for (std::size_t i = 0; i < length; ++i) {
-    const double way = (static_cast<double>(i) + 0.5) / static_cast<double>(length);
-    fade[i] = fade[count - 1 - i] = 0.5 - 0.5 * std::cos(kPi * way);
-  }
-  return fade;
-}
 
 /// Over sigma^2.
 Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index frequency) {
-  const double response_error = spectrum.response_error;
   const auto channels = static_cast<Eigen::Index>(spectrum.sigma.size());
   Eigen::MatrixXcd covariance = Eigen::MatrixXcd::Identity(channels, channels);
-  for (const Eigen::MatrixXcd& source : spectrum.sources) {
-    Eigen::VectorXcd h = std::sqrt(spectrum.level) * source.col(frequency);
-    for (Eigen::Index c = 0; c < channels; ++c) {
-      h(c) /= spectrum.sigma[static_cast<std::size_t>(c)];
-      covariance(c, c) += response_error * response_error * std::norm(h(c));
-    }
-    covariance += h * h.adjoint();
-  }
+  const auto at = static_cast<std::size_t>(frequency);
+  if (at >= spectrum.common.size()) return covariance;
+  const Eigen::VectorXd sigma = Eigen::Map<const Eigen::VectorXd>(spectrum.sigma.data(), channels);
+  const Eigen::VectorXd scale = std::sqrt(spectrum.level) * sigma.cwiseInverse();
+  const Eigen::MatrixXcd common = scale.asDiagonal() * spectrum.common[at] * scale.asDiagonal();
+  covariance += common;
+  const double response_error = spectrum.response_error;
+  covariance.diagonal() += response_error * response_error * common.diagonal();
   return covariance;
 }
 
@@ -50,7 +37,7 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
     const NoiseSpectrum& spectrum = spectra_[r];
     const std::size_t channels = spectrum.sigma.size();
     Run run;
-    run.fade = make_fade(spectrum.samples, options.faded, spectrum.fades);
+    run.fade = make_fade(spectrum.samples, spectrum.fades);
     for (const double f : run.fade) run.share += f * f / static_cast<double>(run.fade.size());
     run.share -= 1.0;
     run.rows.assign(channels, std::vector<std::size_t>(spectrum.samples, kMissing));
@@ -229,6 +216,10 @@ std::vector<std::vector<double>> measure_excess(const Whitener& whitener,
 Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
                         const std::vector<bool>& is_level, const Eigen::VectorXd& residual) {
   constexpr double kLowest = 1e-7, kHighest = 1e-3, kPerDecade = 4.0;
+  // Where the car answers to the road; what a tire passes on of shorter waves is less certain, and
+  // there would be more of them.
+  WhitenerOptions felt;
+  felt.highest = 15.0;
   std::vector<Roughness> tried = {{0.0, 0.02}};
   for (const double error : {0.02, 0.1}) {
     for (double level = kLowest; level < kHighest; level *= std::pow(10.0, 1.0 / kPerDecade)) {
@@ -247,7 +238,7 @@ Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectr
         at[i].response_error = roughness.response_error;
         if (i != r) at[i].samples = 2;  // of the others nothing is asked
       }
-      const Whitener whitener(model, at);
+      const Whitener whitener(model, at, felt);
       const double likelihood = whitener.calc_log_likelihood(whitener.apply(residual), r);
       if (likelihood <= most[r]) continue;
       most[r] = likelihood;

@@ -19,7 +19,6 @@ namespace strut {
 struct WhitenerOptions {
   /// Hz; what is faster is left aside: no effect of the catalogue lives there.
   double highest = 100.0;
-  double faded = 0.05;  // share of a run faded in and out, where it must be
   /// Hz, where runs are faded: what is slower than a record or two is offset, not motion.
   double lowest = 0.6;
 };

@@ -60,7 +60,9 @@ NoiseSpectrum make_spectrum() {
       source(c, k) = std::polar(get_weight(static_cast<std::size_t>(c)), phase);
     }
   }
-  s.sources = {source};
+  for (Eigen::Index k = 0; k < source.cols(); ++k) {
+    s.common.emplace_back(source.col(k) * source.col(k).adjoint());
+  }
   return s;
 }
 
@@ -101,7 +103,7 @@ TEST_CASE("Whitened noise has variance one in every channel, whatever its source
 TEST_CASE("Without sources whitening keeps every sum of squares", "[unit]") {
   const ConstantModel model(2);
   std::vector<NoiseSpectrum> spectra(2, make_spectrum());
-  for (NoiseSpectrum& s : spectra) s.sources.clear();
+  for (NoiseSpectrum& s : spectra) s.common.clear();
   const Whitener whitener(model, spectra);
   const Eigen::VectorXd noise = draw_noise(2);
   const Eigen::VectorXd whitened = whitener.apply(noise);
@@ -137,7 +139,7 @@ TEST_CASE("Noise that a spectrum does not know is counted by run and band", "[un
   constexpr std::size_t kRuns = 2;
   const ConstantModel model(kRuns);
   std::vector<NoiseSpectrum> spectra(kRuns, make_spectrum());
-  for (NoiseSpectrum& s : spectra) s.sources.clear();
+  for (NoiseSpectrum& s : spectra) s.common.clear();
   const Whitener whitener(model, spectra);
   Eigen::VectorXd noise(static_cast<Eigen::Index>(kRuns * kSamples * kChannels));
   for (Eigen::Index i = 0; i < noise.size(); ++i) {
