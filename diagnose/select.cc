@@ -223,7 +223,8 @@ class Selector {
 
   /// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
   double calc_negligible(const Whitener& whitener) const {
-    double power = options_.negligible * static_cast<double>(whitener.whitened_count());
+    const double share = data_.is_rig() ? options_.negligible : options_.negligible_car;
+    double power = share * static_cast<double>(whitener.whitened_count());
     if (data_.is_rig()) return power;
     for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
       const NoiseSpectrum& s = whitener.spectra()[r];

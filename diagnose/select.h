@@ -23,9 +23,10 @@ struct SelectOptions {
   /// Thresholds are raised by this factor for what the noise model does not know; measured on
   /// hidden trials that hide nothing.
   double margin = 1.25;
-  /// Of the noise's power: what explains less is not claimed, as no model is exact to that.
-  /// And of the road's power, as linear responses are not exact either.
-  double negligible = 1e-3, negligible_road = 7e-5;
+  /// Of the noise's power: what explains less is not claimed, as no model is exact to that, that of
+  /// a car less than that of a rig. And of the road's power, as linear responses are not exact
+  /// either.
+  double negligible = 1e-3, negligible_car = 2.5e-3, negligible_road = 3e-5;
   /// A second cause explains at least this share of what the first does; less is told from a first
   /// cause of another form than the catalogue's.
   double second_share = 0.1;
