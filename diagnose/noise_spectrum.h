@@ -2,10 +2,10 @@
 // roughness, and the noise of what a rig's inputs were measured with, reach all channels at once,
 // through the model.
 //
-//   S(f) = diag(sigma^2) + sum_l h_l(f) h_l(f)^*
+//   S(f) = diag(sigma^2) + sum_lm C_lm(f) h_l(f) h_m(f)^*
 //
-// h_l: response of the channels to one independent source l, as amplitudes of the unitary discrete
-// transform. Sources of a car: the road under its wheels, with the density
+// h_l: response of the channels to one source l, as amplitudes of the unitary discrete transform;
+// C: how alike the sources are. Sources of a car: the road under its wheels, with the density
 //
 //   G(n) = G0 (n / n0)^-2, n0 = 0.1 1/m (ISO 8608)
 //
@@ -15,11 +15,12 @@
 //
 //   coherence gamma(n) = x K_1(x), x = 2 pi n B
 //
-// Of either, part is relied upon, 0.95 and 0.9, no more: no road is isotropic, no rear wheel runs
-// in the track to the centimeter, and the delay is known to a millisecond. Without it long waves
-// would twist the car, which no road does, and the measured level would pay for that. Sources of a
-// rig: the white noise of each input. Responses are the model's own, to a pulse so small that it is
-// linear.
+// Of either 0.9 is relied upon, and of the delay that it is known to 10 ms, no more: no road is
+// isotropic, and no rear wheel runs in the track to the centimeter. Without it long waves would
+// twist the car, which no road does, and the measured level would pay for that. A run is short:
+// what its faded ends spread over neighboring frequencies is in S, too
+// (docs/design/0008-noise-of-a-road.md). Sources of a rig: the white noise of each input. Responses
+// are the model's own, to a pulse so small that it is linear.
 #pragma once
 
 #include <Eigen/Core>
