@@ -253,7 +253,7 @@ std::optional<WhitenedFit> fit_force_map(const CampaignData& data, const Whitene
 
 std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Selection& selection,
                                             const ForceMapOptions& options) {
-  const Judgment now(selection.hold_out_after);
+  const Judgment before(selection.hold_out_before), now(selection.hold_out_after);
   if (!now.is_whole || now.count == 0.0) return std::nullopt;
   std::optional<ForceMapFit> best;
   for (const bool replaces : {false, true}) {
@@ -273,6 +273,8 @@ std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Sele
       // Where noise happens to be small, more than all of it is taken.
       map.share = std::min(1.0, (now.chi2 - judged.chi2) / std::max(now.chi2 - now.count, 1e-9));
       if (map.share < options.least_share) continue;
+      const double fall = before.chi2 - judged.chi2;
+      if (replaces && before.chi2 - now.chi2 > options.causes_share * fall) continue;
       if (best) {
         // What was named stays unless a map alone is clearly better.
         const double margin = replaces && !best->replaces_causes ? options.log_odds : 0.0;

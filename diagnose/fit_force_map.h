@@ -25,6 +25,9 @@ struct ForceMapOptions {
   double log_odds = 3.0;
   /// Of what the runs held out have beyond noise, a map takes at least this share.
   double least_share = 0.1;
+  /// Causes that take more than this share of what a map alone takes stay: their form is
+  /// incomplete, not their name.
+  double causes_share = 0.5;
   std::function<void(const std::string&)> progress;  // what is being done
 };
 
