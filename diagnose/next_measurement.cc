@@ -77,17 +77,27 @@ double calc_difference(const CampaignData& one, const SharedValues& a, const Sha
   return sum;
 }
 
+/// Where there is no group to be told apart.
+std::string propose_alone(const Selection& selection) {
+  if (!selection.causes.empty()) {
+    return "repeat one of the runs held out at another speed or amplitude: the name should stay, "
+           "and "
+           "its parameters";
+  }
+  if (selection.is_left) {
+    return "repeat a run at half and at twice its amplitude, and once more as it was: what has no "
+           "name is then seen to grow with the motion, to stay as it is, or to be gone";
+  }
+  return "none is needed to judge these runs; larger bumps or amplitudes would show effects that "
+         "are "
+         "hidden here";
+}
+
 }  // namespace
 
 std::string propose_measurement(const CampaignData& data, const Selection& selection,
                                 const std::vector<Cause>& group) {
-  if (group.size() < 2) {
-    return selection.causes.empty()
-               ? "none is needed to judge these runs; larger bumps or amplitudes would show "
-                 "effects that are hidden here"
-               : "repeat one of the runs held out at another speed or amplitude: the name should "
-                 "stay, and its parameters";
-  }
+  if (group.size() < 2) return propose_alone(selection);
   const std::optional<SharedValues> a = find_values(selection, group[0]);
   const std::optional<SharedValues> b = find_values(selection, group[1]);
   const std::string pair = describe_effect(group[0].effect, group[0].place) + " from " +

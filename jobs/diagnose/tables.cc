@@ -55,7 +55,7 @@ std::string make_where_text(const Where& where) {
   std::string text;
   if (!where.channel.empty()) text += " in " + where.channel;
   if (!details.empty()) text += " (" + details + ")";
-  if (!where.depends_on.empty()) text += " over " + where.depends_on;
+  if (!where.depends_on.empty()) text += ", depending on " + where.depends_on;
   return text.empty() ? "" : "What the baseline leaves is seen best" + text + ".";
 }
 
