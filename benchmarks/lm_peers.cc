@@ -20,7 +20,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-double calc_cpu_seconds() {
+[[maybe_unused]] double calc_cpu_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);

@@ -26,6 +26,7 @@ struct QuarterTruth {
   std::uint64_t seed = 1;
   double amplitude = 0.002;      // m, of the road's chirp
   double stroke_friction = 0.0;  // N/m, friction by the strut's deflection, smoothed alike
+  double hum = 0.0;              // m, a tone of 31.2 Hz in the sensor of the unsprung position
 };
 
 struct QuarterRecord {
@@ -80,7 +81,8 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
     const auto place = static_cast<std::uint64_t>(i);
     record.time.push_back(begin);
     record.road.push_back(calc_test_road(truth, begin, duration));
-    record.unsprung.push_back(x[0] + truth.noise * calc_test_normal(truth.seed, 0, place));
+    const double hum = truth.hum * std::sin(2.0 * 3.14159265358979323846 * 31.2 * begin);
+    record.unsprung.push_back(x[0] + hum + truth.noise * calc_test_normal(truth.seed, 0, place));
     record.sprung.push_back(x[1] + truth.noise * calc_test_normal(truth.seed, 1, place));
     record.sprung_acceleration.push_back(derive(begin, x)[3]);
     for (int k = 0; k < kSubsteps; ++k) {

@@ -205,6 +205,25 @@ double compare_held_out(const std::filesystem::path& model, const test::QuarterT
   return json.get_child("runs").back().second.get<double>("nominal.channels.sprung_position.rms");
 }
 
+TEST_CASE("A tone no larger than the noise of its sensor is told with frequency and place",
+          "[io]") {
+  const test::TemporaryFolder folder;
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  truth.hum = 2e-5;
+  test::write_two_runs(folder, truth);
+  const test::Outcome outcome =
+      run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
+  INFO(outcome.messages << outcome.out);
+  REQUIRE(outcome.code == 0);
+  const auto json = test::parse_json(outcome.out);
+  CHECK(json.get<std::string>("verdict") == "unknown");
+  CHECK(json.get<std::string>("where.place") == "unsprung_position");
+  const std::string band = json.get<std::string>("where.band");  // "31-31.5 Hz"
+  CHECK(std::stod(band) <= 31.2);
+  CHECK(std::stod(band.substr(band.find('-') + 1)) > 31.2);
+}
+
 TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
