@@ -112,7 +112,8 @@ std::optional<CarBalance> calc_car_balance(const CampaignData& data, std::size_t
   if (!can_balance(data, run) || !at.failure.empty()) return std::nullopt;
   const CampaignData one = pin_run(data, run, shared);
   const Start start = make_start(one, shared, at);
-  std::vector<NoiseSpectrum> spectra = make_noise_spectra(one, {0}, start.unknowns, start.values);
+  std::vector<NoiseSpectrum> spectra =
+      make_noise_spectra(one, {0}, start.unknowns, start.values, RoadRecord::kWithin);
   spectra.front().level = kUnknownRoad;
   spectra.front().response_error = kResponseError;
   const WhitenedFit fit =

@@ -219,7 +219,7 @@ std::vector<Eigen::MatrixXcd> spread_covariance(const std::vector<Eigen::MatrixX
 
 NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int number,
                                 const std::vector<Unknown>& unknowns,
-                                const std::vector<double>& values) {
+                                const std::vector<double>& values, RoadRecord record) {
   NoiseSpectrum s = make_white(data, run);
   s.level = 0.0;
   s.fades = true;
@@ -238,10 +238,14 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   const WholeCarSpec& whole = c.vehicle.whole;
   const auto& [front, rear] = c.vehicle.suspension;
   const double step = 1.0 / (static_cast<double>(kFiner * s.samples) * s.interval);
-  s.common = spread_covariance(
+  const std::vector<Eigen::MatrixXcd> fine =
       calc_road_covariance(wheels, step, speed, whole.centroid_to_front + whole.centroid_to_rear,
-                           front.wheel_center_y + rear.wheel_center_y),
-      s.samples);
+                           front.wheel_center_y + rear.wheel_center_y);
+  if (record == RoadRecord::kCutOff) {
+    s.common = spread_covariance(fine, s.samples);
+  } else {
+    for (std::size_t k = 0; kFiner * k < fine.size(); ++k) s.common.push_back(fine[kFiner * k]);
+  }
   return s;
 }
 
@@ -356,13 +360,14 @@ std::size_t find_quick_length(std::size_t n) {
 std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
                                               const std::vector<std::size_t>& runs,
                                               const std::vector<Unknown>& unknowns,
-                                              const std::vector<double>& values) {
+                                              const std::vector<double>& values,
+                                              RoadRecord record) {
   std::vector<NoiseSpectrum> spectra;
   spectra.reserve(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    spectra.push_back(
-        data.is_rig() ? make_rig_spectrum(data, runs[i], unknowns, values)
-                      : make_car_spectrum(data, runs[i], static_cast<int>(i), unknowns, values));
+    spectra.push_back(data.is_rig() ? make_rig_spectrum(data, runs[i], unknowns, values)
+                                    : make_car_spectrum(data, runs[i], static_cast<int>(i),
+                                                        unknowns, values, record));
   }
   return spectra;
 }

@@ -69,10 +69,15 @@ double calc_noise_variance(const NoiseSpectrum& spectrum, std::size_t channel);
 /// The largest number up to n whose transform is quick: of factors 2, 3, 5.
 std::size_t find_quick_length(std::size_t n);
 
+/// Whether a road goes on before and after a record, or all that it does to a car lies within, as
+/// of a bump.
+enum class RoadRecord { kCutOff, kWithin };
+
 /// Spectra of `runs` at these values of their unknowns (Unknown::run counts within `runs`).
 std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
                                               const std::vector<std::size_t>& runs,
                                               const std::vector<Unknown>& unknowns,
-                                              const std::vector<double>& values);
+                                              const std::vector<double>& values,
+                                              RoadRecord record = RoadRecord::kCutOff);
 
 }  // namespace strut
