@@ -114,7 +114,7 @@ class MapSearch {
     if (!at.failure.empty()) throw InputError(at.failure);
     const Whitener whitener(*model, fit.spectra);
     const WhitenedModel whitened(*model, whitener);
-    const Linearization seen = {"", whitener.apply(at.residual), whitener.apply(at.jacobian)};
+    const Linearization seen = whitener.apply(at);
     if (!data_.is_rig()) {
       fit.linearization = std::make_shared<const Linearization>(std::move(at));
     }
@@ -140,7 +140,7 @@ class MapSearch {
       factors_ = factors;
       now_.fit.values = values;
       moved_ = gained > kEnough;
-      if (!now_.is_dominated) count_excess(bench.whitener(), *residual);
+      if (!now_.is_dominated) count_excess(bench.whitener(), *residual, now_.spectra);
       return;
     }
   }
@@ -176,11 +176,6 @@ class MapSearch {
     const Evaluation e = model->evaluate(values);
     if (!e.failure.empty()) return std::nullopt;
     return whitener.apply(e.residual);
-  }
-
-  void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened) {
-    const auto excess = measure_excess(whitener, whitened);
-    for (std::size_t r = 0; r < excess.size(); ++r) now_.spectra[r].excess = excess[r];
   }
 
   const CampaignData& data_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnose/map_axis.h"
+#include "diagnose/spread.h"
 #include "io/config.h"
 
 namespace strut {
@@ -22,17 +23,11 @@ std::string name_outward(MapVariable variable) {
   return variable == MapVariable::kVelocity ? "rebound" : "extension";
 }
 
-double get_quantile(Values values, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
 /// Over what was visited but for the extremes.
 MapCurve make_curve(const MapAxis& axis, const Eigen::VectorXd& coefficients,
                     const Values& samples) {
   constexpr double kRare = 0.005;
-  const double low = get_quantile(samples, kRare), high = get_quantile(samples, 1.0 - kRare);
+  const double low = calc_quantile(samples, kRare), high = calc_quantile(samples, 1.0 - kRare);
   MapCurve curve;
   for (std::size_t i = 0; i < kCurvePoints; ++i) {
     const double share = static_cast<double>(i) / (kCurvePoints - 1);

@@ -52,7 +52,7 @@ struct NoiseSpectrum {
   /// A rough road's spectrum is red: a record that is cut off must be faded out.
   bool fades = false;
   /// By kNoiseBands: what the variance is to be multiplied by beyond the above, for what the noise
-  /// model does not know (measure_excess).
+  /// model does not know (count_excess).
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 

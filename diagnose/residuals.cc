@@ -61,19 +61,6 @@ double calc_interval(std::span<const double> times) {
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-/// `share` of the finite values lie below.
-double calc_quantile(std::span<const double> values, double share) {
-  std::vector<double> there;
-  there.reserve(values.size());
-  for (const double v : values) {
-    if (std::isfinite(v)) there.push_back(v);
-  }
-  if (there.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(there.size() - 1));
-  std::nth_element(there.begin(), there.begin() + at, there.end());
-  return there[static_cast<std::size_t>(at)];
-}
-
 /// Readings that count as one, for neighbors that correlate by `rho`: an autoregressive process of
 /// first order has (1 + rho) / (1 - rho).
 double calc_correlation_length(double rho) {

@@ -1,7 +1,9 @@
 #include "diagnose/spread.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 namespace strut {
 namespace {
@@ -32,6 +34,18 @@ double calc_rms(std::span<const double> values) {
 double calc_spread(std::span<const double> values) {
   const double mean = calc_mean(values);
   return std::sqrt(average(values, [mean](double v) { return (v - mean) * (v - mean); }));
+}
+
+double calc_quantile(std::span<const double> values, double share) {
+  std::vector<double> there;
+  there.reserve(values.size());
+  for (const double v : values) {
+    if (std::isfinite(v)) there.push_back(v);
+  }
+  if (there.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(there.size() - 1));
+  std::nth_element(there.begin(), there.begin() + at, there.end());
+  return there[static_cast<std::size_t>(at)];
 }
 
 std::size_t count_readings(std::span<const double> values) {

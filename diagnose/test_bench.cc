@@ -86,7 +86,7 @@ TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threa
   std::shared_ptr<const Linearization> given = fit.linearization;
   if (!given) given = std::make_shared<const Linearization>(model->linearize(values_));
   if (!given->failure.empty()) throw InputError(given->failure);
-  Linearization at = {"", whitener_->apply(given->residual), whitener_->apply(given->jacobian)};
+  Linearization at = whitener_->apply(*given);
   normal_ = calc_normal_equations(whitened, at).information;
   residual_ = std::move(at.residual);
   jacobian_ = std::move(at.jacobian);

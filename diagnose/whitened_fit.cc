@@ -87,11 +87,6 @@ std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baselin
 
 namespace {
 
-void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened, WhitenedFit& result) {
-  const auto excess = measure_excess(whitener, whitened);
-  for (std::size_t r = 0; r < excess.size(); ++r) result.spectra[r].excess = excess[r];
-}
-
 /// What a rig has beyond its sensors' noise is what is looked for: nothing of it counts as noise.
 void fit_rig(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
   FitOptions options;
@@ -134,7 +129,7 @@ void fit_car(ReadingModel& model, const std::vector<double>& start, WhitenedFit&
       result.is_dominated =
           residual.squaredNorm() > kDominated * static_cast<double>(residual.size());
       if (!result.is_dominated) {
-        count_excess(whitener, residual, result);
+        count_excess(whitener, residual, result.spectra);
         continue;
       }
     }

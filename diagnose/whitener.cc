@@ -158,6 +158,10 @@ Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns) const {
   return out;
 }
 
+Linearization Whitener::apply(const Linearization& at) const {
+  return {"", apply(at.residual), apply(at.jacobian)};
+}
+
 WhitenedModel::WhitenedModel(ReadingModel& model, const Whitener& whitener)
     : ReadingModel(model.unknowns()), model_(model), whitener_(whitener) {
   readings_ = whitener.places();
@@ -169,10 +173,7 @@ WhitenedModel::WhitenedModel(ReadingModel& model, const Whitener& whitener)
 Linearization WhitenedModel::linearize(const std::vector<double>& values) {
   Linearization at = model_.linearize(values);
   simulation_count_ = model_.simulation_count();
-  if (!at.failure.empty()) return at;
-  at.residual = whitener_.apply(at.residual);
-  at.jacobian = whitener_.apply(at.jacobian);
-  return at;
+  return at.failure.empty() ? whitener_.apply(at) : at;
 }
 
 std::vector<Evaluation> WhitenedModel::evaluate(const std::vector<std::vector<double>>& points) {
@@ -188,8 +189,8 @@ std::vector<double> WhitenedModel::align(const std::vector<double>& values) {
   return model_.align(values);
 }
 
-std::vector<std::vector<double>> measure_excess(const Whitener& whitener,
-                                                const Eigen::VectorXd& whitened) {
+void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
+                  std::vector<NoiseSpectrum>& spectra) {
   constexpr double kEnough = 200.0;
   const std::size_t runs = whitener.spectra().size(), bands = kNoiseBands.size();
   // The last row is of all runs together.
@@ -203,14 +204,13 @@ std::vector<std::vector<double>> measure_excess(const Whitener& whitener,
       counts[r][band] += whitener.get_share(place.run);
     }
   }
-  std::vector<std::vector<double>> excess(runs, std::vector<double>(bands, 1.0));
   for (std::size_t r = 0; r < runs; ++r) {
     for (std::size_t b = 0; b < bands; ++b) {
       const std::size_t from = counts[r][b] >= kEnough ? r : runs;
-      if (counts[from][b] > 0.0) excess[r][b] = std::max(1.0, sums[from][b] / counts[from][b]);
+      spectra[r].excess[b] =
+          counts[from][b] > 0.0 ? std::max(1.0, sums[from][b] / counts[from][b]) : 1.0;
     }
   }
-  return excess;
 }
 
 Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,

@@ -31,6 +31,8 @@ class Whitener {
 
   /// Columns of readings, in units of each channel's sigma, then priors -> whitened, then priors.
   Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
+  /// Of a model that could be simulated there.
+  Linearization apply(const Linearization& at) const;
 
   std::size_t whitened_count() const { return places_.size(); }
   /// Of each whitened number: its run, frequency (as `time`) and channel, the last of those that it
@@ -87,10 +89,11 @@ class WhitenedModel : public ReadingModel {
   const Whitener& whitener_;
 };
 
-/// By run and kNoiseBands the mean square of whitened readings, at least 1: times the excess that
-/// the whitener's spectra have already. Few readings of a run count with those of all runs.
-std::vector<std::vector<double>> measure_excess(const Whitener& whitener,
-                                                const Eigen::VectorXd& whitened);
+/// Sets the spectra's excess, by run and kNoiseBands, to the mean square of whitened readings, at
+/// least 1: times the excess that the whitener's spectra have already. Few readings of a run count
+/// with those of all runs.
+void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
+                  std::vector<NoiseSpectrum>& spectra);
 
 /// Roughness as it is seen in residuals.
 struct Roughness {

@@ -31,6 +31,12 @@ std::string quote(const std::string& text) {
 
 Json::Json(double value) : text_(std::isfinite(value) ? format_number(value) : "null") {}
 
+Json Json::texts(const std::vector<std::string>& values) {
+  Json list = array();
+  for (const std::string& value : values) list.push(value);
+  return list;
+}
+
 Json& Json::set(const std::string& key, Json value) {
   members_.emplace_back(key, std::move(value));
   return *this;

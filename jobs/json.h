@@ -20,6 +20,7 @@ class Json {
 
   static Json object() { return Json("", Kind::kObject); }
   static Json array() { return Json("", Kind::kArray); }
+  static Json texts(const std::vector<std::string>& values);
 
   /// Appends a member to an object; returns the object.
   Json& set(const std::string& key, Json value);

@@ -15,9 +15,6 @@ namespace strut {
 namespace {
 
 Json make_json(const VerifyReport& report) {
-  Json damaged = Json::array(), differing = Json::array();
-  for (const std::string& what : report.damaged) damaged.push(what);
-  for (const std::string& what : report.differing) differing.push(what);
   Json json = Json::object();
   json.set("ok", report.ok())
       .set("data_digest", report.data_digest)
@@ -25,11 +22,11 @@ Json make_json(const VerifyReport& report) {
       .set("missing", static_cast<long>(report.missing))
       .set("double", static_cast<long>(report.twice))
       .set("foreign", static_cast<long>(report.foreign))
-      .set("damaged", damaged)
+      .set("damaged", Json::texts(report.damaged))
       .set("shards", static_cast<long>(report.shards))
       .set("resimulated", static_cast<long>(report.resimulated))
       .set("compared_by_tolerance", static_cast<long>(report.compared_by_tolerance))
-      .set("differing", differing);
+      .set("differing", Json::texts(report.differing));
   return json;
 }
 

@@ -128,7 +128,7 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
   const test::TemporaryFolder folder;
   const CampaignData data = make_data(folder);
   const Diagnosis diagnosis = make_named(data);
-  const DiagnoseFolder out{std::filesystem::path(folder / "out")};
+  const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
   const auto notes = write_diagnose_report(out, data, diagnosis);
   const std::string report = test::read_text(out.report());
   const std::size_t verdict = report.find("The model lacks &lt;friction&gt; in the strut.");
@@ -151,7 +151,7 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
 TEST_CASE("strut report makes a diagnosis' page again from what its folder holds", "[io]") {
   const test::TemporaryFolder folder;
   const CampaignData data = make_data(folder);
-  const DiagnoseFolder out{std::filesystem::path(folder / "out")};
+  const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
   const bool has_figures = write_diagnose_report(out, data, make_named(data)).empty();
   write_text_file(out.verdict(), "{}\n");
   const std::string report = test::read_text(out.report());
@@ -178,7 +178,7 @@ TEST_CASE("The curves of every run are written beside each other", "[io]") {
   const test::TemporaryFolder folder;
   const CampaignData data = make_data(folder);
   const Diagnosis diagnosis = make_named(data);
-  write_diagnose_tables({folder / "."}, data, diagnosis);
+  write_diagnose_tables({{folder / "."}}, data, diagnosis);
   const CsvTable table = read_csv(folder / "run_2_b.csv", MissingCells::kNan);
   CHECK(table.row_count() == data.times(1).size());
   const auto& measured = table.column("sprung_position").values;
@@ -205,18 +205,25 @@ double compare_held_out(const std::filesystem::path& model, const test::QuarterT
   return json.get_child("runs").back().second.get<double>("nominal.channels.sprung_position.rms");
 }
 
+/// What `strut diagnose --json` prints of two runs of a quarter car, into the folder's `out`.
+test::JsonTree diagnose_truth(const test::TemporaryFolder& folder,
+                              const test::QuarterTruth& truth) {
+  test::write_two_runs(folder, truth);
+  const test::Outcome outcome =
+      run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
+  INFO(outcome.messages << outcome.out);
+  REQUIRE(outcome.code == 0);
+  CHECK(test::read_text(folder / "out" / "verdict.json") == outcome.out);
+  return test::parse_json(outcome.out);
+}
+
 TEST_CASE("A tone no larger than the noise of its sensor is told with frequency and place",
           "[io]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
   truth.noise = 2e-5;
   truth.hum = 2e-5;
-  test::write_two_runs(folder, truth);
-  const test::Outcome outcome =
-      run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
-  INFO(outcome.messages << outcome.out);
-  REQUIRE(outcome.code == 0);
-  const auto json = test::parse_json(outcome.out);
+  const auto json = diagnose_truth(folder, truth);
   CHECK(json.get<std::string>("verdict") == "unknown");
   CHECK(json.get<std::string>("where.place") == "unsprung_position");
   const std::string band = json.get<std::string>("where.band");  // "31-31.5 Hz"
@@ -229,13 +236,7 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") 
   test::QuarterTruth truth;
   truth.noise = 2e-5;
   truth.friction = 0.5;
-  test::write_two_runs(folder, truth);
-  const auto campaign = test::write_campaign(folder);
-  const test::Outcome outcome = run_program(diagnose(campaign, folder / "out", "--json"));
-  INFO(outcome.messages);
-  REQUIRE(outcome.code == 0);
-  const auto json = test::parse_json(outcome.out);
-  CHECK(test::read_text(folder / "out" / "verdict.json") == outcome.out);
+  const auto json = diagnose_truth(folder, truth);
   const std::string verdict = json.get<std::string>("verdict");
   CHECK((verdict == "named" || verdict == "group"));
   REQUIRE(!json.get_child("causes").empty());
@@ -252,7 +253,8 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") 
   }
 
   SECTION("and is not replaced without being told to") {
-    const test::Outcome refused = run_program(diagnose(campaign, folder / "out"));
+    const test::Outcome refused =
+        run_program(diagnose(test::write_campaign(folder), folder / "out"));
     CHECK(refused.code == 2);
     CHECK_THAT(refused.messages, Contains("holds a diagnosis") && Contains("--force"));
   }
@@ -263,12 +265,7 @@ TEST_CASE("diagnose gives an effect outside of its catalogue a force map", "[io]
   test::QuarterTruth truth;
   truth.noise = 1e-6;
   truth.stroke_friction = 150.0;
-  test::write_two_runs(folder, truth);
-  const test::Outcome outcome =
-      run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
-  INFO(outcome.messages << outcome.out);
-  REQUIRE(outcome.code == 0);
-  const auto json = test::parse_json(outcome.out);
+  const auto json = diagnose_truth(folder, truth);
   const std::string verdict = json.get<std::string>("verdict");
   CHECK((verdict == "unknown" || verdict == "form_incomplete"));
   CHECK_THAT(json.get<std::string>("sentence"), Contains("a force in the strut that depends on"));
@@ -292,12 +289,7 @@ TEST_CASE("diagnose finds nothing where nothing is hidden", "[io]") {
     test::QuarterTruth truth;
     truth.noise = 2e-5;
     truth.seed = seed;
-    test::write_two_runs(folder, truth);
-    const test::Outcome outcome =
-        run_program(diagnose(test::write_campaign(folder), folder / "out", "--json"));
-    INFO(outcome.messages << outcome.out);
-    REQUIRE(outcome.code == 0);
-    const auto json = test::parse_json(outcome.out);
+    const auto json = diagnose_truth(folder, truth);
     CHECK(json.get<std::string>("verdict") == "adequate");
     CHECK(json.get_child("causes").empty());
     CHECK(json.get<std::string>("extended_model").empty());

@@ -143,7 +143,7 @@ StepOptions make_step(double step = 1e-3) {
 
 LaneResults run_rig(const RigSpec& spec) {
   return simulate_rig(spec, make_input(spec.kind), make_step(),
-                      {.duration = 1.0, .interval = 0.01, .recorded = {}});
+                      {.duration = 1.0, .interval = 0.01});
 }
 
 TEST_CASE("A rig's map that is a damper or a spring equals them", "[unit][reference][rigs]") {
@@ -173,8 +173,7 @@ TEST_CASE("A rig with a map rests at its rest position", "[unit][rigs]") {
   ForceMap map = make_map("", 1, 1);
   map.coefficients = {250.0};
   const RigSpec spec = make_rig(RigKind::kQuarterCar, {map});
-  const LaneResults run =
-      simulate_rig(spec, {}, make_step(), {.duration = 1.0, .interval = 0.1, .recorded = {}});
+  const LaneResults run = simulate_rig(spec, {}, make_step(), {.duration = 1.0, .interval = 0.1});
   using Q = QuarterCarChannel;
   for (int i = 0; i <= 10; ++i) {
     const auto get = [&](int c) { return run.history[at(i) * Q::kCount + at(c)]; };
@@ -196,7 +195,7 @@ TEST_CASE("Lanes of rigs may differ in their maps and in having one", "[unit][pr
   std::array<const RigSpec*, static_cast<std::size_t>(kWidth)> specs, plain;
   plain.fill(&rigs[1]);
   for (std::size_t lane = 0; lane < specs.size(); ++lane) specs[lane] = &rigs[lane];
-  const SamplePlan plan{.duration = 1.0, .interval = 0.01, .recorded = {}};
+  const SamplePlan plan{.duration = 1.0, .interval = 0.01};
   const auto run = [&](const auto& of) {
     return simulate_rigs<NativeLanes>(of.data(), make_input(kind), make_step(), plan);
   };

@@ -1,8 +1,6 @@
 // Reading the JSON that the program prints, by a parser that is not ours.
 #pragma once
 
-// Asked for by Boost's own parser, which uses the names it deprecates.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
 #include <boost/property_tree/json_parser.hpp>
 #include <sstream>
 #include <string>

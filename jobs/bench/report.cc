@@ -1,7 +1,5 @@
 #include "jobs/bench/report.h"
 
-// Asked for by Boost's own parser, which uses the names it deprecates.
-#define BOOST_BIND_GLOBAL_PLACEHOLDERS
 #include <boost/property_tree/json_parser.hpp>
 #include <cstdio>
 #include <ostream>

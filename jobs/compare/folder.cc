@@ -5,7 +5,7 @@
 namespace strut {
 
 CompareFolder find_compare_folder(const Arguments& arguments) {
-  return {find_output_folder(arguments, "compare.json", "comparison")};
+  return {{find_output_folder(arguments, "compare.json", "comparison")}};
 }
 
 }  // namespace strut

@@ -2,19 +2,14 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "jobs/arguments.h"
+#include "jobs/report/page_file.h"
 
 namespace strut {
 
-struct CompareFolder {
-  std::filesystem::path root;
-
+struct CompareFolder : PageFolder {
   std::filesystem::path json() const { return root / "compare.json"; }
-  std::filesystem::path report() const { return root / "report.html"; }
-  std::filesystem::path figures() const { return root / "figures"; }
-  std::filesystem::path table(const std::string& name) const { return root / (name + ".csv"); }
 };
 
 /// The folder of --output, made where it is missing. Throws InputError where it is missing, a file,

@@ -193,12 +193,9 @@ Json make_compare_json(const CampaignData& data, const Comparison& comparison) {
                         .set("iterations", fit.iterations)
                         .set("simulations", fit.simulations));
   }
-  Json open = Json::array(), notes = Json::array();
-  for (const std::string& direction : comparison.not_identifiable) open.push(direction);
-  for (const std::string& note : data.notes) notes.push(note);
-  return json.set("not_identifiable", open)
+  return json.set("not_identifiable", Json::texts(comparison.not_identifiable))
       .set("noise", make_noise(data))
-      .set("notes", notes)
+      .set("notes", Json::texts(data.notes))
       .set("runs", make_runs(data, comparison));
 }
 

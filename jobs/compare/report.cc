@@ -39,7 +39,7 @@ std::vector<std::string> write_compare_report(const CompareFolder& folder, const
     page.sections.push_back(make_run_section(data, run, drawer));
   }
   page.footer = make_report_footer();
-  write_page({folder.root}, page);
+  write_page(folder, page);
   return drawer.list_notes();
 }
 

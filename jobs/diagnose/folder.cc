@@ -5,7 +5,7 @@
 namespace strut {
 
 DiagnoseFolder find_diagnose_folder(const Arguments& arguments) {
-  return {find_output_folder(arguments, "verdict.json", "diagnosis")};
+  return {{find_output_folder(arguments, "verdict.json", "diagnosis")}};
 }
 
 }  // namespace strut

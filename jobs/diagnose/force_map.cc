@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnose/spread.h"
 #include "jobs/compare/curves.h"
 #include "jobs/report/html.h"
 #include "jobs/report/panels.h"
@@ -40,12 +41,8 @@ double count_around(const VisitedStates& states, double deflection, double defle
 }
 
 /// The values that a tenth, half and nine tenths stay below.
-std::array<double, 3> list_cuts(Values values) {
-  std::sort(values.begin(), values.end());
-  const auto get = [&](double share) {
-    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-  };
-  return {get(0.1), get(0.5), get(0.9)};
+std::array<double, 3> list_cuts(const Values& values) {
+  return {calc_quantile(values, 0.1), calc_quantile(values, 0.5), calc_quantile(values, 0.9)};
 }
 
 /// Curves over one variable at three values of the other, NaN where the strut never was near.

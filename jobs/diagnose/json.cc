@@ -89,16 +89,10 @@ Json make_gain(const HoldOutGain& gain) {
            Json::array().push(gain.log_likelihood_before).push(gain.log_likelihood_after));
 }
 
-Json make_texts(const std::vector<std::string>& texts) {
-  Json json = Json::array();
-  for (const std::string& text : texts) json.push(text);
-  return json;
-}
-
 }  // namespace
 
 Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis) {
-  Json notes = make_texts(data.notes);
+  Json notes = Json::texts(data.notes);
   for (const std::string& note : diagnosis.notes) notes.push(note);
   Json json = Json::object();
   return json.set("verdict", get_name(diagnosis.kind))
@@ -113,7 +107,7 @@ Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis) {
       .set("force_map", make_force(diagnosis.force))
       .set("parameters", make_parameters(diagnosis.parameters))
       .set("gain", make_gain(diagnosis.gain))
-      .set("not_identifiable", make_texts(diagnosis.not_identifiable))
+      .set("not_identifiable", Json::texts(diagnosis.not_identifiable))
       .set("next_measurement", diagnosis.next_measurement)
       .set("notes", notes)
       .set("extended_model", diagnosis.is_extended() ? "extended.toml" : "");

@@ -82,7 +82,7 @@ std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
                                                const CampaignData& data,
                                                const Diagnosis& diagnosis) {
   const FigureDrawer drawer(folder.figures());
-  write_page({folder.root}, make_page(data, diagnosis, drawer));
+  write_page(folder, make_page(data, diagnosis, drawer));
   return drawer.list_notes();
 }
 

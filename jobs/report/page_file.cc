@@ -13,12 +13,6 @@ namespace {
 
 using Tree = boost::property_tree::ptree;
 
-Json make_json(const std::vector<std::string>& texts) {
-  Json list = Json::array();
-  for (const std::string& text : texts) list.push(text);
-  return list;
-}
-
 /// Of each element what `make` makes of it.
 template <class T, class Make>
 Json make_list(const std::vector<T>& elements, const Make& make) {
@@ -30,16 +24,16 @@ Json make_list(const std::vector<T>& elements, const Make& make) {
 Json make_table_json(const ReportTable& table) {
   return Json::object()
       .set("caption", table.caption)
-      .set("header", make_json(table.header))
-      .set("rows", make_list(table.rows, &make_json))
-      .set("notes", make_json(table.notes))
+      .set("header", Json::texts(table.header))
+      .set("rows", make_list(table.rows, &Json::texts))
+      .set("notes", Json::texts(table.notes))
       .set("text_columns", static_cast<long>(table.text_columns));
 }
 
 Json make_section_json(const ReportSection& section) {
   return Json::object()
       .set("heading", section.heading)
-      .set("paragraphs", make_json(section.paragraphs))
+      .set("paragraphs", Json::texts(section.paragraphs))
       .set("tables", make_list(section.tables, &make_table_json))
       .set("figures", make_list(section.figures, [](const ReportFigure& figure) {
              return Json::object().set("name", figure.name).set("caption", figure.caption);
@@ -49,7 +43,7 @@ Json make_section_json(const ReportSection& section) {
 Json make_page_json(const ReportPage& page) {
   return Json::object()
       .set("title", page.title)
-      .set("lead", make_json(page.lead))
+      .set("lead", Json::texts(page.lead))
       .set("sections", make_list(page.sections, &make_section_json))
       .set("footer", page.footer);
 }

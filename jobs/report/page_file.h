@@ -9,13 +9,15 @@
 
 namespace strut {
 
-/// A folder of one report: report.html, the page as report.json, figures as scripts and pictures.
+/// A folder of one report: report.html, the page as report.json, figures as scripts and pictures,
+/// tables as CSV.
 struct PageFolder {
   std::filesystem::path root;
 
   std::filesystem::path report() const { return root / "report.html"; }
   std::filesystem::path page() const { return root / "report.json"; }
   std::filesystem::path figures() const { return root / "figures"; }
+  std::filesystem::path table(const std::string& name) const { return root / (name + ".csv"); }
 };
 
 /// Writes report.json and report.html.

@@ -14,9 +14,7 @@ Json list_hidden(const StudyRequest& request, const CellResult& cell) {
 }
 
 Json list_channels(const StudyRequest& request, const CellResult& cell) {
-  Json channels = Json::array();
-  for (const std::string& name : request.inputs[cell.cell.inputs].channels) channels.push(name);
-  return channels;
+  return Json::texts(request.inputs[cell.cell.inputs].channels);
 }
 
 Json make_spreads(const StudyRequest& request, const CellResult& cell) {

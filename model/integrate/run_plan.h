@@ -30,7 +30,7 @@ struct SamplePlan {
   bool snapshot = true;
   int channel_count = 0;
   int parts = 1;  // samples an interval; every parts-th is, bit for bit, that of a plan with one
-  std::vector<int> recorded;  // channels of the history, in this order; empty: all
+  std::vector<int> recorded = {};  // channels of the history, in this order; empty: all
 
   int recorded_count() const {
     return recorded.empty() ? channel_count : static_cast<int>(recorded.size());

@@ -169,14 +169,18 @@ TEST_CASE("Hidden data: friction, knee, asymmetry and stop have the forces they 
         Approx(80.0).epsilon(tolerance(1e-6)));
 }
 
+/// At 0.8 m/s one way for 0.1 s, then back.
+RoadMotion make_reversal() {
+  return {[](double t) { return 0.8 * std::fmin(t, 0.2 - t); },
+          [](double t) { return t < 0.1 ? 0.8 : -0.8; }};
+}
+
 TEST_CASE("Hidden data: a leaking damper is idle for its stroke after each reversal", "[unit]") {
   StrutLaw law;
   law.damping = 1000.0;
   law.faults.leak = 4e-3;
   // At constant speed the stroke is used up after 5 ms, in either direction.
-  const auto drive = RoadMotion{[](double t) { return 0.8 * std::fmin(t, 0.2 - t); },
-                                [](double t) { return t < 0.1 ? 0.8 : -0.8; }};
-  const auto force = simulate_strut(law, drive, make_times(0.0, 0.2, 1e-3));
+  const auto force = simulate_strut(law, make_reversal(), make_times(0.0, 0.2, 1e-3));
   CHECK(force[3] == Approx(0.0).margin(tolerance(1e-9)));
   CHECK(force[50] == Approx(800.0).epsilon(tolerance(1e-6)));
   CHECK(force[103] == Approx(0.0).margin(tolerance(1e-9)));
@@ -190,9 +194,7 @@ TEST_CASE("Hidden data: behind a worn joint the damper stands while the rod cros
   law.faults.play = 4e-3;
   // From the middle of the gap half of it, after the reversal all of it; then metal, which yields
   // by less than 800 N over 3e6 N/m and gives the joint another 0.5 ms.
-  const auto drive = RoadMotion{[](double t) { return 0.8 * std::fmin(t, 0.2 - t); },
-                                [](double t) { return t < 0.1 ? 0.8 : -0.8; }};
-  const auto force = simulate_strut(law, drive, make_times(0.0, 0.2, 1e-3));
+  const auto force = simulate_strut(law, make_reversal(), make_times(0.0, 0.2, 1e-3));
   CHECK(force[2] == Approx(0.0).margin(tolerance(1e-9)));
   CHECK(force[50] == Approx(800.0).epsilon(tolerance(1e-6)));
   CHECK(force[104] == Approx(0.0).margin(tolerance(1e-9)));
