@@ -34,8 +34,6 @@ double calc_half_width(const RigRun& run) {
   return std::max(kLeastSamples * interval, kHalfPeriods * period);
 }
 
-/// The strut's force, static load left out, when it is moved as measured: the same elements on a
-/// dynamometer.
 /// Whether an effect of a quarter car is one of its strut, with the same parameters.
 bool acts_on_bench(const EffectSetting& setting) {
   const EffectInfo& effect = *find_effect(setting.effect);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "diagnose/whitened_fit.h"
+#include "io/input_error.h"
 
 namespace strut {
 namespace {
@@ -73,7 +74,7 @@ Start make_start(const CampaignData& data, const SharedValues& shared, const Run
     start.add(u, u.start);
   }
   std::vector<MeasuredRun> cars = data.cars;
-  set_parameters(cars.front().setup, at.unknowns, at.values);
+  set_parameters(cars.front().setup, at.unknowns, at.values, 0);
   for (const Below& below : kBelow) {
     Unknown u = make_parameter(cars, below.name);
     if (!(u.start > 0.0)) continue;  // a level road
@@ -95,7 +96,7 @@ Start make_start(const CampaignData& data, const SharedValues& shared, const Run
 double calc_left(const CampaignData& data, const WhitenedFit& fit) {
   const auto model = make_reading_model(data, {0}, fit.fit.unknowns);
   const Evaluation at = model->evaluate(fit.fit.values);
-  if (!at.failure.empty()) return 0.0;
+  if (!at.failure.empty()) throw InputError(at.failure);
   NoiseSpectrum plain = fit.spectra.front();
   std::fill(plain.excess.begin(), plain.excess.end(), 1.0);
   const Whitener whitener(*model, {plain});

@@ -165,6 +165,7 @@ class Diagnoser {
     }
     tell("measuring the gain");
     diagnosis_.runs = evaluate_hold_out(data_, selection, options_.threads);
+    take_notes();
     diagnosis_.gain = calc_hold_out_gain(data_, selection, diagnosis_.runs);
     diagnosis_.where = find_where(data_, selection);
     diagnosis_.where.place = left_place_;
@@ -185,6 +186,27 @@ class Diagnoser {
  private:
   void tell(const std::string& what) const {
     if (options_.progress) options_.progress(what);
+  }
+
+  /// What a user must know before anything else is believed.
+  void take_notes() {
+    for (const bool extended : {false, true}) {
+      if (extended && !diagnosis_.is_extended()) continue;
+      const WhitenedFit& fit = extended ? diagnosis_.selection.extended : diagnosis_.selection.base;
+      if (fit.fit.converged) continue;
+      diagnosis_.notes.push_back(std::string("the fit of the ") +
+                                 (extended ? "extended" : "calibrated") +
+                                 " model has not converged: its minimum is " +
+                                 format_rounded(fit.fit.distance) + " standard deviations away");
+      if (!extended) diagnosis_.is_whole = false;
+    }
+    for (const DiagnosedRun& run : diagnosis_.runs) {
+      for (const RunEvaluation* model : {&run.before, &run.after}) {
+        if (model->failure.empty()) continue;
+        diagnosis_.notes.push_back(model->failure);
+        diagnosis_.is_whole = false;
+      }
+    }
   }
 
   /// What is left may be a force in a strut: then the extended model has its map, beside the causes
@@ -274,8 +296,7 @@ class Diagnoser {
     std::vector<std::string> names;
     for (const Cause& cause : diagnosis_.causes) names.push_back(describe(cause));
     const std::string what = join(names, " and ");
-    const std::string gain = format_rounded(std::round(100.0 * diagnosis_.gain.explained)) +
-                             " % of what could be gained on the runs held out";
+    const std::string gain = describe_gain();
     switch (diagnosis_.kind) {
       case VerdictKind::kAdequate:
         return "The calibrated model is adequate: no effect of the catalogue, and nothing else, "
@@ -300,6 +321,17 @@ class Diagnoser {
     if (!what.empty()) sentence += "; nearest: " + what;
     if (diagnosis_.force) return sentence + "; " + describe_share() + ".";
     return sentence + (what.empty() ? "." : ", " + gain + ".");
+  }
+
+  std::string describe_gain() const {
+    const std::optional<double>& explained = diagnosis_.gain.explained;
+    // Many readings together tell what no channel shows alone.
+    if (!explained) {
+      return "the runs held out are exp(" + format_rounded(std::round(diagnosis_.gain.log_odds)) +
+             ") times as likely";
+    }
+    return format_rounded(std::round(100.0 * *explained)) +
+           " % of what could be gained on the runs held out";
   }
 
   std::string describe_share() const {

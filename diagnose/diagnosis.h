@@ -1,6 +1,6 @@
 // The whole diagnosis of a campaign: what the simulation gets wrong, which effect of the catalogue
-// says so, how sure that is, what the extended model gains on runs it has not seen, and what to
-// measure next.
+// says so, how sure that is, what the extended model gains on runs it was not fitted to, and
+// what to measure next.
 #pragma once
 
 #include <functional>
@@ -47,9 +47,11 @@ struct ChannelGain {
 
 struct HoldOutGain {
   std::vector<ChannelGain> channels;
-  /// (before - after) / (before - floor) of the rms, summed over channels in units of their floors.
-  double explained = 0.0;
+  /// (before - after) / (before - floor) of the rms, the floor with its tolerance, summed over
+  /// channels in units of their floors. Nothing where no channel stands above its floor before.
+  std::optional<double> explained;
   double log_likelihood_before = 0.0, log_likelihood_after = 0.0;  // per sample
+  double log_odds = 0.0;  // of the extended model against the calibrated one, all samples
 };
 
 /// Where the residual of the calibrated model is seen best.
@@ -89,6 +91,7 @@ struct Diagnosis {
   Selection selection;
   std::vector<DiagnosedRun> runs;
   std::vector<std::string> notes;  // for the user
+  bool is_whole = true;  // the calibration converged, and every run held out could be simulated
 
   /// Whether there is an extended model.
   bool is_extended() const { return !causes.empty() || force.has_value(); }

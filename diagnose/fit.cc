@@ -196,7 +196,13 @@ std::vector<ChannelFit> judge_channels(const ReadingModel& simulator,
 
 Uncertainty calc_widened(const NormalEquations& normal, const FitResult& result) {
   const double misfit = std::max(1.0, result.chi2_per_degree());
-  return calc_uncertainty((normal.information - normal.of_priors) / misfit + normal.of_priors,
+  Eigen::MatrixXd priors = normal.of_priors;
+  // How large a map may be is known in units of what is left over (map_prior.h).
+  for (std::size_t i = 0; i < result.unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (result.unknowns[i].kind == UnknownKind::kForceMap) priors(at, at) /= misfit;
+  }
+  return calc_uncertainty((normal.information - normal.of_priors) / misfit + priors,
                           result.unknowns);
 }
 

@@ -206,18 +206,18 @@ bool has_corner_map(const ForceMaps& maps, const std::string& axle) {
 /// Sums over the runs held out; all must have been simulated.
 struct Judgment {
   bool is_whole = true;
-  double chi2 = 0.0, log_likelihood = 0.0, count = 0.0;
+  double chi2 = 0.0, log_likelihood = 0.0, expected = 0.0;
 
   explicit Judgment(const std::vector<HoldOutRun>& runs) {
     for (const HoldOutRun& run : runs) {
       is_whole = is_whole && run.failure.empty();
       chi2 += run.chi2;
       log_likelihood += run.log_likelihood;
-      count += static_cast<double>(run.count);
+      expected += run.expected;
     }
   }
   /// What a model leaves over what noise does, at least 1: readings count as many times less.
-  double misfit() const { return std::max(1.0, chi2 / count); }
+  double misfit() const { return std::max(1.0, chi2 / expected); }
   /// ln of the odds of this against another.
   double calc_log_odds(const Judgment& other) const {
     return (log_likelihood - other.log_likelihood) / misfit();
@@ -230,7 +230,7 @@ std::optional<WhitenedFit> fit_force_map(const CampaignData& data, const Whitene
                                          const VisitedStates& states,
                                          const ForceMapOptions& options) {
   const ForceMaps& given = get_force_maps(data);
-  if (has_corner_map(given, states.place) && !states.place.empty()) return std::nullopt;
+  if (has_corner_map(given, states.place)) return std::nullopt;
   const MapBasis basis = make_map_basis(states, find_own_map(given, states.place), options.grid);
   if (basis.shapes.empty()) return std::nullopt;
   try {
@@ -249,7 +249,7 @@ std::optional<WhitenedFit> fit_force_map(const CampaignData& data, const Whitene
 std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Selection& selection,
                                             const ForceMapOptions& options) {
   const Judgment before(selection.hold_out_before), now(selection.hold_out_after);
-  if (!now.is_whole || now.count == 0.0) return std::nullopt;
+  if (!now.is_whole || now.expected == 0.0) return std::nullopt;
   std::optional<ForceMapFit> best;
   for (const bool replaces : {false, true}) {
     if (replaces && selection.causes.empty()) break;
@@ -262,11 +262,11 @@ std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Sele
       std::optional<WhitenedFit> fit = fit_force_map(data, base, states, options);
       if (!fit) continue;
       ForceMapFit map{std::move(states), replaces, std::move(*fit), {}, 0.0};
-      map.judged = judge_hold_out(data, map.fit.shared(), selection.level, options.threads);
+      map.judged = selection.judge->judge(map.fit.shared());
       const Judgment judged(map.judged);
       if (!judged.is_whole || judged.calc_log_odds(now) < options.log_odds) continue;
       // Where noise happens to be small, more than all of it is taken.
-      map.share = std::min(1.0, (now.chi2 - judged.chi2) / std::max(now.chi2 - now.count, 1e-9));
+      map.share = std::min(1.0, (now.chi2 - judged.chi2) / std::max(now.chi2 - now.expected, 1e-9));
       if (map.share < options.least_share) continue;
       const double fall = before.chi2 - judged.chi2;
       if (replaces && before.chi2 - now.chi2 > options.causes_share * fall) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "diagnose/spread.h"
 
@@ -21,20 +22,24 @@ double calc_floor_tolerance(const ChannelSums& s, double uncertainty, double sen
   return 2.0 * std::hypot(uncertainty, 1.0 / std::sqrt(2.0 * s.count)) + kRoad * road;
 }
 
-/// What is gone of what was above the floors, each channel in units of its own; 0 where nothing
-/// was.
+/// What is gone of what was above the floors, each channel in units of its own.
 class ExplainedShare {
  public:
   void add(const ChannelGain& c, double tolerance) {
-    gained_ += (c.rms_before - c.rms_after) / c.noise_floor;
-    left_ += std::max(0.0, c.rms_after / c.noise_floor - 1.0 - tolerance);
+    const auto above = [&](double rms) {
+      return std::max(0.0, rms / c.noise_floor - 1.0 - tolerance);
+    };
+    before_ += above(c.rms_before);
+    after_ += above(c.rms_after);
   }
-  double get() const {
-    return gained_ + left_ > 0.0 ? std::max(-1.0, gained_ / (gained_ + left_)) : 0.0;
+  /// Nothing where nothing was above.
+  std::optional<double> get() const {
+    if (!(before_ > 0.0)) return std::nullopt;
+    return std::max(-1.0, (before_ - after_) / before_);
   }
 
  private:
-  double gained_ = 0.0, left_ = 0.0;
+  double before_ = 0.0, after_ = 0.0;
 };
 
 double sum_squares(const std::vector<double>& residual) {
@@ -62,11 +67,9 @@ HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& select
   HoldOutGain gain;
   std::vector<int> channels;
   std::vector<ChannelSums> sums;
-  for (const DiagnosedRun& run : runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const DiagnosedRun& run = runs[i];
     if (!run.before.failure.empty() || !run.after.failure.empty()) continue;
-    std::vector<NoiseSpectrum> spectra = make_noise_spectra(
-        data, {run.run}, selection.base.shared().unknowns, selection.base.shared().values);
-    if (!data.is_rig()) spectra.front().level = selection.level;
     for (std::size_t k = 0; k < data.channels(run.run).size(); ++k) {
       const MeasuredChannel& c = data.channels(run.run)[k];
       auto at = std::find(channels.begin(), channels.end(), c.channel) - channels.begin();
@@ -78,7 +81,7 @@ HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& select
       const auto count = static_cast<double>(count_readings(run.before.residual[k]));
       s.before += sum_squares(run.before.residual[k]);
       s.after += sum_squares(run.after.residual[k]);
-      s.floor += count * calc_noise_variance(spectra.front(), k);
+      s.floor += count * calc_noise_variance(selection.judge->get_noise(i), k);
       const double spread = calc_spread(c.values);
       s.spread += count * spread * spread;
       s.count += count;
@@ -115,6 +118,7 @@ HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& select
   if (count > 0.0) {
     gain.log_likelihood_before = before / count;
     gain.log_likelihood_after = after / count;
+    gain.log_odds = after - before;
   }
   return gain;
 }

@@ -1,4 +1,4 @@
-// What an extension gains on runs that it has not seen.
+// What an extension gains on runs that it was not fitted to.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace strut {
 std::vector<DiagnosedRun> evaluate_hold_out(const CampaignData& data, const Selection& selection,
                                             int threads);
 
-/// Channel by channel. The noise floor of a channel is what its sensor and, of a car, the roughness
-/// that was measured leave of a perfect model.
+/// Channel by channel, of the runs of evaluate_hold_out. The noise floor of a channel is what its
+/// sensor and, of a car, the roughness that was measured leave of a perfect model.
 HoldOutGain calc_hold_out_gain(const CampaignData& data, const Selection& selection,
                                const std::vector<DiagnosedRun>& runs);
 

@@ -187,7 +187,8 @@ void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& 
       const double share = static_cast<double>(rank) / count;
       if (share >= 1.0 || rank == 0) return;
       place.energy += (energy - share * all) / (1.0 - share);
-      place.sigma = std::hypot(place.sigma, 2.0 * std::sqrt(share / (1.0 - share)));
+      // All is chi2 of 2 count degrees, energy its part in 2 rank of them.
+      place.sigma = std::hypot(place.sigma, 2.0 * std::sqrt(count * share / (1.0 - share)));
     };
     for (std::size_t a = 0; a < actors.size(); ++a) {
       Eigen::MatrixXcd directions(bin.channels, static_cast<Index>(actors[a].columns.size()));

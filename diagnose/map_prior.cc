@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace strut {
 namespace {
@@ -19,12 +20,13 @@ Eigen::VectorXd calc_weights(const std::vector<MapShape>& shapes,
   return weights;
 }
 
-/// ln L less that of no map.
+/// ln L less that of no map; -infinity where rounding hides it.
 double calc_log_likelihood(const MapEvidence& e, const Eigen::VectorXd& weights) {
   const Index n = weights.size();
   Eigen::MatrixXd inner = weights.asDiagonal() * e.information * weights.asDiagonal();
   inner.diagonal().array() += 1.0;
   const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+  if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
   const Eigen::VectorXd weighted = weights.cwiseProduct(e.gradient);
   const double taken = weighted.dot(factor.solve(weighted));
   double log_determinant = 0.0;
@@ -81,7 +83,7 @@ MapPrior choose_map_prior(const MapEvidence& evidence, const std::vector<MapShap
     sizes[share] = size;
     const Eigen::VectorXd weights = calc_weights(shapes, sizes);
     const double log_likelihood = calc_log_likelihood(evidence, weights);
-    if (log_likelihood <= prior.log_likelihood) return;
+    if (!(log_likelihood > prior.log_likelihood)) return;
     prior = {sizes, weights, log_likelihood};
   };
   for (double step = kFirstStep; step > kLastStep; step = std::sqrt(step)) {

@@ -95,10 +95,13 @@ Side make_side(const MapCurve& curve, double reach, double sign) {
   // Nearer to rest splines round a step off: what is flat from here on is a step.
   constexpr double kInner = 0.08;
   constexpr std::size_t kPoints = 41;
+  // Nor is anything known nearer than the strut ever was.
+  const double nearest = sign > 0.0 ? curve.x.front() : -curve.x.back();
+  const double from = std::max(kInner * reach, nearest);
   Side side;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const double share = static_cast<double>(i) / (kPoints - 1);
-    const double x = reach * (kInner + (1.0 - kInner) * share);
+    const double x = from + (reach - from) * share;
     side.x.push_back(x);
     side.force.push_back(sign * interpolate(curve, sign * x));
   }

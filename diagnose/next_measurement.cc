@@ -51,12 +51,24 @@ void add_rig_proposals(const CampaignData& data, std::size_t run, std::vector<Pr
   }
 }
 
-/// The shared values of the model with one hypothesis as its round fitted it.
-std::optional<SharedValues> find_values(const Selection& selection, const Cause& cause) {
+const Candidate* find_candidate(const SelectRound& round, const Cause& cause) {
+  const auto found =
+      std::find_if(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
+        return c.hypothesis.effect == cause.effect && c.hypothesis.place == cause.place;
+      });
+  return found == round.candidates.end() ? nullptr : &*found;
+}
+
+/// The shared values of the model with either of two hypotheses.
+struct Rivals {
+  SharedValues a, b;
+};
+
+/// As one round fitted both: those of two rounds differ by the causes that were there already, too.
+std::optional<Rivals> find_rivals(const Selection& selection, const Cause& a, const Cause& b) {
   for (const SelectRound& round : selection.rounds) {
-    for (const Candidate& c : round.candidates) {
-      if (c.hypothesis.effect == cause.effect && c.hypothesis.place == cause.place) return c.shared;
-    }
+    const Candidate *first = find_candidate(round, a), *second = find_candidate(round, b);
+    if (first != nullptr && second != nullptr) return Rivals{first->shared, second->shared};
   }
   return std::nullopt;
 }
@@ -89,8 +101,7 @@ std::string propose_alone(const Selection& selection) {
            "name is then seen to grow with the motion, to stay as it is, or to be gone";
   }
   return "none is needed to judge these runs; larger bumps or amplitudes would show effects that "
-         "are "
-         "hidden here";
+         "are hidden here";
 }
 
 }  // namespace
@@ -98,21 +109,21 @@ std::string propose_alone(const Selection& selection) {
 std::string propose_measurement(const CampaignData& data, const Selection& selection,
                                 const std::vector<Cause>& group) {
   if (group.size() < 2) return propose_alone(selection);
-  const std::optional<SharedValues> a = find_values(selection, group[0]);
-  const std::optional<SharedValues> b = find_values(selection, group[1]);
+  const std::optional<Rivals> rivals = find_rivals(selection, group[0], group[1]);
   const std::string pair = describe_effect(group[0].effect, group[0].place) + " from " +
                            describe_effect(group[1].effect, group[1].place);
-  if (!a || !b) return "separate " + pair;
+  if (!rivals) return "separate " + pair;
+  const auto& [a, b] = *rivals;
   std::vector<Proposal> menu;
   double already = 0.0;
   for (const std::size_t r : data.list_runs(RunUse::kFit)) {
-    already = std::max(already, calc_difference(take_run(data, r), *a, *b));
+    already = std::max(already, calc_difference(take_run(data, r), a, b));
     data.is_rig() ? add_rig_proposals(data, r, menu) : add_car_proposals(data, r, menu);
   }
   double most = already;
   std::string best;
   for (const Proposal& proposal : menu) {
-    const double difference = calc_difference(proposal.data, *a, *b);
+    const double difference = calc_difference(proposal.data, a, b);
     if (difference <= most) continue;
     most = difference;
     best = proposal.description;

@@ -46,7 +46,7 @@ std::vector<double> calc_block_means(const std::vector<double>& squares) {
   return means;
 }
 
-/// The smallest difference between two readings where there are few different ones; else 0.
+/// The smallest difference between two different readings; 0 where all are equal.
 double find_quantum(std::span<const double> values) {
   std::vector<double> levels;
   levels.reserve(values.size());

@@ -227,6 +227,7 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   set_parameters(c, unknowns, values, number);
   // The road's faults have no place on this one, and at rest friction would hold the car.
   c.vehicle.effects.clear();
+  c.vehicle.force_maps.clear();
   const double speed = c.maneuver.speed;
   WheelSources wheels;
   for (const auto& [side, axles] :
@@ -270,13 +271,14 @@ NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
   RigRun rig = set_rig_unknowns(data.rigs[run], unknowns, values);
   const std::vector<double> times = rig.times;
   rig.setup.effects.clear();
+  rig.setup.force_maps.clear();
   rig.setup.initial_position = {};
   rig.setup.initial_velocity = {};
   const std::size_t longest =
       std::min(times.size(), static_cast<std::size_t>(kLongestResponse / s.interval) + 2);
   rig.times.resize(longest);
   for (std::size_t input = 0; input < rig.inputs.size(); ++input) {
-    const InputNoise& noise = data.rigs[run].input_noise[input];
+    const InputNoise noise = rig.input_noise[input];
     if (!(noise.sigma > 0.0)) continue;
     const auto begin =
         std::min(longest / 4, static_cast<std::size_t>(2.0 * noise.half_width / s.interval) + 4);
@@ -284,16 +286,7 @@ NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
       std::vector<double> pulse(longest, 0.0);
       if (i == input) pulse[begin] = noise.sigma;
       rig.inputs[i] = make_sampled_input(rig.inputs[i].channel, rig.times, pulse,
-                                         data.rigs[run].input_noise[i].half_width);
-    }
-    double gain = 1.0;
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      const Unknown& u = unknowns[i];
-      if (u.kind != UnknownKind::kInputGain) continue;
-      if (list_rig_inputs(rig.setup.kind)[static_cast<std::size_t>(u.channel)].name ==
-          rig.inputs[input].channel) {
-        gain = values[i];
-      }
+                                         rig.input_noise[i].half_width);
     }
     const RigCurves curves = simulate_rig_run(rig, 0, {}, {});
     if (!curves.failure.empty()) throw InputError(curves.failure);
@@ -305,7 +298,7 @@ NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
       for (double& v : series) v = std::isnan(v) ? 0.0 : v - rest;
       const Spectrum of = calc_transform(series, s.samples);
       for (Eigen::Index f = 0; f < source.cols(); ++f) {
-        source(static_cast<Eigen::Index>(k), f) = gain * of[static_cast<std::size_t>(f)];
+        source(static_cast<Eigen::Index>(k), f) = of[static_cast<std::size_t>(f)];
       }
     }
     add_source(source, s);
@@ -336,8 +329,10 @@ std::vector<double> make_fade(std::size_t count, bool fades) {
 double calc_common_variance(const NoiseSpectrum& s, std::size_t channel) {
   double variance = 0.0;
   const auto at = static_cast<Eigen::Index>(channel);
-  for (const Eigen::MatrixXcd& covariance : s.common) {
-    variance += 2.0 * covariance(at, at).real() / static_cast<double>(s.samples);
+  for (std::size_t k = 0; k < s.common.size(); ++k) {
+    // Every frequency stands for its negative, too, but for the ends of the spectrum.
+    const double both = k == 0 || 2 * k == s.samples ? 1.0 : 2.0;
+    variance += both * s.common[k](at, at).real() / static_cast<double>(s.samples);
   }
   return variance;
 }

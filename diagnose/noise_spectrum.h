@@ -56,7 +56,7 @@ struct NoiseSpectrum {
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
-/// What samples of a run are multiplied by, by a quarter of a cosine over a twentieth of it at
+/// What samples of a run are multiplied by: half a period of a cosine over a twentieth of it at
 /// either end; 1 where it is not faded.
 std::vector<double> make_fade(std::size_t count, bool fades);
 

@@ -270,6 +270,17 @@ RigRun set_rig_unknowns(const RigRun& run, const std::vector<Unknown>& unknowns,
   RigRun changed = run;
   changed.setup = std::move(variant.spec);
   if (!variant.scaled.empty()) changed.inputs = std::move(variant.scaled);
+  // What an input was measured with is scaled with it.
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    if (unknowns[i].kind != UnknownKind::kInputGain || !belongs(unknowns[i], 0)) continue;
+    const std::string& name =
+        list_rig_inputs(run.setup.kind)[static_cast<std::size_t>(unknowns[i].channel)].name;
+    for (std::size_t k = 0; k < run.input_noise.size(); ++k) {
+      if (run.inputs[k].channel == name) {
+        changed.input_noise[k].sigma = std::abs(values[i]) * run.input_noise[k].sigma;
+      }
+    }
+  }
   return changed;
 }
 

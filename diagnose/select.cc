@@ -102,12 +102,15 @@ ExtendedUnknowns extend(const CampaignData& data, const WhitenedFit& base, const
   e.unknowns.assign(base.fit.unknowns.begin(), base.fit.unknowns.begin() + shared);
   e.values.assign(base_values.begin(), base_values.begin() + shared);
   std::vector<Unknown> own = make_unknowns(data, h);
+  const auto of_effect = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
   for (std::size_t i = 0; i < own.size(); ++i) {
     Unknown& u = own[i];
     // Steps and sizes are counted in what was found.
     if (parameters[i] != 0.0) u.scale = std::abs(parameters[i]);
-    if (!h.parameters[i].switches)
-      u.prior = {parameters[i], std::max(std::abs(parameters[i]), 1e-12)};
+    if (!h.parameters[i].switches) {
+      const double ordinary = std::max(std::abs(parameters[i]), std::abs(of_effect[i]->typical));
+      u.prior = {parameters[i], std::max(ordinary, 1e-12)};
+    }
     e.unknowns.push_back(std::move(u));
     e.values.push_back(parameters[i]);
   }
@@ -167,10 +170,11 @@ class Selector {
                        ": fit.free: nothing is free; a diagnosis needs what may be adjusted");
     }
     const std::vector<NoiseSpectrum> spectra = measure_noise(data_, baseline);
-    selection_.level = spectra.front().level;
     selection_.base = fit_excited(baseline, spectra);
     selection_.extended = selection_.base;
     tell("judging the runs held out");
+    selection_.judge =
+        std::make_shared<const HoldOutJudge>(data_, selection_.base, options_.threads);
     selection_.hold_out_before = judge(selection_.base);
     selection_.hold_out_after = selection_.hold_out_before;
     const int most =
@@ -218,7 +222,7 @@ class Selector {
   }
 
   std::vector<HoldOutRun> judge(const WhitenedFit& fit) const {
-    return judge_hold_out(data_, fit.shared(), selection_.level, options_.threads);
+    return selection_.judge->judge(fit.shared());
   }
 
   /// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
@@ -257,7 +261,10 @@ class Selector {
   /// With several causes, the first were chosen without the others: each is taken out, everything
   /// tested anew, and replaced where another does better, or left out where nothing does.
   void reconsider() {
-    for (std::size_t i = 0; i + 1 < selection_.causes.size(); ++i) {
+    // What replaces a cause stands last; another one then stands in its place.
+    std::size_t i = 0;
+    for (std::size_t left = selection_.causes.size() - 1;
+         left > 0 && i + 1 < selection_.causes.size(); --left) {
       const Selection kept = selection_;
       const Hypothesis removed = selection_.causes[i];
       const ExtendedUnknowns e = remove(selection_.extended, removed);
@@ -272,9 +279,11 @@ class Selector {
       const bool same = added && selection_.causes.back().effect == removed.effect &&
                         selection_.causes.back().place == removed.place;
       const bool better = sum_chi2(selection_.hold_out_after) < sum_chi2(kept.hold_out_after);
-      if (same || !better) {
-        selection_ = kept;
-      }
+      if (!same && better) continue;
+      const long simulations = selection_.simulations;
+      selection_ = kept;
+      selection_.simulations = simulations;
+      ++i;
     }
   }
 
@@ -378,7 +387,7 @@ class Selector {
     double wanted = 0.5 * options_.dominated_share * before;
     if (!was_dominated) {
       double readings = 0.0;
-      for (const HoldOutRun& run : judged) readings += static_cast<double>(run.count);
+      for (const HoldOutRun& run : judged) readings += run.expected;
       // What is certain need not show as much where amplitudes are smaller.
       const bool is_certain = best.gain > 3.0 * round.threshold * round.misfit;
       wanted = is_certain ? 0.0

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct SelectOptions {
   double second_share = 0.1;
   LeftoverOptions leftover;
   /// A cause gains per reading of the runs held out at least this share of what it gains per
-  /// reading of those it was fitted to, and stays among the best without as many of the runs.
+  /// reading of those it was fitted to, and anything at all where it gains three times what it
+  /// needs; and it stays among the best without each of at least this share of the runs.
   double hold_out_share = 0.3, stability = 0.5;
   /// Where the model lacks far more than noise, a cause takes at least this share of all that is
   /// left, and half as much of what is left of the runs held out.
@@ -69,7 +71,7 @@ struct Selection {
   bool is_left = false;               // more than noise is
   std::vector<SelectRound> rounds;    // one a cause, and the last that found none
   std::vector<HoldOutRun> hold_out_before, hold_out_after;
-  double level = 0.0;  // of roughness
+  std::shared_ptr<const HoldOutJudge> judge;
   long simulations = 0;
 };
 

@@ -309,7 +309,10 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
       // Cheap, and strong effects change what the other parameters do.
       const std::vector<double> point = get_point(x);
       const Linearization at = model->linearize(point);
-      if (!at.failure.empty()) break;
+      if (!at.failure.empty()) {
+        fit.failure = at.failure;
+        break;
+      }
       const Eigen::MatrixXd jacobian = whitener_->apply(at.jacobian);
       base_columns = jacobian.leftCols(n);
       columns = jacobian.rightCols(m);
@@ -369,6 +372,8 @@ HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
     if (done || !improved) break;
   }
   fit.simulations = model->simulation_count();
+  if (information.size() == 0) return fit;  // not one step could be made
+  fit.failure.clear();
   // A coordinate that was carried beyond its bound stays on it.
   fit.values = get_point(x);
   fit.gain = residual_.squaredNorm() - chi2;

@@ -1,6 +1,7 @@
 #include "diagnose/whitened_fit.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "diagnose/chord_search.h"
 #include "diagnose/compare.h"
@@ -17,11 +18,12 @@ SharedValues WhitenedFit::shared() const {
 namespace {
 
 /// Of a run before it meets its bump: by how much the mean square of each channel exceeds that of
-/// its sensor, over that of a road with G0 = 1 m^3; the median of the channels. 0 where too little
-/// of the run comes before.
-double measure_approach(const CampaignData& data, std::size_t run, std::size_t number,
-                        const ReadingModel& model, const NoiseSpectrum& spectrum,
-                        const Eigen::VectorXd& residual) {
+/// its sensor, over that of a road with G0 = 1 m^3; the median of the channels. Nothing where too
+/// little of the run comes before.
+std::optional<double> measure_approach(const CampaignData& data, std::size_t run,
+                                       std::size_t number, const ReadingModel& model,
+                                       const NoiseSpectrum& spectrum,
+                                       const Eigen::VectorXd& residual) {
   constexpr std::size_t kEnough = 50;  // samples
   const double end = make_time_windows(data, run).front().to;
   const std::size_t channels = spectrum.sigma.size();
@@ -44,7 +46,7 @@ double measure_approach(const CampaignData& data, std::size_t run, std::size_t n
     const double variance = squares[c] / n - (means[c] / n) * (means[c] / n);
     if (unit > 0.0) levels.push_back(std::max(0.0, variance - 1.0) / unit);
   }
-  if (levels.empty()) return 0.0;
+  if (levels.empty()) return std::nullopt;
   std::sort(levels.begin(), levels.end());
   return levels[levels.size() / 2];
 }
@@ -58,13 +60,15 @@ Roughness measure_roughness(const CampaignData& data, const std::vector<std::siz
   std::vector<double> approaches;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     is_level.push_back(!meets_bump(data, runs[i]));
-    approaches.push_back(measure_approach(data, runs[i], i, model, spectra[i], residual));
+    const auto level = measure_approach(data, runs[i], i, model, spectra[i], residual);
+    if (level) approaches.push_back(*level);
   }
   if (std::find(is_level.begin(), is_level.end(), true) != is_level.end()) {
     return fit_roughness(model, spectra, is_level, residual);
   }
-  std::sort(approaches.begin(), approaches.end());
   constexpr double kResponseError = 0.02;
+  if (approaches.empty()) return {0.0, kResponseError};
+  std::sort(approaches.begin(), approaches.end());
   return {approaches[approaches.size() / 2], kResponseError};
 }
 

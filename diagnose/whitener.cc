@@ -38,13 +38,15 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
     const std::size_t channels = spectrum.sigma.size();
     Run run;
     run.fade = make_fade(spectrum.samples, spectrum.fades);
-    for (const double f : run.fade) run.share += f * f / static_cast<double>(run.fade.size());
-    run.share -= 1.0;
     run.rows.assign(channels, std::vector<std::size_t>(spectrum.samples, kMissing));
+    double power = 0.0;
     for (std::size_t k = 0; k < reading_count_; ++k) {
       const ReadingPlace& place = model.readings()[k];
-      if (place.run == r && place.time < spectrum.samples) run.rows[place.channel][place.time] = k;
+      if (place.run != r || place.time >= spectrum.samples) continue;
+      run.rows[place.channel][place.time] = k;
+      power += run.fade[place.time] * run.fade[place.time];
     }
+    run.share = power / static_cast<double>(channels * spectrum.samples);
     run_begin_.push_back(places_.size());
     const double step = 1.0 / (static_cast<double>(spectrum.samples) * spectrum.interval);
     if (spectrum.fades) run.first = static_cast<Eigen::Index>(std::ceil(options.lowest / step));

@@ -41,7 +41,8 @@ class Whitener {
   /// First whitened number of each run, and the end.
   const std::vector<std::size_t>& run_begin() const { return run_begin_; }
   double get_frequency(const ReadingPlace& place) const;
-  /// Expected mean square of a run's whitened noise: less than 1 where it is faded.
+  /// Expected mean square of a run's whitened noise: less than 1 where it is faded or readings are
+  /// missing.
   double get_share(std::size_t run) const { return runs_[run].share; }
   const std::vector<NoiseSpectrum>& spectra() const { return spectra_; }
 
@@ -58,7 +59,7 @@ class Whitener {
   struct Run {
     std::vector<std::vector<std::size_t>> rows;  // [channel][sample]: the reading; kMissing
     std::vector<double> fade;
-    double share = 1.0;                    // mean square of the fade
+    double share = 1.0;                    // mean square of the fade, missing readings as 0
     Eigen::Index first = 0;                // frequency that is kept
     std::vector<Eigen::MatrixXcd> factor;  // [frequency - first]: C_k, lower
     double log_determinant = 0.0;

@@ -63,6 +63,12 @@ void AtomicFile::commit() {
   flush_folder_of(target_);
 }
 
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) throw EnvironmentError(path.string() + ": cannot be removed: " + error.message());
+}
+
 void write_text_file(const fs::path& path, const std::string& text) {
   AtomicFile file(path);
   write_bytes(file.temporary(), std::as_bytes(std::span<const char>(text)), path);

@@ -30,6 +30,9 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// Where it is there. Throws EnvironmentError.
+void remove_file(const std::filesystem::path& path);
+
 /// Writes a text file, whole or not at all. Throws EnvironmentError.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 

@@ -71,11 +71,12 @@ int run_compare(const std::vector<std::string>& words) {
   const std::string json = make_compare_json(data, comparison).dump() + "\n";
   {
     const InterruptGuard guard;
+    clear_page_folder(folder, folder.json());
     write_compare_tables(folder, data, comparison);
-    write_text_file(folder.json(), json);
     for (const std::string& note : write_compare_report(folder, data, comparison)) {
       std::cerr << "strut: " << note << "\n";
     }
+    write_text_file(folder.json(), json);
   }
   if (arguments.is_on("json")) {
     std::cout << json;

@@ -27,7 +27,10 @@ Arguments make_arguments() {
       "is, what it cannot tell apart, what the extended model gains, and what to measure next.\n"
       "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures "
       "and\n"
-      "report.html (docs/diagnosis.md).",
+      "report.html (docs/diagnosis.md). Ends with code 1 where the calibration has not converged "
+      "or "
+      "a run\n"
+      "held out cannot be simulated.",
       "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
   arguments.add_option("output,o", "DIR", "folder of the diagnosis");
   arguments.add_option("threads", "N", "threads (default: all processors)");
@@ -61,13 +64,8 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
                           const Diagnosis& diagnosis) {
   if (diagnosis.is_extended()) {
     write_text_file(folder.extended_model(), make_extended_model(data, diagnosis, folder.root));
-    return;
-  }
-  std::error_code error;
-  std::filesystem::remove(folder.extended_model(), error);
-  if (error) {
-    throw EnvironmentError(folder.extended_model().string() +
-                           ": cannot be removed: " + error.message());
+  } else {
+    remove_file(folder.extended_model());
   }
 }
 
@@ -88,17 +86,18 @@ int run_diagnose(const std::vector<std::string>& words) {
   const std::string json = make_verdict_json(data, diagnosis).dump() + "\n";
   {
     const InterruptGuard guard;
+    clear_page_folder(folder, folder.verdict());
     write_extended_model(folder, data, diagnosis);
-    write_text_file(folder.verdict(), json);
     write_diagnose_tables(folder, data, diagnosis);
     tell(write_diagnose_report(folder, data, diagnosis));
+    write_text_file(folder.verdict(), json);
   }
   if (arguments.is_on("json")) {
     std::cout << json;
   } else {
     std::cout << make_diagnose_text(diagnosis) << "\n" << folder.report().string() << "\n";
   }
-  return kExitDone;
+  return diagnosis.is_whole ? kExitDone : kExitNo;
 }
 
 }  // namespace strut

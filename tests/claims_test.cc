@@ -123,7 +123,7 @@ TEST_CASE("A name that a claim cannot have is refused", "[io]") {
   CHECK_THROWS_AS(Claims(folder / "missing", kLongLease), EnvironmentError);
 }
 
-TEST_CASE("Runners in threads never hold one unit together", "[io]") {
+TEST_CASE("Runners in threads never hold one unit together", "[io][threads]") {
   const TemporaryFolder folder;
   std::array<std::atomic<int>, 3> holders{};
   std::atomic<int> overlaps{0}, held{0};
@@ -149,7 +149,7 @@ TEST_CASE("Runners in threads never hold one unit together", "[io]") {
   CHECK(list_files(folder / "").empty());
 }
 
-TEST_CASE("Threads that share one runner never hold one unit together", "[io]") {
+TEST_CASE("Threads that share one runner never hold one unit together", "[io][threads]") {
   const TemporaryFolder folder;
   constexpr std::size_t kUnits = 200;
   Claims claims(folder / "", kLongLease);

@@ -24,7 +24,7 @@ std::string compare(const std::filesystem::path& campaign, const std::filesystem
   return "compare " + campaign.string() + " -o " + folder.string() + " " + options;
 }
 
-TEST_CASE("compare writes numbers, tables, figures and a report of every run", "[io]") {
+TEST_CASE("compare writes numbers, tables, figures and a report of every run", "[io][threads]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
   truth.noise = 2e-5;

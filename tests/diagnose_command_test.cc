@@ -231,7 +231,7 @@ TEST_CASE("A tone no larger than the noise of its sensor is told with frequency 
   CHECK(std::stod(band.substr(band.find('-') + 1)) > 31.2);
 }
 
-TEST_CASE("diagnose names friction that the rig's model does not have", "[io]") {
+TEST_CASE("diagnose names friction that the rig's model does not have", "[io][threads]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
   truth.noise = 2e-5;

@@ -221,6 +221,9 @@ TEST_CASE("Words say what a curve looks like", "[unit]") {
   // Only one side was visited.
   CHECK_THAT(say([](double x) { return std::tanh(5.0 * x); }, V::kVelocity, -0.01, 1.0),
              Contains("saturates above"));
+  // The strut never was near its rest: what it would do there is not known, and bends nothing.
+  CHECK(say([](double x) { return 4e3 * x; }, V::kDeflection, 0.02, 0.05).empty());
+  CHECK(say([](double x) { return 4e3 * x; }, V::kDeflection, -0.05, -0.02).empty());
 }
 
 TEST_CASE("Shares say what a map depends on where the strut was", "[unit]") {

@@ -376,7 +376,7 @@ TEST_CASE("A simulation that cannot be is told, not thrown, and no start", "[uni
   CHECK_THROWS_WITH(fit_simulation({run}, unknowns), Contains("the fit starts there"));
 }
 
-TEST_CASE("A fit has the same bits on any number of threads", "[property]") {
+TEST_CASE("A fit has the same bits on any number of threads", "[property][threads]") {
   const Case base = test::make_known_case();
   MeasuredRun run = test::measure(base, test::make_bump_case(), {0.001, 0.0, 0.0, 1.0, 9});
   cut_window(run, 0.4, 1.0);

@@ -109,7 +109,7 @@ TEST_CASE("The Jacobian of a rig agrees with differences of its residuals", "[un
   }
 }
 
-TEST_CASE("A rig's fit is the same for any number of threads", "[property]") {
+TEST_CASE("A rig's fit is the same for any number of threads", "[property][threads]") {
   test::QuarterTruth truth;
   truth.noise = 2e-5;
   const CampaignData data = read_two_runs(truth, with_noise(2e-5));
@@ -146,6 +146,18 @@ TEST_CASE("A held-out run is not used to fit, and tells only where it started", 
   REQUIRE(evaluation.failure.empty());
   CHECK(evaluation.unknowns.size() == 6);
   CHECK(evaluation.values[1] == Approx(2e-3).epsilon(test::tolerance(0.1)));
+}
+
+TEST_CASE("The noise of an input is scaled with it", "[unit]") {
+  CampaignData data = read_two_runs({}, with_noise(1e-6));
+  RigRun run = data.rigs[0];
+  REQUIRE(run.input_noise.size() == 1);
+  run.input_noise[0].sigma = 1e-5;
+  Unknown gain;
+  gain.kind = UnknownKind::kInputGain;
+  gain.channel = 0;
+  const RigRun scaled = set_rig_unknowns(run, {gain}, {-4.6});
+  CHECK(scaled.input_noise[0].sigma == Approx(4.6e-5).epsilon(test::tolerance(1e-12)));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ void check_no_leftovers(const fs::path& sweep) {
   CHECK(count_files(sweep / "claims") == 0);
 }
 
-TEST_CASE("A signal ends a sweep soon and cleanly, and resume makes it whole", "[io]") {
+TEST_CASE("A signal ends a sweep soon and cleanly, and resume makes it whole", "[io][threads]") {
   const ProgramSweep& origin = get_slow_sweep();
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path sweep = origin.copy("stopped");

@@ -192,7 +192,7 @@ TEST_CASE("Training names a constant input, a shard of another plan and missing 
   CHECK(train_weights(folder / "lacking", "--partial").size() == 68);
 }
 
-TEST_CASE("Cases with NaN are left out of a training and counted", "[io]") {
+TEST_CASE("Cases with NaN are left out of a training and counted", "[io][threads]") {
   const TemporaryFolder folder;
   Shard shard = read_shard(get_sweep().string() + "/shards/000000.h5");
   shard.rows.snapshot[4 * 10] = std::nan("");

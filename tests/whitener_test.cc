@@ -19,12 +19,15 @@ constexpr double kInterval = 0.01;  // s
 /// Readings that are the unknown itself, a constant in every channel.
 class ConstantModel : public ReadingModel {
  public:
-  explicit ConstantModel(std::size_t runs) : ReadingModel({Unknown{}}) {
+  /// `kept`: of the last channel only every so-manieth sample was read.
+  explicit ConstantModel(std::size_t runs, std::size_t kept = 1) : ReadingModel({Unknown{}}) {
     unknowns_.front().name = "constant";
     for (std::size_t r = 0; r < runs; ++r) {
       channels_.push_back({0, 1, 2});
       for (std::size_t t = 0; t < kSamples; ++t) {
-        for (std::size_t c = 0; c < kChannels; ++c) readings_.push_back({r, t, c});
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          if (c + 1 < kChannels || t % kept == 0) readings_.push_back({r, t, c});
+        }
       }
     }
   }
@@ -150,6 +153,22 @@ TEST_CASE("Noise that a spectrum does not know is counted by run and band", "[un
   const std::size_t band = find_noise_band(30.0);
   CHECK(spectra[0].excess[band] == Approx(1.0).margin(test::tolerance(0.2)));
   CHECK(spectra[1].excess[band] == Approx(9.0).margin(test::tolerance(1.8)));
+}
+
+TEST_CASE("Missing readings are no noise that is smaller than it should be", "[unit]") {
+  constexpr std::size_t kRuns = 20;
+  const ConstantModel model(kRuns, 5);
+  std::vector<NoiseSpectrum> spectra(kRuns, make_spectrum());
+  for (NoiseSpectrum& s : spectra) s.common.clear();
+  const Whitener whitener(model, spectra);
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(model.reading_count()));
+  for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    noise(i) = test::calc_test_normal(6, 0, static_cast<std::uint64_t>(i));
+  }
+  CHECK(whitener.get_share(0) == Approx((2.0 + 0.2) / 3.0).epsilon(test::tolerance(1e-12)));
+  const double mean =
+      whitener.apply(noise).squaredNorm() / static_cast<double>(whitener.whitened_count());
+  CHECK(mean == Approx(whitener.get_share(0)).epsilon(test::tolerance(0.05)));
 }
 
 TEST_CASE("Quick lengths are even and of small factors", "[unit]") {

@@ -1,6 +1,6 @@
 # strut_discover_tests(TARGET) makes one ctest of each Catch2 test case of TARGET, with the labels
 # among its tags, after every link of TARGET. (The Catch.cmake of Catch2 2.13 knows no labels.)
-set(STRUT_TEST_LABELS unit property reference regression io cluster statistical slow)
+set(STRUT_TEST_LABELS unit property reference regression io cluster statistical threads slow)
 
 function(strut_discover_tests target)
   set(listing ${CMAKE_CURRENT_BINARY_DIR}/${target}_list.cmake)

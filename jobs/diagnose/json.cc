@@ -84,7 +84,7 @@ Json make_gain(const HoldOutGain& gain) {
       .set("unit", units)
       .set("hold_out_nrmse_before", make_by_channel(gain.channels, &ChannelGain::nrmse_before))
       .set("hold_out_nrmse_after", make_by_channel(gain.channels, &ChannelGain::nrmse_after))
-      .set("explained", gain.explained)
+      .set("explained", gain.explained ? Json(*gain.explained) : Json())
       .set("log_likelihood_per_sample",
            Json::array().push(gain.log_likelihood_before).push(gain.log_likelihood_after));
 }

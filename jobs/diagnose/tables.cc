@@ -95,8 +95,11 @@ ReportTable make_gain_table(const Diagnosis& diagnosis) {
                           format_percent(c.nrmse_after)});
   }
   if (diagnosis.is_extended()) {
-    table.notes.push_back("Explained of what is more than noise: " +
-                          print_number("%.1f %%", 100.0 * gain.explained));
+    table.notes.push_back(
+        gain.explained
+            ? "Explained of what is more than noise: " +
+                  print_number("%.1f %%", 100.0 * *gain.explained)
+            : std::string("No channel alone was above its noise before: the likelihood tells the gain."));
     table.notes.push_back(describe_likelihood(gain));
   }
   return table;

@@ -2,6 +2,8 @@
 
 #include <boost/property_tree/json_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
+#include <set>
+#include <system_error>
 
 #include "io/atomic_file.h"
 #include "io/input_error.h"
@@ -10,6 +12,8 @@
 
 namespace strut {
 namespace {
+
+namespace fs = std::filesystem;
 
 using Tree = boost::property_tree::ptree;
 
@@ -70,6 +74,16 @@ ReportTable read_table(const Tree& tree) {
           tree.get<std::size_t>("text_columns")};
 }
 
+/// Of the folder, if there is one, those with such ends.
+void remove_files(const fs::path& folder, const std::set<std::string>& ends) {
+  std::vector<fs::path> old;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (ends.count(entry.path().extension().string()) > 0) old.push_back(entry.path());
+  }
+  for (const fs::path& file : old) remove_file(file);
+}
+
 ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
   ReportPage page;
   page.title = tree.get<std::string>("title");
@@ -88,6 +102,14 @@ ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
 }
 
 }  // namespace
+
+void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker) {
+  remove_file(marker);
+  remove_file(folder.page());
+  remove_file(folder.report());
+  remove_files(folder.root, {".csv"});
+  remove_files(folder.figures(), {".gp", ".svg"});
+}
 
 void write_page(const PageFolder& folder, const ReportPage& page) {
   write_text_file(folder.page(), make_page_json(page).dump() + "\n");

@@ -20,6 +20,11 @@ struct PageFolder {
   std::filesystem::path table(const std::string& name) const { return root / (name + ".csv"); }
 };
 
+/// Removes what an earlier command left: `marker` first, by which the folder is told to hold it, so
+/// that what is half replaced is not taken for whole; then tables, figures and pages of such names.
+/// Throws EnvironmentError.
+void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker);
+
 /// Writes report.json and report.html.
 void write_page(const PageFolder& folder, const ReportPage& page);
 
