@@ -681,6 +681,10 @@ TEST_CASE("Hidden data: a truth that was touched is refused, an untouched one re
   CHECK(trials[0].faults.at(0).where == "body");
   CHECK(trials[0].bounds.at("front_stiffness") == 12.5);
   CHECK(trials[0].grade == 'B');
+  // One of an older generator says what it lacks.
+  std::ofstream(folder / "000002.json") << "{\"category\": \"none\", \"faults\": []}";
+  CHECK_THROWS_WITH(read_truth(folder / "000002.json"),
+                    Catch::Contains("000002.json") && Catch::Contains("grade_beyond_survey"));
   std::ofstream(folder / "000001.json") << text << " ";
   CHECK_THROWS_WITH(read_truths(place), Catch::Contains("000001.json"));
 }

@@ -61,18 +61,7 @@ std::vector<Claim> get_claims(const JsonTree& tree, const std::string& key) {
   return claims;
 }
 
-}  // namespace
-
-JsonTree read_json(const fs::path& path) {
-  try {
-    return test::parse_json(read_bytes(path));
-  } catch (const boost::property_tree::ptree_error& e) {
-    throw std::runtime_error(path.string() + ": " + e.what());
-  }
-}
-
-TrueTrial read_truth(const fs::path& path) {
-  const JsonTree tree = read_json(path);
+TrueTrial get_truth(const fs::path& path, const JsonTree& tree) {
   TrueTrial trial;
   trial.name = path.stem().string();
   trial.kit = tree.get<std::string>("kit", "");
@@ -94,6 +83,25 @@ TrueTrial read_truth(const fs::path& path) {
     trial.bounds[name] = value.get_value<double>();
   }
   return trial;
+}
+
+}  // namespace
+
+JsonTree read_json(const fs::path& path) {
+  try {
+    return test::parse_json(read_bytes(path));
+  } catch (const boost::property_tree::ptree_error& e) {
+    throw std::runtime_error(path.string() + ": " + e.what());
+  }
+}
+
+TrueTrial read_truth(const fs::path& path) {
+  const JsonTree tree = read_json(path);
+  try {
+    return get_truth(path, tree);
+  } catch (const boost::property_tree::ptree_error& e) {
+    throw std::runtime_error(path.string() + ": " + e.what());
+  }
 }
 
 Verdict read_verdict(const fs::path& path) {
