@@ -47,8 +47,8 @@ inline double calc_test_normal(std::uint64_t seed, std::uint64_t stream, std::ui
   return std::sqrt(-2.0 * std::log1p(-u)) * std::cos(2.0 * 3.14159265358979323846 * v);
 }
 
-/// Ralston's third-order method at a tenth of the sampling interval, written out: nothing of the
-/// program's.
+/// Ralston's third-order method at a twentieth of the sampling interval, written out: nothing of
+/// the program's.
 inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double duration = 4.0,
                                         double rate = 200.0) {
   constexpr int kSubsteps = 20;

@@ -2,15 +2,14 @@
 // by Newton, sampled by the integrator itself at the measuring clock's own instants.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "diagnose/fit.h"
-#include "model/math/random.h"
 #include "sweep/parameters.h"
+#include "tests/campaign_files.h"
 #include "tests/test_car.h"
 #include "tests/test_run.h"
 
@@ -29,13 +28,6 @@ struct Distortion {
   double noise = 0.0;                               // in units of the channels' sigma
   std::uint64_t seed = 1;
 };
-
-/// Standard normal number of a place (Box and Muller).
-inline double calc_normal(std::uint64_t seed, std::uint64_t stream, std::uint64_t place) {
-  const double u = calc_uniform(seed, stream, 2 * place);
-  const double v = calc_uniform(seed, stream, 2 * place + 1);
-  return std::sqrt(-2.0 * std::log1p(-u)) * std::cos(2.0 * 3.14159265358979323846 * v);
-}
 
 inline LaneResults simulate_truth(const Case& truth, double rate, bool cvode) {
   CasePreparer preparer;
@@ -67,7 +59,7 @@ inline MeasuredRun measure(const Case& known, const Case& truth, const Distortio
       c.values.push_back(get_history(results, i, channel) +
                          (rate ? distortion.rate_bias : distortion.acceleration_bias) +
                          distortion.noise * sigma *
-                             calc_normal(distortion.seed, rate ? 1 : 0, place));
+                             calc_test_normal(distortion.seed, rate ? 1 : 0, place));
     }
     run.channels.push_back(std::move(c));
   }

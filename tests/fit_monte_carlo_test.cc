@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "model/math/random.h"
+#include "tests/campaign_files.h"
 #include "tests/fit_case.h"
 #include "train/interval.h"
 
@@ -24,10 +26,11 @@ Trial draw(std::uint64_t seed) {
     const double value = get_parameter(trial.truth, name) - losses[i] * calc_uniform(seed, 10, i);
     set_parameter(trial.truth, name, value);
   }
-  set_parameter(trial.truth, "speed", 20.0 + 0.2 * test::calc_normal(seed, 11, 0));
+  set_parameter(trial.truth, "speed", 20.0 + 0.2 * test::calc_test_normal(seed, 11, 0));
   trial.truth.maneuver.duration = 1.3;
-  trial.distortion = {0.005 * test::calc_normal(seed, 11, 1), 0.3 * test::calc_normal(seed, 11, 2),
-                      0.02 * test::calc_normal(seed, 11, 3), 1.0, seed};
+  trial.distortion = {0.005 * test::calc_test_normal(seed, 11, 1),
+                      0.3 * test::calc_test_normal(seed, 11, 2),
+                      0.02 * test::calc_test_normal(seed, 11, 3), 1.0, seed};
   return trial;
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -181,10 +182,12 @@ std::string make_fault(const Kit& kit, const HiddenFault& hidden) {
   std::ostringstream out;
   out << "{\"fault\": " << quote(info.name) << ", \"effect\": " << quote(info.effect)
       << ", \"place\": " << quote(get_place(kit, hidden.setting))
+      << ", \"where\": " << quote(get_where(kit, hidden.setting))
       << ", \"magnitude\": " << format(hidden.setting.magnitude)
       << ", \"parameter\": " << quote(info.parameter)
       << ", \"ratio\": " << format(hidden.noise.ratio)
       << ", \"joint_ratio\": " << format(hidden.noise.joint)
+      << ", \"ratio_beyond_survey\": " << format(hidden.beyond_survey)
       << ", \"grade\": " << quote(std::string(1, find_grade(hidden.noise.ratio))) << "}";
   return out.str();
 }
@@ -205,10 +208,12 @@ std::string make_truth(const Kit& kit, const Trial& trial) {
   out << "{\"seed\": " << trial.seed << ", \"kit\": " << quote(kit.name)
       << ", \"category\": " << quote(get_name(trial.category))
       << ", \"grade\": " << quote(std::string(1, trial.get_grade()))
+      << ", \"grade_beyond_survey\": " << quote(std::string(1, trial.get_grade_beyond_survey()))
       << ", \"roughness\": " << format(trial.truth.roughness) << ",\n \"faults\": [";
   for (std::size_t i = 0; i < trial.faults.size(); ++i) {
     out << (i > 0 ? ",\n  " : "") << make_fault(kit, trial.faults[i]);
   }
+  std::string bounds;
   out << "],\n \"parameters\": {";
   bool first = true;
   for (std::size_t i = 0; i < kit.parameters.size(); ++i) {
@@ -217,8 +222,10 @@ std::string make_truth(const Kit& kit, const Trial& trial) {
     out << (first ? "" : ", ") << quote(p.name) << ": "
         << format(p.nominal * trial.truth.factors[i]);
     first = false;
+    if (trial.bounds.empty()) continue;
+    bounds += (bounds.empty() ? "" : ", ") + quote(p.name) + ": " + format(trial.bounds[i]);
   }
-  out << "}}\n";
+  out << "},\n \"bounds\": {" << bounds << "}}\n";
   return out.str();
 }
 
@@ -239,6 +246,20 @@ void write_trial(const Kit& kit, const Trial& trial, const fs::path& folder) {
   fs::rename(begun, find_truth(folder, trial.seed));
 }
 
+namespace {
+
+/// Seals by file; none where nothing was sealed yet.
+std::map<std::string, std::string> read_seals(const fs::path& path) {
+  std::map<std::string, std::string> seals;
+  if (!fs::exists(path)) return seals;
+  std::istringstream lines(read_file(path));
+  std::string seal, name;
+  while (lines >> seal >> name) seals[name] = seal;
+  return seals;
+}
+
+}  // namespace
+
 void seal_truths(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder / "truths")) {
@@ -246,10 +267,20 @@ void seal_truths(const fs::path& folder) {
   }
   std::sort(files.begin(), files.end());
   std::string sums;
+  std::map<std::string, std::string> sealed = read_seals(folder / "truths" / "SHA256SUMS");
   for (const fs::path& file : files) {
-    sums += calc_sha256(read_file(file)) + "  " + file.filename().string() + "\n";
+    const std::string name = file.filename().string(), seal = calc_sha256(read_file(file));
+    const auto found = sealed.find(name);
+    if (found != sealed.end() && found->second != seal) {
+      throw std::runtime_error(file.string() + ": not the file that SHA256SUMS seals");
+    }
+    sealed[name] = seal;
   }
-  write_file(folder / "truths" / "SHA256SUMS", sums);
+  for (const auto& [name, seal] : sealed) sums += seal + "  " + name + "\n";
+  // At once: half a line would seal a file that is not there.
+  const fs::path begun = folder / "truths" / "SHA256SUMS.part";
+  write_file(begun, sums);
+  fs::rename(begun, folder / "truths" / "SHA256SUMS");
 }
 
 }  // namespace strut::hidden

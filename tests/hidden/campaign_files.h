@@ -17,10 +17,13 @@ void write_trial(const Kit& kit, const Trial& trial, const std::filesystem::path
 /// DIR/truths/SEED.json; it is written last and at once, so where it is the trial is whole.
 std::filesystem::path find_truth(const std::filesystem::path& folder, std::uint64_t seed);
 
-/// The truth as JSON: category, grade, faults with place, magnitude and ratios, true parameters.
+/// The truth as JSON: category, grade, faults with place, magnitude and ratios, true parameters and
+/// their Cramer-Rao bounds (Detector::bounds). The grade, and the grade of what is beyond the
+/// surveys, which scores go by.
 std::string make_truth(const Kit& kit, const Trial& trial);
 
-/// DIR/truths/SHA256SUMS over the truths there, sorted, as sha256sum writes it.
+/// DIR/truths/SHA256SUMS over the truths there, sorted, as sha256sum writes it. Lines that are
+/// there stay; throws std::runtime_error for a truth that is not what its line seals.
 void seal_truths(const std::filesystem::path& folder);
 
 /// The seed in six digits: the name of its trial.

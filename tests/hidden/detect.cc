@@ -269,6 +269,20 @@ double Whitener::calc_variance(const VectorXd& r) const {
   return variance;
 }
 
+MatrixXd Whitener::calc_information(const MatrixXd& j) const {
+  MatrixXd information = MatrixXd::Zero(j.cols(), j.cols());
+  visit_bins([&](const MatrixXcd& correlation, Eigen::Index at) {
+    MatrixXcd part(correlation.rows(), j.cols());
+    for (Eigen::Index i = 0; i < part.rows(); ++i) {
+      for (Eigen::Index k = 0; k < part.cols(); ++k) {
+        part(i, k) = {j(at + 2 * i, k), j(at + 2 * i + 1, k)};
+      }
+    }
+    information += (part.adjoint() * correlation.llt().solve(part)).real();
+  });
+  return information;
+}
+
 double Whitener::calc_joint_square(const VectorXd& d) const {
   double square = 0.0;
   visit_bins([&](const MatrixXcd& correlation, Eigen::Index at) {
@@ -305,9 +319,9 @@ std::vector<Nuisance> make_nuisances(const Kit& kit) {
   const Truth nominal = make_nominal_truth(kit);
   const Runs base = simulate_fit_runs(kit, nominal);
   std::vector<Nuisance> list;
-  const auto add = [&](Runs runs, double factor, bool has_prior) {
-    scale(runs, factor);
-    list.push_back({std::move(runs), has_prior});
+  const auto add = [&](Runs runs, double step, double unit, bool has_prior) {
+    scale(runs, unit / step);
+    list.push_back({std::move(runs), has_prior, unit});
   };
   for (std::size_t i = 0; i < kit.parameters.size(); ++i) {
     Truth up = nominal, down = nominal;
@@ -315,7 +329,7 @@ std::vector<Nuisance> make_nuisances(const Kit& kit) {
     down.factors[i] -= kStep;
     const double sigma = kit.parameters[i].prior;
     const Runs change = subtract(simulate_fit_runs(kit, up), simulate_fit_runs(kit, down));
-    add(change, (sigma > 0.0 ? sigma : 1e-3) / (2.0 * kStep), sigma > 0.0);
+    add(change, 2.0 * kStep, sigma > 0.0 ? sigma : 1e-3, sigma > 0.0);
   }
   const std::vector<std::size_t> fit_runs = find_fit_runs(kit);
   Runs faster, slower;
@@ -333,11 +347,11 @@ std::vector<Nuisance> make_nuisances(const Kit& kit) {
       }
       return runs;
     };
-    if (kit.speed_sigma > 0.0) add(only(faster), kit.speed_sigma / (2.0 * kStep), true);
+    if (kit.speed_sigma > 0.0) add(only(faster), 2.0 * kStep, kit.speed_sigma, true);
     if (kit.time_sigma > 0.0) {
       Runs rates = base;
       for (Signal& s : rates[r]) s = differentiate(s);
-      add(only(std::move(rates)), kit.time_sigma, true);
+      add(only(std::move(rates)), 1.0, kit.time_sigma, true);
     }
   }
   return list;
@@ -355,6 +369,13 @@ Detector::Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, doubl
   MatrixXd normal = jacobian_.transpose() * jacobian_;
   normal.diagonal() += prior;
   normal_.compute(normal);
+  MatrixXd information = whitener_.calc_information(jacobian_);
+  information.diagonal() += prior;
+  const VectorXd variance =
+      information.ldlt().solve(MatrixXd::Identity(prior.size(), prior.size())).diagonal();
+  for (std::size_t i = 0; i < nuisances.size(); ++i) {
+    bounds_.push_back(nuisances[i].unit * std::sqrt(variance[static_cast<Eigen::Index>(i)]));
+  }
 }
 
 SignalToNoise Detector::calc(const Runs& deviation) const {

@@ -43,6 +43,8 @@ class Whitener {
   Eigen::VectorXd whiten(const std::vector<std::vector<Signal>>& runs) const;
   /// Variance of the sum over r times whitened noise.
   double calc_variance(const Eigen::VectorXd& r) const;
+  /// J' S^-1 J of whitened columns, all channels jointly.
+  Eigen::MatrixXd calc_information(const Eigen::MatrixXd& j) const;
   /// d' S^-1 d of a whitened deviation, all channels jointly.
   double calc_joint_square(const Eigen::VectorXd& d) const;
 
@@ -69,6 +71,7 @@ std::vector<std::vector<Signal>> subtract(std::vector<std::vector<Signal>> a,
 struct Nuisance {
   std::vector<std::vector<Signal>> deviation;
   bool has_prior = false;
+  double unit = 1.0;  // what the deviations are per: of a parameter's factor, of 1, of s
 };
 std::vector<Nuisance> make_nuisances(const Kit& kit);
 
@@ -83,11 +86,16 @@ class Detector {
  public:
   Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, double roughness);
   SignalToNoise calc(const std::vector<std::vector<Signal>>& deviation) const;
+  /// Cramer-Rao bounds of the nuisances, 1 sigma in the unit of each: no fit of the baseline to
+  /// the runs for fitting, with all that it may adjust, knows them better on the average. At the
+  /// kit's nominal values, all channels jointly, up to the highest frequency that is looked at.
+  const std::vector<double>& bounds() const { return bounds_; }
 
  private:
   Whitener whitener_;
   Eigen::MatrixXd jacobian_;  // one column a nuisance
   Eigen::LDLT<Eigen::MatrixXd> normal_;
+  std::vector<double> bounds_;
 };
 
 }  // namespace strut::hidden

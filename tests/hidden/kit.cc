@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 
 namespace strut::hidden {
@@ -417,6 +418,23 @@ double calc_speed_stray(const Kit& kit, const FaultSetting& setting) {
     // Level ground does not tell how fast it is crossed.
     if (!run.fit || run.excitation != Excitation::kBump) continue;
     square += std::pow(calc_speed_error(setting, run.speed) / kit.speed_sigma, 2);
+  }
+  return std::sqrt(square);
+}
+
+double calc_survey_stray(const Kit& kit, const FaultSetting& setting) {
+  if (setting.fault != Fault::kBumpHeight && setting.fault != Fault::kBumpLength) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const std::string surveyed = setting.fault == Fault::kBumpHeight ? "bump_height" : "bump_length";
+  double square = 0.0;
+  for (const KitParameter& p : kit.parameters) {
+    // Crossed once or thrice, a bump is surveyed once.
+    const bool is_crossed = std::any_of(kit.runs.begin(), kit.runs.end(), [&](const RunPlan& run) {
+      return run.fit && run.excitation == Excitation::kBump &&
+             p.name == surveyed + std::to_string(run.bump_number);
+    });
+    if (is_crossed) square += std::pow(setting.magnitude / p.prior, 2);
   }
   return std::sqrt(square);
 }

@@ -79,6 +79,11 @@ std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t
 /// the speedometer says wrong stray from it.
 double calc_speed_stray(const Kit& kit, const FaultSetting& setting);
 
+/// By how many sigma of the surveys of all bumps for fitting together fits stray from them that
+/// take over what the bumps differ by: as far as a survey errs by chance, nothing is wrong.
+/// Infinite for faults that no survey takes up.
+double calc_survey_stray(const Kit& kit, const FaultSetting& setting);
+
 /// The car of a truth; its nominal one in the file.
 Car make_car(const Kit& kit, const Truth& truth);
 inline constexpr double kFootprint = 0.12;  // m

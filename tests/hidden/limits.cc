@@ -1,8 +1,10 @@
 #include "tests/hidden/limits.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -11,15 +13,35 @@
 namespace strut::hidden {
 namespace {
 
-/// The gate's cell that a limit is of; throws std::runtime_error for a score that is not counted.
-Cell find_cell(const Score& score, const Limit& limit) {
+constexpr double kAllowed = 1.5;  // times as much error as measured
+
+/// The gate that a limit is of; throws std::runtime_error for a score that is not counted.
+const Gate& find_gate(const Limit& limit) {
   for (const Gate& gate : list_gates()) {
-    if (get_name(gate.metric) == limit.score && gate.grades == limit.grades) {
-      return pool(score, gate.metric, gate.grades);
+    if (get_name(gate.metric) == limit.score && gate.grades == limit.grades &&
+        gate.at_least == limit.at_least) {
+      return gate;
     }
   }
   throw std::runtime_error("limit of '" + limit.score + "', grades " + limit.grades +
                            ": no such score");
+}
+
+Cell find_cell(const Score& score, const Limit& limit) {
+  return pool(score, find_gate(limit).metric, limit.grades);
+}
+
+Quantity find_quantity(const Score& score, const QuantityLimit& limit) {
+  for (Quantity& q : list_quantities(score)) {
+    if (q.name == limit.quantity && q.at_least == limit.at_least) return q;
+  }
+  throw std::runtime_error("limit of '" + limit.quantity + "': no such quantity");
+}
+
+std::string format(double value) {
+  std::array<char, 32> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
+  return buffer.data();
 }
 
 std::string describe(const Limit& limit) {
@@ -27,8 +49,48 @@ std::string describe(const Limit& limit) {
          std::to_string(limit.count) + " of " + std::to_string(limit.of);
 }
 
+/// By count; by share where the verdicts have a say in how many there are.
 bool keeps(const Limit& limit, const Cell& cell) {
-  return limit.at_least ? cell.hits >= limit.count : cell.hits <= limit.count;
+  int hits = cell.hits, bound = limit.count;
+  if (!is_size_fixed(find_gate(limit).metric)) {
+    if (cell.total == 0) return !limit.at_least;
+    hits *= limit.of;
+    bound *= cell.total;
+  }
+  return limit.at_least ? hits >= bound : hits <= bound;
+}
+
+std::string describe(const QuantityLimit& limit) {
+  return limit.quantity + ": " + (limit.at_least ? "at least " : "at most ") + format(limit.bound);
+}
+
+bool keeps(const QuantityLimit& limit, const Quantity& q) {
+  return q.count > 0 && (limit.at_least ? q.value >= limit.bound : q.value <= limit.bound);
+}
+
+/// Hits that a run may have at least or at most, of a cell as it came out.
+int calc_bound(const Gate& gate, const Cell& cell) {
+  if (gate.metric == Metric::kBaseCovered && gate.at_least) {
+    const int missed = cell.total - cell.hits;
+    return cell.total - std::max(static_cast<int>(kAllowed * missed), missed + 1);
+  }
+  const Interval usual = calc_wilson(cell.hits, cell.total, 0.5);
+  const auto count = [&](double share) {
+    return static_cast<int>(std::lround(share * cell.total));
+  };
+  if (gate.at_least) return std::min(count(usual.low), cell.hits - 1);
+  // Who comes nearer to a target from below has not become worse.
+  return std::max({count(usual.high), cell.hits + 1, static_cast<int>(gate.target * cell.total)});
+}
+
+std::vector<QuantityLimit> make_quantity_limits(const Score& score) {
+  std::vector<QuantityLimit> made;
+  for (const Quantity& q : list_quantities(score)) {
+    if (q.count == 0) continue;
+    const double bound = q.at_least ? q.value / kAllowed : kAllowed * q.value;
+    made.push_back({q.name, q.at_least, q.value == 0.0 ? q.target : bound, q.count, q.value});
+  }
+  return made;
 }
 
 /// The effect and place hidden most often.
@@ -48,16 +110,13 @@ Claim find_usual(const std::vector<TrueTrial>& trials) {
 }  // namespace
 
 Limits make_limits(const Score& score) {
-  Limits made{score.contents, {}};
+  Limits made{score.contents, {}, make_quantity_limits(score)};
   for (const Gate& gate : list_gates()) {
     const Cell cell = pool(score, gate.metric, gate.grades);
     if (cell.total == 0) continue;
-    const Interval usual = calc_wilson(cell.hits, cell.total, 0.5);
-    const auto count = [&](double share) {
-      return static_cast<int>(std::lround(share * cell.total));
-    };
-    const int bound = gate.at_least ? std::min(count(usual.low), cell.hits - 1)
-                                    : std::max(count(usual.high), cell.hits + 1);
+    const int bound = calc_bound(gate, cell);
+    // A bound that every run keeps is none.
+    if (!gate.at_least && bound >= cell.total) continue;
     if (bound <= 0) continue;
     made.limits.push_back(
         {get_name(gate.metric), gate.grades, gate.at_least, bound, cell.total, cell.hits});
@@ -79,6 +138,16 @@ std::vector<std::string> find_misses(const Limits& limits, const Score& score) {
       misses.push_back(describe(limit) + ", measured " + std::to_string(cell.hits) + " of " +
                        std::to_string(cell.total));
     }
+    if (cell.total != limit.of && is_size_fixed(find_gate(limit).metric)) {
+      misses.push_back(describe(limit) + ", now of " + std::to_string(cell.total) +
+                       ": these are not the trials that the limits were set for");
+    }
+  }
+  for (const QuantityLimit& limit : limits.quantities) {
+    const Quantity q = find_quantity(score, limit);
+    if (keeps(limit, q)) continue;
+    misses.push_back(describe(limit) + ", measured " +
+                     (q.count == 0 ? "nothing" : format(q.value)));
   }
   return misses;
 }
@@ -92,6 +161,14 @@ std::string make_limits_table(const Limits& limits, const Score& score) {
            std::to_string(limit.count) + " | " + std::to_string(limit.measured) + "/" +
            std::to_string(limit.of) + " | " + print_cell(cell) + " | " +
            (keeps(limit, cell) ? "kept" : "MISSED") + " |\n";
+  }
+  for (const QuantityLimit& limit : limits.quantities) {
+    const Quantity q = find_quantity(score, limit);
+    out += "| " + limit.quantity + " | | " + (limit.at_least ? ">= " : "<= ") +
+           format(limit.bound) + " | " + format(limit.measured) + " of " +
+           std::to_string(limit.of) + " | " +
+           (q.count == 0 ? "-" : format(q.value) + " of " + std::to_string(q.count)) + " | " +
+           (keeps(limit, q) ? "kept" : "MISSED") + " |\n";
   }
   return out;
 }
@@ -131,7 +208,15 @@ std::string make_limits_json(const Limits& limits) {
              ", \"of\": " + std::to_string(limit.of) +
              ", \"measured\": " + std::to_string(limit.measured) + "}";
   }
-  return "{\"trials\": {\n  " + contents + "},\n \"limits\": [\n  " + lines + "]}\n";
+  std::string quantities;
+  for (const QuantityLimit& limit : limits.quantities) {
+    quantities += (quantities.empty() ? "" : ",\n  ") + std::string("{\"quantity\": \"") +
+                  limit.quantity + "\", \"" + (limit.at_least ? "at_least" : "at_most") +
+                  "\": " + format(limit.bound) + ", \"of\": " + std::to_string(limit.of) +
+                  ", \"measured\": " + format(limit.measured) + "}";
+  }
+  return "{\"trials\": {\n  " + contents + "},\n \"limits\": [\n  " + lines +
+         "],\n \"quantities\": [\n  " + quantities + "]}\n";
 }
 
 Limits read_limits(const std::filesystem::path& path) {
@@ -149,6 +234,13 @@ Limits read_limits(const std::filesystem::path& path) {
       read.limits.push_back({l.get<std::string>("score"), l.get<std::string>("grades"),
                              least.has_value(), least ? *least : l.get<int>("at_most"),
                              l.get<int>("of"), l.get<int>("measured")});
+    }
+    for (const auto& entry : tree.get_child("quantities")) {
+      const test::JsonTree& l = entry.second;
+      const auto least = l.get_optional<double>("at_least");
+      read.quantities.push_back({l.get<std::string>("quantity"), least.has_value(),
+                                 least ? *least : l.get<double>("at_most"),
+                                 l.get<std::size_t>("of"), l.get<double>("measured")});
     }
     return read;
   } catch (const boost::property_tree::ptree_error& e) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
-#include <set>
 
 namespace strut::hidden {
 namespace {
@@ -24,21 +23,67 @@ std::string judge(const Gate& gate, const Cell& cell) {
   return met ? "met" : "open: the interval holds the target";
 }
 
-std::string make_gates(const Score& score, bool& passed) {
-  std::string out = "| score | grades | target | measured | |\n|---|---|---|---|---|\n";
+/// Of one kit's trials, or of all.
+struct Part {
+  std::string kit;
+  std::size_t count = 0;
+  Score score;
+};
+
+/// A part for each kit; none where there is but one.
+std::vector<Part> list_parts(const std::vector<TrueTrial>& trials,
+                             const std::map<std::string, Verdict>& verdicts) {
+  std::map<std::string, std::vector<TrueTrial>> kits;
+  for (const TrueTrial& t : trials) kits[t.kit].push_back(t);
+  std::vector<Part> parts;
+  if (kits.size() == 1) return parts;
+  for (const auto& [kit, own] : kits) {
+    parts.push_back({kit, own.size(), calc_score(own, verdicts)});
+  }
+  return parts;
+}
+
+std::string print_quantity(const Quantity& q) {
+  return q.count == 0 ? "-" : print("%.4g of %zu", q.value, q.count);
+}
+
+/// Gates and quantities of all trials, and those of the kits beside them.
+std::string make_gates(const Score& score, const std::vector<Part>& parts, bool& passed) {
+  std::string out = "| score | grades | target | measured | |";
+  std::string rule = "|---|---|---|---|---|";
+  for (const Part& part : parts) {
+    out += " " + part.kit + " |";
+    rule += "---|";
+  }
+  out += "\n" + rule + "\n";
   for (const Gate& gate : list_gates()) {
     const Cell cell = pool(score, gate.metric, gate.grades);
     passed = passed && passes(gate, cell);
     out += print("| %s | %s | %s %.2f | ", get_name(gate.metric), gate.grades.c_str(),
                  gate.at_least ? ">=" : "<=", gate.target) +
-           print_cell(cell) + " | " + judge(gate, cell) + " |\n";
+           print_cell(cell) + " | " + judge(gate, cell) + " |";
+    for (const Part& part : parts) {
+      const Cell own = pool(part.score, gate.metric, gate.grades);
+      out += " " + print_cell(own) + (passes(gate, own) ? "" : " MISSED") + " |";
+    }
+    out += "\n";
   }
-  for (const Quantity& q : list_quantities(score)) {
+  const std::vector<Quantity> quantities = list_quantities(score);
+  std::vector<std::vector<Quantity>> of_parts;
+  for (const Part& part : parts) of_parts.push_back(list_quantities(part.score));
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const Quantity& q = quantities[i];
     passed = passed && q.passes();
     out += print("| %s | | %s %g | ", q.name.c_str(), q.at_least ? ">=" : "<=", q.target) +
-           (q.count == 0
-                ? "- | no trial |\n"
-                : print("%.4g of %zu | %s |\n", q.value, q.count, q.passes() ? "met" : "MISSED"));
+           print_quantity(q) + " | " +
+           (q.count == 0 ? "no trial"
+            : q.passes() ? "met"
+                         : "MISSED") +
+           " |";
+    for (const std::vector<Quantity>& part : of_parts) {
+      out += " " + print_quantity(part[i]) + (part[i].passes() ? "" : " MISSED") + " |";
+    }
+    out += "\n";
   }
   return out;
 }
@@ -71,19 +116,13 @@ std::string make_report(const std::vector<TrueTrial>& trials,
                         const std::map<std::string, Verdict>& verdicts, bool& passed) {
   const Score score = calc_score(trials, verdicts);
   passed = score.missing == 0;
-  std::string out = make_gates(score, passed);
+  const std::vector<Part> parts = list_parts(trials, verdicts);
+  std::string out = make_gates(score, parts, passed);
   out += "\n" + print("%zu trials, verdicts missing: %d\n", trials.size(), score.missing);
   out += "\n" + make_table(score);
-  std::set<std::string> kits;
-  for (const TrueTrial& t : trials) kits.insert(t.kit);
-  for (const std::string& kit : kits) {
-    if (kits.size() == 1) break;
-    std::vector<TrueTrial> part;
-    for (const TrueTrial& t : trials) {
-      if (t.kit == kit) part.push_back(t);
-    }
-    out += "\nThe kit `" + kit + "` alone, " + std::to_string(part.size()) + " trials:\n\n" +
-           make_table(calc_score(part, verdicts));
+  for (const Part& part : parts) {
+    out += "\nThe kit `" + part.kit + "` alone, " + std::to_string(part.count) + " trials:\n\n" +
+           make_table(part.score);
   }
   out += print("\n%zu trials not answered right:\n\n", score.failures.size());
   for (const std::string& line : score.failures) out += "- " + line + "\n";

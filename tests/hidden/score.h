@@ -18,24 +18,28 @@ enum class Metric {
   kDetected,        // one of the catalogue hidden, not called adequate
   kInGroup,         // one: the truth is a cause or in the group, of at most kLargestGroup
   kInPrintedGroup,  // one: the truth is a cause or in the group, however large
+  kAloneRight,      // one: the truth is the only cause, and the group holds no other name
   kExact,           // one, effects that the kits can tell apart: the first cause is the truth
   kUnknownFlagged,  // unknown hidden: verdict unknown or form_incomplete
-  kUnknownPlaced,   // unknown, flagged: the place is named
+  kUnknownPlaced,   // unknown, flagged: where.place is the truth's, word for word
   kBothNamed,       // two hidden
   kOneOfTwoNamed,
-  kWrongConfident,  // any trial: a wrong cause with more than 0.8, the truth not in the group
-  kOverclaimed,     // grade D: one cause named with more than 0.8
+  kWrongConfident,  // any trial: a wrong cause with more than 0.8, no truth for it in the group
+  kOverclaimed,     // grade D: a cause named with more than 0.8, no group beside it
   kEffectCovered,   // named exactly: 95 % interval holds the effect's parameter
   kBaseCovered,     // parameters of the baseline
   kExplained95,     // one: explains at least 95 % of what can be explained on the runs held out
   kExplained80,     // one: at least 80 %
-  kMapExplained70,  // unknown: at least 70 %
+  kMapExplained70,  // unknown: flagged, and the force map explains at least 70 %
   kCount
 };
 const char* get_name(Metric metric);
 
-/// More names than these name nothing.
+/// More names than these for each hidden effect name nothing.
 inline constexpr std::size_t kLargestGroup = 4;
+
+/// What a parameter that no verdict tells is off by: all of it, and far out of any interval.
+inline constexpr double kMissingError = 1.0, kMissingPull = 10.0;
 
 struct Cell {
   int hits = 0, total = 0;
@@ -50,15 +54,21 @@ struct Score {
   std::vector<double> probability_on_truth;             // one, A and B
   std::vector<double> null_error;                       // relative, of stiffnesses and dampings
   std::vector<double> null_pull;                        // the same over the stated 1 sigma
+  std::vector<double> null_excess;                      // the same over the Cramer-Rao bound
   std::vector<double> smooth_error, rough_error;        // relative, named; roads up to 1e-6, 16e-6
   std::vector<double> effect_error;                     // relative, of effects named exactly
   std::vector<std::pair<double, bool>> confidence;      // of each first cause, and whether right
+  std::vector<double> names;                            // one, A and B: how many where names are
   std::vector<std::string> failures;                    // a line a trial, with the runners-up
   std::map<std::string, std::map<char, int>> contents;  // trials by category and grade
   int missing = 0;                                      // trials without a verdict
 };
 
-/// `verdicts` by the trials' names; a trial without one counts against the tool everywhere.
+/// `verdicts` by the trials' names. Names are credited and blamed in the verdicts named, group and
+/// form_incomplete, and in no other. A trial without a verdict counts against the tool everywhere:
+/// as a false alarm, as not detected, not named, not flagged, not placed; as a wrong name with
+/// confidence 1 and, where grade D is hidden, as an overclaim; as intervals that miss every
+/// parameter, kMissingError off and kMissingPull of their sigmas.
 Score calc_score(const std::vector<TrueTrial>& trials,
                  const std::map<std::string, Verdict>& verdicts);
 
@@ -75,6 +85,8 @@ struct Gate {
 const std::vector<Gate>& list_gates();
 
 Cell pool(const Score& score, Metric metric, const std::string& grades);
+/// Whether the trials alone say how large the metric's cells are; else the verdicts have a say.
+bool is_size_fixed(Metric metric);
 /// A cell fails when its whole Wilson interval lies on the wrong side of the target.
 bool passes(const Gate& gate, const Cell& cell);
 

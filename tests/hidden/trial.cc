@@ -95,6 +95,12 @@ char Trial::get_grade() const {
   return grade;
 }
 
+char Trial::get_grade_beyond_survey() const {
+  char grade = '-';
+  for (const HiddenFault& f : faults) grade = std::max(grade, find_grade(f.beyond_survey));
+  return grade;
+}
+
 Sampler::Sampler(const Kit& kit) : kit_(kit), classes_{0.0} {
   if (kit.kind == KitKind::kCar) classes_ = {1e-6, 16e-6, 64e-6};
   const std::vector<Nuisance> nuisances = make_nuisances(kit_);
@@ -171,12 +177,10 @@ SignalToNoise Sampler::measure(const FaultSetting& setting, const Truth& without
 
 HiddenFault Sampler::size_fault(FaultSetting setting, double target, const Truth& without,
                                 const std::vector<std::vector<Signal>>& base) const {
-  const FaultInfo& info = get_info(setting.fault);
   // Nearly in proportion; thresholds need the bracket, too.
-  double low = get_floor(kit_, info), high = get_cap(kit_, info);
-  HiddenFault hidden{setting, {}};
+  auto [low, high] = find_bracket(kit_, setting.fault);
+  HiddenFault hidden{setting, measure(setting, without, base), target, 0.0};
   for (int i = 0; i < 9; ++i) {
-    hidden.noise = measure(hidden.setting, without, base);
     const double size = std::fabs(hidden.setting.magnitude), ratio = hidden.noise.ratio;
     if (std::fabs(ratio / target - 1.0) < 0.05) break;
     (ratio < target ? low : high) = size;
@@ -184,7 +188,9 @@ HiddenFault Sampler::size_fault(FaultSetting setting, double target, const Truth
     if (next <= low || next >= high) next = std::sqrt(low * high);
     if (std::fabs(next / size - 1.0) < 1e-3) break;
     hidden.setting.magnitude = std::copysign(next, setting.magnitude);
+    hidden.noise = measure(hidden.setting, without, base);
   }
+  hidden.beyond_survey = std::min(hidden.noise.ratio, calc_survey_stray(kit_, hidden.setting));
   return hidden;
 }
 
@@ -205,6 +211,10 @@ Trial Sampler::draw(std::uint64_t seed) const {
       trial.truth.faults.push_back(trial.faults.back().setting);
     }
   }
+  const std::vector<double>& bounds = get_detector(trial.truth.roughness).bounds();
+  for (std::size_t i = 0; i < kit_.parameters.size(); ++i) {
+    trial.bounds.push_back(kit_.parameters[i].nominal * bounds[i]);
+  }
   RandomStream clocks(seed, "clocks");
   for (std::size_t r = 0; r < kit_.runs.size(); ++r) {
     const double offset = kit_.time_sigma * clocks.draw_normal();
@@ -217,6 +227,11 @@ Trial Sampler::draw(std::uint64_t seed) const {
   return trial;
 }
 
+std::pair<double, double> find_bracket(const Kit& kit, Fault fault) {
+  const FaultInfo& info = get_info(fault);
+  return {get_floor(kit, info), get_cap(kit, info)};
+}
+
 std::string get_place(const Kit& kit, const FaultSetting& setting) {
   const Where where = get_info(setting.fault).where;
   if (where == Where::kChannel) return kit.sensors[static_cast<std::size_t>(setting.place)].channel;
@@ -224,6 +239,21 @@ std::string get_place(const Kit& kit, const FaultSetting& setting) {
   if (where == Where::kBody) return "body";
   if (where == Where::kRoad) return "road";
   return setting.place == 0 ? "front" : "rear";
+}
+
+std::string get_where(const Kit& kit, const FaultSetting& setting) {
+  std::string place = get_place(kit, setting);
+  if (!place.empty()) return place;
+  switch (get_info(setting.fault).where) {
+    case Where::kTire:
+      return "tire";
+    case Where::kBody:
+      return "body";
+    case Where::kRoad:
+      return "road";
+    default:
+      return "strut";
+  }
 }
 
 }  // namespace strut::hidden

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/hidden/detect.h"
@@ -23,6 +24,9 @@ Category draw_category(std::uint64_t seed);
 struct HiddenFault {
   FaultSetting setting;
   SignalToNoise noise;  // of this fault alone
+  double target = 0.0;  // of noise.ratio
+  /// The ratio, or less: what strays from the surveys no further than they err is theirs.
+  double beyond_survey = 0.0;
 };
 
 struct Trial {
@@ -34,6 +38,9 @@ struct Trial {
   std::vector<double> bias;   // of each sensor
   /// Grade of the fault that is harder to see; '-' where nothing is hidden.
   char get_grade() const;
+  /// The same of what is beyond the surveys.
+  char get_grade_beyond_survey() const;
+  std::vector<double> bounds;  // of each of the kit's parameters, 1 sigma in its unit; may be empty
 };
 
 /// Draws trials of a kit; keeps what they share. Safe to use from several threads.
@@ -57,8 +64,15 @@ class Sampler {
   std::vector<std::unique_ptr<Detector>> detectors_;
 };
 
+/// Magnitudes that a fault's search may not pass, the smaller first.
+std::pair<double, double> find_bracket(const Kit& kit, Fault fault);
+
 /// Where a fault is, in the words of a vehicle file: an axle, "body", "road", a channel; "" for
 /// what a stand has only one of.
 std::string get_place(const Kit& kit, const FaultSetting& setting);
+
+/// Where a fault is, in the words of a verdict's where.place: as above, and of a stand "strut",
+/// "tire", "body" or "road".
+std::string get_where(const Kit& kit, const FaultSetting& setting);
 
 }  // namespace strut::hidden

@@ -4,7 +4,7 @@
     DIR/KIT/trials/SEED/             what the program gets
     DIR/KIT/truths/SEED.json         what it does not get, sealed by SHA256SUMS
     DIR/KIT/verdicts/SEED/           what it says, and cost.json: seconds of wall and processor
-    DIR/KIT/verdicts/SEED.log        what it printed where it failed
+    DIR/KIT/verdicts/SEED.log        what it printed where it failed, and SEED.cost.json
 
 Whatever has a name in there is whole: work in progress stands under a name with a leading dot and is
 renamed when it is done. So a run that was killed at any instant goes on when it is started again.
@@ -25,6 +25,7 @@ import sys
 import tempfile
 import threading
 import time
+import tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
 SECONDS_A_TRIAL = 1800.0  # a program that takes longer gives no verdict
@@ -81,13 +82,16 @@ def write_atomically(path, text):
 class Run:
     """One folder of trials."""
 
-    def __init__(self, build, folder, parts, ablation="none"):
+    def __init__(self, build, folder, parts, ablation="none", fresh=False):
+        """`fresh`: removes what another run left in the folder."""
         self.build, self.folder, self.parts = build, pathlib.Path(folder), list(parts)
         self.ablation = ablation
         self.children, self.guard, self.stopped = set(), threading.RLock(), False
         self.done, self.total, self.began = 0, 0, time.monotonic()
         self.folder.mkdir(parents=True, exist_ok=True)
         self._lock_folder()
+        if fresh:
+            self._clear_folder()
         self._check_identity()
 
     def _lock_folder(self):
@@ -96,6 +100,18 @@ class Run:
             fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise Refused(f"{self.folder}: another run works here") from None
+
+    def _clear_folder(self):
+        """All but the lock that we hold, of a folder that a run began."""
+        if not (self.folder / "run.json").exists():
+            return
+        # The mark that it is a run's goes last: one that was killed here is cleared again.
+        for entry in self.folder.iterdir():
+            if entry.is_dir() and not entry.is_symlink():
+                shutil.rmtree(entry)
+            elif entry.name not in (".lock", "run.json"):
+                entry.unlink()
+        (self.folder / "run.json").unlink()
 
     def _check_identity(self):
         """Verdicts of two programs, or trials of two generators, do not mix."""
@@ -132,7 +148,10 @@ class Run:
             verdicts = self.folder / part.kit / "verdicts"
             verdicts.mkdir(exist_ok=True)
             for left in verdicts.glob(".*"):
-                shutil.rmtree(left)
+                if left.is_dir():
+                    shutil.rmtree(left)
+                else:
+                    left.unlink()
             trials = sorted((self.folder / part.kit / "trials").iterdir())
             self.total += len(trials)
             missing = [t for t in trials if not (verdicts / t.name / "verdict.json").exists()]
@@ -160,11 +179,15 @@ class Run:
         if self.stopped:
             return
         note = ""
+        cost = json.dumps({"wall_s": round(wall, 3),
+                           "cpu_s": round(usage.ru_utime + usage.ru_stime, 3)}) + "\n"
         if status == 0 and (place / "verdict.json").exists():
-            cost = {"wall_s": round(wall, 3), "cpu_s": round(usage.ru_utime + usage.ru_stime, 3)}
-            (place / "cost.json").write_text(json.dumps(cost) + "\n", encoding="utf-8")
+            (place / "cost.json").write_text(cost, encoding="utf-8")
             os.replace(place, verdicts / trial.name)
+            # Of an attempt before, which failed.
+            (verdicts / f"{trial.name}.cost.json").unlink(missing_ok=True)
         else:
+            write_atomically(verdicts / f"{trial.name}.cost.json", cost)
             os.replace(place / "log", verdicts / f"{trial.name}.log")
             shutil.rmtree(place)
             note = f", FAILED with status {status}"
@@ -218,14 +241,16 @@ class Run:
         return outcome.returncode, outcome.stdout
 
     def make_provenance(self):
-        """Markdown: the commit, the seeds with the truths' digests, the cost of a trial."""
+        """Markdown: the commit, the seeds with the truths' digests, the cost of a trial, also of
+        those that failed or took too long."""
         lines = [f"Commit {self.commit}; each diagnosis with one thread.", "",
                  "| kit | seeds | SHA-256 of truths/SHA256SUMS | wall s: median, 90 %, most | "
                  "processor s: median, most |", "|---|---|---|---|---|"]
         for part in self.parts:
             folder = self.folder / part.kit
             costs = [json.loads(path.read_text(encoding="utf-8"))
-                     for path in sorted(folder.glob("verdicts/*/cost.json"))]
+                     for pattern in ("verdicts/*/cost.json", "verdicts/*.cost.json")
+                     for path in sorted(folder.glob(pattern))]
             wall = sorted(cost["wall_s"] for cost in costs) or [0.0]
             cpu = sorted(cost["cpu_s"] for cost in costs) or [0.0]
             ninth = wall[min(len(wall) - 1, int(0.9 * len(wall)))]
@@ -253,6 +278,10 @@ def main_of(run_command):
         return run_command()
     except Refused as refusal:
         print(refusal, file=sys.stderr)
+        return 2
+    except (tomllib.TOMLDecodeError, json.JSONDecodeError, TypeError, KeyError) as mistake:
+        # A file that is none: 1 would say that a limit is missed.
+        print(f"{type(mistake).__name__}: {mistake}", file=sys.stderr)
         return 2
     except (OSError, RuntimeError, subprocess.CalledProcessError) as failure:
         print(failure, file=sys.stderr)

@@ -43,6 +43,12 @@ std::map<std::string, Estimate> get_estimates(const JsonTree& tree, const std::s
   return estimates;
 }
 
+/// None for null and for what is not there.
+std::optional<double> get_number(const JsonTree& tree, const std::string& key) {
+  const auto found = tree.get_optional<double>(key);
+  return found ? std::optional<double>(*found) : std::nullopt;
+}
+
 std::vector<Claim> get_claims(const JsonTree& tree, const std::string& key) {
   std::vector<Claim> claims;
   const auto found = tree.get_child_optional(key);
@@ -53,6 +59,30 @@ std::vector<Claim> get_claims(const JsonTree& tree, const std::string& key) {
                       child.get<double>("probability", 0.0), get_estimates(child, "parameters")});
   }
   return claims;
+}
+
+TrueTrial get_truth(const fs::path& path, const JsonTree& tree) {
+  TrueTrial trial;
+  trial.name = path.stem().string();
+  trial.kit = tree.get<std::string>("kit", "");
+  trial.category = tree.get<std::string>("category", "");
+  trial.grade = tree.get<std::string>("grade_beyond_survey").front();
+  trial.roughness = tree.get<double>("roughness", 0.0);
+  if (trial.category.empty()) throw std::runtime_error(path.string() + ": category: is missing");
+  for (const auto& entry : tree.get_child("faults")) {
+    const JsonTree& f = entry.second;
+    trial.faults.push_back({f.get<std::string>("fault"), f.get<std::string>("effect"),
+                            f.get<std::string>("place"), f.get<std::string>("parameter"),
+                            f.get<double>("magnitude"), f.get<std::string>("grade").front(),
+                            f.get<std::string>("where")});
+  }
+  for (const auto& [name, value] : tree.get_child("parameters")) {
+    trial.parameters[name] = value.get_value<double>();
+  }
+  for (const auto& [name, value] : tree.get_child("bounds")) {
+    trial.bounds[name] = value.get_value<double>();
+  }
+  return trial;
 }
 
 }  // namespace
@@ -67,23 +97,11 @@ JsonTree read_json(const fs::path& path) {
 
 TrueTrial read_truth(const fs::path& path) {
   const JsonTree tree = read_json(path);
-  TrueTrial trial;
-  trial.name = path.stem().string();
-  trial.kit = tree.get<std::string>("kit", "");
-  trial.category = tree.get<std::string>("category", "");
-  trial.grade = tree.get<std::string>("grade", "-").front();
-  trial.roughness = tree.get<double>("roughness", 0.0);
-  if (trial.category.empty()) throw std::runtime_error(path.string() + ": category: is missing");
-  for (const auto& entry : tree.get_child("faults")) {
-    const JsonTree& f = entry.second;
-    trial.faults.push_back({f.get<std::string>("fault"), f.get<std::string>("effect"),
-                            f.get<std::string>("place"), f.get<std::string>("parameter"),
-                            f.get<double>("magnitude"), f.get<std::string>("grade").front()});
+  try {
+    return get_truth(path, tree);
+  } catch (const boost::property_tree::ptree_error& e) {
+    throw std::runtime_error(path.string() + ": " + e.what());
   }
-  for (const auto& [name, value] : tree.get_child("parameters")) {
-    trial.parameters[name] = value.get_value<double>();
-  }
-  return trial;
 }
 
 Verdict read_verdict(const fs::path& path) {
@@ -93,14 +111,10 @@ Verdict read_verdict(const fs::path& path) {
   v.causes = get_claims(tree, "causes");
   v.group = get_claims(tree, "group");
   v.runners_up = get_claims(tree, "runners_up");
-  if (const auto where = tree.get_child_optional("where")) {
-    for (const auto& entry : *where) v.where += entry.second.data() + " ";
-  }
+  v.place = tree.get<std::string>("where.place", "");
   v.after = get_estimates(tree, "parameters.after");
-  if (const auto explained = tree.get_optional<double>("gain.explained")) {
-    v.explained = *explained;
-    v.has_gain = true;
-  }
+  v.explained = get_number(tree, "gain.explained");
+  v.map_share = get_number(tree, "force_map.hold_out_share");
   return v;
 }
 

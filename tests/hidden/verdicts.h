@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,16 +25,17 @@ struct Claim {
 struct Verdict {
   std::string verdict;  // adequate | named | group | form_incomplete | unknown; "": none was given
   std::vector<Claim> causes, group, runners_up;
-  std::string where;  // all that is said of it
+  std::string place;  // where.place
   std::map<std::string, Estimate> after;
-  double explained = 0.0;
-  bool has_gain = false;
+  std::optional<double> explained;  // gain.explained; none: nothing stood out before
+  std::optional<double> map_share;  // force_map.hold_out_share; none: no force map
 };
 
 struct TrueFault {
   std::string fault, effect, place, parameter;
   double magnitude = 0.0;
   char grade = 'D';
+  std::string where;  // the place in the words of a verdict's where.place
 };
 
 struct TrueTrial {
@@ -42,6 +44,7 @@ struct TrueTrial {
   double roughness = 0.0;  // m^3
   std::vector<TrueFault> faults;
   std::map<std::string, double> parameters;
+  std::map<std::string, double> bounds;  // 1 sigma of the parameters that no fit can beat
 };
 
 /// Throws std::runtime_error with the file's name for what is no such file.
