@@ -134,12 +134,15 @@ Where find_where(const CampaignData& data, const Selection& selection) {
   return where;
 }
 
+/// A rig's only strut has no name in its file, but in a sentence.
+std::string name_strut(const std::string& place) { return place.empty() ? "strut" : place; }
+
 /// The place that holds what is left, as far as one is better than noise.
 std::string find_place(const Leftover& left) {
   constexpr double kClear = 5.0;
   for (const LeftoverPlace& place : left.places) {
     if (place.energy < kClear * place.sigma) continue;
-    return place.name;
+    return name_strut(place.name);
   }
   return "";
 }
@@ -170,7 +173,7 @@ class Diagnoser {
     diagnosis_.where = find_where(data_, selection);
     diagnosis_.where.place = left_place_;
     if (diagnosis_.force) {
-      diagnosis_.where.place = diagnosis_.force->place;
+      diagnosis_.where.place = name_strut(diagnosis_.force->place);
       diagnosis_.where.depends_on =
           diagnosis_.force->states.describe() + " " + diagnosis_.force->depends.words;
     }

@@ -8,18 +8,10 @@
 #include <vector>
 
 #include "diagnose/evidence.h"
+#include "diagnose/hypothesis_search.h"
 #include "diagnose/whitened_fit.h"
 
 namespace strut {
-
-/// A fit of a hypothesis together with all that the model may adjust.
-struct HypothesisFit {
-  std::string failure;         // empty: it could be simulated
-  std::vector<double> values;  // of the base unknowns, then of the hypothesis' parameters
-  std::vector<double> sigma;   // of the hypothesis' parameters, everything else adjusted
-  double gain = 0.0;           // by which chi2 fell
-  long simulations = 0;
-};
 
 class TestBench {
  public:
