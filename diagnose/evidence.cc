@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
 
 namespace strut {
 
@@ -25,15 +27,16 @@ Score calc_score(const Evidence& evidence, const std::vector<double>& weights) {
 }
 
 Gain calc_gain(const Score& score, const std::vector<std::size_t>& columns, bool one_sided) {
-  constexpr double kAlias = 1e-4, kRank = 1e-8;
+  constexpr double kAlias = 1e-4, kRank = 1e-8, kUnseen = 1e-6;
   const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd k(count, count);
   Eigen::VectorXd z(count), scale(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<Eigen::Index>(columns[static_cast<std::size_t>(i)]);
     const double left = score.covariance(at, at);
-    // A hypothesis that the free unknowns can take over but for a hundredth is none of its own.
-    scale(i) = left > kAlias * score.norm(at) && left > 0.0 ? 1.0 / std::sqrt(left) : 0.0;
+    // A hypothesis that the free unknowns can take over but for a hundredth is none of its own, and
+    // one that moves nothing (a roll bar where both wheels do the same) is rounding.
+    scale(i) = left > std::max(kAlias * score.norm(at), kUnseen) ? 1.0 / std::sqrt(left) : 0.0;
     z(i) = score.gradient(at) * scale(i);
   }
   for (Eigen::Index i = 0; i < count; ++i) {

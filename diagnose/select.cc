@@ -414,9 +414,14 @@ double calc_null_threshold(const Evidence& evidence, const Score& score,
                            const std::vector<bool>& one_sided, std::size_t nulls,
                            double confidence) {
   constexpr std::uint64_t kSeed = 1;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(score.covariance);
-  const Eigen::MatrixXd root =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  // Of correlations: effects differ in size by orders, and rounding of the largest is not to be
+  // taken for noise of the smallest.
+  const Eigen::VectorXd sigma = score.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd unit = sigma.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * score.covariance *
+                                                              unit.asDiagonal());
+  const Eigen::MatrixXd root = sigma.asDiagonal() * solver.eigenvectors() *
+                               solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::vector<double> most;
   most.reserve(nulls);
   Score null = score;

@@ -136,6 +136,30 @@ TEST_CASE("Many hypotheses need a higher threshold than one", "[unit]") {
         Approx(10.79).margin(test::tolerance(0.6)));
 }
 
+TEST_CASE("A threshold does not depend on the sizes in which effects are counted", "[unit]") {
+  Evidence evidence;
+  evidence.trials = {{0, 0, {0}, {0}}, {1, 0, {1}, {0}}};
+  Score score;
+  // Correlated by 0.9; the second is 1e9 times as large as the first.
+  constexpr double kSmall = 1e-2, kLarge = 1e7;
+  score.covariance.resize(2, 2);
+  score.covariance << kSmall * kSmall, 0.9 * kSmall * kLarge, 0.9 * kSmall * kLarge,
+      kLarge * kLarge;
+  score.norm = score.covariance.diagonal();
+  score.gradient = Eigen::VectorXd::Zero(2);
+  const double threshold = calc_null_threshold(evidence, score, {false, false}, 4000, 0.99);
+  // Between that of one and that of two independent ones.
+  CHECK(threshold > 6.0);
+  CHECK(threshold < 8.6);
+}
+
+TEST_CASE("An effect that moves no reading is no cause, whatever rounding says", "[unit]") {
+  Problem problem;
+  for (int r = 0; r < 2; ++r) problem.columns[r].col(0) *= 1e-12;
+  const Score score = calc_score(problem.gather(), {1.0, 1.0});
+  CHECK(calc_gain(score, {0}, false).chi2 == 0.0);
+}
+
 Candidate make_candidate(const std::string& place, double gain) {
   Candidate c;
   c.hypothesis.effect = "damper_asymmetry";

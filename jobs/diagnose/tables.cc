@@ -99,7 +99,8 @@ ReportTable make_gain_table(const Diagnosis& diagnosis) {
         gain.explained
             ? "Explained of what is more than noise: " +
                   print_number("%.1f %%", 100.0 * *gain.explained)
-            : std::string("No channel alone was above its noise before: the likelihood tells the gain."));
+            : std::string(
+                  "No channel alone was above its noise before: the likelihood tells the gain."));
     table.notes.push_back(describe_likelihood(gain));
   }
   return table;
