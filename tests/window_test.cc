@@ -1,5 +1,4 @@
 // From records to the components that a network takes.
-#define EIGEN_DONT_PARALLELIZE
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>

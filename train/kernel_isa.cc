@@ -1,7 +1,5 @@
 // The kernel for one instruction set: compiled once for each, with STRUT_ISA naming it.
 
-// Threads are ours (network_problem.cc, damped_system.cc); a second pool would fight with them.
-#define EIGEN_DONT_PARALLELIZE
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 

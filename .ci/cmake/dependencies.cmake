@@ -12,6 +12,9 @@ target_include_directories(strut_random123 SYSTEM INTERFACE ${STRUT_RANDOM123_IN
 add_library(strut::random123 ALIAS strut_random123)
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# Else its products take threads of their own wherever OpenMP is on: more than --threads allows, and
+# blocks, and so bits, that depend on their number.
+set_property(TARGET Eigen3::Eigen APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_PARALLELIZE)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(SUNDIALS 6.4 REQUIRED
   COMPONENTS kinsol cvode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)

@@ -1,5 +1,3 @@
-// Products run on the thread that asks; Eigen's own threads would be those of OpenMP.
-#define EIGEN_DONT_PARALLELIZE
 #include "train/window/basis.h"
 
 #include <Eigen/Eigenvalues>
