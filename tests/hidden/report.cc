@@ -70,6 +70,7 @@ std::string make_gates(const Score& score, const std::vector<Part>& parts, bool&
   }
   const std::vector<Quantity> quantities = list_quantities(score);
   std::vector<std::vector<Quantity>> of_parts;
+  of_parts.reserve(parts.size());
   for (const Part& part : parts) of_parts.push_back(list_quantities(part.score));
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const Quantity& q = quantities[i];
