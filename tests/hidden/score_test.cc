@@ -328,12 +328,17 @@ TEST_CASE("Hidden data: an unknown cause is placed by where.place, word for word
   CHECK(count(said) == 0);
 }
 
-TEST_CASE("Hidden data: every cause with confidence is judged, not only the first", "[unit]") {
+TrueTrial make_payload_trial() {
   TrueTrial trial;
   trial.name = "1";
   trial.category = "one";
   trial.grade = 'A';
   trial.faults = {{"", "payload", "body", "mass", 40.0, 'A', "body"}};
+  return trial;
+}
+
+TEST_CASE("Hidden data: every cause with confidence is judged, not only the first", "[unit]") {
+  TrueTrial trial = make_payload_trial();
   const auto ask = [&](const std::vector<Claim>& causes, const std::vector<Claim>& group) {
     Verdict v;
     v.verdict = "named";
@@ -359,11 +364,7 @@ TEST_CASE("Hidden data: every cause with confidence is judged, not only the firs
 }
 
 TEST_CASE("Hidden data: for one hidden effect a group is at most four names", "[unit]") {
-  TrueTrial trial;
-  trial.name = "1";
-  trial.category = "one";
-  trial.grade = 'A';
-  trial.faults = {{"", "payload", "body", "mass", 40.0, 'A', "body"}};
+  const TrueTrial trial = make_payload_trial();
   Verdict v;
   v.verdict = "group";
   v.causes = {{"bump_stop", "rear", 0.9, {}}};
