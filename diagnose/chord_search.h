@@ -28,6 +28,8 @@ class ChordSearch {
   const std::vector<double>& values() const { return values_; }
   std::vector<bool> list_at_bound() const;
   int steps() const { return steps_; }
+  /// The last search ended where no step lowers chi2 though its derivatives promise it: a kink.
+  bool at_kink() const { return at_kink_; }
   /// At values(), not whitened.
   const Eigen::VectorXd& residual() const { return residual_; }
   /// Where derivatives were last taken, not whitened.
@@ -37,11 +39,15 @@ class ChordSearch {
   /// Unknowns on a bound beyond which the slope leads.
   std::vector<bool> list_held(const Eigen::VectorXd& gradient) const;
 
+  /// Goes by -change (in scales) where that lowers chi2, and returns by how much; else 0.
+  double step(const Whitener& whitener, const Eigen::VectorXd& change, Linearization& at);
+
   ReadingModel& model_;
   std::vector<double> values_, taken_at_;  // the latter: where at_ is
   std::shared_ptr<const Linearization> at_;
   Eigen::VectorXd residual_;
   int steps_ = 0;
+  bool at_kink_ = false;
 };
 
 }  // namespace strut

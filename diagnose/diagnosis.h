@@ -91,7 +91,9 @@ struct Diagnosis {
   Selection selection;
   std::vector<DiagnosedRun> runs;
   std::vector<std::string> notes;  // for the user
-  bool is_whole = true;  // the calibration converged, and every run held out could be simulated
+  /// Every run held out could be simulated, and the calibration converged or a model extended
+  /// beyond it was confirmed by those runs.
+  bool is_whole = true;
 
   /// Whether there is an extended model.
   bool is_extended() const { return !causes.empty() || force.has_value(); }

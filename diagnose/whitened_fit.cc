@@ -113,7 +113,8 @@ void conclude(ChordSearch& search, ReadingModel& model, const Whitener& whitener
     result.linearization = search.linearization();
     const Linearization at = {"", whitener.apply(search.residual()),
                               whitener.apply(result.linearization->jacobian)};
-    result.fit = describe_fit(whitened, at, search.values(), search.list_at_bound(), false);
+    result.fit =
+        describe_fit(whitened, at, search.values(), search.list_at_bound(), search.at_kink());
     if (result.fit.converged) break;
   }
   result.fit.iterations = search.steps();

@@ -25,12 +25,11 @@ Arguments make_arguments() {
       "Names what the simulation gets wrong: fits the model to the runs for fitting, tries every\n"
       "effect of the catalogue at every place, and lets the runs held out judge. Says how sure it\n"
       "is, what it cannot tell apart, what the extended model gains, and what to measure next.\n"
-      "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures "
-      "and\n"
-      "report.html (docs/diagnosis.md). Ends with code 1 where the calibration has not converged "
-      "or "
-      "a run\n"
-      "held out cannot be simulated.",
+      "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures\n"
+      "and "
+      "report.html (docs/diagnosis.md). Ends with code 1 where a run held out cannot be "
+      "simulated,\n"
+      "or the calibration has not converged and nothing was confirmed beyond it.",
       "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
   arguments.add_option("output,o", "DIR", "folder of the diagnosis");
   arguments.add_option("threads", "N", "threads (default: all processors)");
