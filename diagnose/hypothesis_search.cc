@@ -102,25 +102,32 @@ class Search {
     return true;
   }
 
-  /// What is linear at first may not stay so: less of it may be a better beginning.
+  /// What is linear at first may not stay so: less of it may be a better beginning. A lost stroke
+  /// that ends between two readings has valleys of its own, so a rig, being cheap, is asked often.
   bool begin() {
-    const Eigen::VectorXd zero = x_;
-    double least = std::numeric_limits<double>::infinity();
-    for (const double share : {1.0, 0.4, 0.15, 0.05}) {
-      Eigen::VectorXd tried = zero, there;
+    const double least_share = ground_.is_rig ? 0.02 : 0.05, factor = ground_.is_rig ? 0.7 : 0.4;
+    std::vector<Eigen::VectorXd> tried;
+    std::vector<std::vector<double>> points;
+    for (double share = 1.0; share > 0.9 * least_share; share *= factor) {
+      tried.push_back(x_);
       for (Index j = 0; j < m_; ++j) {
         const Coordinate& c = get_coordinate(j);
-        if (!c.is_shape && c.beginning != 0.0) {
-          tried(n_ + j) = (share - 1.0) * c.beginning / c.unit;
-        }
+        if (c.is_shape || c.beginning == 0.0) continue;
+        tried.back()(n_ + j) = (share - 1.0) * c.beginning / c.unit;
       }
-      if (!evaluate(tried, there)) continue;
-      const Eigen::VectorXd slope = ground_.jacobian.transpose() * there;
-      const double chi2 = there.squaredNorm() - slope.dot(ground_.regular_normal.solve(slope));
+      points.push_back(get_point(tried.back()));
+    }
+    const std::vector<Evaluation> there = model_.evaluate(points);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < there.size(); ++i) {
+      if (!there[i].failure.empty()) continue;
+      const Eigen::VectorXd residual = ground_.whitener.apply(there[i].residual);
+      const Eigen::VectorXd slope = ground_.jacobian.transpose() * residual;
+      const double chi2 = residual.squaredNorm() - slope.dot(ground_.regular_normal.solve(slope));
       if (chi2 >= least) continue;
       least = chi2;
-      x_ = tried;
-      residual_ = there;
+      x_ = tried[i];
+      residual_ = residual;
     }
     if (residual_.size() == 0) {
       fit_.failure = "cannot be simulated";

@@ -11,7 +11,9 @@
 #include "io/config.h"
 #include "io/nearest_name.h"
 #include "model/effects/sensors.h"
+#include "model/effects/strut_numbers.h"
 #include "model/integrate/rig_system.h"
+#include "model/kernel/simulation.h"
 #include "model/parallel/team.h"
 #include "model/vehicle/model_error.h"
 #include "sweep/read_rig.h"
@@ -41,6 +43,20 @@ RigSampling choose_sampling(const RigRun& run, const RigSpec& spec, const RigOpt
   s.step = mean / std::ceil(mean / longest - 1e-9);
   s.interval = s.even ? mean : s.step;
   return s;
+}
+
+/// The sampling with as many more steps as a lost stroke of the strut takes: a short one is crossed
+/// in a fraction of a millisecond, and what a step passes over it never feels. Masses do not feel
+/// the shortest, a dynamometer's force shows them all.
+RigSampling refine(RigSampling sampling, const RigSpec& spec) {
+  constexpr double kStepsOfContact = 4.0;
+  const double most = spec.kind == RigKind::kStrutRig ? 16.0 : 8.0;
+  const EffectValues values{spec.effects, get_model_kind(spec.kind)};
+  const double play = make_strut_effect_numbers(values, "", {}).series.play;
+  if (play <= 0.0) return sampling;
+  const double longest = kStepsOfContact / calc_contact_rate(play);
+  sampling.step /= std::clamp(std::ceil(sampling.step / longest), 1.0, most);
+  return sampling;
 }
 
 /// A setup with the unknowns of one run set, and its inputs where a gain changes them.
@@ -80,72 +96,134 @@ RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>
   return variant;
 }
 
+/// What is to be simulated of a run.
+struct RigCase {
+  const RigRun* run = nullptr;
+  RigVariant variant;
+  RigSampling sampling;
+  std::string failure;  // why it cannot be
+
+  RigCase(const RigRun& of, int index, const std::vector<Unknown>& unknowns,
+          const std::vector<double>& values, const RigOptions& options)
+      : run(&of) {
+    try {
+      variant = make_variant(of, index, unknowns, values);
+      sampling = refine(choose_sampling(of, of.setup, options), variant.spec);
+    } catch (const InputError& e) {  // out of a parameter's range
+      failure = of.name + ": " + e.what();
+    }
+  }
+
+  bool may_share_lanes(const RigCase& other) const {
+    return run == other.run && variant.scaled.empty() && other.variant.scaled.empty() &&
+           sampling.step == other.sampling.step && failure.empty() && other.failure.empty();
+  }
+};
+
 /// A simulation, read at the run's times.
 class RigResult {
  public:
-  RigResult(const RigRun& run, const RigVariant& variant, const RigOptions& options)
-      : run_(run),
-        sampling_(choose_sampling(run, run.setup, options)),
-        channels_(list_rig_channels(run.setup.kind).size()) {
-    StepOptions step;
-    step.step = sampling_.step;
-    SamplePlan plan;
-    plan.interval = sampling_.interval;
-    plan.duration = run.times.back() + (sampling_.even ? 0.0 : kMarginSteps * sampling_.step);
-    plan.snapshot = false;
-    try {
-      results_ = simulate_rig(variant.spec, variant.scaled.empty() ? run.inputs : variant.scaled,
-                              step, plan);
-    } catch (const ModelError& e) {
-      failure_ = run.name + ": " + e.what();
+  RigResult() = default;
+  RigResult(const RigCase& c, const LaneResults& results, int lane)
+      : run_(c.run),
+        sampling_(c.sampling),
+        channels_(list_rig_channels(c.run->setup.kind).size()),
+        count_(static_cast<std::size_t>(results.sample_count)) {
+    const auto at = static_cast<std::size_t>(lane);
+    if (results.status[at] != 0) {
+      failure_ = run_->name +
+                 ": the simulation ends at t = " + format_rounded(results.failure_time[at]) +
+                 " s: the motion is not finite";
       return;
     }
-    if (results_.status[0] == 0) {
-      read_sensors(variant.spec);
-      return;
-    }
-    failure_ = run.name +
-               ": the simulation ends at t = " + format_rounded(results_.failure_time[0]) +
-               " s: the motion is not finite";
+    const auto lanes = static_cast<std::size_t>(results.lanes);
+    history_.resize(count_ * channels_);
+    for (std::size_t i = 0; i < history_.size(); ++i) history_[i] = results.history[i * lanes + at];
+    read_sensors(c.variant.spec);
   }
+  explicit RigResult(std::string failure) : failure_(std::move(failure)) {}
 
   const std::string& failure() const { return failure_; }
 
   /// NaN where the simulation cannot be interpolated.
   double read(std::size_t time, std::size_t channel) const {
-    const auto get = [&](std::size_t sample) {
-      return results_.history[sample * channels_ + channel];
-    };
-    const auto count = static_cast<std::size_t>(results_.sample_count);
-    if (sampling_.even) return time < count ? get(time) : kNan;
-    const double at = run_.times[time] / sampling_.interval;
+    const auto get = [&](std::size_t sample) { return history_[sample * channels_ + channel]; };
+    if (sampling_.even) return time < count_ ? get(time) : kNan;
+    const double at = run_->times[time] / sampling_.interval;
     const auto index = static_cast<std::size_t>(at);
-    if (index < kCurveMargin || index + 1 + kCurveMargin >= count) return kNan;
+    if (index < kCurveMargin || index + 1 + kCurveMargin >= count_) return kNan;
     return interpolate_curve(get, index, at - static_cast<double>(index), sampling_.interval).value;
   }
 
  private:
-  static constexpr double kMarginSteps = 4.0;
-
   /// Replaces what the channels are by what their sensors read.
   void read_sensors(const RigSpec& spec) {
     if (spec.effects.empty()) return;
-    const auto count = static_cast<std::size_t>(results_.sample_count);
     for (std::size_t c = 0; c < channels_; ++c) {
-      std::vector<double> series(count);
-      for (std::size_t i = 0; i < count; ++i) series[i] = results_.history[i * channels_ + c];
+      std::vector<double> series(count_);
+      for (std::size_t i = 0; i < count_; ++i) series[i] = history_[i * channels_ + c];
       series = read_sensor(spec.effects, list_rig_channels(spec.kind)[c].name, sampling_.interval,
                            std::move(series));
-      for (std::size_t i = 0; i < count; ++i) results_.history[i * channels_ + c] = series[i];
+      for (std::size_t i = 0; i < count_; ++i) history_[i * channels_ + c] = series[i];
     }
   }
 
-  const RigRun& run_;
+  const RigRun* run_ = nullptr;
   RigSampling sampling_;
-  std::size_t channels_;
-  LaneResults results_;
+  std::size_t channels_ = 0, count_ = 0;
+  std::vector<double> history_;  // [sample][channel]
   std::string failure_;
 };
+
+/// Simulates cases that may share lanes, together if the processor has as many; one alone in
+/// double.
+void simulate_together(const RigCase* cases, RigResult* results, int count) {
+  constexpr double kMarginSteps = 4.0;
+  const RigRun& run = *cases[0].run;
+  const RigSampling& sampling = cases[0].sampling;
+  StepOptions step;
+  step.step = sampling.step;
+  SamplePlan plan;
+  plan.interval = sampling.interval;
+  plan.duration = run.times.back() + (sampling.even ? 0.0 : kMarginSteps * sampling.step);
+  plan.snapshot = false;
+  const std::vector<InputSignal>& scaled = cases[0].variant.scaled;
+  const std::vector<InputSignal>& inputs = scaled.empty() ? run.inputs : scaled;
+  std::vector<const RigSpec*> specs;
+  for (int i = 0; i < count; ++i) specs.push_back(&cases[i].variant.spec);
+  try {
+    const LaneResults lanes =
+        count == 1 ? simulate_rig(*specs[0], inputs, step, plan)
+                   : list_kernels().front().run_rigs(specs.data(), count, inputs, step, plan);
+    for (int i = 0; i < count; ++i) results[i] = RigResult(cases[i], lanes, i);
+  } catch (const ModelError& e) {
+    if (count == 1) {
+      results[0] = RigResult(run.name + ": " + e.what());
+      return;
+    }
+    for (int i = 0; i < count; ++i) simulate_together(cases + i, results + i, 1);
+  }
+}
+
+std::vector<RigResult> simulate_cases(const std::vector<RigCase>& cases, int threads) {
+  const auto width = static_cast<std::size_t>(list_kernels().front().lanes);
+  std::vector<RigResult> results(cases.size());
+  std::vector<std::size_t> begin;  // of each batch
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const bool joins =
+        !begin.empty() && i - begin.back() < width && cases[begin.back()].may_share_lanes(cases[i]);
+    if (!joins) begin.push_back(i);
+  }
+  share_items(threads, begin.size(), [&](std::size_t k, int /*thread*/) {
+    const std::size_t first = begin[k], end = k + 1 < begin.size() ? begin[k + 1] : cases.size();
+    if (!cases[first].failure.empty()) {
+      results[first] = RigResult(cases[first].failure);
+      return;
+    }
+    simulate_together(&cases[first], &results[first], static_cast<int>(end - first));
+  });
+  return results;
+}
 
 std::vector<std::string> list_unknown_names(const RigRun& run) {
   std::vector<std::string> names;
@@ -253,7 +331,10 @@ InputSignal make_sampled_input(const std::string& channel, const std::vector<dou
 
 RigCurves simulate_rig_run(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
                            const std::vector<double>& values, const RigOptions& options) {
-  const RigResult result(run, make_variant(run, index, unknowns, values), options);
+  const RigCase only(run, index, unknowns, values, options);
+  if (!only.failure.empty()) throw InputError(only.failure);
+  RigResult result;
+  simulate_together(&only, &result, 1);
   RigCurves curves{result.failure(), {}};
   if (!curves.failure.empty()) return curves;
   const std::size_t count = list_rig_channels(run.setup.kind).size();
@@ -312,38 +393,41 @@ std::vector<RigReadings::Task> RigReadings::list_tasks(const std::vector<double>
   std::vector<Task> tasks;
   tasks.reserve(runs_.size() * (1 + 2 * unknowns_.size()));
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    tasks.push_back({r, kNoUnknown, 0.0});
+    tasks.push_back({&values, r, kNoUnknown, 0.0});
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
       const Unknown& u = unknowns_[i];
       if (!belongs(u, static_cast<int>(r)) || u.kind == UnknownKind::kBias) continue;
       const auto [upper, lower] = calc_sides(u, values[i], options_.relative_step);
-      tasks.push_back({r, i, upper});
-      tasks.push_back({r, i, lower});
+      tasks.push_back({&values, r, i, upper});
+      tasks.push_back({&values, r, i, lower});
     }
   }
   return tasks;
 }
 
-/// Returns why there is no simulation.
-std::string RigReadings::simulate(const Task& task, const std::vector<double>& values,
-                                  std::vector<double>& read) const {
-  const RigRun& run = runs_[task.run];
-  std::vector<double> varied = values;
-  if (task.unknown != kNoUnknown) varied[task.unknown] = task.value;
-  try {
-    const RigResult result(run, make_variant(run, static_cast<int>(task.run), unknowns_, varied),
-                           options_);
-    if (!result.failure().empty()) return result.failure();
-    read.reserve(begin_[task.run + 1] - begin_[task.run]);
-    for (std::size_t i = begin_[task.run]; i < begin_[task.run + 1]; ++i) {
-      const ReadingPlace& place = readings_[i];
-      read.push_back(
-          result.read(place.time, static_cast<std::size_t>(run.channels[place.channel].channel)));
-    }
-  } catch (const InputError& e) {  // out of a parameter's range
-    return run.name + ": " + e.what();
+std::vector<RigReadings::Simulated> RigReadings::simulate(const std::vector<Task>& tasks) {
+  std::vector<RigCase> cases;
+  cases.reserve(tasks.size());
+  for (const Task& task : tasks) {
+    std::vector<double> varied = *task.values;
+    if (task.unknown != kNoUnknown) varied[task.unknown] = task.value;
+    cases.emplace_back(runs_[task.run], static_cast<int>(task.run), unknowns_, varied, options_);
   }
-  return "";
+  const std::vector<RigResult> results = simulate_cases(cases, options_.threads);
+  simulation_count_ += static_cast<long>(tasks.size());
+  std::vector<Simulated> simulated(tasks.size());
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    simulated[k].failure = results[k].failure();
+    if (!simulated[k].failure.empty()) continue;
+    const std::size_t run = tasks[k].run;
+    simulated[k].read.reserve(begin_[run + 1] - begin_[run]);
+    for (std::size_t i = begin_[run]; i < begin_[run + 1]; ++i) {
+      const ReadingPlace& place = readings_[i];
+      simulated[k].read.push_back(results[k].read(
+          place.time, static_cast<std::size_t>(runs_[run].channels[place.channel].channel)));
+    }
+  }
+  return simulated;
 }
 
 /// Residuals of a run, biases included.
@@ -380,15 +464,10 @@ void RigReadings::fill_bias_columns(Linearization& out) const {
 
 Linearization RigReadings::linearize(const std::vector<double>& values) {
   const std::vector<Task> tasks = list_tasks(values);
-  std::vector<std::vector<double>> read(tasks.size());
-  std::vector<std::string> failures(tasks.size());
-  share_items(options_.threads, tasks.size(), [&](std::size_t k, int /*thread*/) {
-    failures[k] = simulate(tasks[k], values, read[k]);
-  });
-  simulation_count_ += static_cast<long>(tasks.size());
+  const std::vector<Simulated> simulated = simulate(tasks);
   Linearization out;
-  for (const std::string& failure : failures) {
-    if (out.failure.empty()) out.failure = failure;
+  for (const Simulated& one : simulated) {
+    if (out.failure.empty()) out.failure = one.failure;
   }
   if (!out.failure.empty()) return out;
   const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
@@ -397,13 +476,14 @@ Linearization RigReadings::linearize(const std::vector<double>& values) {
   for (std::size_t k = 0; k < tasks.size(); ++k) {
     const Task& task = tasks[k];
     if (task.unknown == kNoUnknown) {
-      fill_residual(task.run, values, read[k], out.residual);
+      fill_residual(task.run, values, simulated[k].read, out.residual);
       continue;
     }
     const double width = task.value - tasks[k + 1].value;
     for (std::size_t i = begin_[task.run]; i < begin_[task.run + 1]; ++i) {
       const MeasuredChannel& c = runs_[task.run].channels[readings_[i].channel];
-      const double rise = read[k][i - begin_[task.run]] - read[k + 1][i - begin_[task.run]];
+      const std::size_t at = i - begin_[task.run];
+      const double rise = simulated[k].read[at] - simulated[k + 1].read[at];
       out.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(task.unknown)) =
           rise / width * unknowns_[task.unknown].scale / c.sigma;
     }
@@ -415,23 +495,21 @@ Linearization RigReadings::linearize(const std::vector<double>& values) {
 }
 
 std::vector<Evaluation> RigReadings::evaluate(const std::vector<std::vector<double>>& points) {
-  const std::size_t count = points.size() * runs_.size();
-  std::vector<std::vector<double>> read(count);
-  std::vector<std::string> failures(count);
-  share_items(options_.threads, count, [&](std::size_t k, int /*thread*/) {
-    const Task base{k % runs_.size(), kNoUnknown, 0.0};
-    failures[k] = simulate(base, points[k / runs_.size()], read[k]);
-  });
-  simulation_count_ += static_cast<long>(count);
+  std::vector<Task> tasks;  // run by run, since those of one may share lanes
+  tasks.reserve(points.size() * runs_.size());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    for (const auto& point : points) tasks.push_back({&point, r, kNoUnknown, 0.0});
+  }
+  const std::vector<Simulated> simulated = simulate(tasks);
   std::vector<Evaluation> evaluations(points.size());
   const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
   for (std::size_t p = 0; p < points.size(); ++p) {
     Evaluation& e = evaluations[p];
     e.residual = Eigen::VectorXd::Zero(rows);
     for (std::size_t r = 0; r < runs_.size() && e.failure.empty(); ++r) {
-      const std::size_t k = p * runs_.size() + r;
-      e.failure = failures[k];
-      if (e.failure.empty()) fill_residual(r, points[p], read[k], e.residual);
+      const Simulated& one = simulated[r * points.size() + p];
+      e.failure = one.failure;
+      if (e.failure.empty()) fill_residual(r, points[p], one.read, e.residual);
     }
     fill_prior_residuals(points[p], e.residual);
   }

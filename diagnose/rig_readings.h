@@ -82,12 +82,16 @@ class RigReadings : public ReadingModel {
  private:
   /// A simulation of a run: its base, or with one unknown beside it.
   struct Task {
+    const std::vector<double>* values;
     std::size_t run, unknown;
     double value;
   };
+  struct Simulated {
+    std::string failure;       // why there is no simulation
+    std::vector<double> read;  // by the run's readings
+  };
   std::vector<Task> list_tasks(const std::vector<double>& values) const;
-  std::string simulate(const Task& task, const std::vector<double>& values,
-                       std::vector<double>& read) const;
+  std::vector<Simulated> simulate(const std::vector<Task>& tasks);
   void fill_residual(std::size_t run, const std::vector<double>& values,
                      const std::vector<double>& read, Eigen::VectorXd& residual) const;
   void fill_bias_columns(Linearization& out) const;

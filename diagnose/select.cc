@@ -149,6 +149,35 @@ SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const Hyp
   return shared;
 }
 
+/// For each of the ranked, one before it whose first beginning does the same to all readings: what
+/// no data tell apart is fitted once. Itself where there is none.
+std::vector<std::size_t> find_twins(const std::vector<RankedTrial>& ranked,
+                                    const std::vector<std::vector<double>>& beginnings) {
+  constexpr double kSame = 1e-9;
+  std::vector<std::size_t> twins;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    std::size_t twin = 0;
+    while (twin < i &&
+           (beginnings[twin] != beginnings[i] ||
+            std::abs(ranked[twin].gain.chi2 - ranked[i].gain.chi2) > kSame * ranked[i].gain.chi2)) {
+      ++twin;
+    }
+    twins.push_back(twin);
+  }
+  return twins;
+}
+
+/// The fit of its twin under the hypothesis' own names.
+Candidate rename(Candidate twin, const Hypothesis& h) {
+  const std::size_t first = twin.shared.unknowns.size() - h.parameters.size();
+  for (std::size_t i = 0; !twin.values.empty() && i < h.parameters.size(); ++i) {
+    twin.shared.unknowns[first + i].name = h.parameters[i].name;
+  }
+  twin.hypothesis = h;
+  twin.simulations = 0;
+  return twin;
+}
+
 double sum_chi2(const std::vector<HoldOutRun>& runs) {
   double sum = 0.0;
   for (const HoldOutRun& run : runs) sum += run.failure.empty() ? run.chi2 : 1e300;
@@ -289,8 +318,7 @@ class Selector {
 
   /// The fit of one effect, values empty where it cannot be simulated or cannot be.
   Candidate fit_candidate(const TestBench& bench, const Hypothesis& h, const HypothesisTrial& trial,
-                          const Gain& gain) const {
-    const std::vector<double> beginning = make_beginning(data_, h, trial, gain);
+                          const Gain& gain, const std::vector<double>& beginning) const {
     HypothesisFit fit = bench.fit(h, beginning);
     Candidate c;
     c.simulations = fit.simulations;
@@ -340,12 +368,25 @@ class Selector {
                   [&](const RankedTrial& r) { return r.gain.chi2 < 0.3 * round.threshold; });
     tell("fitting the best " + std::to_string(ranked.size()));
     // Each alone on a thread: one fit does not fill several.
+    std::vector<std::vector<double>> beginnings;
+    for (const RankedTrial& r : ranked) {
+      const HypothesisTrial& trial = evidence.trials[r.trial];
+      beginnings.push_back(make_beginning(data_, hypotheses[trial.hypothesis], trial, r.gain));
+    }
+    const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
     std::vector<Candidate> fitted(ranked.size());
     share_items(options_.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
+      if (twins[i] != i) return;
       const HypothesisTrial& trial = evidence.trials[ranked[i].trial];
-      fitted[i] = fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain);
+      fitted[i] =
+          fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain, beginnings[i]);
       fitted[i].stability = calc_stability(evidence, one_sided, trial.hypothesis);
     });
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      if (twins[i] == i) continue;
+      const std::size_t h = evidence.trials[ranked[i].trial].hypothesis;
+      fitted[i] = rename(fitted[twins[i]], hypotheses[h]);
+    }
     for (Candidate& c : fitted) {
       selection_.simulations += c.simulations;
       if (!c.values.empty()) round.candidates.push_back(std::move(c));
@@ -361,6 +402,13 @@ class Selector {
     return accepted;
   }
 
+  /// Whether the best of a round gains far more than it needs. Then it need not stay among the best
+  /// without each of the runs (its score, to first order, may tell less than its fit), nor show as
+  /// much in runs held out whose amplitudes are smaller.
+  static bool is_certain(const SelectRound& round) {
+    return round.candidates.front().gain > 3.0 * round.threshold * round.misfit;
+  }
+
   /// Whether the best of a round is large enough to be fitted in full.
   bool is_large(const SelectRound& round) const {
     if (round.candidates.empty()) return false;
@@ -368,7 +416,7 @@ class Selector {
     const double gain = round.candidates.front().gain;
     if (now.is_dominated) return gain > options_.dominated_share * now.fit.chi2;
     if (gain / round.misfit < round.threshold) return false;
-    if (round.candidates.front().stability < options_.stability) return false;
+    if (!is_certain(round) && round.candidates.front().stability < options_.stability) return false;
     const double first = selection_.rounds.front().candidates.front().gain;
     return selection_.rounds.size() == 1 || gain > options_.second_share * first;
   }
@@ -388,11 +436,9 @@ class Selector {
     if (!was_dominated) {
       double readings = 0.0;
       for (const HoldOutRun& run : judged) readings += run.expected;
-      // What is certain need not show as much where amplitudes are smaller.
-      const bool is_certain = best.gain > 3.0 * round.threshold * round.misfit;
-      wanted = is_certain ? 0.0
-                          : options_.hold_out_share * best.gain * readings /
-                                static_cast<double>(selection_.extended.fit.degrees);
+      wanted = is_certain(round) ? 0.0
+                                 : options_.hold_out_share * best.gain * readings /
+                                       static_cast<double>(selection_.extended.fit.degrees);
     }
     if (before - after <= wanted) return false;
     selection_.extended = std::move(fit);

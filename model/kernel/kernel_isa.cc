@@ -1,15 +1,19 @@
 // The simulation for one instruction set: compiled once for each, with STRUT_ISA naming it.
 
+#include "model/integrate/rig_system.h"
 #include "model/kernel/run_cases.h"
 #include "model/math/xsimd_backend.h"
 
 namespace {
 
+using strut::InputSignal;
 using strut::IntegrateOptions;
 using strut::LaneResults;
 using strut::NativeLanes;
 using strut::PreparedCase;
+using strut::RigSpec;
 using strut::SamplePlan;
+using strut::StepOptions;
 
 LaneResults run_lanes(const PreparedCase* const* cases, int count, const IntegrateOptions& options,
                       const SamplePlan& plan) {
@@ -24,6 +28,15 @@ LaneResults run_scalar(const PreparedCase& c, const IntegrateOptions& options,
                        const SamplePlan& plan) {
   const PreparedCase* cases[1] = {&c};
   return strut::run_cases<double>(cases, options, plan);
+}
+
+LaneResults run_rigs(const RigSpec* const* specs, int count, const std::vector<InputSignal>& inputs,
+                     const StepOptions& options, const SamplePlan& plan) {
+  const RigSpec* padded[NativeLanes::kWidth];
+  for (int lane = 0; lane < NativeLanes::kWidth; ++lane) {
+    padded[lane] = specs[lane < count ? lane : count - 1];
+  }
+  return strut::simulate_rigs<NativeLanes>(padded, inputs, options, plan);
 }
 
 /// Twelve chains hide the latency of two four-cycle units, and with the two factors fit the sixteen
@@ -57,6 +70,10 @@ double run_peak_loop(long rounds, double& sink) {
 extern "C" strut::Kernel STRUT_KERNEL_NAME(STRUT_ISA)();
 
 extern "C" strut::Kernel STRUT_KERNEL_NAME(STRUT_ISA)() {
-  return {STRUT_ISA_STRING(STRUT_ISA), NativeLanes::kWidth, &run_lanes, &run_scalar,
+  return {STRUT_ISA_STRING(STRUT_ISA),
+          NativeLanes::kWidth,
+          &run_lanes,
+          &run_scalar,
+          &run_rigs,
           &run_peak_loop};
 }

@@ -7,6 +7,7 @@
 #include "model/integrate/car_system.h"
 #include "model/vehicle/assemble.h"
 #include "model/vehicle/case.h"
+#include "model/vehicle/rigs.h"
 #include "model/vehicle/trim.h"
 
 namespace strut {
@@ -61,6 +62,11 @@ struct Kernel {
   /// Runs one case in plain double.
   LaneResults (*run_scalar)(const PreparedCase& c, const IntegrateOptions& options,
                             const SamplePlan& plan);
+  /// Runs up to W rigs of one kind under the same inputs; lanes as run_lanes'. Throws ModelError as
+  /// simulate_rigs does.
+  LaneResults (*run_rigs)(const RigSpec* const* specs, int count,
+                          const std::vector<InputSignal>& inputs, const StepOptions& options,
+                          const SamplePlan& plan);
   /// Nothing but independent fused multiply-adds in registers: `rounds` times over, for timing the
   /// processor's peak. Returns the number of floating-point operations; `sink` keeps their result.
   double (*run_peak_loop)(long rounds, double& sink);
