@@ -59,26 +59,32 @@ RigSampling refine(RigSampling sampling, const RigSpec& spec) {
   return sampling;
 }
 
-/// A setup with the unknowns of one run set, and its inputs where a gain changes them.
+/// A run's setup with its unknowns set, and what its inputs are multiplied by.
 struct RigVariant {
   RigSpec spec;
-  std::vector<InputSignal> scaled;  // empty: the run's own
+  std::array<double, kMaxRigInputs> gain;  // in the order of list_rig_inputs
 };
 
 bool belongs(const Unknown& u, int run) { return u.run == kEveryRun || u.run == run; }
 
-void scale_input(const RigRun& run, RigVariant& variant, int input, double gain) {
-  if (variant.scaled.empty()) variant.scaled = run.inputs;
-  const std::string& name = list_rig_inputs(run.setup.kind)[static_cast<std::size_t>(input)].name;
-  for (InputSignal& signal : variant.scaled) {
-    if (signal.channel != name) continue;
-    scale_signal(signal, gain);
+double get_gain(const RigVariant& variant, const std::string& input) {
+  const std::vector<RigInputInfo>& inputs = list_rig_inputs(variant.spec.kind);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i].name == input) return variant.gain[i];
   }
+  return 1.0;
+}
+
+std::vector<InputSignal> scale_inputs(const RigRun& run, const RigVariant& variant) {
+  std::vector<InputSignal> scaled = run.inputs;
+  for (InputSignal& signal : scaled) scale_signal(signal, get_gain(variant, signal.channel));
+  return scaled;
 }
 
 RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
                         const std::vector<double>& values) {
   RigVariant variant{run.setup, {}};
+  variant.gain.fill(1.0);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
     if (!belongs(u, index)) continue;
@@ -86,7 +92,9 @@ RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>
     if (u.kind == UnknownKind::kForceMap) {
       add_map_part(variant.spec.force_maps, *u.part, values[i]);
     }
-    if (u.kind == UnknownKind::kInputGain) scale_input(run, variant, u.channel, values[i]);
+    if (u.kind == UnknownKind::kInputGain) {
+      variant.gain[static_cast<std::size_t>(u.channel)] *= values[i];
+    }
     if (u.kind == UnknownKind::kInitialState) {
       const bool rate = u.channel >= kRigCoordinates;
       const auto at = static_cast<std::size_t>(u.channel - (rate ? kRigCoordinates : 0));
@@ -115,7 +123,7 @@ struct RigCase {
   }
 
   bool may_share_lanes(const RigCase& other) const {
-    return run == other.run && variant.scaled.empty() && other.variant.scaled.empty() &&
+    return run == other.run && variant.gain == other.variant.gain &&
            sampling.step == other.sampling.step && failure.empty() && other.failure.empty();
   }
 };
@@ -187,8 +195,7 @@ void simulate_together(const RigCase* cases, RigResult* results, int count) {
   plan.interval = sampling.interval;
   plan.duration = run.times.back() + (sampling.even ? 0.0 : kMarginSteps * sampling.step);
   plan.snapshot = false;
-  const std::vector<InputSignal>& scaled = cases[0].variant.scaled;
-  const std::vector<InputSignal>& inputs = scaled.empty() ? run.inputs : scaled;
+  const std::vector<InputSignal> inputs = scale_inputs(run, cases[0].variant);
   std::vector<const RigSpec*> specs;
   for (int i = 0; i < count; ++i) specs.push_back(&cases[i].variant.spec);
   try {
@@ -347,20 +354,13 @@ RigCurves simulate_rig_run(const RigRun& run, int index, const std::vector<Unkno
 
 RigRun set_rig_unknowns(const RigRun& run, const std::vector<Unknown>& unknowns,
                         const std::vector<double>& values) {
-  RigVariant variant = make_variant(run, 0, unknowns, values);
+  const RigVariant variant = make_variant(run, 0, unknowns, values);
   RigRun changed = run;
-  changed.setup = std::move(variant.spec);
-  if (!variant.scaled.empty()) changed.inputs = std::move(variant.scaled);
+  changed.setup = variant.spec;
+  changed.inputs = scale_inputs(run, variant);
   // What an input was measured with is scaled with it.
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    if (unknowns[i].kind != UnknownKind::kInputGain || !belongs(unknowns[i], 0)) continue;
-    const std::string& name =
-        list_rig_inputs(run.setup.kind)[static_cast<std::size_t>(unknowns[i].channel)].name;
-    for (std::size_t k = 0; k < run.input_noise.size(); ++k) {
-      if (run.inputs[k].channel == name) {
-        changed.input_noise[k].sigma = std::abs(values[i]) * run.input_noise[k].sigma;
-      }
-    }
+  for (std::size_t k = 0; k < run.input_noise.size(); ++k) {
+    changed.input_noise[k].sigma *= std::abs(get_gain(variant, run.inputs[k].channel));
   }
   return changed;
 }

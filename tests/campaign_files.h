@@ -1,6 +1,7 @@
 // Measured files for tests of campaigns: a quarter car integrated by an integrator of its own.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -27,6 +28,7 @@ struct QuarterTruth {
   double amplitude = 0.002;      // m, of the road's chirp
   double stroke_friction = 0.0;  // N/m, friction by the strut's deflection, smoothed alike
   double hum = 0.0;              // m, a tone of 31.2 Hz in the sensor of the unsprung position
+  double lost_stroke = 0.0;      // m, play before the damper, hard at both ends
 };
 
 struct QuarterRecord {
@@ -59,10 +61,14 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
             calc_test_road(truth, t - small, duration)) /
            (2.0 * small);
   };
+  const double half_play = 0.5 * truth.lost_stroke;
+  double joint = 0.0;  // where the rod is in its play
   const auto derive = [&](double t, const State& x) {
     const double length = x[1] - x[0], speed = x[3] - x[2];
+    const bool is_loose = speed > 0.0 ? joint < half_play : joint > -half_play;
+    const double damping = is_loose ? 0.0 : truth.damping;
     const double strut =
-        -truth.stiffness * length - truth.cubic * length * length * length - truth.damping * speed -
+        -truth.stiffness * length - truth.cubic * length * length * length - damping * speed -
         (truth.friction + truth.stroke_friction * std::abs(length)) * std::tanh(speed / 0.01);
     const double tire = truth.tire_stiffness * (calc_test_road(truth, t, duration) - x[0]) +
                         truth.tire_damping * (road_rate(t) - x[2]);
@@ -87,6 +93,7 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
     record.sprung_acceleration.push_back(derive(begin, x)[3]);
     for (int k = 0; k < kSubsteps; ++k) {
       const double t = begin + k * h;
+      joint = std::clamp(joint + h * (x[3] - x[2]), -half_play, half_play);
       const State a = derive(t, x), b = derive(t + 0.5 * h, add(x, 0.5 * h, a));
       const State c = derive(t + 0.75 * h, add(x, 0.75 * h, b));
       x = add(add(add(x, 2.0 / 9.0 * h, a), h / 3.0, b), 4.0 / 9.0 * h, c);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "io/atomic_file.h"
@@ -14,6 +15,7 @@
 #include "tests/campaign_files.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
+#include "tests/tolerance.h"
 
 namespace strut {
 namespace {
@@ -258,6 +260,25 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io][th
     CHECK(refused.code == 2);
     CHECK_THAT(refused.messages, Contains("holds a diagnosis") && Contains("--force"));
   }
+}
+
+TEST_CASE("diagnose tells a short lost stroke, and that damper and joint lose it alike", "[io]") {
+  const test::TemporaryFolder folder;
+  test::QuarterTruth truth;
+  truth.noise = 2e-6;
+  truth.lost_stroke = 1e-4;  // passed within 2 ms
+  const auto json = diagnose_truth(folder, truth);
+  CHECK(json.get<std::string>("verdict") != "adequate");
+  std::map<std::string, double> probability;
+  for (const auto& [key, cause] : json.get_child("group")) {
+    probability[cause.get<std::string>("effect")] = cause.get<double>("probability");
+  }
+  REQUIRE(probability.count("damper_leak") == 1);
+  CHECK(probability["damper_leak"] > 0.3);
+  CHECK(probability["joint_play"] == probability["damper_leak"]);
+  const auto& parameter = json.get_child("causes").front().second.get_child("parameters").front();
+  CHECK(parameter.second.get<double>("value") ==
+        Approx(truth.lost_stroke).epsilon(test::tolerance(0.15)));
 }
 
 TEST_CASE("diagnose gives an effect outside of its catalogue a force map", "[io]") {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "diagnose/baseline.h"
+#include "model/integrate/rig_system.h"
+#include "sweep/read_rig.h"
 #include "tests/campaign_files.h"
 #include "tests/test_car.h"
 
@@ -107,6 +109,60 @@ TEST_CASE("The Jacobian of a rig agrees with differences of its residuals", "[un
     // The curvature within a thousandth of the scale, at resonance.
     CHECK((slope - column).norm() <= test::tolerance(1e-4) * column.norm());
   }
+}
+
+TEST_CASE("Points of a rig simulated together are those simulated alone", "[property]") {
+  const CampaignData data = read_two_runs({}, with_noise(2e-5));
+  const std::vector<Unknown> unknowns = {make_rig_unknown(data.rigs, "stiffness"),
+                                         make_rig_unknown(data.rigs, "damper_leak"),
+                                         make_rig_unknown(data.rigs, "road_position_gain")};
+  const auto model = make_reading_model(data, {0, 1}, unknowns, 1);
+  std::vector<std::vector<double>> points;
+  // Others of the run's lanes, another step, another road; and one that cannot be simulated.
+  for (const double stroke : {0.0, 1e-3, 0.0, 5e-5, 5e-5}) points.push_back({900.0, stroke, 1.0});
+  for (std::size_t i = 0; i < points.size(); ++i) points[i][0] += 10.0 * static_cast<double>(i);
+  points.push_back({900.0, 0.0, 1.1});
+  points.push_back({-1.0, 0.0, 1.0});
+  const std::vector<Evaluation> together = model->evaluate(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    INFO(i);
+    const Evaluation alone = model->evaluate(points[i]);
+    CHECK(together[i].failure == alone.failure);
+    CHECK(alone.failure.empty() == (i + 1 < points.size()));
+    if (!alone.failure.empty()) continue;
+    CHECK((together[i].residual - alone.residual).norm() <=
+          test::tolerance(1e-9) * alone.residual.norm());
+  }
+}
+
+TEST_CASE("A lost stroke shorter than a step is felt", "[reference]") {
+  const CampaignData data = read_two_runs({}, with_noise(2e-5));
+  constexpr double kStroke = 6e-5;
+  const auto model = make_reading_model(data, {0}, {make_rig_unknown(data.rigs, "damper_leak")}, 1);
+  const std::vector<Evaluation> points =
+      model->evaluate(std::vector<std::vector<double>>{{kStroke}, {0.0}});
+  const Eigen::VectorXd felt = points[0].residual - points[1].residual;
+
+  const RigRun& run = data.rigs.front();
+  StepOptions fine;
+  fine.step = 1e-5;
+  SamplePlan plan;
+  plan.duration = run.times.back();
+  plan.interval = run.times[1] - run.times[0];
+  RigSpec leaking = run.setup;
+  set_rig_parameter(leaking, "damper_leak", kStroke);
+  const LaneResults without = simulate_rig(run.setup, run.inputs, fine, plan);
+  const LaneResults with = simulate_rig(leaking, run.inputs, fine, plan);
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(felt.size());
+  const std::size_t channels = list_rig_channels(run.setup.kind).size();
+  for (std::size_t k = 0; k < model->reading_count(); ++k) {
+    const ReadingPlace& place = model->readings()[k];
+    const MeasuredChannel& c = run.channels[place.channel];
+    const std::size_t at = place.time * channels + static_cast<std::size_t>(c.channel);
+    expected(static_cast<Eigen::Index>(k)) = (with.history[at] - without.history[at]) / c.sigma;
+  }
+  CHECK(expected.norm() > 1.0);
+  CHECK((felt - expected).norm() <= test::tolerance(0.1) * expected.norm());
 }
 
 TEST_CASE("A rig's fit is the same for any number of threads", "[property][threads]") {
