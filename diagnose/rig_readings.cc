@@ -197,6 +197,7 @@ void simulate_together(const RigCase* cases, RigResult* results, int count) {
   plan.snapshot = false;
   const std::vector<InputSignal> inputs = scale_inputs(run, cases[0].variant);
   std::vector<const RigSpec*> specs;
+  specs.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) specs.push_back(&cases[i].variant.spec);
   try {
     const LaneResults lanes =
