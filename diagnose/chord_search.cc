@@ -15,6 +15,7 @@ ChordSearch::ChordSearch(ReadingModel& model, std::vector<double> values)
 }
 
 void ChordSearch::renew() {
+  if (at_ != nullptr && taken_at_ == values_) return;
   Linearization at = model_.linearize(values_);
   if (!at.failure.empty()) {
     throw InputError(at.failure + "; the fit starts there: start it elsewhere");
@@ -44,15 +45,15 @@ std::vector<bool> ChordSearch::list_held(const Eigen::VectorXd& gradient) const 
   return held;
 }
 
-double ChordSearch::step(const Whitener& whitener, const Eigen::VectorXd& change,
-                         Linearization& at) {
+std::optional<double> ChordSearch::step(const Whitener& whitener, const Eigen::VectorXd& change,
+                                        Linearization& at) {
   std::vector<double> tried = values_;
   for (std::size_t i = 0; i < tried.size(); ++i) {
     const Unknown& u = model_.unknowns()[i];
     tried[i] = std::clamp(tried[i] - u.scale * change(static_cast<Eigen::Index>(i)), u.low, u.high);
   }
   Evaluation there = model_.evaluate(tried);
-  if (!there.failure.empty()) return 0.0;
+  if (!there.failure.empty()) return std::nullopt;
   Eigen::VectorXd residual = whitener.apply(there.residual);
   const double gained = at.residual.squaredNorm() - residual.squaredNorm();
   if (!(gained > 0.0)) return 0.0;
@@ -84,15 +85,19 @@ void ChordSearch::search(const Whitener& whitener) {
     const double widening = calc_widening(whitened, at);
     if (promised < kNear * kNear * widening * widening) return;
     double gained = 0.0;
+    bool all_simulated = true;
     for (const double share : {1.0, 0.25, 0.05}) {
-      gained = step(whitener, share * change, at);
+      const std::optional<double> gain = step(whitener, share * change, at);
+      all_simulated = all_simulated && gain;
+      gained = gain.value_or(0.0);
       if (gained > 0.0) break;
     }
     if (gained >= kEnough * promised) continue;
     // Derivatives of here that do not lead on are those of a kink; steps turned to where chi2 falls
     // most gain a hundredth of what is promised, over and over (measured).
-    at_kink_ = values_ == taken_at_;
-    if (at_kink_ || renewals == kMostRenewals) return;
+    const bool is_stuck = values_ == taken_at_;
+    at_kink_ = is_stuck && all_simulated;
+    if (is_stuck || renewals == kMostRenewals) return;
     renew();
     weigh();
     ++renewals;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "diagnose/whitener.h"
@@ -22,7 +23,7 @@ class ChordSearch {
   /// less than a quarter of what they promise.
   void search(const Whitener& whitener);
 
-  /// Takes the derivatives anew where it stands.
+  /// Takes the derivatives where it stands, unless they are of there.
   void renew();
 
   const std::vector<double>& values() const { return values_; }
@@ -39,8 +40,10 @@ class ChordSearch {
   /// Unknowns on a bound beyond which the slope leads.
   std::vector<bool> list_held(const Eigen::VectorXd& gradient) const;
 
-  /// Goes by -change (in scales) where that lowers chi2, and returns by how much; else 0.
-  double step(const Whitener& whitener, const Eigen::VectorXd& change, Linearization& at);
+  /// Goes by -change (in scales) where that lowers chi2, and returns by how much; else 0. Nothing
+  /// where that point cannot be simulated.
+  std::optional<double> step(const Whitener& whitener, const Eigen::VectorXd& change,
+                             Linearization& at);
 
   ReadingModel& model_;
   std::vector<double> values_, taken_at_;  // the latter: where at_ is

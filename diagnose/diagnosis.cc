@@ -201,8 +201,9 @@ class Diagnoser {
                                  (extended ? "extended" : "calibrated") +
                                  " model has not converged: its minimum is " +
                                  format_rounded(fit.fit.distance) + " standard deviations away");
-      // An extended model was confirmed by the runs held out, wherever its fit ended.
-      if (!diagnosis_.is_extended()) diagnosis_.is_whole = false;
+      // What the runs held out confirm stands wherever its fit ended; what they compare it with is
+      // the calibrated model.
+      if (!extended) diagnosis_.is_whole = false;
     }
     for (const DiagnosedRun& run : diagnosis_.runs) {
       for (const RunEvaluation* model : {&run.before, &run.after}) {

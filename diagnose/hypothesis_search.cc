@@ -105,10 +105,14 @@ class Search {
   /// What is linear at first may not stay so: less of it may be a better beginning. A lost stroke
   /// that ends between two readings has valleys of its own, so a rig, being cheap, is asked often.
   bool begin() {
-    const double least_share = ground_.is_rig ? 0.02 : 0.05, factor = ground_.is_rig ? 0.7 : 0.4;
+    struct Shares {
+      double least, factor;
+    };
+    const Shares shares = ground_.is_rig ? Shares{0.02, 0.7} : Shares{0.05, 0.4};
     std::vector<Eigen::VectorXd> tried;
     std::vector<std::vector<double>> points;
-    for (double share = 1.0; share > 0.9 * least_share; share *= factor) {
+    for (double share = 1.0; share > 0.9 * shares.least; share *= shares.factor) {
+      if (!tried.empty() && tried.back() == x_) break;  // no size to begin with
       tried.push_back(x_);
       for (Index j = 0; j < m_; ++j) {
         const Coordinate& c = get_coordinate(j);

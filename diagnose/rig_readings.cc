@@ -10,228 +10,13 @@
 #include "diagnose/spread.h"
 #include "io/config.h"
 #include "io/nearest_name.h"
-#include "model/effects/sensors.h"
-#include "model/effects/strut_numbers.h"
 #include "model/integrate/rig_system.h"
-#include "model/kernel/simulation.h"
-#include "model/parallel/team.h"
-#include "model/vehicle/model_error.h"
 #include "sweep/read_rig.h"
 
 namespace strut {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr char kGain[] = "_gain", kBias[] = "_bias", kInitial[] = "initial_";
-
-/// How a run is sampled: at its own times where they are even, else finely enough to interpolate.
-struct RigSampling {
-  double interval = 0.0, step = 0.0;
-  bool even = false;
-};
-
-RigSampling choose_sampling(const RigRun& run, const RigSpec& spec, const RigOptions& options) {
-  const double n = static_cast<double>(run.times.size() - 1);
-  const double mean = run.times.back() / n, mode = calc_fastest_mode(spec);
-  const double longest =
-      mode > 0.0 ? std::min(options.longest_step, 0.1 / mode) : options.longest_step;
-  RigSampling s;
-  s.even = true;
-  for (std::size_t i = 0; i < run.times.size() && s.even; ++i) {
-    s.even = std::abs(run.times[i] - mean * static_cast<double>(i)) < 1e-6 * mean;
-  }
-  s.step = mean / std::ceil(mean / longest - 1e-9);
-  s.interval = s.even ? mean : s.step;
-  return s;
-}
-
-/// The sampling with as many more steps as a lost stroke of the strut takes: a short one is crossed
-/// in a fraction of a millisecond, and what a step passes over it never feels. Masses do not feel
-/// the shortest, a dynamometer's force shows them all.
-RigSampling refine(RigSampling sampling, const RigSpec& spec) {
-  constexpr double kStepsOfContact = 4.0;
-  const double most = spec.kind == RigKind::kStrutRig ? 16.0 : 8.0;
-  const EffectValues values{spec.effects, get_model_kind(spec.kind)};
-  const double play = make_strut_effect_numbers(values, "", {}).series.play;
-  if (play <= 0.0) return sampling;
-  const double longest = kStepsOfContact / calc_contact_rate(play);
-  sampling.step /= std::clamp(std::ceil(sampling.step / longest), 1.0, most);
-  return sampling;
-}
-
-/// A run's setup with its unknowns set, and what its inputs are multiplied by.
-struct RigVariant {
-  RigSpec spec;
-  std::array<double, kMaxRigInputs> gain;  // in the order of list_rig_inputs
-};
-
-bool belongs(const Unknown& u, int run) { return u.run == kEveryRun || u.run == run; }
-
-double get_gain(const RigVariant& variant, const std::string& input) {
-  const std::vector<RigInputInfo>& inputs = list_rig_inputs(variant.spec.kind);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i].name == input) return variant.gain[i];
-  }
-  return 1.0;
-}
-
-std::vector<InputSignal> scale_inputs(const RigRun& run, const RigVariant& variant) {
-  std::vector<InputSignal> scaled = run.inputs;
-  for (InputSignal& signal : scaled) scale_signal(signal, get_gain(variant, signal.channel));
-  return scaled;
-}
-
-RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
-                        const std::vector<double>& values) {
-  RigVariant variant{run.setup, {}};
-  variant.gain.fill(1.0);
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Unknown& u = unknowns[i];
-    if (!belongs(u, index)) continue;
-    if (u.kind == UnknownKind::kParameter) set_rig_parameter(variant.spec, u.name, values[i]);
-    if (u.kind == UnknownKind::kForceMap) {
-      add_map_part(variant.spec.force_maps, *u.part, values[i]);
-    }
-    if (u.kind == UnknownKind::kInputGain) {
-      variant.gain[static_cast<std::size_t>(u.channel)] *= values[i];
-    }
-    if (u.kind == UnknownKind::kInitialState) {
-      const bool rate = u.channel >= kRigCoordinates;
-      const auto at = static_cast<std::size_t>(u.channel - (rate ? kRigCoordinates : 0));
-      (rate ? variant.spec.initial_velocity : variant.spec.initial_position)[at] = values[i];
-    }
-  }
-  return variant;
-}
-
-/// What is to be simulated of a run.
-struct RigCase {
-  const RigRun* run = nullptr;
-  RigVariant variant;
-  RigSampling sampling;
-  std::string failure;  // why it cannot be
-
-  RigCase(const RigRun& of, int index, const std::vector<Unknown>& unknowns,
-          const std::vector<double>& values, const RigOptions& options)
-      : run(&of) {
-    try {
-      variant = make_variant(of, index, unknowns, values);
-      sampling = refine(choose_sampling(of, of.setup, options), variant.spec);
-    } catch (const InputError& e) {  // out of a parameter's range
-      failure = of.name + ": " + e.what();
-    }
-  }
-
-  bool may_share_lanes(const RigCase& other) const {
-    return run == other.run && variant.gain == other.variant.gain &&
-           sampling.step == other.sampling.step && failure.empty() && other.failure.empty();
-  }
-};
-
-/// A simulation, read at the run's times.
-class RigResult {
- public:
-  RigResult() = default;
-  RigResult(const RigCase& c, const LaneResults& results, int lane)
-      : run_(c.run),
-        sampling_(c.sampling),
-        channels_(list_rig_channels(c.run->setup.kind).size()),
-        count_(static_cast<std::size_t>(results.sample_count)) {
-    const auto at = static_cast<std::size_t>(lane);
-    if (results.status[at] != 0) {
-      failure_ = run_->name +
-                 ": the simulation ends at t = " + format_rounded(results.failure_time[at]) +
-                 " s: the motion is not finite";
-      return;
-    }
-    const auto lanes = static_cast<std::size_t>(results.lanes);
-    history_.resize(count_ * channels_);
-    for (std::size_t i = 0; i < history_.size(); ++i) history_[i] = results.history[i * lanes + at];
-    read_sensors(c.variant.spec);
-  }
-  explicit RigResult(std::string failure) : failure_(std::move(failure)) {}
-
-  const std::string& failure() const { return failure_; }
-
-  /// NaN where the simulation cannot be interpolated.
-  double read(std::size_t time, std::size_t channel) const {
-    const auto get = [&](std::size_t sample) { return history_[sample * channels_ + channel]; };
-    if (sampling_.even) return time < count_ ? get(time) : kNan;
-    const double at = run_->times[time] / sampling_.interval;
-    const auto index = static_cast<std::size_t>(at);
-    if (index < kCurveMargin || index + 1 + kCurveMargin >= count_) return kNan;
-    return interpolate_curve(get, index, at - static_cast<double>(index), sampling_.interval).value;
-  }
-
- private:
-  /// Replaces what the channels are by what their sensors read.
-  void read_sensors(const RigSpec& spec) {
-    if (spec.effects.empty()) return;
-    for (std::size_t c = 0; c < channels_; ++c) {
-      std::vector<double> series(count_);
-      for (std::size_t i = 0; i < count_; ++i) series[i] = history_[i * channels_ + c];
-      series = read_sensor(spec.effects, list_rig_channels(spec.kind)[c].name, sampling_.interval,
-                           std::move(series));
-      for (std::size_t i = 0; i < count_; ++i) history_[i * channels_ + c] = series[i];
-    }
-  }
-
-  const RigRun* run_ = nullptr;
-  RigSampling sampling_;
-  std::size_t channels_ = 0, count_ = 0;
-  std::vector<double> history_;  // [sample][channel]
-  std::string failure_;
-};
-
-/// Simulates cases that may share lanes, together if the processor has as many; one alone in
-/// double.
-void simulate_together(const RigCase* cases, RigResult* results, int count) {
-  constexpr double kMarginSteps = 4.0;
-  const RigRun& run = *cases[0].run;
-  const RigSampling& sampling = cases[0].sampling;
-  StepOptions step;
-  step.step = sampling.step;
-  SamplePlan plan;
-  plan.interval = sampling.interval;
-  plan.duration = run.times.back() + (sampling.even ? 0.0 : kMarginSteps * sampling.step);
-  plan.snapshot = false;
-  const std::vector<InputSignal> inputs = scale_inputs(run, cases[0].variant);
-  std::vector<const RigSpec*> specs;
-  specs.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) specs.push_back(&cases[i].variant.spec);
-  try {
-    const LaneResults lanes =
-        count == 1 ? simulate_rig(*specs[0], inputs, step, plan)
-                   : list_kernels().front().run_rigs(specs.data(), count, inputs, step, plan);
-    for (int i = 0; i < count; ++i) results[i] = RigResult(cases[i], lanes, i);
-  } catch (const ModelError& e) {
-    if (count == 1) {
-      results[0] = RigResult(run.name + ": " + e.what());
-      return;
-    }
-    for (int i = 0; i < count; ++i) simulate_together(cases + i, results + i, 1);
-  }
-}
-
-std::vector<RigResult> simulate_cases(const std::vector<RigCase>& cases, int threads) {
-  const auto width = static_cast<std::size_t>(list_kernels().front().lanes);
-  std::vector<RigResult> results(cases.size());
-  std::vector<std::size_t> begin;  // of each batch
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const bool joins =
-        !begin.empty() && i - begin.back() < width && cases[begin.back()].may_share_lanes(cases[i]);
-    if (!joins) begin.push_back(i);
-  }
-  share_items(threads, begin.size(), [&](std::size_t k, int /*thread*/) {
-    const std::size_t first = begin[k], end = k + 1 < begin.size() ? begin[k + 1] : cases.size();
-    if (!cases[first].failure.empty()) {
-      results[first] = RigResult(cases[first].failure);
-      return;
-    }
-    simulate_together(&cases[first], &results[first], static_cast<int>(end - first));
-  });
-  return results;
-}
 
 std::vector<std::string> list_unknown_names(const RigRun& run) {
   std::vector<std::string> names;
@@ -308,26 +93,8 @@ double read_first_offset(const RigRun& run, const std::string& name) {
 
 }  // namespace
 
-double calc_fastest_mode(const RigSpec& spec) {
-  switch (spec.kind) {
-    case RigKind::kQuarterCar:
-      return std::sqrt((spec.stiffness + spec.tire_stiffness) / spec.unsprung_mass);
-    case RigKind::kSingleMass:
-      return std::sqrt(spec.stiffness / spec.sprung_mass);
-    case RigKind::kStrutRig:
-      break;
-  }
-  return 0.0;
-}
-
 double get_rig_parameter(const RigSpec& spec, const std::string& name) {
   return find_rig_parameter(spec.kind, name).get(spec);
-}
-
-void scale_signal(InputSignal& signal, double factor) {
-  for (SignalCell& cell : signal.cells) {
-    for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
-  }
 }
 
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
@@ -341,15 +108,16 @@ RigCurves simulate_rig_run(const RigRun& run, int index, const std::vector<Unkno
                            const std::vector<double>& values, const RigOptions& options) {
   const RigCase only(run, index, unknowns, values, options);
   if (!only.failure.empty()) throw InputError(only.failure);
-  RigResult result;
-  simulate_together(&only, &result, 1);
-  RigCurves curves{result.failure(), {}};
-  if (!curves.failure.empty()) return curves;
-  const std::size_t count = list_rig_channels(run.setup.kind).size();
-  curves.channel.assign(count, std::vector<double>(run.times.size()));
-  for (std::size_t c = 0; c < count; ++c) {
-    for (std::size_t t = 0; t < run.times.size(); ++t) curves.channel[c][t] = result.read(t, c);
-  }
+  RigCurves curves;
+  simulate_cases({only}, 1, [&](std::size_t, const RigResult& result) {
+    curves.failure = result.failure();
+    if (!curves.failure.empty()) return;
+    const std::size_t count = list_rig_channels(run.setup.kind).size();
+    curves.channel.assign(count, std::vector<double>(run.times.size()));
+    for (std::size_t c = 0; c < count; ++c) {
+      for (std::size_t t = 0; t < run.times.size(); ++t) curves.channel[c][t] = result.read(t, c);
+    }
+  });
   return curves;
 }
 
@@ -376,10 +144,10 @@ RigReadings::RigReadings(std::vector<RigRun> runs, std::vector<Unknown> unknowns
     channels_.emplace_back();
     for (const MeasuredChannel& c : run.channels) channels_[r].push_back(c.channel);
     begin_.push_back(readings_.size());
-    const bool even = choose_sampling(run, run.setup, options_).even;
-    const double step = choose_sampling(run, run.setup, options_).interval;
+    const RigSampling sampling = choose_sampling(run, options_);
+    const double margin = static_cast<double>(kCurveMargin) * sampling.interval;
     for (std::size_t t = 0; t < run.times.size(); ++t) {
-      const bool inside = even || run.times[t] >= static_cast<double>(kCurveMargin) * step;
+      const bool inside = sampling.even || run.times[t] >= margin;
       if (!inside) outside_count_ += run.channels.size();
       for (std::size_t c = 0; inside && c < run.channels.size(); ++c) {
         if (std::isfinite(run.channels[c].values[t])) readings_.push_back({r, t, c});
@@ -414,20 +182,29 @@ std::vector<RigReadings::Simulated> RigReadings::simulate(const std::vector<Task
     if (task.unknown != kNoUnknown) varied[task.unknown] = task.value;
     cases.emplace_back(runs_[task.run], static_cast<int>(task.run), unknowns_, varied, options_);
   }
-  const std::vector<RigResult> results = simulate_cases(cases, options_.threads);
-  simulation_count_ += static_cast<long>(tasks.size());
+  // Both sides of a difference go in the same steps, or it would be one of steps, too.
+  for (std::size_t k = 0; k + 1 < tasks.size(); ++k) {
+    if (tasks[k].unknown == kNoUnknown) continue;
+    RigCase &upper = cases[k], &lower = cases[k + 1];
+    if (upper.failure.empty() && lower.failure.empty()) {
+      upper.sampling.step = lower.sampling.step =
+          std::min(upper.sampling.step, lower.sampling.step);
+    }
+    ++k;
+  }
   std::vector<Simulated> simulated(tasks.size());
-  for (std::size_t k = 0; k < tasks.size(); ++k) {
-    simulated[k].failure = results[k].failure();
-    if (!simulated[k].failure.empty()) continue;
+  simulate_cases(cases, options_.threads, [&](std::size_t k, const RigResult& result) {
+    simulated[k].failure = result.failure();
+    if (!result.failure().empty()) return;
     const std::size_t run = tasks[k].run;
     simulated[k].read.reserve(begin_[run + 1] - begin_[run]);
     for (std::size_t i = begin_[run]; i < begin_[run + 1]; ++i) {
       const ReadingPlace& place = readings_[i];
-      simulated[k].read.push_back(results[k].read(
+      simulated[k].read.push_back(result.read(
           place.time, static_cast<std::size_t>(runs_[run].channels[place.channel].channel)));
     }
-  }
+  });
+  simulation_count_ += static_cast<long>(tasks.size());
   return simulated;
 }
 

@@ -9,38 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/measured_run.h"
 #include "diagnose/reading_model.h"
-#include "model/integrate/run_plan.h"
-#include "model/vehicle/rigs.h"
+#include "diagnose/simulate_rigs.h"
 
 namespace strut {
-
-/// What is not exact about a measured input.
-struct InputNoise {
-  double sigma = 0.0;       // 1 sigma per sample, in the input's unit
-  double half_width = 0.0;  // s, of the local cubics that smoothed it; 0: none did
-};
-
-struct RigRun {
-  std::string name;  // the file, for messages
-  RigSpec setup;
-  std::vector<InputSignal> inputs;        // over `times`' clock
-  std::vector<double> times;              // s, ascending from 0
-  std::vector<MeasuredChannel> channels;  // readings may be NaN: missing
-  std::vector<InputNoise> input_noise{};  // of each input
-};
-
-struct RigOptions {
-  /// s at most between steps; a tenth of a radian of the fastest natural frequency is kept, too:
-  /// RK4 then errs by 1e-6 of a phase.
-  double longest_step = 2e-3;
-  double relative_step = 1e-5;  // h of the central differences as a share of the scale
-  int threads = 1;              // no result depends on it
-};
-
-/// The whole signal times a factor.
-void scale_signal(InputSignal& signal, double factor);
 
 /// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
 /// std::invalid_argument as make_signal does.
@@ -52,9 +24,6 @@ struct RigCurves {
   std::string failure;                       // empty: it got through
   std::vector<std::vector<double>> channel;  // [channel][time]; NaN where time is not simulated
 };
-
-/// The highest undamped natural frequency of the rig on its linear parts [rad/s]; 0 without masses.
-double calc_fastest_mode(const RigSpec& spec);
 
 /// The value of a parameter by its name. Throws InputError with the nearest known.
 double get_rig_parameter(const RigSpec& spec, const std::string& name);

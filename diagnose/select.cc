@@ -149,10 +149,16 @@ SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const Hyp
   return shared;
 }
 
+/// Where a hypothesis' fit begins, and how far it may go.
+struct Beginning {
+  std::vector<double> values, low, high;  // by its parameters
+  bool operator==(const Beginning&) const = default;
+};
+
 /// For each of the ranked, one before it whose first beginning does the same to all readings: what
 /// no data tell apart is fitted once. Itself where there is none.
 std::vector<std::size_t> find_twins(const std::vector<RankedTrial>& ranked,
-                                    const std::vector<std::vector<double>>& beginnings) {
+                                    const std::vector<Beginning>& beginnings) {
   constexpr double kSame = 1e-9;
   std::vector<std::size_t> twins;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
@@ -169,12 +175,13 @@ std::vector<std::size_t> find_twins(const std::vector<RankedTrial>& ranked,
 
 /// The fit of its twin under the hypothesis' own names.
 Candidate rename(Candidate twin, const Hypothesis& h) {
-  const std::size_t first = twin.shared.unknowns.size() - h.parameters.size();
-  for (std::size_t i = 0; !twin.values.empty() && i < h.parameters.size(); ++i) {
-    twin.shared.unknowns[first + i].name = h.parameters[i].name;
-  }
   twin.hypothesis = h;
   twin.simulations = 0;
+  if (twin.values.empty()) return twin;
+  const std::size_t first = twin.shared.unknowns.size() - h.parameters.size();
+  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
+    twin.shared.unknowns[first + i].name = h.parameters[i].name;
+  }
   return twin;
 }
 
@@ -316,14 +323,15 @@ class Selector {
     }
   }
 
-  /// The fit of one effect, values empty where it cannot be simulated or cannot be.
+  /// The fit of one effect, values empty where it cannot be simulated.
   Candidate fit_candidate(const TestBench& bench, const Hypothesis& h, const HypothesisTrial& trial,
                           const Gain& gain, const std::vector<double>& beginning) const {
     HypothesisFit fit = bench.fit(h, beginning);
     Candidate c;
     c.simulations = fit.simulations;
     if (data_.is_rig() && (!fit.failure.empty() || fit.gain < 0.5 * gain.chi2)) {
-      // Far from what the score promised: another valley. From near the base none is in between.
+      // Far from what the score promised: another valley, and none of the sizes that a search
+      // begins with was in the right one. Near the base the score cannot be wrong.
       HypothesisFit near = bench.fit(h, reduce(trial, beginning));
       c.simulations += near.simulations;
       if (near.failure.empty() && (!fit.failure.empty() || near.gain > fit.gain)) {
@@ -338,7 +346,6 @@ class Selector {
     const auto base = static_cast<std::ptrdiff_t>(bench.values().size());
     c.base_values.assign(fit.values.begin(), fit.values.begin() + base);
     c.values.assign(fit.values.begin() + base, fit.values.end());
-    if (!is_plausible(data_, h, c.values)) c.values.clear();
     c.shared = make_shared(selection_.extended, h, fit);
     return c;
   }
@@ -368,18 +375,23 @@ class Selector {
                   [&](const RankedTrial& r) { return r.gain.chi2 < 0.3 * round.threshold; });
     tell("fitting the best " + std::to_string(ranked.size()));
     // Each alone on a thread: one fit does not fill several.
-    std::vector<std::vector<double>> beginnings;
+    std::vector<Beginning> beginnings;
     for (const RankedTrial& r : ranked) {
       const HypothesisTrial& trial = evidence.trials[r.trial];
-      beginnings.push_back(make_beginning(data_, hypotheses[trial.hypothesis], trial, r.gain));
+      const Hypothesis& h = hypotheses[trial.hypothesis];
+      beginnings.push_back({make_beginning(data_, h, trial, r.gain), {}, {}});
+      for (const Unknown& u : make_unknowns(data_, h)) {
+        beginnings.back().low.push_back(u.low);
+        beginnings.back().high.push_back(u.high);
+      }
     }
     const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
     std::vector<Candidate> fitted(ranked.size());
     share_items(options_.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
       if (twins[i] != i) return;
       const HypothesisTrial& trial = evidence.trials[ranked[i].trial];
-      fitted[i] =
-          fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain, beginnings[i]);
+      fitted[i] = fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain,
+                                beginnings[i].values);
       fitted[i].stability = calc_stability(evidence, one_sided, trial.hypothesis);
     });
     for (std::size_t i = 0; i < fitted.size(); ++i) {
@@ -389,7 +401,8 @@ class Selector {
     }
     for (Candidate& c : fitted) {
       selection_.simulations += c.simulations;
-      if (!c.values.empty()) round.candidates.push_back(std::move(c));
+      if (c.values.empty() || !is_plausible(data_, c.hypothesis, c.values)) continue;
+      round.candidates.push_back(std::move(c));
     }
     std::stable_sort(round.candidates.begin(), round.candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
@@ -402,11 +415,9 @@ class Selector {
     return accepted;
   }
 
-  /// Whether the best of a round gains far more than it needs. Then it need not stay among the best
-  /// without each of the runs (its score, to first order, may tell less than its fit), nor show as
-  /// much in runs held out whose amplitudes are smaller.
-  static bool is_certain(const SelectRound& round) {
-    return round.candidates.front().gain > 3.0 * round.threshold * round.misfit;
+  /// Whether the best of a round gains far more than it needs.
+  bool is_certain(const SelectRound& round) const {
+    return round.candidates.front().gain > options_.certain * round.threshold * round.misfit;
   }
 
   /// Whether the best of a round is large enough to be fitted in full.

@@ -33,9 +33,13 @@ struct SelectOptions {
   double second_share = 0.1;
   LeftoverOptions leftover;
   /// A cause gains per reading of the runs held out at least this share of what it gains per
-  /// reading of those it was fitted to, and anything at all where it gains three times what it
-  /// needs; and it stays among the best without each of at least this share of the runs.
+  /// reading of those it was fitted to, and it stays among the best without each of at least this
+  /// share of the runs.
   double hold_out_share = 0.3, stability = 0.5;
+  /// What gains so many times what it needs must do neither: its score, to first order, may tell
+  /// less than its fit, and runs held out may have smaller amplitudes. Anything gained there will
+  /// do.
+  double certain = 3.0;
   /// Where the model lacks far more than noise, a cause takes at least this share of all that is
   /// left, and half as much of what is left of the runs held out.
   double dominated_share = 0.15;

@@ -115,7 +115,7 @@ void conclude(ChordSearch& search, ReadingModel& model, const Whitener& whitener
                               whitener.apply(result.linearization->jacobian)};
     result.fit =
         describe_fit(whitened, at, search.values(), search.list_at_bound(), search.at_kink());
-    if (result.fit.converged) break;
+    if (result.fit.converged || search.at_kink()) break;
   }
   result.fit.iterations = search.steps();
   result.fit.simulations = model.simulation_count();

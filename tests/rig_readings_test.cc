@@ -1,6 +1,7 @@
 // Rigs fitted to what was measured: parameters of records by an integrator of the test's own.
 #include "diagnose/rig_readings.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -130,9 +131,42 @@ TEST_CASE("Points of a rig simulated together are those simulated alone", "[prop
     CHECK(together[i].failure == alone.failure);
     CHECK(alone.failure.empty() == (i + 1 < points.size()));
     if (!alone.failure.empty()) continue;
-    CHECK((together[i].residual - alone.residual).norm() <=
-          test::tolerance(1e-9) * alone.residual.norm());
+    CHECK((together[i].residual.array() == alone.residual.array()).all());
   }
+}
+
+TEST_CASE("A lost stroke can be read at uneven times", "[unit]") {
+  const CampaignData data =
+      read_two_runs({}, with_noise(2e-5), [](std::size_t row, std::array<std::string, 4>& cells) {
+        if (row % 3 == 1) cells[0] = test::print_number(std::stod(cells[0]) + 1.2345e-4);
+      });
+  const auto model = make_reading_model(data, {0}, {make_rig_unknown(data.rigs, "damper_leak")}, 1);
+  for (const double stroke : {0.0, 1e-4, 3e-5, 1e-5}) {
+    INFO(stroke);
+    const Evaluation at = model->evaluate(std::vector<double>{stroke});
+    REQUIRE(at.failure.empty());
+    CHECK(at.residual.allFinite());
+  }
+}
+
+TEST_CASE("The derivative by a stroke is not one of steps", "[reference]") {
+  const CampaignData data = read_two_runs({}, with_noise(2e-5));
+  const std::vector<Unknown> unknowns = {make_rig_unknown(data.rigs, "damper_leak")};
+  const auto find_step = [&](double stroke) {
+    return RigCase(data.rigs[0], 0, unknowns, {stroke}, {}).sampling.step;
+  };
+  double fine = 3e-5, coarse = 1e-4;
+  REQUIRE(find_step(fine) < find_step(coarse));
+  const double finest = find_step(fine);
+  while (coarse - fine > 1e-12) {
+    const double middle = 0.5 * (fine + coarse);
+    (find_step(middle) == finest ? fine : coarse) = middle;
+  }
+  // The sides of the difference there lie on either side of where the number of steps changes.
+  const auto model = make_reading_model(data, {0}, unknowns, 1);
+  const Eigen::VectorXd there = model->linearize({fine}).jacobian.col(0),
+                        beside = model->linearize({fine - 2e-7}).jacobian.col(0);
+  CHECK((there - beside).norm() < test::tolerance(0.2) * beside.norm());
 }
 
 TEST_CASE("A lost stroke shorter than a step is felt", "[reference]") {

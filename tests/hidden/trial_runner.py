@@ -181,7 +181,7 @@ class Run:
         note = ""
         cost = json.dumps({"wall_s": round(wall, 3),
                            "cpu_s": round(usage.ru_utime + usage.ru_stime, 3)}) + "\n"
-        # 1: a verdict, of a calibration that has not converged.
+        # 1: a verdict, with something that its notes tell.
         if status in (0, 1) and (place / "verdict.json").exists():
             (place / "cost.json").write_text(cost, encoding="utf-8")
             os.replace(place, verdicts / trial.name)
