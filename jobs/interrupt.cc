@@ -18,11 +18,10 @@ constexpr std::chrono::milliseconds kPatience{1500};
 extern "C" void end_now(int signal) { _exit(128 + signal); }
 
 sigset_t make_interrupts() {
-  sigset_t both;
-  sigemptyset(&both);
-  sigaddset(&both, SIGINT);
-  sigaddset(&both, SIGTERM);
-  return both;
+  sigset_t all;
+  sigemptyset(&all);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&all, signal);
+  return all;
 }
 
 }  // namespace
@@ -32,8 +31,8 @@ void end_on_interrupt() {
 }
 
 InterruptGuard::InterruptGuard() {
-  const sigset_t both = make_interrupts();
-  pthread_sigmask(SIG_BLOCK, &both, &before_);
+  const sigset_t all = make_interrupts();
+  pthread_sigmask(SIG_BLOCK, &all, &before_);
 }
 
 InterruptGuard::~InterruptGuard() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
@@ -46,11 +45,15 @@ InterruptWatcher::~InterruptWatcher() {
 }
 
 void InterruptWatcher::watch() {
-  const sigset_t both = make_interrupts();
+  const sigset_t all = make_interrupts();
   constexpr timespec kPoll{0, 20'000'000};
   SteadyClock::time_point first;
   while (!over_) {
-    const int signal = sigtimedwait(&both, nullptr, &kPoll);
+    const int signal = sigtimedwait(&all, nullptr, &kPoll);
+    if (signal == SIGUSR1) {
+      warned_ = true;
+      continue;
+    }
     const bool again = signal > 0 && signal_ != 0;
     if (again || (signal_ != 0 && SteadyClock::now() - first > kPatience)) _exit(128 + signal_);
     if (signal > 0) {

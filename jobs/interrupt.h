@@ -1,4 +1,4 @@
-// A clean end on SIGINT and SIGTERM.
+// A clean end on SIGINT and SIGTERM, and SIGUSR1 as a scheduler's warning of its time limit.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@ namespace strut {
 /// From now on SIGINT and SIGTERM end the program with code 128 + signal.
 void end_on_interrupt();
 
-/// Holds those signals back while it lives, so that a file is finished or cleaned up first.
+/// Holds those signals, and SIGUSR1, back while it lives, so that a file is finished or cleaned up first.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -34,14 +34,17 @@ class InterruptWatcher {
 
   /// True once a signal came. Others may set it too, to stop the same work.
   std::atomic<bool>& halt() { return halt_; }
-  /// The signal; 0: none came.
+  /// True once SIGUSR1 came: work that lasts is to end where it is whole, in its own time. What does
+  /// not look at this goes on.
+  const std::atomic<bool>& warned() const { return warned_; }
+  /// The signal that stops; 0: none came.
   int signal() const { return signal_; }
 
  private:
   void watch();
 
   InterruptGuard guard_;
-  std::atomic<bool> halt_{false}, over_{false};
+  std::atomic<bool> halt_{false}, warned_{false}, over_{false};
   std::atomic<int> signal_{0};
   std::thread thread_;
 };

@@ -4,11 +4,14 @@
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <iostream>
+#include <optional>
 
 #include "io/parse_number.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
+#include "jobs/dispatch/task_run.h"
 #include "jobs/interrupt.h"
 #include "jobs/json.h"
 #include "jobs/machine.h"
@@ -34,6 +37,7 @@ Arguments make_arguments(const std::string& name, bool retries) {
           " sweep --threads 2\n  strut status sweep");
   arguments.add_option("threads", "N", "worker threads (default: one for each processor)");
   arguments.add_option("shards", "A:B", "only shards A to B - 1 (default: all)");
+  arguments.add_option("task", "NAME", "the shards of a task that `strut submit` made");
   arguments.add_option("isa", "NAME",
                        "instruction set, one that --version lists (default: widest)");
   arguments.add_option("lease", "S",
@@ -151,18 +155,65 @@ void print_notes(const RunSummary& summary) {
   }
 }
 
+/// The task of --task, whose shards are then those to be done.
+std::optional<TaskRun> find_task(const Arguments& arguments, const OpenSweep& sweep,
+                                 RunOptions& options) {
+  if (!arguments.has("task")) return std::nullopt;
+  if (arguments.has("shards")) throw InputError("--task, --shards: must not both be given");
+  std::optional<TaskRun> task(std::in_place, sweep.folder, arguments.text("task"));
+  options.first_shard = task->shards().first;
+  options.end_shard = task->shards().end;
+  return task;
+}
+
+bool is_complete(const RunProgress& progress) {
+  return progress.present + progress.written + progress.elsewhere >= progress.cases;
+}
+
+TaskEnd judge_end(const RunProgress& progress, const RunSummary& summary) {
+  if (summary.stopped) return TaskEnd::kStopped;
+  if (!is_complete(progress)) return TaskEnd::kDrained;
+  return summary.failed > 0 || !summary.damaged.empty() ? TaskEnd::kFailed : TaskEnd::kDone;
+}
+
+/// run_sweep as a task that tells how it ends.
+RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& options,
+                    RunProgress& progress, std::atomic<bool>& halt) {
+  task.begin();
+  try {
+    RunSummary summary = run_sweep(sweep.folder, sweep.plan, options, progress, halt);
+    task.end(judge_end(progress, summary), summary.shards_written);
+    return summary;
+  } catch (...) {
+    task.end(TaskEnd::kError, 0);
+    throw;
+  }
+}
+
+/// What is said, and done, where a scheduler's warning ended the run.
+void leave_drained(const OpenSweep& sweep, const std::optional<TaskRun>& task) {
+  std::cerr << "strut: warned of a time limit (SIGUSR1); what is written is whole, `strut run "
+            << sweep.folder.root.string() << "` goes on from here" << std::endl;
+  if (!task) return;
+  const std::string why = task->requeue();
+  std::cerr << "strut: " << (why.empty() ? "queued again" : "not queued again: " + why) << "\n";
+}
+
 int run(const std::string& name, bool retries, const std::vector<std::string>& words) {
   Arguments arguments = make_arguments(name, retries);
   if (!arguments.parse(words)) return kExitDone;
   const OpenSweep sweep = open_sweep(arguments);
-  const RunOptions options = read_options(arguments, sweep.plan, retries);
+  RunOptions options = read_options(arguments, sweep.plan, retries);
+  std::optional<TaskRun> task = find_task(arguments, sweep, options);
   InterruptWatcher watcher;
+  options.drain = &watcher.warned();
   RunProgress progress;
   const double start = now();
   RunSummary summary;
   {
     const ProgressLine line([&] { return describe_progress(progress, start); });
-    summary = run_sweep(sweep.folder, sweep.plan, options, progress, watcher.halt());
+    summary = task ? run_task(*task, sweep, options, progress, watcher.halt())
+                   : run_sweep(sweep.folder, sweep.plan, options, progress, watcher.halt());
   }
   const double seconds = now() - start;
   print_notes(summary);
@@ -175,6 +226,10 @@ int run(const std::string& name, bool retries, const std::vector<std::string>& w
     std::cerr << "strut: interrupted; what is written is whole, `strut run "
               << sweep.folder.root.string() << "` goes on from here\n";
     return 128 + watcher.signal();
+  }
+  if (watcher.warned() && !is_complete(progress)) {
+    leave_drained(sweep, task);
+    return 128 + SIGUSR1;
   }
   return summary.failed > 0 || !summary.damaged.empty() ? kExitNo : kExitDone;
 }

@@ -27,6 +27,8 @@ struct RunOptions {
   std::int64_t find_end_shard(const Plan& plan) const {
     return end_shard < 0 ? plan.shard_count() : end_shard;
   }
+  /// Once true, no further shard is begun; those in hand are finished.
+  const std::atomic<bool>* drain = nullptr;
   bool retry_failed = false;  // also what failed, with smaller steps, into overlay shards
   ClaimOptions claims;
   /// Attributes of every shard; runner, times and counts are added.

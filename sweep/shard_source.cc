@@ -19,6 +19,7 @@ ShardSource::ShardSource(const SweepFolder& folder, const Plan& plan, const RunO
                          Claims& claims, RunProgress& progress)
     : folder_(folder),
       plan_(plan),
+      drain_(options.drain),
       claims_(claims),
       progress_(progress),
       schema_(plan.make_schema()) {
@@ -68,6 +69,7 @@ std::optional<Batch> ShardSource::next(std::size_t size, const std::atomic<bool>
 }
 
 ShardSource::Taken ShardSource::open_job() {
+  if (drain_ != nullptr && *drain_) return Taken::kNothingLeft;
   while (next_ < to_do_.size()) {
     if (take(to_do_[next_++])) return Taken::kJob;
   }

@@ -47,7 +47,8 @@ class ShardSource {
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// Up to `size` cases to simulate. Waits where all that is left is in other runners' hands.
-  /// Empty: nothing is left, or `halt` is true.
+  /// Empty: nothing is left, `halt` is true, or a shard would have to be begun while the run
+  /// drains.
   std::optional<Batch> next(std::size_t size, const std::atomic<bool>& halt);
 
  private:
@@ -60,6 +61,7 @@ class ShardSource {
 
   const SweepFolder& folder_;
   const Plan& plan_;
+  const std::atomic<bool>* drain_;
   Claims& claims_;
   RunProgress& progress_;
   const ShardSchema schema_;

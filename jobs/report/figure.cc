@@ -1,19 +1,11 @@
 #include "jobs/report/figure.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <cstring>
 
 #include "io/atomic_file.h"
 #include "io/config.h"
+#include "jobs/run_child.h"
 
 namespace strut {
 namespace {
@@ -22,39 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMissing =
     "gnuplot: cannot be started; figures need it (Debian: apt install gnuplot-nox)";
-
-/// Where a child's output goes.
-struct ChildFiles {
-  fs::path output, messages;
-};
-
-/// Runs gnuplot with one argument and waits. Returns its exit code, -1 where it cannot be started.
-/// No shell; signals as at the program's start, whatever this thread holds back.
-int run_gnuplot(const std::string& argument, const ChildFiles& files) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, files.output.c_str(), kFlags, 0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, files.messages.c_str(), kFlags, 0600);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  std::string name = "gnuplot", word = argument;
-  std::array<char*, 3> words = {name.data(), word.data(), nullptr};
-  pid_t child = 0;
-  const int failure =
-      posix_spawnp(&child, name.c_str(), &actions, &attributes, words.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) return -1;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-}
 
 std::string make_script(const Figure& figure) {
   std::string text = "set terminal svg size " + std::to_string(figure.width) + "," +
@@ -108,7 +67,7 @@ std::string make_words(std::string name) {
   return name;
 }
 
-bool has_gnuplot() { return run_gnuplot("--version", {"/dev/null", "/dev/null"}) == 0; }
+bool has_gnuplot() { return run_child({"gnuplot", "--version"}, {"/dev/null", "/dev/null"}) == 0; }
 
 void write_figure_script(const fs::path& folder, const Figure& figure) {
   write_text_file(folder / (figure.name + ".gp"), make_script(figure));
@@ -118,7 +77,7 @@ void draw_figure(const fs::path& folder, const std::string& name) {
   const fs::path script = folder / (name + ".gp");
   AtomicFile svg(folder / (name + ".svg"));
   const ScratchFile messages(svg.temporary().string() + ".messages");
-  const int code = run_gnuplot(script.string(), {svg.temporary(), messages.path()});
+  const int code = run_child({"gnuplot", script.string()}, {svg.temporary(), messages.path()});
   if (code < 0) throw EnvironmentError(kMissing);
   const std::string said = fs::exists(messages.path()) ? read_text_file(messages.path()) : "";
   if (code != 0 || fs::file_size(svg.temporary()) == 0) {

@@ -1,0 +1,36 @@
+#include "jobs/dispatch/dispatcher.h"
+
+#include <map>
+
+#include "jobs/dispatch/local.h"
+#include "jobs/dispatch/slurm.h"
+
+namespace strut {
+namespace {
+
+template <class T>
+std::unique_ptr<Dispatcher> make() {
+  return std::make_unique<T>();
+}
+
+using Maker = std::unique_ptr<Dispatcher> (*)();
+
+const std::map<std::string, Maker>& get_makers() {
+  static const std::map<std::string, Maker> makers = {{"local", &make<LocalDispatcher>},
+                                                      {"slurm", &make<SlurmDispatcher>}};
+  return makers;
+}
+
+}  // namespace
+
+std::vector<std::string> list_dispatchers() {
+  std::vector<std::string> names;
+  for (const auto& [name, maker] : get_makers()) names.push_back(name);
+  return names;
+}
+
+std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name) {
+  return get_makers().at(name)();
+}
+
+}  // namespace strut

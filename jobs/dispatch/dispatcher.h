@@ -1,0 +1,100 @@
+// Where the tasks of a sweep run. A further scheduler is one more class of this kind, in one file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace strut {
+
+/// What one task asks of a machine; empty, 0: as the site has it.
+struct Resources {
+  std::string partition, account, constraint, memory;
+  int threads = 1;
+  double seconds = 0.0;            // wall clock
+  double warning = 0.0;            // s before that a task is told to finish
+  std::vector<std::string> extra;  // further options, passed on as they are
+};
+
+/// What a site allows.
+struct SiteLimits {
+  std::int64_t array_tasks = std::numeric_limits<std::int64_t>::max();  // in one array
+  std::int64_t tasks = std::numeric_limits<std::int64_t>::max();        // queued at once, all arrays
+  double seconds = std::numeric_limits<double>::infinity();             // wall clock of one task
+};
+
+/// A program to be run for each of `tasks`, and where.
+struct TaskArray {
+  std::string name;
+  std::vector<std::string> preparation;  // lines of bash; $task: 0 ... tasks - 1, $threads
+  std::string program;                   // the line after them; it gets the task's signals
+  std::int64_t tasks = 1;
+  std::int64_t at_once = 0;  // 0: as many as there is room for
+  bool is_array = true;      // false: one task that has no number
+  Resources resources;
+  std::filesystem::path folder;  // of the output files, NAME-*.log
+};
+
+enum class TaskState { kPending, kRunning, kEnded };
+
+/// What a scheduler says of one task, or of pending ones alike.
+struct QueuedTasks {
+  std::string job;        // as submit() returned it
+  std::int64_t task = 0;  // of the first; -1: the job is no array
+  std::int64_t count = 1;
+  TaskState state = TaskState::kPending;
+  std::string word;    // in the scheduler's own terms: "TIMEOUT"
+  std::string reason;  // why it waits or ended: "Resources"
+};
+
+class Dispatcher {
+ public:
+  virtual ~Dispatcher() = default;
+
+  virtual std::string name() const = 0;
+
+  /// Refuses what can be known before anything is queued: the scheduler is not there, it does not
+  /// know the partition, its machines cannot see `folder`. Throws InputError or EnvironmentError.
+  virtual SiteLimits check(const Resources& resources,
+                           const std::filesystem::path& folder) const = 0;
+
+  /// The text of the file that submit() takes.
+  virtual std::string make_script(const TaskArray& tasks) const = 0;
+  /// What the scheduler says to it, nothing being queued. "": it cannot be asked.
+  virtual std::string try_script(const std::filesystem::path& script) const = 0;
+
+  /// Queues a script, to begin when the jobs `after` have ended in whatever way. Returns the job.
+  /// Throws EnvironmentError.
+  virtual std::string submit(const std::filesystem::path& script,
+                             const std::vector<std::string>& after) const = 0;
+  /// The job of that name which a submit() queued without living to say so; "": none. Throws
+  /// EnvironmentError where that cannot be told.
+  virtual std::string find_job(const std::string& name) const = 0;
+
+  /// Of the jobs, what is queued and what is remembered. Nothing where the scheduler does not
+  /// answer: that tells neither that they run nor that they ended.
+  virtual std::optional<std::vector<QueuedTasks>> query(
+      const std::vector<std::string>& jobs) const = 0;
+  /// Why query() had no answer.
+  virtual std::string explain_silence() const = 0;
+
+  /// Ends jobs, running or not. Throws EnvironmentError.
+  virtual void cancel(const std::vector<std::string>& jobs) const = 0;
+
+  /// Of the task that this process is: puts it back into the queue. False where it cannot be.
+  virtual bool requeue_own() const = 0;
+  /// Of the task that this process is: when its time is over [s since 1970]; 0: unknown.
+  virtual std::int64_t find_own_end() const = 0;
+  /// How often the task that this process is was begun before.
+  virtual int count_own_restarts() const = 0;
+};
+
+std::vector<std::string> list_dispatchers();
+/// One of list_dispatchers(). Throws std::out_of_range.
+std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name);
+
+}  // namespace strut

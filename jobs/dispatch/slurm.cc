@@ -1,0 +1,303 @@
+#include "jobs/dispatch/slurm.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "io/input_error.h"
+#include "io/nearest_name.h"
+#include "io/parse_number.h"
+#include "jobs/dispatch/file_system.h"
+#include "jobs/run_child.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An empty queue is believed when it is seen twice: a controller that has just been started again
+/// may not know its jobs yet.
+constexpr std::chrono::seconds kSecondLook{2};
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+/// Throws EnvironmentError where the command fails.
+std::string ask(const std::vector<std::string>& words) {
+  const ChildOutput output = read_child(words);
+  if (output.code != 0) throw EnvironmentError(words.front() + ": " + output.explain());
+  return output.out;
+}
+
+/// "MaxArraySize            = 1001" of `scontrol show config`.
+std::map<std::string, std::string> read_settings() {
+  std::map<std::string, std::string> settings;
+  for (const std::string& line : split(ask({"scontrol", "show", "config"}), '\n')) {
+    std::istringstream words(line);
+    std::string key, equals, value;
+    if (words >> key >> equals >> value && equals == "=") settings[key] = value;
+  }
+  return settings;
+}
+
+std::int64_t read_count(const std::map<std::string, std::string>& settings, const std::string& key) {
+  const auto found = settings.find(key);
+  if (found == settings.end()) return SiteLimits().tasks;
+  return parse_number<std::int64_t>(found->second).value_or(SiteLimits().tasks);
+}
+
+struct Partition {
+  std::string name;
+  double seconds = 0.0;
+  bool is_up = false;
+};
+
+/// The one that is named, or the site's own choice. Throws InputError.
+Partition find_partition(const std::string& wanted) {
+  std::vector<std::string> names;
+  for (const std::string& line : split(ask({"sinfo", "-h", "-o", "%P|%l|%a"}), '\n')) {
+    const std::vector<std::string> parts = split(line, '|');
+    if (parts.size() != 3) continue;
+    Partition partition{parts[0], parse_slurm_time(parts[1]).value_or(SiteLimits().seconds),
+                        parts[2] == "up"};
+    const bool is_default = !partition.name.empty() && partition.name.back() == '*';
+    if (is_default) partition.name.pop_back();
+    if (wanted.empty() ? is_default : partition.name == wanted) return partition;
+    names.push_back(partition.name);
+  }
+  if (wanted.empty()) {
+    throw InputError("--partition: this site has no default; partitions: " + join_names(names));
+  }
+  throw InputError("--partition " + wanted + ": does not exist" + suggest_name(wanted, names) +
+                   "; partitions: " + join_names(names));
+}
+
+std::string find_host() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  const std::string name = host.data();
+  return name.substr(0, name.find('.'));
+}
+
+/// Throws InputError where nodes of the partition are other machines and the folder is on a disk of
+/// this one.
+void check_folder(const std::string& partition, const fs::path& folder) {
+  const std::string kind = find_local_file_system(folder);
+  if (kind.empty()) return;
+  const std::string here = find_host();
+  std::set<std::string> others;
+  for (const std::string& node :
+       split(ask({"sinfo", "-h", "-N", "-p", partition, "-O", "NodeHost:256"}), '\n')) {
+    const std::string host = node.substr(0, node.find_first_of(". "));
+    if (!host.empty() && host != here) others.insert(host);
+  }
+  if (others.empty()) return;
+  throw InputError(folder.string() + ": lies on a file system of this machine alone (" + kind +
+                   "); the nodes of partition " + partition + " (" + *others.begin() +
+                   (others.size() > 1 ? ", ..." : "") +
+                   ") cannot see it; put the sweep where all see it, such as your home");
+}
+
+const char* read_environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+/// "123_4" of the task that this process is; "123" of a job that is no array; "".
+std::string find_own_job() {
+  const std::string array = read_environment("SLURM_ARRAY_JOB_ID");
+  if (array.empty()) return read_environment("SLURM_JOB_ID");
+  return array + "_" + read_environment("SLURM_ARRAY_TASK_ID");
+}
+
+TaskState judge_word(const std::string& word) {
+  static const std::set<std::string> pending = {"PENDING",        "CONFIGURING",    "REQUEUED",
+                                                "REQUEUE_FED",    "REQUEUE_HOLD",   "SPECIAL_EXIT",
+                                                "RESV_DEL_HOLD"};
+  static const std::set<std::string> running = {"RUNNING",  "COMPLETING", "SUSPENDED",
+                                                "RESIZING", "SIGNALING",  "STAGE_OUT", "STOPPED"};
+  if (pending.count(word) > 0) return TaskState::kPending;
+  return running.count(word) > 0 ? TaskState::kRunning : TaskState::kEnded;
+}
+
+/// Lines of `squeue -r -o %F|%K|%T|%r` about these jobs.
+std::vector<QueuedTasks> parse_queue(const std::string& text,
+                                     const std::vector<std::string>& jobs) {
+  const std::set<std::string> wanted(jobs.begin(), jobs.end());
+  std::vector<QueuedTasks> tasks;
+  for (const std::string& line : split(text, '\n')) {
+    const std::vector<std::string> parts = split(line, '|');
+    if (parts.size() < 4 || wanted.count(parts[0]) == 0) continue;
+    tasks.push_back({parts[0], parse_number<std::int64_t>(parts[1]).value_or(-1), 1,
+                     judge_word(parts[2]), parts[2], parts[3]});
+  }
+  return tasks;
+}
+
+/// Slurm puts the job's number and the like in place of %.
+std::string escape_pattern(const std::string& path) {
+  std::string text;
+  for (const char c : path) text += c == '%' ? std::string("%%") : std::string(1, c);
+  return text;
+}
+
+}  // namespace
+
+std::optional<double> parse_slurm_time(const std::string& text) {
+  if (text == "infinite" || text == "UNLIMITED") return SiteLimits().seconds;
+  const std::size_t dash = text.find('-');
+  const bool has_days = dash != std::string::npos;
+  const auto days = parse_number<double>(has_days ? text.substr(0, dash) : "0");
+  std::vector<double> parts;
+  for (const std::string& part : split(has_days ? text.substr(dash + 1) : text, ':')) {
+    const auto number = parse_number<double>(part);
+    if (!number || *number < 0.0) return std::nullopt;
+    parts.push_back(*number);
+  }
+  if (!days || parts.empty() || parts.size() > 3) return std::nullopt;
+  // Without days: minutes; minutes:seconds; hours:minutes:seconds. With: hours first.
+  const std::size_t first = has_days || parts.size() == 3 ? 0 : 1;
+  constexpr std::array<double, 3> kSeconds = {3600.0, 60.0, 1.0};
+  double seconds = 86400.0 * *days;
+  for (std::size_t i = 0; i < parts.size(); ++i) seconds += kSeconds[first + i] * parts[i];
+  return seconds;
+}
+
+std::string format_slurm_time(double seconds) {
+  const auto minutes = static_cast<long>(std::ceil(seconds / 60.0));
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%ld-%02ld:%02ld:00", minutes / 1440, minutes / 60 % 24,
+                minutes % 60);
+  return text.data();
+}
+
+SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& folder) const {
+  if (read_child({"sbatch", "--version"}).code != 0) {
+    throw EnvironmentError(
+        "sbatch: cannot be started; --to slurm works where Slurm's commands are in PATH, --to "
+        "local everywhere");
+  }
+  const auto settings = read_settings();
+  const Partition partition = find_partition(resources.partition);
+  if (!partition.is_up) {
+    throw InputError("--partition " + partition.name + ": is down, as sinfo says");
+  }
+  if (resources.seconds > partition.seconds) {
+    throw InputError("--time " + format_slurm_time(resources.seconds) +
+                     ": must be at most the partition's, " + format_slurm_time(partition.seconds));
+  }
+  check_folder(partition.name, folder);
+  const std::string queue = ask({"squeue", "-h", "-r", "-o", "%A"});
+  const std::int64_t queued = std::count(queue.begin(), queue.end(), '\n');
+  return {read_count(settings, "MaxArraySize"),
+          std::max<std::int64_t>(1, read_count(settings, "MaxJobCount") - queued - 1),
+          partition.seconds};
+}
+
+std::string SlurmDispatcher::make_script(const TaskArray& tasks) const {
+  const Resources& r = tasks.resources;
+  std::string text = "#!/bin/bash\n";
+  const auto set = [&](const std::string& option) { text += "#SBATCH " + option + "\n"; };
+  const auto set_given = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) set(option + "=" + value);
+  };
+  set("--job-name=" + tasks.name);
+  std::string log = escape_pattern((tasks.folder / tasks.name).string());
+  if (tasks.is_array) {
+    const std::string throttle = tasks.at_once > 0 ? "%" + std::to_string(tasks.at_once) : "";
+    set("--array=0-" + std::to_string(tasks.tasks - 1) + throttle);
+    log += "-%a";
+  }
+  set("--output=\"" + log + ".log\"");
+  set("--open-mode=append");
+  set("--requeue");
+  set("--ntasks=1");
+  set("--cpus-per-task=" + std::to_string(r.threads));
+  if (r.seconds > 0.0) set("--time=" + format_slurm_time(r.seconds));
+  if (r.warning > 0.0) set("--signal=B:USR1@" + std::to_string(std::lround(r.warning)));
+  set_given("--partition", r.partition);
+  set_given("--account", r.account);
+  if (!r.constraint.empty()) set("--constraint=\"" + r.constraint + "\"");
+  set_given("--mem", r.memory);
+  for (const std::string& option : r.extra) set(option);
+  text += "set -u\ntask=${SLURM_ARRAY_TASK_ID:-0}\nthreads=${SLURM_CPUS_PER_TASK:-" +
+          std::to_string(r.threads) + "}\n";
+  for (const std::string& line : tasks.preparation) text += line + "\n";
+  // Slurm's warning goes to the batch shell alone: the program takes its place.
+  return text + "exec " + tasks.program + "\n";
+}
+
+std::string SlurmDispatcher::try_script(const fs::path& script) const {
+  const ChildOutput output = read_child({"sbatch", "--test-only", script.string()});
+  if (output.code == ChildOutput::kNotStarted) return "";
+  return output.explain();
+}
+
+std::string SlurmDispatcher::submit(const fs::path& script,
+                                    const std::vector<std::string>& after) const {
+  std::vector<std::string> words = {"sbatch", "--parsable"};
+  if (!after.empty()) {
+    std::string jobs = "--dependency=afterany";
+    for (const std::string& job : after) jobs += ":" + job;
+    words.push_back(jobs);
+  }
+  words.push_back(script.string());
+  const std::string answer = ask(words);  // "123" or "123;cluster"
+  const std::string job = answer.substr(0, answer.find_first_of(";\n"));
+  if (!parse_number<std::int64_t>(job)) throw EnvironmentError("sbatch: said '" + answer + "'");
+  return job;
+}
+
+std::string SlurmDispatcher::find_job(const std::string& name) const {
+  const std::string jobs = ask({"squeue", "-h", "--me", "-t", "all", "--name", name, "-o", "%F"});
+  return jobs.substr(0, jobs.find('\n'));
+}
+
+std::optional<std::vector<QueuedTasks>> SlurmDispatcher::query(
+    const std::vector<std::string>& jobs) const {
+  for (bool again : {false, true}) {
+    const ChildOutput output =
+        read_child({"squeue", "-h", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r"});
+    if (output.code != 0) {
+      silence_ = "squeue: " + output.explain();
+      return std::nullopt;
+    }
+    std::vector<QueuedTasks> tasks = parse_queue(output.out, jobs);
+    if (!tasks.empty() || again) return tasks;
+    std::this_thread::sleep_for(kSecondLook);
+  }
+  return std::nullopt;
+}
+
+void SlurmDispatcher::cancel(const std::vector<std::string>& jobs) const {
+  std::vector<std::string> words = {"scancel"};
+  words.insert(words.end(), jobs.begin(), jobs.end());
+  ask(words);
+}
+
+bool SlurmDispatcher::requeue_own() const {
+  const std::string job = find_own_job();
+  return !job.empty() && read_child({"scontrol", "requeue", job}).code == 0;
+}
+
+std::int64_t SlurmDispatcher::find_own_end() const {
+  return parse_number<std::int64_t>(read_environment("SLURM_JOB_END_TIME")).value_or(0);
+}
+
+int SlurmDispatcher::count_own_restarts() const {
+  return parse_number<int>(read_environment("SLURM_RESTART_COUNT")).value_or(0);
+}
+
+}  // namespace strut

@@ -1,0 +1,35 @@
+// Slurm, by its own commands: no library of one version, no accounting database.
+#pragma once
+
+#include "jobs/dispatch/dispatcher.h"
+
+namespace strut {
+
+class SlurmDispatcher : public Dispatcher {
+ public:
+  std::string name() const override { return "slurm"; }
+  SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
+  std::string make_script(const TaskArray& tasks) const override;
+  std::string try_script(const std::filesystem::path& script) const override;
+  std::string submit(const std::filesystem::path& script,
+                     const std::vector<std::string>& after) const override;
+  std::string find_job(const std::string& name) const override;
+  std::optional<std::vector<QueuedTasks>> query(
+      const std::vector<std::string>& jobs) const override;
+  std::string explain_silence() const override { return silence_; }
+  void cancel(const std::vector<std::string>& jobs) const override;
+  bool requeue_own() const override;
+  std::int64_t find_own_end() const override;
+  int count_own_restarts() const override;
+
+ private:
+  mutable std::string silence_;
+};
+
+/// "2-03:04:05", "03:04:05", "04:05", "5" (minutes), "infinite", as Slurm writes durations [s].
+/// Nothing where it is none.
+std::optional<double> parse_slurm_time(const std::string& text);
+/// To the next minute, as Slurm counts: "1-02:30:00".
+std::string format_slurm_time(double seconds);
+
+}  // namespace strut

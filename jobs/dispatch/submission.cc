@@ -1,0 +1,108 @@
+#include "jobs/dispatch/submission.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <system_error>
+
+#include "io/atomic_file.h"
+#include "io/config.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kMost = std::int64_t{1} << 53;
+
+fs::path find_jobs(const SweepFolder& folder) { return folder.root / "jobs"; }
+
+/// The first of "001", "002", ... that is not there, made: of two who try, one gets it.
+fs::path make_next(const fs::path& jobs) {
+  std::error_code error;
+  fs::create_directories(jobs, error);
+  for (int number = 1; !error; ++number) {
+    std::string name = std::to_string(number);
+    name.insert(0, name.size() < 3 ? 3 - name.size() : 0, '0');
+    if (fs::create_directory(jobs / name, error)) return jobs / name;
+  }
+  throw EnvironmentError(jobs.string() + ": cannot be made: " + error.message());
+}
+
+void write_submission(const Submission& s) {
+  std::string text = "dispatcher = \"" + s.dispatcher + "\"\njob_prefix = \"" + s.job_prefix +
+                     "\"\ncollects = " + (s.collects ? "true" : "false") + "\n";
+  for (const PackedArray& array : s.arrays) {
+    text += "\n[[array]]\nfirst = " + std::to_string(array.shards.first) +
+            "\nend = " + std::to_string(array.shards.end) +
+            "\nshards_a_task = " + std::to_string(array.shards_a_task) + "\n";
+  }
+  write_text_file(s.folder / "submission.toml", text);
+}
+
+Submission read_submission(const fs::path& folder) {
+  Document document(folder / "submission.toml");
+  const Table root = document.root();
+  Submission s;
+  s.folder = folder;
+  s.dispatcher = root.text("dispatcher");
+  s.job_prefix = root.text("job_prefix");
+  s.collects = root.boolean_or("collects", false);
+  for (const Table& table : root.tables("array")) {
+    const std::int64_t first = table.integer("first", 0, kMost);
+    s.arrays.push_back({{first, table.integer("end", first + 1, kMost)},
+                        table.integer("shards_a_task", 1, kMost)});
+  }
+  document.check_all_read();
+  return s;
+}
+
+}  // namespace
+
+std::vector<std::string> Submission::list_parts() const {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < arrays.size(); ++i) parts.push_back(array_name(i));
+  if (collects) parts.emplace_back(kCollect);
+  return parts;
+}
+
+std::string Submission::read_job(const std::string& part) const {
+  const fs::path file = folder / (part + ".job");
+  if (!fs::exists(file)) return "";
+  std::string job = read_text_file(file);
+  job.erase(job.find_last_not_of('\n') + 1);
+  return job;
+}
+
+void Submission::write_job(const std::string& part, const std::string& job) const {
+  write_text_file(folder / (part + ".job"), job + "\n");
+}
+
+void Submission::mark_cancelled() const { write_text_file(folder / "cancelled", ""); }
+
+void Submission::mark_over() const { write_text_file(folder / "over", ""); }
+
+Submission make_submission(const SweepFolder& folder, const std::string& dispatcher,
+                           const std::string& job_prefix, const std::vector<PackedArray>& arrays,
+                           bool collects) {
+  Submission s{make_next(find_jobs(folder)), dispatcher, job_prefix, arrays, collects};
+  s.job_prefix += "-" + s.name();
+  for (std::size_t i = 0; i < arrays.size(); ++i) fs::create_directory(s.tasks(i));
+  write_submission(s);
+  return s;
+}
+
+std::vector<Submission> list_submissions(const SweepFolder& folder) {
+  std::vector<Submission> all;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(find_jobs(folder), error)) {
+    // Killed before it was written: nothing of it was queued.
+    if (fs::exists(entry.path() / "submission.toml")) all.push_back(read_submission(entry.path()));
+  }
+  std::sort(all.begin(), all.end(), [](const Submission& a, const Submission& b) {
+    const std::string x = a.name(), y = b.name();
+    return x.size() != y.size() ? x.size() < y.size() : x < y;
+  });
+  return all;
+}
+
+}  // namespace strut

@@ -1,0 +1,74 @@
+#include "jobs/dispatch/task_run.h"
+
+#include <algorithm>
+#include <ctime>
+
+#include "io/input_error.h"
+#include "io/parse_number.h"
+#include "io/process_identity.h"
+
+namespace strut {
+namespace {
+
+Submission find_submission(const SweepFolder& folder, const std::string& name) {
+  for (Submission& s : list_submissions(folder)) {
+    if (s.name() == name) return std::move(s);
+  }
+  throw InputError("--task: " + folder.root.string() + " holds no submission '" + name + "'");
+}
+
+}  // namespace
+
+std::string make_task_name(const std::string& submission, std::size_t array,
+                           const std::string& task) {
+  return submission + "/" + std::to_string(array) + "/" + task;
+}
+
+TaskRun::TaskRun(const SweepFolder& folder, const std::string& name) {
+  const std::size_t first = name.find('/');
+  const std::size_t second = first == std::string::npos ? first : name.find('/', first + 1);
+  if (second == std::string::npos) {
+    throw InputError("--task " + name + ": must be SUBMISSION/ARRAY/TASK");
+  }
+  submission_ = find_submission(folder, name.substr(0, first));
+  const auto array = parse_number<std::size_t>(name.substr(first + 1, second - first - 1));
+  const auto task = parse_number<std::int64_t>(name.substr(second + 1));
+  if (!array || *array >= submission_.arrays.size() || !task || *task < 0 ||
+      *task >= submission_.arrays[*array].tasks()) {
+    throw InputError("--task " + name + ": submission " + submission_.name() +
+                     " has no such task");
+  }
+  shards_ = submission_.arrays[*array].get_task(*task);
+  file_ = submission_.tasks(*array) / std::to_string(*task);
+  dispatcher_ = make_dispatcher(submission_.dispatcher);
+}
+
+void TaskRun::begin() {
+  lives_ = read_task_lives(file_);
+  TaskLife life;
+  life.host = find_own_identity().host;
+  life.begin = std::time(nullptr);
+  life.limit = dispatcher_->find_own_end();
+  life.restart = dispatcher_->count_own_restarts();
+  lives_.push_back(life);
+  write_task_lives(file_, lives_);
+}
+
+void TaskRun::end(TaskEnd how, std::int64_t shards_written) {
+  TaskLife& life = lives_.back();
+  life.how = how;
+  life.end = std::time(nullptr);
+  life.shards = shards_written;
+  write_task_lives(file_, lives_);
+}
+
+std::string TaskRun::requeue() const {
+  if (lives_.back().shards == 0) {
+    return "not one shard was finished in its time; submit again with a longer --time";
+  }
+  if (submission_.is_cancelled()) return "it was cancelled";
+  if (!dispatcher_->requeue_own()) return dispatcher_->name() + " does not take it back";
+  return "";
+}
+
+}  // namespace strut

@@ -1,0 +1,40 @@
+// A task from within: what `strut run --task` tells of itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/sweep_folder.h"
+#include "jobs/dispatch/packing.h"
+#include "jobs/dispatch/submission.h"
+#include "jobs/dispatch/task_record.h"
+
+namespace strut {
+
+/// How a submission's script names a task.
+std::string make_task_name(const std::string& submission, std::size_t array,
+                           const std::string& task);
+
+class TaskRun {
+ public:
+  /// `name`: SUBMISSION/ARRAY/TASK. Throws InputError where there is no such task.
+  TaskRun(const SweepFolder& folder, const std::string& name);
+
+  ShardRange shards() const { return shards_; }
+
+  /// Throws EnvironmentError.
+  void begin();
+  void end(TaskEnd how, std::int64_t shards_written);
+  /// Back into the queue, for what was left undone. Not where this life wrote no shard: the next
+  /// would not either. Returns why it is not, "" where it is.
+  std::string requeue() const;
+
+ private:
+  Submission submission_;
+  ShardRange shards_;
+  std::filesystem::path file_;
+  std::unique_ptr<Dispatcher> dispatcher_;
+  std::vector<TaskLife> lives_;
+};
+
+}  // namespace strut

@@ -1,0 +1,374 @@
+#include "jobs/submit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+#include "io/atomic_file.h"
+#include "io/claims.h"
+#include "io/config.h"
+#include "jobs/command.h"
+#include "jobs/dispatch/follow.h"
+#include "jobs/dispatch/slurm.h"
+#include "jobs/dispatch/task_run.h"
+#include "jobs/interrupt.h"
+#include "jobs/json.h"
+#include "jobs/open_sweep.h"
+#include "jobs/output_file.h"
+#include "jobs/plan_estimate.h"
+#include "jobs/progress.h"
+#include "sweep/status.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTaskMinutes = 10.0;
+/// A task's walltime over what its shards are expected to take: other processors are slower, and
+/// the measurement was short.
+constexpr double kReserve = 2.0;
+/// Least time that a task is warned before its walltime ends [s]: schedulers look once a minute.
+constexpr double kLeastWarning = 60.0;
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut submit DIR --to slurm|local [OPTIONS]",
+      "Queues what the sweep in DIR still lacks: arrays of tasks of some minutes each, and behind "
+      "them one\n"
+      "that merges. Submitting again queues only what is neither there nor queued. Tasks near their "
+      "time\n"
+      "limit finish the shard in hand and queue themselves again. `--to local` works through the "
+      "tasks on\n"
+      "this machine, in the background.",
+      "  strut submit sweep --to slurm --dry-run\n"
+      "  strut submit sweep --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
+      "  strut status sweep\n  strut cancel sweep");
+  arguments.add_option("to", "NAME", "slurm or local");
+  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
+  arguments.add_option("account", "A", "that pays");
+  arguments.add_option("constraint", "C", "that nodes must meet");
+  arguments.add_option("memory", "M", "of a task, as the site writes it: 4G");
+  arguments.add_option("time", "T",
+                       "wall clock of a task: minutes, HH:MM:SS or D-HH:MM:SS (default: twice what "
+                       "it is expected to take)");
+  arguments.add_option("threads", "N", "processors of a task (default 1; local: all)");
+  arguments.add_option("minutes", "M", "what a task is to take (default 10)");
+  arguments.add_option("tasks", "N", "at most N tasks in all");
+  arguments.add_option("at-once", "N", "at most N tasks of an array run at once");
+  arguments.add_list("option", "OPTION", "a further option for the scheduler, as it stands");
+  arguments.add_option("scratch", "PATH",
+                       "node-local folder, $NAMES as the node has them, where each node keeps a "
+                       "copy of the program");
+  arguments.add_switch("no-merge", "no last task that writes DIR/merged.h5");
+  arguments.add_switch("again",
+                       "submit although it is unknown whether an earlier submission still runs");
+  arguments.add_switch("dry-run", "print the scripts and what waits for what; queue nothing");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+std::string quote_word(const std::string& word) {
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// One submission in the making.
+class Submitter {
+ public:
+  explicit Submitter(const Arguments& arguments)
+      : arguments_(arguments), sweep_(open_sweep(arguments)) {
+    sweep_.folder.root = fs::canonical(sweep_.folder.root);
+    if (!arguments.has("to")) {
+      throw InputError("--to: missing; must be one of " + join_names(list_dispatchers()));
+    }
+    const std::vector<std::string> names = list_dispatchers();
+    const auto which = static_cast<std::size_t>(arguments.choice_or("to", 0, names));
+    dispatcher_ = make_dispatcher(names[which]);
+    read_resources();
+    limits_ = dispatcher_->check(resources_, sweep_.folder.root);
+    limits_.tasks = std::min(limits_.tasks,
+                             arguments.integer_or("tasks", limits_.tasks, 1, SiteLimits().tasks));
+  }
+
+  int run() {
+    // Two who submit at once would each queue what is missing.
+    std::optional<Claims> claims;
+    if (!arguments_.is_on("dry-run")) {
+      claims.emplace(sweep_.folder.claims(), ClaimOptions());
+      if (claims->claim("submit") != Claims::Answer::kMine) {
+        throw EnvironmentError(sweep_.folder.root.string() +
+                               ": another `strut submit` works on it right now");
+      }
+    }
+    const std::vector<ShardRange> missing = find_missing();
+    if (missing.empty()) {
+      say_nothing_to_do();
+      return kExitDone;
+    }
+    measure_cost();
+    pack(missing);
+    if (arguments_.is_on("dry-run")) {
+      show();
+    } else {
+      submit();
+    }
+    return kExitDone;
+  }
+
+ private:
+  void read_resources() {
+    const auto text = [&](const char* name) {
+      return arguments_.has(name) ? arguments_.text(name) : std::string();
+    };
+    resources_.partition = text("partition");
+    resources_.account = text("account");
+    resources_.constraint = text("constraint");
+    resources_.memory = text("memory");
+    resources_.extra = arguments_.list("option");
+    const bool here = dispatcher_->name() == "local";
+    resources_.threads =
+        here || arguments_.has("threads") ? find_threads(arguments_) : 1;
+    if (!arguments_.has("time")) return;
+    const auto seconds = parse_slurm_time(arguments_.text("time"));
+    if (!seconds || *seconds <= 0.0) {
+      throw InputError("--time " + arguments_.text("time") +
+                       ": must be minutes, HH:MM:SS or D-HH:MM:SS");
+    }
+    resources_.seconds = *seconds;
+  }
+
+  /// Shards that are neither there nor in a living task's hands.
+  std::vector<ShardRange> find_missing() {
+    std::vector<ShardRange> live;
+    for (const Submission& s : list_submissions(sweep_.folder)) {
+      if (s.is_over()) continue;
+      const SubmissionState state = follow(s);
+      if (state.queue == QueueState::kUnknown && !arguments_.is_on("again")) {
+        throw EnvironmentError("submission " + s.name() +
+                               ": whether it still runs is unknown: " + state.why +
+                               "; nothing is submitted; try again later, or with --again");
+      }
+      if (state.queue == QueueState::kEnded && !arguments_.is_on("dry-run")) s.mark_over();
+      for (const ShardRange& range : state.live) live_shards_ += range.count();
+      live.insert(live.end(), state.live.begin(), state.live.end());
+    }
+    present_ = list_shards(sweep_.folder);
+    return list_missing(sweep_.plan.shard_count(), present_, std::move(live));
+  }
+
+  void say_nothing_to_do() const {
+    std::cout << "nothing to submit: of " << format_count(sweep_.plan.shard_count()) << " shards "
+              << format_count(static_cast<std::int64_t>(present_.size())) << " are there and "
+              << format_count(live_shards_) << " in the hands of tasks that wait or run\n";
+  }
+
+  /// As the shards that are there tell, or, without any, a few cases right now.
+  void measure_cost() {
+    double thread_seconds = 0.0;  // of a case
+    const SweepStatus status = read_status(sweep_.folder, sweep_.plan);
+    const std::int64_t simulated = status.done + status.failed;
+    if (simulated > 0) {
+      thread_seconds = status.simulation_seconds / static_cast<double>(simulated);
+    } else {
+      const SweepEstimate estimate = estimate_sweep(sweep_.plan, find_kernel_or_widest());
+      thread_seconds =
+          estimate.seconds * estimate.cores / static_cast<double>(sweep_.plan.case_count());
+    }
+    shard_seconds_ = thread_seconds * static_cast<double>(sweep_.plan.shard_size(0)) /
+                     resources_.threads;
+  }
+
+  static const Kernel& find_kernel_or_widest() { return list_kernels().front(); }
+
+  /// Task sizes, walltime and warning. Throws InputError where one shard does not fit.
+  void pack(const std::vector<ShardRange>& missing) {
+    PackingRequest request;
+    request.limits = limits_;
+    request.shard_seconds = shard_seconds_;
+    request.task_seconds =
+        60.0 * arguments_.number_or("minutes", kTaskMinutes, above(0.0, "min"));
+    if (dispatcher_->name() == "slurm") {
+      resources_.warning = std::ceil(std::max(kLeastWarning, kReserve * shard_seconds_));
+      const double most = resources_.seconds > 0.0 ? resources_.seconds : limits_.seconds;
+      const double least = 2.0 * resources_.warning;
+      if (most < least) {
+        throw InputError("--time " + format_slurm_time(most) + ": must be at least " +
+                         format_slurm_time(least) + ": one shard takes some " +
+                         format_duration(shard_seconds_) + " on " +
+                         std::to_string(resources_.threads) +
+                         " threads, and tasks are warned in time to finish it; more --threads, or "
+                         "a sweep with smaller shards");
+      }
+      request.task_seconds =
+          std::min(request.task_seconds, (most - resources_.warning) / kReserve);
+    }
+    arrays_ = pack_shards(missing, request);
+    std::int64_t largest = 1;
+    for (const PackedArray& array : arrays_) {
+      largest = std::max(largest, array.get_task(0).count());
+    }
+    task_seconds_ = shard_seconds_ * static_cast<double>(largest);
+    if (dispatcher_->name() == "slurm" && resources_.seconds == 0.0) {
+      resources_.seconds =
+          std::min(limits_.seconds, kReserve * task_seconds_ + 2.0 * resources_.warning);
+    }
+  }
+
+  /// The line that starts the program, from a node's own copy where --scratch is given.
+  std::vector<std::string> make_preparation() const {
+    const std::string program = fs::read_symlink("/proc/self/exe").string();
+    std::vector<std::string> lines = {"program=" + quote_word(program)};
+    if (!arguments_.has("scratch")) return lines;
+    lines.push_back("copy=\"" + arguments_.text("scratch") + "/strut-" + hash_program() + "\"");
+    lines.emplace_back(
+        "[[ -x $copy ]] || { cp \"$program\" \"$copy.$$\" && mv \"$copy.$$\" \"$copy\"; }");
+    lines.emplace_back("[[ -x $copy ]] && program=$copy");
+    return lines;
+  }
+
+  static std::string hash_program();
+
+  TaskArray make_array(const std::string& name, const std::string& part) const {
+    TaskArray array;
+    array.name = name + "." + part;
+    array.preparation = make_preparation();
+    array.resources = resources_;
+    array.folder = sweep_.folder.logs();
+    array.at_once = arguments_.integer_or("at-once", 0, 1, SiteLimits().tasks);
+    return array;
+  }
+
+  /// Scripts of all parts, in the order of Submission::list_parts().
+  std::vector<std::string> make_scripts(const Submission& s) const {
+    std::vector<std::string> scripts;
+    const std::string root = quote_word(sweep_.folder.root.string());
+    for (std::size_t i = 0; i < arrays_.size(); ++i) {
+      TaskArray array = make_array(s.job_prefix, s.array_name(i));
+      array.tasks = arrays_[i].tasks();
+      array.program = "\"$program\" run " + root + " --threads \"$threads\" --task " +
+                      make_task_name(s.name(), i, "\"$task\"");
+      scripts.push_back(dispatcher_->make_script(array));
+    }
+    if (s.collects) {
+      TaskArray last = make_array(s.job_prefix, Submission::kCollect);
+      last.is_array = false;
+      last.at_once = 0;
+      last.program = "\"$program\" merge " + root + " -o " +
+                     quote_word((sweep_.folder.root / "merged.h5").string()) +
+                     " --virtual --force";
+      scripts.push_back(dispatcher_->make_script(last));
+    }
+    return scripts;
+  }
+
+  std::string make_prefix() const { return "strut-" + sweep_.plan.hash().substr(0, 8); }
+  bool collects() const { return !arguments_.is_on("no-merge"); }
+
+  std::string describe() const {
+    std::int64_t tasks = 0;
+    for (const PackedArray& array : arrays_) tasks += array.tasks();
+    std::string text = format_count(tasks) + (tasks == 1 ? " task" : " tasks") + " in " +
+                       std::to_string(arrays_.size()) +
+                       (arrays_.size() == 1 ? " array" : " arrays") + ", each " +
+                       format_count(arrays_.front().shards_a_task) + " shards, some " +
+                       format_duration(task_seconds_) + " on " +
+                       std::to_string(resources_.threads) + " threads";
+    if (resources_.seconds > 0.0) text += ", walltime " + format_slurm_time(resources_.seconds);
+    return text;
+  }
+
+  void show() const {
+    Submission s;
+    s.folder = sweep_.folder.root / "jobs" / "NEXT";
+    s.dispatcher = dispatcher_->name();
+    s.job_prefix = make_prefix() + "-NEXT";
+    s.arrays = arrays_;
+    s.collects = collects();
+    const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
+    std::cout << describe() << "\n";
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      std::cout << "\n--- " << s.job_name(parts[i]) << "\n" << scripts[i];
+      if (i == 0) try_out(scripts[i]);
+    }
+    std::cout << "\n";
+    for (std::size_t i = 0; i < arrays_.size(); ++i) {
+      std::cout << parts[i] << ": shards " << arrays_[i].shards.first << " to "
+                << arrays_[i].shards.end - 1 << ", " << format_count(arrays_[i].tasks())
+                << " tasks\n";
+    }
+    if (s.collects) std::cout << "collect: after all arrays, however they end\n";
+    std::cout << "nothing is queued\n";
+  }
+
+  void try_out(const std::string& script) const {
+    AtomicFile file(fs::temp_directory_path() / "strut-dry-run.sh");
+    write_text_file(file.temporary(), script);
+    const std::string said = dispatcher_->try_script(file.temporary());
+    if (!said.empty()) std::cout << "(" << dispatcher_->name() << " says: " << said << ")\n";
+  }
+
+  void submit() {
+    std::error_code ignored;
+    fs::create_directories(sweep_.folder.logs(), ignored);
+    const InterruptGuard guard;  // a job that is queued is also written down
+    const Submission s = make_submission(sweep_.folder, dispatcher_->name(), make_prefix(), arrays_,
+                                         collects());
+    const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
+    std::vector<std::string> jobs;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      write_text_file(s.script(parts[i]), scripts[i]);
+      const bool is_last = parts[i] == Submission::kCollect;
+      try {
+        jobs.push_back(
+            dispatcher_->submit(s.script(parts[i]), is_last ? jobs : std::vector<std::string>()));
+      } catch (const EnvironmentError& e) {
+        throw EnvironmentError(std::string(e.what()) + "; " + std::to_string(jobs.size()) + " of " +
+                               std::to_string(parts.size()) +
+                               " jobs are queued, submit again for the rest");
+      }
+      s.write_job(parts[i], jobs.back());
+    }
+    report(s, parts, jobs);
+  }
+
+  void report(const Submission& s, const std::vector<std::string>& parts,
+              const std::vector<std::string>& jobs) const {
+    if (arguments_.is_on("json")) {
+      Json queued = Json::object();
+      for (std::size_t i = 0; i < parts.size(); ++i) queued.set(parts[i], jobs[i]);
+      std::int64_t tasks = 0;
+      for (const PackedArray& array : arrays_) tasks += array.tasks();
+      std::cout << Json::object()
+                       .set("submission", s.name())
+                       .set("to", s.dispatcher)
+                       .set("tasks", static_cast<long>(tasks))
+                       .set("jobs", queued)
+                       .dump()
+                << "\n";
+      return;
+    }
+    std::cout << "submission " << s.name() << ": " << describe() << "\n";
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      std::cout << "  " << parts[i] << ": " << s.dispatcher << " " << jobs[i] << "\n";
+    }
+    const std::string root = sweep_.folder.root.string();
+    std::cout << "`strut status " << root << "` follows it, `strut cancel " << root
+              << "` stops it\n";
+  }
+
+  const Arguments& arguments_;
+  OpenSweep sweep_;
+  std::unique_ptr<Dispatcher> dispatcher_;
+  Resources resources_;
+  SiteLimits limits_;
+  std::vector<std::int64_t> present_;
+  std::int64_t live_shards_ = 0;
+  double shard_seconds_ = 0.0, task_seconds_ = 0.0;
+  std::vector<PackedArray> arrays_;
+};
+
+}  // namespace
+}  // namespace strut
