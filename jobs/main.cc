@@ -9,6 +9,7 @@
 #include "io/nearest_name.h"
 #include "jobs/bench.h"
 #include "jobs/build_info.h"
+#include "jobs/cancel.h"
 #include "jobs/command.h"
 #include "jobs/compare.h"
 #include "jobs/design.h"
@@ -24,6 +25,7 @@
 #include "jobs/simulate.h"
 #include "jobs/status.h"
 #include "jobs/study.h"
+#include "jobs/submit.h"
 #include "jobs/train.h"
 #include "jobs/verify.h"
 #include "model/kernel/simulation.h"
@@ -39,6 +41,8 @@ constexpr Command kCommands[] = {
     {"run", "simulate what a sweep still lacks", &strut::run_run},
     {"resume", "the same, and try again what failed", &strut::run_resume},
     {"status", "how far a sweep has come", &strut::run_status},
+    {"submit", "a sweep as Slurm jobs, or in the background here", &strut::run_submit},
+    {"cancel", "take back what submit queued", &strut::run_cancel},
     {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
     {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
     {"train", "a network that identifies parameters, from a sweep's cases", &strut::run_train},

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "jobs/command.h"
+#include "jobs/dispatch/follow.h"
 #include "jobs/json.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
@@ -16,7 +17,63 @@
 namespace strut {
 namespace {
 
-Json make_json(const SweepStatus& status) {
+/// A submission and how far it has come.
+struct Followed {
+  Submission submission;
+  SubmissionState state;
+};
+
+std::vector<Followed> follow_all(const SweepFolder& folder) {
+  std::vector<Followed> all;
+  for (Submission& s : list_submissions(folder)) {
+    SubmissionState state = follow(s);
+    all.push_back({std::move(s), std::move(state)});
+  }
+  return all;
+}
+
+Json make_json(const Followed& followed) {
+  const SubmissionState& state = followed.state;
+  Json ended = Json::object(), waits = Json::object();
+  for (const auto& [fate, tasks] : state.fates) {
+    ended.set(get_name(fate), static_cast<long>(tasks));
+  }
+  for (const auto& [reason, tasks] : state.reasons) waits.set(reason, static_cast<long>(tasks));
+  return Json::object()
+      .set("submission", followed.submission.name())
+      .set("to", followed.submission.dispatcher)
+      .set("state", get_name(state.queue))
+      .set("why_unknown", state.why)
+      .set("cancelled", followed.submission.is_cancelled())
+      .set("pending", static_cast<long>(state.pending))
+      .set("running", static_cast<long>(state.running))
+      .set("waiting_for", waits)
+      .set("ended", ended)
+      .set("restarts", static_cast<long>(state.restarts));
+}
+
+/// "001 on slurm: 3 running, 20 pending (Resources); ended: 7 done, 1 timeout"
+std::string describe(const Followed& followed) {
+  const SubmissionState& state = followed.state;
+  std::string text = followed.submission.name() + " on " + followed.submission.dispatcher + ": ";
+  if (state.queue == QueueState::kUnknown) return text + "unknown (" + state.why + ")";
+  text += format_count(state.running) + " running, " + format_count(state.pending) + " pending";
+  std::string reasons;
+  for (const auto& [reason, tasks] : state.reasons) {
+    reasons += (reasons.empty() ? "" : ", ") + reason;
+  }
+  if (!reasons.empty()) text += " (" + reasons + ")";
+  if (followed.submission.is_cancelled()) text += ", cancelled";
+  std::string ended;
+  for (const auto& [fate, tasks] : state.fates) {
+    ended += (ended.empty() ? "; ended: " : ", ") + format_count(tasks) + " " + get_name(fate);
+  }
+  return text + ended;
+}
+
+Json make_json(const SweepStatus& status, const std::vector<Followed>& submissions) {
+  Json jobs = Json::array();
+  for (const Followed& followed : submissions) jobs.push(make_json(followed));
   Json failures = Json::object(), faults = Json::array(), runners = Json::array();
   for (const auto& [reason, cases] : status.failures) {
     failures.set(reason, static_cast<long>(cases));
@@ -41,11 +98,12 @@ Json make_json(const SweepStatus& status) {
       .set("duplicates", static_cast<long>(status.duplicates))
       .set("data_digest", status.digest.text())
       .set("claims", runners)
+      .set("submissions", jobs)
       .set("faults", faults);
   return json;
 }
 
-void print_text(const SweepStatus& status) {
+void print_text(const SweepStatus& status, const std::vector<Followed>& submissions) {
   const auto line = [](const char* name, const std::string& value) {
     std::cout << name << std::string(10 - std::string(name).size(), ' ') << value << "\n";
   };
@@ -65,17 +123,20 @@ void print_text(const SweepStatus& status) {
   line("shards", format_count(status.shards_present) + " of " + format_count(status.shards) + ", " +
                      format_bytes(static_cast<double>(status.bytes)));
   if (status.duplicates > 0) line("made twice", format_count(status.duplicates) + " shards");
+  for (const Followed& followed : submissions) line("submitted", describe(followed));
   for (const std::string& fault : status.faults) std::cerr << "strut: " << fault << "\n";
 }
 
 }  // namespace
 
 int run_status(const std::vector<std::string>& words) {
-  Arguments arguments("strut status DIR [OPTIONS]",
-                      "How far the sweep in DIR has come, from its files alone; `strut verify` "
-                      "checks every byte of\n"
-                      "them. Ends with code 1 where cases failed or files cannot be read.",
-                      "  strut status sweep --watch\n  strut status sweep --json");
+  Arguments arguments(
+      "strut status DIR [OPTIONS]",
+      "How far the sweep in DIR has come, from its files, and what the scheduler says of "
+      "what was\n"
+      "submitted; `strut verify` checks every byte. Ends with code 1 where cases failed or files "
+      "cannot be read.",
+      "  strut status sweep --watch\n  strut status sweep --json");
   arguments.add_switch("json", "print JSON");
   arguments.add_switch("watch", "print again every second until the sweep is complete");
   if (!arguments.parse(words)) return kExitDone;
@@ -83,11 +144,12 @@ int run_status(const std::vector<std::string>& words) {
   const bool on_terminal = isatty(STDOUT_FILENO) == 1;
   for (;;) {
     const SweepStatus status = read_status(sweep.folder, sweep.plan);
+    const std::vector<Followed> submissions = follow_all(sweep.folder);
     if (arguments.is_on("watch") && on_terminal) std::cout << "\033[H\033[J";
     if (arguments.is_on("json")) {
-      std::cout << make_json(status).dump() << std::endl;
+      std::cout << make_json(status, submissions).dump() << std::endl;
     } else {
-      print_text(status);
+      print_text(status, submissions);
       std::cout << std::flush;
     }
     if (!arguments.is_on("watch") || status.complete()) {

@@ -8,6 +8,8 @@
 #include "io/atomic_file.h"
 #include "io/claims.h"
 #include "io/config.h"
+#include "io/nearest_name.h"
+#include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
 #include "jobs/dispatch/slurm.h"
@@ -37,7 +39,8 @@ Arguments make_arguments() {
       "strut submit DIR --to slurm|local [OPTIONS]",
       "Queues what the sweep in DIR still lacks: arrays of tasks of some minutes each, and behind "
       "them one\n"
-      "that merges. Submitting again queues only what is neither there nor queued. Tasks near their "
+      "that merges. Submitting again queues only what is neither there nor queued. Tasks near "
+      "their "
       "time\n"
       "limit finish the shard in hand and queue themselves again. `--to local` works through the "
       "tasks on\n"
@@ -129,8 +132,7 @@ class Submitter {
     resources_.memory = text("memory");
     resources_.extra = arguments_.list("option");
     const bool here = dispatcher_->name() == "local";
-    resources_.threads =
-        here || arguments_.has("threads") ? find_threads(arguments_) : 1;
+    resources_.threads = here || arguments_.has("threads") ? find_threads(arguments_) : 1;
     if (!arguments_.has("time")) return;
     const auto seconds = parse_slurm_time(arguments_.text("time"));
     if (!seconds || *seconds <= 0.0) {
@@ -152,7 +154,6 @@ class Submitter {
                                "; nothing is submitted; try again later, or with --again");
       }
       if (state.queue == QueueState::kEnded && !arguments_.is_on("dry-run")) s.mark_over();
-      for (const ShardRange& range : state.live) live_shards_ += range.count();
       live.insert(live.end(), state.live.begin(), state.live.end());
     }
     present_ = list_shards(sweep_.folder);
@@ -161,8 +162,8 @@ class Submitter {
 
   void say_nothing_to_do() const {
     std::cout << "nothing to submit: of " << format_count(sweep_.plan.shard_count()) << " shards "
-              << format_count(static_cast<std::int64_t>(present_.size())) << " are there and "
-              << format_count(live_shards_) << " in the hands of tasks that wait or run\n";
+              << format_count(static_cast<std::int64_t>(present_.size()))
+              << " are there, the others in the hands of tasks that wait or run\n";
   }
 
   /// As the shards that are there tell, or, without any, a few cases right now.
@@ -177,8 +178,8 @@ class Submitter {
       thread_seconds =
           estimate.seconds * estimate.cores / static_cast<double>(sweep_.plan.case_count());
     }
-    shard_seconds_ = thread_seconds * static_cast<double>(sweep_.plan.shard_size(0)) /
-                     resources_.threads;
+    shard_seconds_ =
+        thread_seconds * static_cast<double>(sweep_.plan.shard_size(0)) / resources_.threads;
   }
 
   static const Kernel& find_kernel_or_widest() { return list_kernels().front(); }
@@ -188,8 +189,7 @@ class Submitter {
     PackingRequest request;
     request.limits = limits_;
     request.shard_seconds = shard_seconds_;
-    request.task_seconds =
-        60.0 * arguments_.number_or("minutes", kTaskMinutes, above(0.0, "min"));
+    request.task_seconds = 60.0 * arguments_.number_or("minutes", kTaskMinutes, above(0.0, "min"));
     if (dispatcher_->name() == "slurm") {
       resources_.warning = std::ceil(std::max(kLeastWarning, kReserve * shard_seconds_));
       const double most = resources_.seconds > 0.0 ? resources_.seconds : limits_.seconds;
@@ -202,8 +202,7 @@ class Submitter {
                          " threads, and tasks are warned in time to finish it; more --threads, or "
                          "a sweep with smaller shards");
       }
-      request.task_seconds =
-          std::min(request.task_seconds, (most - resources_.warning) / kReserve);
+      request.task_seconds = std::min(request.task_seconds, (most - resources_.warning) / kReserve);
     }
     arrays_ = pack_shards(missing, request);
     std::int64_t largest = 1;
@@ -222,14 +221,14 @@ class Submitter {
     const std::string program = fs::read_symlink("/proc/self/exe").string();
     std::vector<std::string> lines = {"program=" + quote_word(program)};
     if (!arguments_.has("scratch")) return lines;
-    lines.push_back("copy=\"" + arguments_.text("scratch") + "/strut-" + hash_program() + "\"");
+    // The name tells versions and users apart.
+    const BuildInfo& build = get_build_info();
+    lines.push_back("copy=\"" + arguments_.text("scratch") + "/strut-" + build.commit + "-$UID\"");
     lines.emplace_back(
         "[[ -x $copy ]] || { cp \"$program\" \"$copy.$$\" && mv \"$copy.$$\" \"$copy\"; }");
     lines.emplace_back("[[ -x $copy ]] && program=$copy");
     return lines;
   }
-
-  static std::string hash_program();
 
   TaskArray make_array(const std::string& name, const std::string& part) const {
     TaskArray array;
@@ -257,8 +256,7 @@ class Submitter {
       last.is_array = false;
       last.at_once = 0;
       last.program = "\"$program\" merge " + root + " -o " +
-                     quote_word((sweep_.folder.root / "merged.h5").string()) +
-                     " --virtual --force";
+                     quote_word((sweep_.folder.root / "merged.h5").string()) + " --virtual --force";
       scripts.push_back(dispatcher_->make_script(last));
     }
     return scripts;
@@ -270,12 +268,11 @@ class Submitter {
   std::string describe() const {
     std::int64_t tasks = 0;
     for (const PackedArray& array : arrays_) tasks += array.tasks();
-    std::string text = format_count(tasks) + (tasks == 1 ? " task" : " tasks") + " in " +
-                       std::to_string(arrays_.size()) +
-                       (arrays_.size() == 1 ? " array" : " arrays") + ", each " +
-                       format_count(arrays_.front().shards_a_task) + " shards, some " +
-                       format_duration(task_seconds_) + " on " +
-                       std::to_string(resources_.threads) + " threads";
+    std::string text =
+        format_count(tasks) + (tasks == 1 ? " task" : " tasks") + " in " +
+        std::to_string(arrays_.size()) + (arrays_.size() == 1 ? " array" : " arrays") + ", each " +
+        format_count(arrays_.front().shards_a_task) + " shards, some " +
+        format_duration(task_seconds_) + " on " + std::to_string(resources_.threads) + " threads";
     if (resources_.seconds > 0.0) text += ", walltime " + format_slurm_time(resources_.seconds);
     return text;
   }
@@ -314,8 +311,8 @@ class Submitter {
     std::error_code ignored;
     fs::create_directories(sweep_.folder.logs(), ignored);
     const InterruptGuard guard;  // a job that is queued is also written down
-    const Submission s = make_submission(sweep_.folder, dispatcher_->name(), make_prefix(), arrays_,
-                                         collects());
+    const Submission s =
+        make_submission(sweep_.folder, dispatcher_->name(), make_prefix(), arrays_, collects());
     const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
     std::vector<std::string> jobs;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -365,10 +362,16 @@ class Submitter {
   Resources resources_;
   SiteLimits limits_;
   std::vector<std::int64_t> present_;
-  std::int64_t live_shards_ = 0;
   double shard_seconds_ = 0.0, task_seconds_ = 0.0;
   std::vector<PackedArray> arrays_;
 };
 
 }  // namespace
+
+int run_submit(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  return Submitter(arguments).run();
+}
+
 }  // namespace strut

@@ -1,4 +1,4 @@
-// strut submit and strut cancel: a sweep as tasks that run elsewhere.
+// strut submit: a sweep as tasks that run elsewhere.
 #pragma once
 
 #include <string>
@@ -6,8 +6,7 @@
 
 namespace strut {
 
-/// The commands; exit code. Throws InputError, EnvironmentError.
+/// The command; exit code. Throws InputError, EnvironmentError.
 int run_submit(const std::vector<std::string>& arguments);
-int run_cancel(const std::vector<std::string>& arguments);
 
 }  // namespace strut

@@ -23,8 +23,8 @@ struct Resources {
 /// What a site allows.
 struct SiteLimits {
   std::int64_t array_tasks = std::numeric_limits<std::int64_t>::max();  // in one array
-  std::int64_t tasks = std::numeric_limits<std::int64_t>::max();        // queued at once, all arrays
-  double seconds = std::numeric_limits<double>::infinity();             // wall clock of one task
+  std::int64_t tasks = std::numeric_limits<std::int64_t>::max();  // queued at once, all arrays
+  double seconds = std::numeric_limits<double>::infinity();       // wall clock of one task
 };
 
 /// A program to be run for each of `tasks`, and where.

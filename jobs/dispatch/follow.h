@@ -24,10 +24,10 @@ struct SubmissionState {
   QueueState queue = QueueState::kUnknown;
   std::string why;  // it is unknown
   std::int64_t pending = 0, running = 0;
-  std::map<std::string, std::int64_t> reasons;   // for which tasks wait
-  std::map<TaskFate, std::int64_t> fates;        // of array tasks that are not queued
-  std::int64_t restarts = 0;                     // lives beyond each task's first
-  std::vector<ShardRange> live;                  // shards of tasks that wait or run
+  std::map<std::string, std::int64_t> reasons;  // for which tasks wait
+  std::map<TaskFate, std::int64_t> fates;       // of array tasks that are not queued
+  std::int64_t restarts = 0;                    // lives beyond each task's first
+  std::vector<ShardRange> live;                 // shards of tasks that wait or run
 };
 
 /// Looks; changes nothing. A submission that is over is not asked about.

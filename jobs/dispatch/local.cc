@@ -32,8 +32,8 @@ ProcessIdentity read_identity(const std::string& text) {
   return p;
 }
 
-/// In the child: begins a session, so that it outlives the terminal, tells who it is and becomes the
-/// script.
+/// In the child: begins a session, so that it outlives the terminal, tells who it is and becomes
+/// the script.
 [[noreturn]] void become(const fs::path& script, const std::string& wait_for, int tell) {
   ::setsid();
   const std::string identity = write_identity(find_own_identity());
@@ -53,9 +53,8 @@ ProcessIdentity read_identity(const std::string& text) {
 }  // namespace
 
 SiteLimits LocalDispatcher::check(const Resources& resources, const fs::path&) const {
-  if (!resources.partition.empty() || !resources.account.empty() ||
-      !resources.constraint.empty() || !resources.memory.empty() || resources.seconds > 0.0 ||
-      !resources.extra.empty()) {
+  if (!resources.partition.empty() || !resources.account.empty() || !resources.constraint.empty() ||
+      !resources.memory.empty() || resources.seconds > 0.0 || !resources.extra.empty()) {
     throw InputError(
         "--partition, --account, --constraint, --memory, --time, --option: this machine has no "
         "such thing; they go with --to slurm");
@@ -119,8 +118,8 @@ void LocalDispatcher::cancel(const std::vector<std::string>& jobs) const {
     const auto number = parse_number<pid_t>(process.process);
     if (!number || judge_process(process, own) != Life::kRuns) continue;
     if (::kill(-*number, SIGTERM) != 0 && errno != ESRCH) {
-      throw EnvironmentError("process " + process.process + ": cannot be stopped: " +
-                             std::strerror(errno));
+      throw EnvironmentError("process " + process.process +
+                             ": cannot be stopped: " + std::strerror(errno));
     }
   }
 }

@@ -32,15 +32,15 @@ struct PackedArray {
 };
 
 struct PackingRequest {
-  double shard_seconds = 1.0;  // wall clock of one shard on one task's threads
+  double shard_seconds = 1.0;   // wall clock of one shard on one task's threads
   double task_seconds = 600.0;  // aimed at
   SiteLimits limits;
 };
 
 /// Arrays that cover the ranges, within the limits: larger tasks where there would be too many.
 /// What lies between ranges may be covered, too, where arrays would be too many: tasks pass over
-/// shards that are there. A task may then be longer than the site's wall clock: it stops in time and
-/// is queued again.
+/// shards that are there. A task may then be longer than the site's wall clock: it stops in time
+/// and is queued again.
 std::vector<PackedArray> pack_shards(std::vector<ShardRange> missing,
                                      const PackingRequest& request);
 

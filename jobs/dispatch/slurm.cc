@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 #include <set>
 #include <sstream>
@@ -52,7 +53,8 @@ std::map<std::string, std::string> read_settings() {
   return settings;
 }
 
-std::int64_t read_count(const std::map<std::string, std::string>& settings, const std::string& key) {
+std::int64_t read_count(const std::map<std::string, std::string>& settings,
+                        const std::string& key) {
   const auto found = settings.find(key);
   if (found == settings.end()) return SiteLimits().tasks;
   return parse_number<std::int64_t>(found->second).value_or(SiteLimits().tasks);
@@ -123,11 +125,11 @@ std::string find_own_job() {
 }
 
 TaskState judge_word(const std::string& word) {
-  static const std::set<std::string> pending = {"PENDING",        "CONFIGURING",    "REQUEUED",
-                                                "REQUEUE_FED",    "REQUEUE_HOLD",   "SPECIAL_EXIT",
+  static const std::set<std::string> pending = {"PENDING",      "CONFIGURING",  "REQUEUED",
+                                                "REQUEUE_FED",  "REQUEUE_HOLD", "SPECIAL_EXIT",
                                                 "RESV_DEL_HOLD"};
-  static const std::set<std::string> running = {"RUNNING",  "COMPLETING", "SUSPENDED",
-                                                "RESIZING", "SIGNALING",  "STAGE_OUT", "STOPPED"};
+  static const std::set<std::string> running = {"RUNNING",   "COMPLETING", "SUSPENDED", "RESIZING",
+                                                "SIGNALING", "STAGE_OUT",  "STOPPED"};
   if (pending.count(word) > 0) return TaskState::kPending;
   return running.count(word) > 0 ? TaskState::kRunning : TaskState::kEnded;
 }
@@ -293,7 +295,15 @@ bool SlurmDispatcher::requeue_own() const {
 }
 
 std::int64_t SlurmDispatcher::find_own_end() const {
-  return parse_number<std::int64_t>(read_environment("SLURM_JOB_END_TIME")).value_or(0);
+  // Slurm before 22.05.9 does not put it into the task's environment.
+  const auto told = parse_number<std::int64_t>(read_environment("SLURM_JOB_END_TIME"));
+  if (told) return *told;
+  const std::string job = read_environment("SLURM_JOB_ID");
+  if (job.empty()) return 0;
+  const ChildOutput left = read_child({"squeue", "-h", "-j", job, "-o", "%L"});
+  const auto seconds = parse_slurm_time(left.out.substr(0, left.out.find('\n')));
+  const bool is_known = left.code == 0 && seconds && std::isfinite(*seconds);
+  return is_known ? std::time(nullptr) + std::lround(*seconds) : 0;
 }
 
 int SlurmDispatcher::count_own_restarts() const {

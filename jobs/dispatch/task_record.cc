@@ -10,9 +10,9 @@ namespace strut {
 namespace {
 
 constexpr std::array<const char*, 5> kEnds = {"done", "failed", "drained", "stopped", "error"};
-constexpr std::array<const char*, 9> kFates = {"never begun", "done",      "failed",
-                                               "drained",     "timeout",   "preempted",
-                                               "cancelled",   "error",     "lost"};
+constexpr std::array<const char*, 9> kFates = {"never begun", "done",    "failed",
+                                               "drained",     "timeout", "preempted",
+                                               "cancelled",   "error",   "lost"};
 /// How long before its time limit a task may already be stopped for it [s].
 constexpr std::int64_t kBefore = 5;
 
