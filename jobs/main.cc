@@ -14,6 +14,7 @@
 #include "jobs/compare.h"
 #include "jobs/design.h"
 #include "jobs/diagnose.h"
+#include "jobs/doctor.h"
 #include "jobs/evaluate.h"
 #include "jobs/export.h"
 #include "jobs/identify.h"
@@ -43,6 +44,8 @@ constexpr Command kCommands[] = {
     {"status", "how far a sweep has come", &strut::run_status},
     {"submit", "a sweep as Slurm jobs, or in the background here", &strut::run_submit},
     {"cancel", "take back what submit queued", &strut::run_cancel},
+    {"doctor", "can this file system and scheduler keep what a sweep promises?",
+     &strut::run_doctor},
     {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
     {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
     {"train", "a network that identifies parameters, from a sweep's cases", &strut::run_train},

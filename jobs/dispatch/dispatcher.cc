@@ -29,6 +29,8 @@ std::vector<std::string> list_dispatchers() {
   return names;
 }
 
+std::string find_dispatcher() { return SlurmDispatcher::is_there() ? "slurm" : "local"; }
+
 std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name) {
   return get_makers().at(name)();
 }

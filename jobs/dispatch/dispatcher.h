@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "jobs/doctor/finding.h"
+
 namespace strut {
 
 /// What one task asks of a machine; empty, 0: as the site has it.
@@ -51,6 +53,11 @@ struct QueuedTasks {
   std::string reason;  // why it waits or ended: "Resources"
 };
 
+/// What one node said.
+struct NodeAnswer {
+  std::string name, answer;
+};
+
 class Dispatcher {
  public:
   virtual ~Dispatcher() = default;
@@ -61,6 +68,12 @@ class Dispatcher {
   /// know the partition, its machines cannot see `folder`. Throws InputError or EnvironmentError.
   virtual SiteLimits check(const Resources& resources,
                            const std::filesystem::path& folder) const = 0;
+
+  /// What a person should know of this place: what works, what does not, its limits.
+  virtual Findings examine(const Resources& resources,
+                           const std::filesystem::path& folder) const = 0;
+  /// The instruction sets that this program can use on each node that is idle, the widest first.
+  virtual std::vector<NodeAnswer> ask_nodes(const Resources& resources) const = 0;
 
   /// The text of the file that submit() takes.
   virtual std::string make_script(const TaskArray& tasks) const = 0;
@@ -94,6 +107,8 @@ class Dispatcher {
 };
 
 std::vector<std::string> list_dispatchers();
+/// The cluster's where one is there, else "local".
+std::string find_dispatcher();
 /// One of list_dispatchers(). Throws std::out_of_range.
 std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name);
 

@@ -13,6 +13,7 @@
 #include "io/input_error.h"
 #include "io/parse_number.h"
 #include "io/process_identity.h"
+#include "model/kernel/simulation.h"
 
 namespace strut {
 namespace {
@@ -60,6 +61,19 @@ SiteLimits LocalDispatcher::check(const Resources& resources, const fs::path&) c
         "such thing; they go with --to slurm");
   }
   return {};
+}
+
+Findings LocalDispatcher::examine(const Resources&, const fs::path&) const {
+  return {{"scheduler", Health::kGood, "none: this machine alone",
+           "`strut submit --to local` works in the background"}};
+}
+
+std::vector<NodeAnswer> LocalDispatcher::ask_nodes(const Resources&) const {
+  std::string names;
+  for (const Kernel& kernel : list_kernels()) {
+    names += (names.empty() ? "" : " ") + std::string(kernel.isa);
+  }
+  return {{find_own_identity().host, names}};
 }
 
 std::string LocalDispatcher::make_script(const TaskArray& tasks) const {

@@ -11,6 +11,8 @@ class LocalDispatcher : public Dispatcher {
  public:
   std::string name() const override { return "local"; }
   SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
+  Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;
+  std::vector<NodeAnswer> ask_nodes(const Resources& resources) const override;
   std::string make_script(const TaskArray& tasks) const override;
   std::string try_script(const std::filesystem::path&) const override { return ""; }
   std::string submit(const std::filesystem::path& script,

@@ -13,6 +13,7 @@
 #include <sstream>
 #include <thread>
 
+#include "io/config.h"
 #include "io/input_error.h"
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
@@ -185,8 +186,10 @@ std::string format_slurm_time(double seconds) {
   return text.data();
 }
 
+bool SlurmDispatcher::is_there() { return read_child({"sbatch", "--version"}).code == 0; }
+
 SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& folder) const {
-  if (read_child({"sbatch", "--version"}).code != 0) {
+  if (!is_there()) {
     throw EnvironmentError(
         "sbatch: cannot be started; --to slurm works where Slurm's commands are in PATH, --to "
         "local everywhere");
@@ -206,6 +209,70 @@ SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& fo
   return {read_count(settings, "MaxArraySize"),
           std::max<std::int64_t>(1, read_count(settings, "MaxJobCount") - queued - 1),
           partition.seconds};
+}
+
+Findings SlurmDispatcher::examine(const Resources& resources, const fs::path& folder) const {
+  constexpr double kSlow = 5.0;  // s
+  if (!is_there())
+    return {{"scheduler", Health::kBad, "sbatch cannot be started", "--to local works"}};
+  Findings findings;
+  const auto start = std::chrono::steady_clock::now();
+  std::map<std::string, std::string> settings;
+  try {
+    settings = read_settings();
+  } catch (const EnvironmentError& e) {
+    return {{"scheduler", Health::kBad, e.what(), "nothing can be submitted right now"}};
+  }
+  const double waited =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  findings.push_back({"scheduler", waited < kSlow ? Health::kGood : Health::kWarning,
+                      "Slurm " + settings["SLURM_VERSION"] + ", answers in " +
+                          format_rounded(std::round(1e3 * waited)) + " ms",
+                      ""});
+  findings.push_back(
+      {"job arrays", Health::kGood,
+       settings["MaxArraySize"] + " tasks an array, " + settings["MaxJobCount"] + " jobs at once",
+       "submissions are split at that"});
+  const bool requeues = settings["JobRequeue"] != "0";
+  findings.push_back({"requeue", requeues ? Health::kGood : Health::kWarning,
+                      requeues ? "allowed" : "not allowed by the site",
+                      requeues ? "tasks go on after a drained time limit or a failed node"
+                               : "submit again for what a time limit or a failed node left"});
+  try {
+    const Partition partition = find_partition(resources.partition);
+    findings.push_back(
+        {"partition", partition.is_up ? Health::kGood : Health::kBad,
+         partition.name + (partition.is_up ? ", up" : ", down") + ", " +
+             (std::isfinite(partition.seconds) ? format_slurm_time(partition.seconds) + " a task"
+                                               : std::string("no time limit")),
+         ""});
+    check_folder(partition.name, folder);
+    findings.push_back({"folder on the nodes", Health::kGood, "may be seen", ""});
+  } catch (const InputError& e) {
+    findings.push_back({"partition", Health::kBad, e.what(), "nothing can run there"});
+  }
+  return findings;
+}
+
+std::vector<NodeAnswer> SlurmDispatcher::ask_nodes(const Resources& resources) const {
+  const Partition partition = find_partition(resources.partition);
+  const std::string idle =
+      ask({"sinfo", "-h", "-N", "-p", partition.name, "-t", "idle", "-o", "%N"});
+  const auto count = std::count(idle.begin(), idle.end(), '\n');
+  if (count == 0) return {};
+  const std::string program = fs::read_symlink("/proc/self/exe").string();
+  const std::string told =
+      ask({"srun", "--partition=" + partition.name, "--nodes=" + std::to_string(count),
+           "--ntasks-per-node=1", "--immediate=30", "--quiet", "bash", "-c",
+           "echo \"$SLURMD_NODENAME|$(\"$0\" --version)\" | tr '\\n' ' '; echo", program});
+  std::vector<NodeAnswer> nodes;
+  const std::string before = "instruction sets: ";
+  for (const std::string& line : split(told, '\n')) {
+    const std::size_t bar = line.find('|'), sets = line.find(before);
+    if (bar == std::string::npos || sets == std::string::npos) continue;
+    nodes.push_back({line.substr(0, bar), line.substr(sets + before.size())});
+  }
+  return nodes;
 }
 
 std::string SlurmDispatcher::make_script(const TaskArray& tasks) const {

@@ -7,8 +7,13 @@ namespace strut {
 
 class SlurmDispatcher : public Dispatcher {
  public:
+  /// Its commands are in PATH.
+  static bool is_there();
+
   std::string name() const override { return "slurm"; }
   SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
+  Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;
+  std::vector<NodeAnswer> ask_nodes(const Resources& resources) const override;
   std::string make_script(const TaskArray& tasks) const override;
   std::string try_script(const std::filesystem::path& script) const override;
   std::string submit(const std::filesystem::path& script,

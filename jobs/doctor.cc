@@ -1,0 +1,134 @@
+#include "jobs/doctor.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <set>
+#include <sstream>
+
+#include "io/nearest_name.h"
+#include "jobs/command.h"
+#include "jobs/dispatch/dispatcher.h"
+#include "jobs/doctor/file_checks.h"
+#include "jobs/json.h"
+#include "jobs/open_sweep.h"
+#include "jobs/plan_estimate.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+Arguments make_arguments() {
+  Arguments arguments(
+      "strut doctor DIR [OPTIONS]",
+      "Tries what a sweep in DIR (a planned one, or any folder that shall hold some) relies upon: "
+      "the file\n"
+      "system, the scheduler, and with --nodes the processors of its nodes, which a job of a "
+      "second "
+      "asks.\n"
+      "Says which promises hold. Ends with code 1 where one does not.",
+      "  strut doctor sweep\n  strut doctor sweep --to slurm --partition short --nodes");
+  arguments.add_option("to", "NAME",
+                       "scheduler: slurm or local (default: slurm where it is there)");
+  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
+  arguments.add_switch("nodes", "ask every idle node for its instruction sets");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+/// Of what a planned sweep still lacks; none for another folder.
+SpaceNeeds calc_needs(const fs::path& root) {
+  const SweepFolder folder{root};
+  if (!fs::exists(folder.plan())) return {};
+  const Plan plan = open_sweep_folder(folder);
+  const std::int64_t present = static_cast<std::int64_t>(list_shards(folder).size());
+  const double share = 1.0 - static_cast<double>(present) / static_cast<double>(plan.shard_count());
+  return {share * static_cast<double>(plan.case_count()) * calc_row_bytes(plan.make_schema()),
+          plan.shard_count() - present};
+}
+
+/// All alike: the same bits everywhere.
+Finding compare_nodes(const std::vector<NodeAnswer>& nodes) {
+  std::set<std::string> widest;
+  std::string text;
+  for (const NodeAnswer& node : nodes) {
+    const std::string first = node.answer.substr(0, node.answer.find(' '));
+    widest.insert(first);
+    text += (text.empty() ? "" : ", ") + node.name + ": " + first;
+  }
+  if (nodes.empty()) {
+    return {"instruction sets of the nodes", Health::kWarning, "no node answered",
+            "ask again when one is idle"};
+  }
+  const bool alike = widest.size() == 1;
+  return {"instruction sets of the nodes", alike ? Health::kGood : Health::kWarning, text,
+          alike ? "the same bits on all of them"
+                : "results differ by rounding; --constraint picks nodes that are alike"};
+}
+
+std::string find_isa() {
+  std::string names;
+  for (const Kernel& kernel : list_kernels())
+    names += (names.empty() ? "" : " ") + std::string(kernel.isa);
+  return names;
+}
+
+Findings examine(const Arguments& arguments, const fs::path& root) {
+  Findings findings = check_file_system(root, calc_needs(root));
+  findings.push_back({"instruction sets here", Health::kGood, find_isa(), ""});
+  const std::vector<std::string> names = list_dispatchers();
+  const std::string name =
+      arguments.has("to") ? names[static_cast<std::size_t>(arguments.choice_or("to", 0, names))]
+                          : find_dispatcher();
+  const auto dispatcher = make_dispatcher(name);
+  Resources resources;
+  if (arguments.has("partition")) resources.partition = arguments.text("partition");
+  for (Finding& f : dispatcher->examine(resources, root)) findings.push_back(std::move(f));
+  if (arguments.is_on("nodes")) findings.push_back(compare_nodes(dispatcher->ask_nodes(resources)));
+  return findings;
+}
+
+Json make_json(const Findings& findings) {
+  Json list = Json::array();
+  for (const Finding& f : findings) {
+    list.push(Json::object()
+                  .set("check", f.check)
+                  .set("health", get_name(f.health))
+                  .set("found", f.found)
+                  .set("meaning", f.meaning));
+  }
+  return Json::object().set("checks", list);
+}
+
+void print_text(const Findings& findings) {
+  for (const Finding& f : findings) {
+    const std::string health = get_name(f.health);
+    std::cout << health << std::string(9 - health.size(), ' ') << f.check << ": " << f.found
+              << (f.meaning.empty() ? "" : "; " + f.meaning) << "\n";
+  }
+}
+
+}  // namespace
+
+int run_doctor(const std::vector<std::string>& words) {
+  Arguments arguments = make_arguments();
+  if (!arguments.parse(words)) return kExitDone;
+  if (arguments.positional().size() != 1) {
+    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
+                                " arguments; expected DIR, a folder");
+  }
+  const fs::path root = arguments.positional().front();
+  if (!fs::is_directory(root)) throw InputError(root.string() + ": must be a folder");
+  const Findings findings = examine(arguments, fs::canonical(root));
+  if (arguments.is_on("json")) {
+    std::cout << make_json(findings).dump() << "\n";
+  } else {
+    print_text(findings);
+  }
+  const bool holds = std::none_of(findings.begin(), findings.end(),
+                                  [](const Finding& f) { return f.health == Health::kBad; });
+  return holds ? kExitDone : kExitNo;
+}
+
+}  // namespace strut
