@@ -143,7 +143,7 @@ Finding check_clock(const TrialFolder& folder) {
                       1e-9 * static_cast<double>(facts.st_mtim.tv_nsec - now.tv_nsec);
   const bool much = std::abs(skew) > kMuch;
   return {"clock of the file system", much ? Health::kWarning : Health::kGood,
-          format_rounded(std::round(100.0 * skew) / 100.0) + " s off this machine's",
+          format_rounded(std::round(100.0 * skew) / 100.0 + 0.0) + " s off this machine's",
           much ? "claims do not need it; rates and times to go in `strut status` are off"
                : "claims do not need it, rates are right"};
 }

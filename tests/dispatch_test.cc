@@ -1,0 +1,177 @@
+// Tasks of a submission: which shards each does, what it tells of itself, and how it is judged.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "io/input_error.h"
+#include "jobs/dispatch/follow.h"
+#include "jobs/dispatch/slurm.h"
+#include "jobs/dispatch/task_run.h"
+#include "tests/temporary_folder.h"
+#include "tests/tolerance.h"
+
+namespace strut {
+namespace {
+
+using Ranges = std::vector<ShardRange>;
+
+PackingRequest make_request(std::int64_t array_tasks, std::int64_t tasks) {
+  PackingRequest request;
+  request.shard_seconds = 60.0;
+  request.limits.array_tasks = array_tasks;
+  request.limits.tasks = tasks;
+  return request;
+}
+
+TEST_CASE("What is missing is told as ranges", "[unit]") {
+  CHECK(list_missing(10, {}) == Ranges{{0, 10}});
+  CHECK(list_missing(10, {0, 3, 4, 9}) == Ranges{{1, 3}, {5, 9}});
+  CHECK(list_missing(10, {3}, {{5, 12}}) == Ranges{{0, 3}, {4, 5}});
+  CHECK(list_missing(3, {0, 1, 2}).empty());
+}
+
+TEST_CASE("Tasks cover what is missing, once, within the limits of a site", "[unit][property]") {
+  std::mt19937 draw(7);
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto shards = static_cast<std::int64_t>(1 + draw() % 400);
+    std::vector<std::int64_t> present;
+    for (std::int64_t s = 0; s < shards; ++s) {
+      if (draw() % 3 == 0) present.push_back(s);
+    }
+    const Ranges missing = list_missing(shards, present);
+    const auto array_tasks = static_cast<std::int64_t>(1 + draw() % 9);
+    const auto tasks = static_cast<std::int64_t>(20 + draw() % 30);
+    std::vector<int> covered(static_cast<std::size_t>(shards), 0);
+    std::int64_t total = 0;
+    for (const PackedArray& array : pack_shards(missing, make_request(array_tasks, tasks))) {
+      CHECK(array.tasks() <= array_tasks);
+      total += array.tasks();
+      for (std::int64_t t = 0; t < array.tasks(); ++t) {
+        const ShardRange range = array.get_task(t);
+        CHECK(range.count() > 0);
+        for (std::int64_t s = range.first; s < range.end; ++s) {
+          ++covered[static_cast<std::size_t>(s)];
+        }
+      }
+    }
+    CHECK(total <= tasks);
+    for (const ShardRange& range : missing) {
+      for (std::int64_t s = range.first; s < range.end; ++s) {
+        CHECK(covered[static_cast<std::size_t>(s)] == 1);
+      }
+    }
+  }
+}
+
+TEST_CASE("A task is as long as it should be", "[unit]") {
+  // A shard takes a minute, a task ten.
+  const auto arrays = pack_shards({{0, 35}}, make_request(1000, 1000));
+  REQUIRE(arrays.size() == 1);
+  CHECK(arrays[0].shards_a_task == 10);
+  CHECK(arrays[0].tasks() == 4);
+  CHECK(arrays[0].get_task(3) == ShardRange{30, 35});
+}
+
+TEST_CASE("Two million shards are packed without being listed", "[unit]") {
+  const auto arrays = pack_shards({{0, 2'000'000}}, make_request(1001, 1'000'000));
+  CHECK(arrays.size() == 200);
+  CHECK(arrays.back().shards.end == 2'000'000);
+}
+
+TEST_CASE("Slurm's times are read and written", "[unit]") {
+  CHECK(*parse_slurm_time("5") == 300.0);
+  CHECK(*parse_slurm_time("04:05") == 245.0);
+  CHECK(*parse_slurm_time("03:04:05") == 11045.0);
+  CHECK(*parse_slurm_time("2-03:04:05") == 183845.0);
+  CHECK(*parse_slurm_time("1-12") == 129600.0);
+  CHECK(std::isinf(*parse_slurm_time("infinite")));
+  for (const char* text : {"", "soon", "1:2:3:4", "-5", "1-", "5 min"}) {
+    INFO(text);
+    CHECK_FALSE(parse_slurm_time(text));
+  }
+  CHECK(format_slurm_time(183845.0) == "2-03:05:00");
+  CHECK(format_slurm_time(60.0) == "0-00:01:00");
+}
+
+TaskLife make_life(std::optional<TaskEnd> how, std::int64_t limit = 0) {
+  return {"node", 1000, limit, 0, how, how ? 2000 : 0, 3};
+}
+
+TEST_CASE("What became of a task is told from its last life", "[unit]") {
+  CHECK(judge_task({}, false) == TaskFate::kNeverBegun);
+  CHECK(judge_task({}, true) == TaskFate::kCancelled);
+  CHECK(judge_task({make_life(TaskEnd::kDone)}, true) == TaskFate::kDone);
+  CHECK(judge_task({make_life(TaskEnd::kFailed)}, false) == TaskFate::kFailed);
+  CHECK(judge_task({make_life(TaskEnd::kError)}, false) == TaskFate::kError);
+  CHECK(judge_task({make_life(TaskEnd::kDrained)}, false) == TaskFate::kDrained);
+  CHECK(judge_task({make_life(TaskEnd::kDrained), make_life(TaskEnd::kDone)}, false) ==
+        TaskFate::kDone);
+  // Stopped when its time was over; long before; by `strut cancel`.
+  CHECK(judge_task({make_life(TaskEnd::kStopped, 2003)}, false) == TaskFate::kTimeout);
+  CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, false) == TaskFate::kPreempted);
+  CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, true) == TaskFate::kCancelled);
+  CHECK(judge_task({make_life(std::nullopt)}, false) == TaskFate::kLost);
+}
+
+TEST_CASE("A submission is read back as it was written", "[io]") {
+  const test::TemporaryFolder folder;
+  const SweepFolder sweep{folder / "."};
+  CHECK(list_submissions(sweep).empty());
+  const std::vector<PackedArray> arrays = {{{0, 100}, 7}, {{200, 201}, 7}};
+  const Submission first = make_submission(sweep, "slurm", "strut-abc", arrays, true);
+  make_submission(sweep, "local", "strut-abc", {{{5, 6}, 1}}, false);
+  first.write_job("array-1", "4711");
+  first.mark_cancelled();
+
+  const std::vector<Submission> all = list_submissions(sweep);
+  REQUIRE(all.size() == 2);
+  CHECK(all[0].name() == "001");
+  CHECK(all[0].dispatcher == "slurm");
+  CHECK(all[0].job_name("collect") == "strut-abc-001.collect");
+  CHECK(all[0].arrays == arrays);
+  CHECK(all[0].list_parts() == std::vector<std::string>{"array-0", "array-1", "collect"});
+  CHECK(all[0].read_job("array-0").empty());
+  CHECK(all[0].read_job("array-1") == "4711");
+  CHECK(all[0].is_cancelled());
+  CHECK_FALSE(all[0].is_over());
+  CHECK(all[1].name() == "002");
+  CHECK(all[1].list_parts() == std::vector<std::string>{"array-0"});
+
+  folder.write("jobs/001/submission.toml", "dispatcher = 3\n");
+  CHECK_THROWS_AS(list_submissions(sweep), InputError);
+}
+
+TEST_CASE("A task knows its shards and tells its lives", "[io]") {
+  const test::TemporaryFolder folder;
+  const SweepFolder sweep{folder / "."};
+  const Submission s = make_submission(sweep, "local", "strut", {{{10, 35}, 10}}, false);
+  TaskRun task(sweep, make_task_name("001", 0, "2"));
+  CHECK(task.shards() == ShardRange{30, 35});
+  task.begin();
+  const std::filesystem::path file = s.tasks(0) / "2";
+  REQUIRE(read_task_lives(file).size() == 1);
+  CHECK_FALSE(read_task_lives(file)[0].how);
+  task.end(TaskEnd::kDrained, 0);
+  CHECK(task.requeue().find("longer --time") != std::string::npos);
+  TaskRun again(sweep, "001/0/2");
+  again.begin();
+  again.end(TaskEnd::kDone, 5);
+  const std::vector<TaskLife> lives = read_task_lives(file);
+  REQUIRE(lives.size() == 2);
+  CHECK(lives[0].how == TaskEnd::kDrained);
+  CHECK(lives[1].how == TaskEnd::kDone);
+  CHECK(lives[1].shards == 5);
+
+  for (const char* name : {"001/0/3", "001/1/0", "002/0/0", "001/0", "001/0/x"}) {
+    INFO(name);
+    CHECK_THROWS_AS(TaskRun(sweep, name), InputError);
+  }
+  folder.write("jobs/001/array-0/2", "no life\n");
+  CHECK_THROWS_AS(read_task_lives(file), InputError);
+}
+
+}  // namespace
+}  // namespace strut
