@@ -296,7 +296,7 @@ class Submitter {
                 << arrays_[i].shards.end - 1 << ", " << format_count(arrays_[i].tasks())
                 << " tasks\n";
     }
-    if (s.collects) std::cout << "collect: after all arrays, however they end\n";
+    if (s.collects) std::cout << "collect: after all arrays, however they end (afterany)\n";
     std::cout << "nothing is queued\n";
   }
 
@@ -322,6 +322,10 @@ class Submitter {
         jobs.push_back(
             dispatcher_->submit(s.script(parts[i]), is_last ? jobs : std::vector<std::string>()));
       } catch (const EnvironmentError& e) {
+        if (jobs.empty()) {  // nothing was submitted
+          fs::remove_all(s.folder, ignored);
+          fs::remove(s.folder.parent_path(), ignored);  // where it was the first
+        }
         throw EnvironmentError(std::string(e.what()) + "; " + std::to_string(jobs.size()) + " of " +
                                std::to_string(parts.size()) +
                                " jobs are queued, submit again for the rest");

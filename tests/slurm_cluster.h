@@ -1,0 +1,144 @@
+// A Slurm of the test's own: real daemons of one machine as several nodes, in a folder, with ports
+// and a key of their own. Nothing of the machine's is read or changed.
+#pragma once
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/run_program.h"
+#include "tests/temporary_folder.h"
+
+namespace strut::test {
+
+/// Whether it came true in time.
+inline bool wait_until(const std::function<bool()>& happened, double seconds = 30.0) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                                   std::chrono::duration<double>(seconds));
+  while (!happened()) {
+    if (Clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return true;
+}
+
+class SlurmCluster {
+ public:
+  /// Nodes n1, n2 ... of `processors` each. What runs in this process' shells meets this cluster.
+  explicit SlurmCluster(int nodes, int processors = 1) : nodes_(nodes) {
+    for (const char* name : {"state", "log", "munge", "socket"}) {
+      std::filesystem::create_directory(path(name));
+    }
+    run("chmod 755 " + path("") + " " + path("socket") + "; chmod 700 " + path("munge") +
+        "; head -c 1024 /dev/urandom > " + path("munge/key") + "; chmod 600 " + path("munge/key"));
+    write_configuration(processors);
+    ::setenv("SLURM_CONF", path("slurm.conf").c_str(), 1);
+    start("munged --force --key-file=" + path("munge/key") + " --socket=" + path("socket/munge") +
+          " --pid-file=" + path("munged.pid") + " --log-file=" + path("munge/log") +
+          " --seed-file=" + path("munge/seed"));
+    start_controller();
+    for (int i = 1; i <= nodes_; ++i) start("slurmd -N n" + std::to_string(i));
+    const bool idle = wait_until([&] { return count_nodes("idle") == nodes_; });
+    INFO(read_text(path("log/controller")));
+    REQUIRE(idle);
+  }
+  SlurmCluster(const SlurmCluster&) = delete;
+  SlurmCluster& operator=(const SlurmCluster&) = delete;
+  ~SlurmCluster() {
+    ask("scancel --user=$(id -un)");
+    wait_until([&] { return ask("squeue -h -t running,completing").empty(); }, 10.0);
+    std::vector<std::string> files = {path("controller.pid"), path("munged.pid")};
+    for (int i = 1; i <= nodes_; ++i) files.insert(files.begin(), path("n" + std::to_string(i)));
+    // PID 1 of a container may reap nobody: daemons that ended are told by their files.
+    for (const std::string& file : files) run("kill $(cat " + file + ") 2>/dev/null");
+    wait_until([&] {
+      return std::none_of(files.begin(), files.end(),
+                          [](const std::string& f) { return std::filesystem::exists(f); });
+    });
+    ::unsetenv("SLURM_CONF");
+  }
+
+  void start_controller() { start("slurmctld"); }
+  /// As if its machine had lost power.
+  void kill_controller() {
+    run("kill -9 $(cat " + path("controller.pid") + ")");
+    std::filesystem::remove(path("controller.pid"));
+  }
+
+  /// What a command says, without the last line's end; "" where it fails.
+  static std::string ask(const std::string& command) {
+    const Outcome outcome = run_shell(command);
+    if (outcome.code != 0) return "";
+    return outcome.out.substr(0, outcome.out.find_last_not_of('\n') + 1);
+  }
+  static int count_nodes(const std::string& state) {
+    return std::atoi(ask("sinfo -h -N -o %T | grep -c '^" + state + "$'; true").c_str());
+  }
+  static int count_tasks(const std::string& state) {
+    return std::atoi(ask("squeue -h -r -t " + state + " | wc -l").c_str());
+  }
+
+ private:
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static void run(const std::string& command) { run_shell(command); }
+
+  static void start(const std::string& command) {
+    const Outcome outcome = run_shell("PATH=$PATH:/usr/sbin " + command + " >/dev/null");
+    INFO(command << ": " << outcome.messages);
+    REQUIRE(outcome.code == 0);
+  }
+
+  void write_configuration(int processors) {
+    // Daemons of tests that run at once must not meet.
+    const int port = 20000 + (static_cast<int>(::getpid()) % 4000) * 10;
+    const std::string last = std::to_string(nodes_);
+    const std::string names = nodes_ == 1 ? "n1" : "n[1-" + last + "]";
+    const std::string ports =
+        nodes_ == 1 ? std::to_string(port + 1)
+                    : "[" + std::to_string(port + 1) + "-" + std::to_string(port + nodes_) + "]";
+    folder_.write(
+        "slurm.conf",
+        "ClusterName=test\nSlurmctldHost=" + ask("hostname -s") + "\nSlurmUser=" + ask("id -un") +
+            "\nSlurmdUser=" + ask("id -un") + "\nAuthType=auth/munge\nAuthInfo=socket=" +
+            path("socket/munge") + "\nCredType=cred/munge\nSlurmctldPort=" + std::to_string(port) +
+            "\nStateSaveLocation=" + path("state") + "\nSlurmdSpoolDir=" + path("spool-%n") +
+            "\nSlurmctldPidFile=" + path("controller.pid") + "\nSlurmdPidFile=" + path("%n") +
+            "\nSlurmctldLogFile=" + path("log/controller") + "\nSlurmdLogFile=" + path("log/%n") +
+            R"(
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SchedulerType=sched/backfill
+SchedulerParameters=sched_interval=1,bf_interval=1,batch_sched_delay=0
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+MpiDefault=none
+SwitchType=switch/none
+ReturnToService=2
+JobRequeue=1
+KillWait=2
+MinJobAge=300
+MaxArraySize=1001
+)" +
+            "NodeName=" + names + " NodeHostname=" + ask("hostname -s") +
+            " NodeAddr=127.0.0.1 Port=" + ports + " CPUs=" + std::to_string(processors) +
+            " RealMemory=1000 State=UNKNOWN\nPartitionName=test Nodes=" + names +
+            " Default=YES MaxTime=INFINITE State=UP\n");
+  }
+
+  const int nodes_;
+  TemporaryFolder folder_;
+};
+
+}  // namespace strut::test
