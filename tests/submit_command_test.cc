@@ -89,8 +89,9 @@ TEST_CASE("A dry run shows the scripts and queues nothing", "[io]") {
 TEST_CASE("A sweep warned of its time limit finishes the shard in hand", "[io]") {
   const fs::path sweep = get_sweep().copy("warned");
   const Outcome outcome = test::run_shell(
-      STRUT_PROGRAM " run " + sweep.string() + " --threads 1 --json & pid=$!; while [ -z \"$(ls " +
-      (sweep / "shards").string() + ")\" ]; do sleep 0.01; done; kill -USR1 $pid; wait $pid");
+      "(" STRUT_PROGRAM " run " + sweep.string() +
+      " --threads 1 --json & pid=$!; while [ -z \"$(ls " + (sweep / "shards").string() +
+      ")\" ]; do sleep 0.01; done; kill -USR1 $pid; wait $pid)");
   CHECK(outcome.code == 138);
   CHECK_THAT(outcome.messages, Contains("time limit") && Contains("goes on from here"));
   const auto json = test::parse_json(outcome.out);
@@ -125,7 +126,8 @@ TEST_CASE("The doctor says which promises hold", "[io]") {
   const Outcome outcome = run_sweep_command("doctor", sweep, "--to local --json");
   CHECK(outcome.code == 0);
   std::vector<std::string> checks;
-  for (const auto& [key, check] : test::parse_json(outcome.out).get_child("checks")) {
+  const auto found = test::parse_json(outcome.out);
+  for (const auto& [key, check] : found.get_child("checks")) {
     checks.push_back(check.get<std::string>("check"));
     CHECK(check.get<std::string>("health") != "bad");
   }
