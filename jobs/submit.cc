@@ -64,6 +64,9 @@ Arguments make_arguments() {
   arguments.add_option("scratch", "PATH",
                        "node-local folder, $NAMES as the node has them, where each node keeps a "
                        "copy of the program");
+  arguments.add_switch("retry",
+                       "behind the arrays, a task that tries failed cases once more, as `strut "
+                       "resume` does");
   arguments.add_switch("no-merge", "no last task that writes DIR/merged.h5");
   arguments.add_switch("again",
                        "submit although it is unknown whether an earlier submission still runs");
@@ -107,7 +110,8 @@ class Submitter {
       }
     }
     const std::vector<ShardRange> missing = find_missing();
-    if (missing.empty()) {
+    status_ = read_status(sweep_.folder, sweep_.plan);
+    if (missing.empty() && !(retries() && status_.failed > 0)) {
       say_nothing_to_do();
       return kExitDone;
     }
@@ -164,15 +168,17 @@ class Submitter {
     std::cout << "nothing to submit: of " << format_count(sweep_.plan.shard_count()) << " shards "
               << format_count(static_cast<std::int64_t>(present_.size()))
               << " are there, the others in the hands of tasks that wait or run\n";
+    if (status_.failed > 0) {
+      std::cout << format_count(status_.failed) << " cases failed; --retry tries them once more\n";
+    }
   }
 
   /// As the shards that are there tell, or, without any, a few cases right now.
   void measure_cost() {
     double thread_seconds = 0.0;  // of a case
-    const SweepStatus status = read_status(sweep_.folder, sweep_.plan);
-    const std::int64_t simulated = status.done + status.failed;
+    const std::int64_t simulated = status_.done + status_.failed;
     if (simulated > 0) {
-      thread_seconds = status.simulation_seconds / static_cast<double>(simulated);
+      thread_seconds = status_.simulation_seconds / static_cast<double>(simulated);
     } else {
       const SweepEstimate estimate = estimate_sweep(sweep_.plan, find_kernel_or_widest());
       thread_seconds =
@@ -251,23 +257,46 @@ class Submitter {
                       make_task_name(s.name(), i, "\"$task\"");
       scripts.push_back(dispatcher_->make_script(array));
     }
+    const auto add_single = [&](const char* part, const std::string& words) {
+      TaskArray single = make_array(s.job_prefix, part);
+      single.is_array = false;
+      single.at_once = 0;
+      single.program = "\"$program\" " + words;
+      scripts.push_back(dispatcher_->make_script(single));
+    };
+    if (s.retries) add_single(Submission::kRetry, "resume " + root + " --threads \"$threads\"");
     if (s.collects) {
-      TaskArray last = make_array(s.job_prefix, Submission::kCollect);
-      last.is_array = false;
-      last.at_once = 0;
-      last.program = "\"$program\" merge " + root + " -o " +
-                     quote_word((sweep_.folder.root / "merged.h5").string()) + " --virtual --force";
-      scripts.push_back(dispatcher_->make_script(last));
+      add_single(Submission::kCollect, "merge " + root + " -o " +
+                                           quote_word((sweep_.folder.root / "merged.h5").string()) +
+                                           " --virtual --force");
     }
     return scripts;
   }
 
-  std::string make_prefix() const { return "strut-" + sweep_.plan.hash().substr(0, 8); }
-  bool collects() const { return !arguments_.is_on("no-merge"); }
+  bool retries() const { return arguments_.is_on("retry"); }
 
-  std::string describe() const {
+  /// What is to be queued; it has no folder yet.
+  Submission make_request() const {
+    Submission s;
+    s.dispatcher = dispatcher_->name();
+    s.job_prefix = "strut-" + sweep_.plan.hash().substr(0, 8);
+    s.arrays = arrays_;
+    s.retries = retries();
+    s.collects = !arguments_.is_on("no-merge");
+    return s;
+  }
+
+  std::int64_t count_tasks() const {
     std::int64_t tasks = 0;
     for (const PackedArray& array : arrays_) tasks += array.tasks();
+    return tasks;
+  }
+
+  std::string describe() const {
+    if (arrays_.empty()) {
+      return "one task for " + format_count(status_.failed) + " cases that failed";
+    }
+    const std::int64_t tasks = count_tasks();
     std::string text =
         format_count(tasks) + (tasks == 1 ? " task" : " tasks") + " in " +
         std::to_string(arrays_.size()) + (arrays_.size() == 1 ? " array" : " arrays") + ", each " +
@@ -278,12 +307,9 @@ class Submitter {
   }
 
   void show() const {
-    Submission s;
+    Submission s = make_request();
     s.folder = sweep_.folder.root / "jobs" / "NEXT";
-    s.dispatcher = dispatcher_->name();
-    s.job_prefix = make_prefix() + "-NEXT";
-    s.arrays = arrays_;
-    s.collects = collects();
+    s.job_prefix += "-NEXT";
     const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
     std::cout << describe() << "\n";
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -296,7 +322,8 @@ class Submitter {
                 << arrays_[i].shards.end - 1 << ", " << format_count(arrays_[i].tasks())
                 << " tasks\n";
     }
-    if (s.collects) std::cout << "collect: after all arrays, however they end (afterany)\n";
+    if (s.retries) std::cout << "retry: after all arrays, however they end (afterany)\n";
+    if (s.collects) std::cout << "collect: after all others, however they end (afterany)\n";
     std::cout << "nothing is queued\n";
   }
 
@@ -311,16 +338,15 @@ class Submitter {
     std::error_code ignored;
     fs::create_directories(sweep_.folder.logs(), ignored);
     const InterruptGuard guard;  // a job that is queued is also written down
-    const Submission s =
-        make_submission(sweep_.folder, dispatcher_->name(), make_prefix(), arrays_, collects());
+    const Submission s = make_submission(sweep_.folder, make_request());
     const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
     std::vector<std::string> jobs;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       write_text_file(s.script(parts[i]), scripts[i]);
-      const bool is_last = parts[i] == Submission::kCollect;
+      const bool waits = i >= s.arrays.size();
       try {
         jobs.push_back(
-            dispatcher_->submit(s.script(parts[i]), is_last ? jobs : std::vector<std::string>()));
+            dispatcher_->submit(s.script(parts[i]), waits ? jobs : std::vector<std::string>()));
       } catch (const EnvironmentError& e) {
         if (jobs.empty()) {  // nothing was submitted
           fs::remove_all(s.folder, ignored);
@@ -340,12 +366,10 @@ class Submitter {
     if (arguments_.is_on("json")) {
       Json queued = Json::object();
       for (std::size_t i = 0; i < parts.size(); ++i) queued.set(parts[i], jobs[i]);
-      std::int64_t tasks = 0;
-      for (const PackedArray& array : arrays_) tasks += array.tasks();
       std::cout << Json::object()
                        .set("submission", s.name())
                        .set("to", s.dispatcher)
-                       .set("tasks", static_cast<long>(tasks))
+                       .set("tasks", static_cast<long>(count_tasks()))
                        .set("jobs", queued)
                        .dump()
                 << "\n";
@@ -366,6 +390,7 @@ class Submitter {
   Resources resources_;
   SiteLimits limits_;
   std::vector<std::int64_t> present_;
+  SweepStatus status_;
   double shard_seconds_ = 0.0, task_seconds_ = 0.0;
   std::vector<PackedArray> arrays_;
 };

@@ -121,8 +121,8 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   const SweepFolder sweep{folder / "."};
   CHECK(list_submissions(sweep).empty());
   const std::vector<PackedArray> arrays = {{{0, 100}, 7}, {{200, 201}, 7}};
-  const Submission first = make_submission(sweep, "slurm", "strut-abc", arrays, true);
-  make_submission(sweep, "local", "strut-abc", {{{5, 6}, 1}}, false);
+  const Submission first = make_submission(sweep, {"", "slurm", "strut-abc", arrays, true, true});
+  make_submission(sweep, {"", "local", "strut-abc", {{{5, 6}, 1}}});
   first.write_job("array-1", "4711");
   first.mark_cancelled();
 
@@ -132,7 +132,7 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   CHECK(all[0].dispatcher == "slurm");
   CHECK(all[0].job_name("collect") == "strut-abc-001.collect");
   CHECK(all[0].arrays == arrays);
-  CHECK(all[0].list_parts() == std::vector<std::string>{"array-0", "array-1", "collect"});
+  CHECK(all[0].list_parts() == std::vector<std::string>{"array-0", "array-1", "retry", "collect"});
   CHECK(all[0].read_job("array-0").empty());
   CHECK(all[0].read_job("array-1") == "4711");
   CHECK(all[0].is_cancelled());
@@ -147,7 +147,7 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
 TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
-  const Submission s = make_submission(sweep, "local", "strut", {{{10, 35}, 10}}, false);
+  const Submission s = make_submission(sweep, {"", "local", "strut", {{{10, 35}, 10}}});
   TaskRun task(sweep, make_task_name("001", 0, "2"));
   CHECK(task.shards() == ShardRange{30, 35});
   task.begin();

@@ -33,6 +33,21 @@ step = )" +
          history + "\n[shards]\ncases = " + std::to_string(shard_cases) + "\n";
 }
 
+/// 24 cases, some of which fail: flanks longer than half of their bump, and springs that cannot
+/// carry the car.
+inline std::string make_failing_sweep() {
+  std::string text = make_coarse_sweep(5);
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("bump_20mps", "one_sided");
+  replace("rear_damping    = { from = 1980,  to = 1800,  step = -90 }",
+          "bump_ramp = { from = 0.15, to = 0.45, count = 3 }");
+  replace("to = 30500, step = -1500", "to = 2000, count = 2");
+  return text;
+}
+
 /// `variables`: what stands before the command in a shell.
 inline Outcome run_sweep_command(const std::string& command, const std::filesystem::path& sweep,
                                  const std::string& options = "",

@@ -235,17 +235,7 @@ TEST_CASE("Run, status and verify tell scripts the agreed keys", "[io]") {
 
 TEST_CASE("Cases that fail are data: exit code 1, and status says why", "[io]") {
   const ProgramSweep& origin = get_quick_sweep();
-  std::string text = test::make_coarse_sweep(5);
-  const auto replace = [&text](const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    text.replace(text.find(from), from.size(), to);
-  };
-  // Flanks longer than half of their bump, and springs that cannot carry the car.
-  replace("bump_20mps", "one_sided");
-  replace("rear_damping    = { from = 1980,  to = 1800,  step = -90 }",
-          "bump_ramp = { from = 0.15, to = 0.45, count = 3 }");
-  replace("to = 30500, step = -1500", "to = 2000, count = 2");
-  std::ofstream(origin / "failing.toml") << text;
+  std::ofstream(origin / "failing.toml") << test::make_failing_sweep();
   const fs::path sweep = origin / "failing";
   REQUIRE(
       run_program("plan " + (origin / "failing.toml").string() + " -o " + sweep.string()).code ==

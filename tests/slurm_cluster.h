@@ -134,7 +134,10 @@ MaxArraySize=1001
             "NodeName=" + names + " NodeHostname=" + ask("hostname -s") +
             " NodeAddr=127.0.0.1 Port=" + ports + " CPUs=" + std::to_string(processors) +
             " RealMemory=1000 State=UNKNOWN\nPartitionName=test Nodes=" + names +
-            " Default=YES MaxTime=INFINITE State=UP\n");
+            " Default=YES MaxTime=INFINITE State=UP\n" +
+            // Another machine's, of which only the entry is needed.
+            "NodeName=far NodeAddr=127.0.0.1 Port=" + std::to_string(port + 9) +
+            " State=DOWN\nPartitionName=far Nodes=far State=UP\n");
   }
 
   const int nodes_;

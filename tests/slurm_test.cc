@@ -2,6 +2,7 @@
 // a run on this machine.
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "tests/program_sweep.h"
@@ -79,6 +80,63 @@ TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[clus
   CHECK(fs::exists(sweep / "merged.h5"));
 }
 
+TEST_CASE("A task warned of its time limit goes on in its next life", "[cluster]") {
+  const SlurmCluster cluster(1);
+  const fs::path sweep = get_sweep().copy("warned");
+  REQUIRE(submit(sweep, "--tasks 1").code == 0);
+  REQUIRE(wait_until([&] { return !fs::is_empty(sweep / "shards"); }));
+  // The signal that Slurm sends --signal's seconds before the limit.
+  SlurmCluster::ask("scancel --signal=USR1 --batch " + find_running());
+  REQUIRE(wait_for_end(sweep));
+  const auto status = read_status(sweep);
+  CHECK(status.get<bool>("complete"));
+  const auto& last = status.get_child("submissions").back().second;
+  CHECK(last.get<int>("restarts") == 1);
+  CHECK(last.get<int>("ended.done") == 1);
+  get_sweep().check_whole(sweep);
+}
+
+TEST_CASE("A task whose time is over is told from one that failed", "[cluster][slow]") {
+  const SlurmCluster cluster(1);
+  const fs::path sweep = get_sweep().copy("timeout");
+  // Slurm counts in minutes. This task hangs, as on a file system that does not answer, and the
+  // warning does not reach it.
+  REQUIRE(submit(sweep, "--tasks 2 --option=--time=1 --option=--signal=B:URG@1").code == 0);
+  REQUIRE(wait_until([&] { return fs::exists(sweep / "jobs/001/array-0/0"); }));
+  REQUIRE(test::run_shell("pkill -STOP -f '[r]un " + sweep.string() + " .*--task 001/0/0'").code ==
+          0);
+  REQUIRE(wait_for_end(sweep));
+  const auto last = read_status(sweep).get_child("submissions").back().second;
+  CHECK(last.get<int>("ended.timeout") == 1);
+  CHECK(last.get<int>("ended.done") == 1);
+  REQUIRE(submit(sweep).code == 0);
+  REQUIRE(wait_for_end(sweep));
+  get_sweep().check_whole(sweep);
+}
+
+TEST_CASE("A thousand million cases are queued as arrays, none of them listed", "[cluster]") {
+  const SlurmCluster cluster(1);
+  std::string text = test::make_coarse_sweep(65536);
+  const std::size_t grid = text.find("[grid]\n") + 7;
+  text.replace(grid, text.find("[sample]") - grid,
+               "front_stiffness = { from = 40000, to = 30010, step = -10 }\n"
+               "front_damping = { from = 1980, to = 981, step = -1 }\n"
+               "rear_stiffness = { from = 35000, to = 25010, step = -10 }\n");
+  const fs::path request = get_sweep() / "large.toml", sweep = get_sweep() / "large";
+  std::ofstream(request) << text;
+  REQUIRE(test::run_program("plan " + request.string() + " -o " + sweep.string()).code == 0);
+  // The cases' numbers alone would take 8 GB.
+  const Outcome outcome = test::run_shell("(ulimit -v 2000000; " STRUT_PROGRAM " submit " +
+                                          sweep.string() + " --to slurm --json)");
+  INFO(outcome.messages);
+  REQUIRE(outcome.code == 0);
+  const auto submitted = test::parse_json(outcome.out);
+  CHECK(submitted.get<int>("tasks") > 1000);
+  CHECK(submitted.get_child("jobs").size() > 2);
+  CHECK(SlurmCluster::count_tasks("pending,running") > 1000);
+  CHECK(run_sweep_command("cancel", sweep).code == 0);
+}
+
 TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]") {
   SlurmCluster cluster(2);
   const fs::path sweep = get_sweep().copy("two");
@@ -111,6 +169,14 @@ TEST_CASE("Slurm is asked before anything is queued", "[cluster]") {
   const Outcome constraint = submit(sweep, "--constraint gpu_of_tomorrow");
   CHECK(constraint.code == 3);
   CHECK_THAT(constraint.messages, Contains("feature"));
+  // A walltime shorter than a shard and the warning before it; a folder that nodes cannot see.
+  const Outcome walltime = submit(sweep, "--time 1");
+  CHECK(walltime.code == 2);
+  CHECK_THAT(walltime.messages, Contains("--time 0-00:01:00") && Contains("one shard takes"));
+  const Outcome folder = submit(sweep, "--partition far");
+  CHECK(folder.code == 2);
+  CHECK_THAT(folder.messages,
+             Contains(sweep.string()) && Contains("far") && Contains("cannot see"));
   const Outcome dry = submit(sweep, "--dry-run");
   CHECK(dry.code == 0);
   CHECK_THAT(dry.out, Contains("#SBATCH") && Contains("afterany"));

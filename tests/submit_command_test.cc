@@ -77,6 +77,29 @@ TEST_CASE("A submission is cancelled, and another does the rest", "[io]") {
   CHECK_FALSE(fs::exists(sweep / "merged.h5"));
 }
 
+TEST_CASE("What failed is tried once more behind the arrays", "[io]") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("failing.toml", test::make_failing_sweep()).string();
+  const fs::path sweep = folder / "failing";
+  REQUIRE(test::run_program("plan " + file + " -o " + sweep.string()).code == 0);
+  REQUIRE(run_sweep_command("run", sweep).code == 1);
+  const Outcome plain = run_sweep_command("submit", sweep, "--to local");
+  CHECK_THAT(plain.out, Contains("nothing to submit") && Contains("--retry"));
+  const Outcome outcome = run_sweep_command("submit", sweep, "--to local --retry");
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.out, Contains("one task for") && Contains("retry: local"));
+  wait_for_end(sweep);
+  // Cases that no smaller step mends, but they were looked at, behind no array, before the merge.
+  std::string told;
+  for (const fs::directory_entry& log : fs::directory_iterator(sweep / "logs")) {
+    if (log.path().string().find(".retry.log") != std::string::npos) {
+      told = test::read_text(log.path());
+    }
+  }
+  CHECK_THAT(told, Contains("0 cases simulated") && Contains("failed in all"));
+  CHECK(fs::exists(sweep / "merged.h5"));
+}
+
 TEST_CASE("A dry run shows the scripts and queues nothing", "[io]") {
   const fs::path sweep = get_sweep().copy("dry");
   const Outcome outcome = run_sweep_command("submit", sweep, "--to local --dry-run");

@@ -30,7 +30,8 @@ fs::path make_next(const fs::path& jobs) {
 
 void write_submission(const Submission& s) {
   std::string text = "dispatcher = \"" + s.dispatcher + "\"\njob_prefix = \"" + s.job_prefix +
-                     "\"\ncollects = " + (s.collects ? "true" : "false") + "\n";
+                     "\"\nretries = " + (s.retries ? "true" : "false") +
+                     "\ncollects = " + (s.collects ? "true" : "false") + "\n";
   for (const PackedArray& array : s.arrays) {
     text += "\n[[array]]\nfirst = " + std::to_string(array.shards.first) +
             "\nend = " + std::to_string(array.shards.end) +
@@ -46,8 +47,10 @@ Submission read_submission(const fs::path& folder) {
   s.folder = folder;
   s.dispatcher = root.text("dispatcher");
   s.job_prefix = root.text("job_prefix");
+  s.retries = root.boolean_or("retries", false);
   s.collects = root.boolean_or("collects", false);
-  for (const Table& table : root.tables("array")) {
+  const std::vector<Table> arrays = root.has("array") ? root.tables("array") : std::vector<Table>();
+  for (const Table& table : arrays) {
     const std::int64_t first = table.integer("first", 0, kMost);
     s.arrays.push_back({{first, table.integer("end", first + 1, kMost)},
                         table.integer("shards_a_task", 1, kMost)});
@@ -61,6 +64,7 @@ Submission read_submission(const fs::path& folder) {
 std::vector<std::string> Submission::list_parts() const {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < arrays.size(); ++i) parts.push_back(array_name(i));
+  if (retries) parts.emplace_back(kRetry);
   if (collects) parts.emplace_back(kCollect);
   return parts;
 }
@@ -81,12 +85,10 @@ void Submission::mark_cancelled() const { write_text_file(folder / "cancelled", 
 
 void Submission::mark_over() const { write_text_file(folder / "over", ""); }
 
-Submission make_submission(const SweepFolder& folder, const std::string& dispatcher,
-                           const std::string& job_prefix, const std::vector<PackedArray>& arrays,
-                           bool collects) {
-  Submission s{make_next(find_jobs(folder)), dispatcher, job_prefix, arrays, collects};
+Submission make_submission(const SweepFolder& folder, Submission s) {
+  s.folder = make_next(find_jobs(folder));
   s.job_prefix += "-" + s.name();
-  for (std::size_t i = 0; i < arrays.size(); ++i) fs::create_directory(s.tasks(i));
+  for (std::size_t i = 0; i < s.arrays.size(); ++i) fs::create_directory(s.tasks(i));
   write_submission(s);
   return s;
 }

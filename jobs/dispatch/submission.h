@@ -22,11 +22,13 @@ struct Submission {
   std::string dispatcher;
   std::string job_prefix;  // names of jobs begin so, and nobody else's do
   std::vector<PackedArray> arrays;
-  bool collects = false;  // a last job waits for all arrays
+  bool retries = false;   // a job behind all arrays tries once more what failed
+  bool collects = false;  // a last job, behind all others, merges
 
   std::string name() const { return folder.filename().string(); }
-  /// "array-0", ..., "collect": its files, and with the prefix its job.
+  /// "array-0", ..., "retry", "collect": its files, and with the prefix its job.
   std::string array_name(std::size_t array) const { return "array-" + std::to_string(array); }
+  static constexpr const char* kRetry = "retry";
   static constexpr const char* kCollect = "collect";
   std::string job_name(const std::string& part) const { return job_prefix + "." + part; }
   /// Names of all parts, in the order in which they are queued.
@@ -46,10 +48,8 @@ struct Submission {
   void mark_over() const;
 };
 
-/// Makes the next folder and its submission.toml. Throws EnvironmentError.
-Submission make_submission(const SweepFolder& folder, const std::string& dispatcher,
-                           const std::string& job_prefix, const std::vector<PackedArray>& arrays,
-                           bool collects);
+/// Gives a submission the next folder, its name, and its submission.toml. Throws EnvironmentError.
+Submission make_submission(const SweepFolder& folder, Submission submission);
 
 /// All of a sweep, the oldest first. Throws InputError where one is damaged.
 std::vector<Submission> list_submissions(const SweepFolder& folder);
