@@ -1,6 +1,7 @@
 #include "jobs/cancel.h"
 
 #include <iostream>
+#include <map>
 
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
@@ -9,15 +10,22 @@
 namespace strut {
 namespace {
 
-/// Its jobs, those included that a killed submit did not live to write down.
-std::vector<std::string> list_jobs(const Submission& submission, const Dispatcher& dispatcher) {
-  std::vector<std::string> jobs;
-  for (const std::string& part : submission.list_parts()) {
-    std::string job = submission.read_job(part);
-    if (job.empty()) job = dispatcher.find_job(submission.job_name(part));
-    if (!job.empty()) jobs.push_back(std::move(job));
+/// Takes back what of it is queued. Throws EnvironmentError where that cannot be told or done.
+void cancel(const Submission& submission) {
+  const auto dispatcher = make_dispatcher(submission.dispatcher);
+  // Before the tasks stop: they tell by it why they did. A submit that is under way stops by it.
+  submission.mark_cancelled();
+  try {
+    std::map<std::string, std::string> names;
+    for (const auto& [job, part] : find_jobs(submission, *dispatcher)) {
+      names[job] = submission.job_name(part);
+    }
+    dispatcher->cancel(names);
+    std::cout << "submission " << submission.name() << ": " << names.size() << " jobs cancelled\n";
+  } catch (const EnvironmentError&) {
+    submission.take_back_cancelled();
+    throw;
   }
-  return jobs;
 }
 
 }  // namespace
@@ -34,13 +42,14 @@ int run_cancel(const std::vector<std::string>& words) {
   const OpenSweep sweep = open_sweep(arguments);
   int cancelled = 0;
   for (const Submission& submission : list_submissions(sweep.folder)) {
-    if (submission.is_over()) continue;
-    const auto dispatcher = make_dispatcher(submission.dispatcher);
-    // Before the tasks stop: they tell by it why they did.
-    submission.mark_cancelled();
-    const std::vector<std::string> jobs = list_jobs(submission, *dispatcher);
-    if (!jobs.empty()) dispatcher->cancel(jobs);
-    std::cout << "submission " << submission.name() << ": " << jobs.size() << " jobs cancelled\n";
+    const SubmissionState state = follow(submission);
+    if (state.queue == QueueState::kEnded) continue;
+    if (state.queue == QueueState::kUnknown) {
+      throw EnvironmentError("submission " + submission.name() +
+                             ": whether it still runs is unknown: " + state.why +
+                             "; nothing of it is cancelled");
+    }
+    cancel(submission);
     ++cancelled;
   }
   if (cancelled == 0) std::cout << "nothing to cancel: no submission waits or runs\n";

@@ -85,7 +85,12 @@ Findings examine(const Arguments& arguments, const fs::path& root) {
   Resources resources;
   if (arguments.has("partition")) resources.partition = arguments.text("partition");
   for (Finding& f : dispatcher->examine(resources, root)) findings.push_back(std::move(f));
-  if (arguments.is_on("nodes")) findings.push_back(compare_nodes(dispatcher->ask_nodes(resources)));
+  if (!arguments.is_on("nodes")) return findings;
+  try {
+    findings.push_back(compare_nodes(dispatcher->ask_nodes(resources)));
+  } catch (const std::runtime_error& e) {
+    findings.push_back({"instruction sets of the nodes", Health::kWarning, e.what(), "ask again"});
+  }
   return findings;
 }
 

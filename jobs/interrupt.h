@@ -10,7 +10,8 @@ namespace strut {
 /// From now on SIGINT and SIGTERM end the program with code 128 + signal.
 void end_on_interrupt();
 
-/// Holds those signals, and SIGUSR1, back while it lives, so that a file is finished or cleaned up first.
+/// Holds those signals, and SIGUSR1, back while it lives, so that a file is finished or cleaned up
+/// first.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -34,8 +35,8 @@ class InterruptWatcher {
 
   /// True once a signal came. Others may set it too, to stop the same work.
   std::atomic<bool>& halt() { return halt_; }
-  /// True once SIGUSR1 came: work that lasts is to end where it is whole, in its own time. What does
-  /// not look at this goes on.
+  /// True once SIGUSR1 came: work that lasts is to end where it is whole, in its own time. What
+  /// does not look at this goes on.
   const std::atomic<bool>& warned() const { return warned_; }
   /// The signal that stops; 0: none came.
   int signal() const { return signal_; }

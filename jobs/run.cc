@@ -185,7 +185,11 @@ RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& opt
     task.end(judge_end(progress, summary), summary.shards_written);
     return summary;
   } catch (...) {
-    task.end(TaskEnd::kError, 0);
+    try {
+      task.end(TaskEnd::kError, 0);
+    } catch (const EnvironmentError&) {
+      // As on a full disk; what stopped the run is what is to be told.
+    }
     throw;
   }
 }
@@ -205,6 +209,10 @@ int run(const std::string& name, bool retries, const std::vector<std::string>& w
   const OpenSweep sweep = open_sweep(arguments);
   RunOptions options = read_options(arguments, sweep.plan, retries);
   std::optional<TaskRun> task = find_task(arguments, sweep, options);
+  if (task && task->is_cancelled()) {
+    std::cerr << "strut: its submission is cancelled\n";
+    return kExitDone;
+  }
   InterruptWatcher watcher;
   options.drain = &watcher.warned();
   RunProgress progress;

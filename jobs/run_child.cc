@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -39,21 +40,42 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
+/// How a child is started.
+struct Start {
+  std::vector<char*> environment;
+  bool own_group = false;
+};
+
+std::vector<char*> list_environment(const std::vector<std::string>& hidden) {
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string text = *variable;
+    const bool hides = std::any_of(hidden.begin(), hidden.end(), [&](const std::string& begin) {
+      return text.rfind(begin, 0) == 0;
+    });
+    if (!hides) kept.push_back(*variable);
+  }
+  kept.push_back(nullptr);
+  return kept;
+}
+
 /// -1 where it cannot be started.
-pid_t start(const std::vector<std::string>& words, const FileActions& actions) {
+pid_t start(const std::vector<std::string>& words, const FileActions& actions, Start how) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setflags(
+      &attributes,
+      static_cast<short>(POSIX_SPAWN_SETSIGMASK | (how.own_group ? POSIX_SPAWN_SETPGROUP : 0)));
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
   for (std::string& word : copies) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   pid_t child = 0;
-  const int failure =
-      posix_spawnp(&child, pointers[0], actions.get(), &attributes, pointers.data(), environ);
+  const int failure = posix_spawnp(&child, pointers[0], actions.get(), &attributes, pointers.data(),
+                                   how.environment.data());
   posix_spawnattr_destroy(&attributes);
   return failure == 0 ? child : -1;
 }
@@ -120,7 +142,7 @@ int run_child(const std::vector<std::string>& words, const ChildFiles& files) {
   FileActions actions;
   actions.write_to(STDOUT_FILENO, files.output);
   actions.write_to(STDERR_FILENO, files.messages);
-  const pid_t child = start(words, actions);
+  const pid_t child = start(words, actions, {list_environment({}), false});
   return child < 0 ? -1 : wait_for(child);
 }
 
@@ -137,17 +159,17 @@ std::string ChildOutput::explain() const {
   return said.substr(first, last + 1 - first);
 }
 
-ChildOutput read_child(const std::vector<std::string>& words, std::chrono::milliseconds patience) {
+ChildOutput read_child(const std::vector<std::string>& words, const ChildOptions& options) {
   ChildOutput output;
   Pipe out, messages;
   FileActions actions;
   actions.write_to(STDOUT_FILENO, out.to);
   actions.write_to(STDERR_FILENO, messages.to);
-  const pid_t child = start(words, actions);
+  const pid_t child = start(words, actions, {list_environment(options.hidden_variables), true});
   if (child < 0) return output;
   Pipe::close_end(out.to);
   Pipe::close_end(messages.to);
-  const bool in_time = read_all(out, messages, output, patience);
+  const bool in_time = read_all(out, messages, output, options.patience);
   if (!in_time) ::kill(child, SIGKILL);
   const int code = wait_for(child);
   output.code = in_time ? code : ChildOutput::kTooLong;

@@ -28,8 +28,13 @@ struct ChildOutput {
   std::string explain() const;
 };
 
-/// The same, with its output; ended after `patience`.
-ChildOutput read_child(const std::vector<std::string>& words,
-                       std::chrono::milliseconds patience = std::chrono::seconds(60));
+struct ChildOptions {
+  std::chrono::milliseconds patience = std::chrono::seconds(60);  // then it is ended
+  /// Of the environment, what begins so is kept from it.
+  std::vector<std::string> hidden_variables{};
+};
+
+/// The same, with its output, and in a process group of its own: Ctrl-C does not reach it.
+ChildOutput read_child(const std::vector<std::string>& words, const ChildOptions& options = {});
 
 }  // namespace strut

@@ -23,11 +23,15 @@ struct Followed {
   SubmissionState state;
 };
 
-std::vector<Followed> follow_all(const SweepFolder& folder) {
+std::vector<Followed> follow_all(const SweepFolder& folder, std::vector<std::string>& faults) {
   std::vector<Followed> all;
-  for (Submission& s : list_submissions(folder)) {
-    SubmissionState state = follow(s);
-    all.push_back({std::move(s), std::move(state)});
+  for (Submission& s : list_submissions(folder, &faults)) {
+    try {
+      SubmissionState state = follow(s);
+      all.push_back({std::move(s), std::move(state)});
+    } catch (const InputError& e) {  // of a task's record
+      faults.emplace_back(e.what());
+    }
   }
   return all;
 }
@@ -142,9 +146,17 @@ int run_status(const std::vector<std::string>& words) {
   if (!arguments.parse(words)) return kExitDone;
   const OpenSweep sweep = open_sweep(arguments);
   const bool on_terminal = isatty(STDOUT_FILENO) == 1;
-  for (;;) {
-    const SweepStatus status = read_status(sweep.folder, sweep.plan);
-    const std::vector<Followed> submissions = follow_all(sweep.folder);
+  // A scheduler is not to be asked every second.
+  constexpr int kAskEvery = 10;
+  std::vector<Followed> submissions;
+  std::vector<std::string> faults;
+  for (int look = 0;; ++look) {
+    SweepStatus status = read_status(sweep.folder, sweep.plan);
+    if (look % kAskEvery == 0) {
+      faults.clear();
+      submissions = follow_all(sweep.folder, faults);
+    }
+    status.faults.insert(status.faults.end(), faults.begin(), faults.end());
     if (arguments.is_on("watch") && on_terminal) std::cout << "\033[H\033[J";
     if (arguments.is_on("json")) {
       std::cout << make_json(status, submissions).dump() << std::endl;

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <optional>
 
 #include "io/atomic_file.h"
 #include "io/claims.h"
 #include "io/config.h"
 #include "io/nearest_name.h"
-#include "jobs/build_info.h"
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
+#include "jobs/dispatch/scripts.h"
 #include "jobs/dispatch/slurm.h"
-#include "jobs/dispatch/task_run.h"
 #include "jobs/interrupt.h"
 #include "jobs/json.h"
 #include "jobs/open_sweep.h"
@@ -64,6 +64,9 @@ Arguments make_arguments() {
   arguments.add_option("scratch", "PATH",
                        "node-local folder, $NAMES as the node has them, where each node keeps a "
                        "copy of the program");
+  arguments.add_switch("shared",
+                       "all nodes see DIR, though it lies on a disk of this machine (which serves "
+                       "it to them)");
   arguments.add_switch("retry",
                        "behind the arrays, a task that tries failed cases once more, as `strut "
                        "resume` does");
@@ -73,12 +76,6 @@ Arguments make_arguments() {
   arguments.add_switch("dry-run", "print the scripts and what waits for what; queue nothing");
   arguments.add_switch("json", "print JSON");
   return arguments;
-}
-
-std::string quote_word(const std::string& word) {
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 /// One submission in the making.
@@ -135,11 +132,12 @@ class Submitter {
     resources_.constraint = text("constraint");
     resources_.memory = text("memory");
     resources_.extra = arguments_.list("option");
+    resources_.is_shared = arguments_.is_on("shared");
     const bool here = dispatcher_->name() == "local";
     resources_.threads = here || arguments_.has("threads") ? find_threads(arguments_) : 1;
     if (!arguments_.has("time")) return;
     const auto seconds = parse_slurm_time(arguments_.text("time"));
-    if (!seconds || *seconds <= 0.0) {
+    if (!seconds || *seconds <= 0.0 || !std::isfinite(*seconds)) {
       throw InputError("--time " + arguments_.text("time") +
                        ": must be minutes, HH:MM:SS or D-HH:MM:SS");
     }
@@ -157,7 +155,11 @@ class Submitter {
                                ": whether it still runs is unknown: " + state.why +
                                "; nothing is submitted; try again later, or with --again");
       }
-      if (state.queue == QueueState::kEnded && !arguments_.is_on("dry-run")) s.mark_over();
+      // Nobody else is submitting: what a killed submit left unfinished will not be finished.
+      if (state.queue == QueueState::kEnded && !arguments_.is_on("dry-run")) {
+        s.mark_over(state.words);
+      }
+      retry_is_queued_ = retry_is_queued_ || state.retries;
       live.insert(live.end(), state.live.begin(), state.live.end());
     }
     present_ = list_shards(sweep_.folder);
@@ -222,63 +224,26 @@ class Submitter {
     }
   }
 
-  /// The line that starts the program, from a node's own copy where --scratch is given.
-  std::vector<std::string> make_preparation() const {
-    const std::string program = fs::read_symlink("/proc/self/exe").string();
-    std::vector<std::string> lines = {"program=" + quote_word(program)};
-    if (!arguments_.has("scratch")) return lines;
-    // The name tells versions and users apart.
-    const BuildInfo& build = get_build_info();
-    lines.push_back("copy=\"" + arguments_.text("scratch") + "/strut-" + build.commit + "-$UID\"");
-    lines.emplace_back(
-        "[[ -x $copy ]] || { cp \"$program\" \"$copy.$$\" && mv \"$copy.$$\" \"$copy\"; }");
-    lines.emplace_back("[[ -x $copy ]] && program=$copy");
-    return lines;
+  ScriptOptions make_script_options() const {
+    ScriptOptions options;
+    options.resources = resources_;
+    options.at_once = arguments_.integer_or("at-once", 0, 1, SiteLimits().tasks);
+    if (arguments_.has("scratch")) options.scratch = arguments_.text("scratch");
+    return options;
   }
 
-  TaskArray make_array(const std::string& name, const std::string& part) const {
-    TaskArray array;
-    array.name = name + "." + part;
-    array.preparation = make_preparation();
-    array.resources = resources_;
-    array.folder = sweep_.folder.logs();
-    array.at_once = arguments_.integer_or("at-once", 0, 1, SiteLimits().tasks);
-    return array;
-  }
-
-  /// Scripts of all parts, in the order of Submission::list_parts().
   std::vector<std::string> make_scripts(const Submission& s) const {
-    std::vector<std::string> scripts;
-    const std::string root = quote_word(sweep_.folder.root.string());
-    for (std::size_t i = 0; i < arrays_.size(); ++i) {
-      TaskArray array = make_array(s.job_prefix, s.array_name(i));
-      array.tasks = arrays_[i].tasks();
-      array.program = "\"$program\" run " + root + " --threads \"$threads\" --task " +
-                      make_task_name(s.name(), i, "\"$task\"");
-      scripts.push_back(dispatcher_->make_script(array));
-    }
-    const auto add_single = [&](const char* part, const std::string& words) {
-      TaskArray single = make_array(s.job_prefix, part);
-      single.is_array = false;
-      single.at_once = 0;
-      single.program = "\"$program\" " + words;
-      scripts.push_back(dispatcher_->make_script(single));
-    };
-    if (s.retries) add_single(Submission::kRetry, "resume " + root + " --threads \"$threads\"");
-    if (s.collects) {
-      add_single(Submission::kCollect, "merge " + root + " -o " +
-                                           quote_word((sweep_.folder.root / "merged.h5").string()) +
-                                           " --virtual --force");
-    }
-    return scripts;
+    return strut::make_scripts(*dispatcher_, sweep_.folder, s, make_script_options());
   }
 
-  bool retries() const { return arguments_.is_on("retry"); }
+  /// Not where an earlier one still waits or runs.
+  bool retries() const { return arguments_.is_on("retry") && !retry_is_queued_; }
 
   /// What is to be queued; it has no folder yet.
   Submission make_request() const {
     Submission s;
     s.dispatcher = dispatcher_->name();
+    s.place = dispatcher_->find_place();
     s.job_prefix = "strut-" + sweep_.plan.hash().substr(0, 8);
     s.arrays = arrays_;
     s.retries = retries();
@@ -314,7 +279,9 @@ class Submitter {
     std::cout << describe() << "\n";
     for (std::size_t i = 0; i < parts.size(); ++i) {
       std::cout << "\n--- " << s.job_name(parts[i]) << "\n" << scripts[i];
-      if (i == 0) try_out(scripts[i]);
+      if (i > 0) continue;
+      const std::string said = try_out(scripts[i]);
+      if (!said.empty()) std::cout << "(" << dispatcher_->name() << " says: " << said << ")\n";
     }
     std::cout << "\n";
     for (std::size_t i = 0; i < arrays_.size(); ++i) {
@@ -327,18 +294,20 @@ class Submitter {
     std::cout << "nothing is queued\n";
   }
 
-  void try_out(const std::string& script) const {
-    AtomicFile file(fs::temp_directory_path() / "strut-dry-run.sh");
+  /// What the scheduler says to it. Throws EnvironmentError where it would refuse it.
+  std::string try_out(const std::string& script) const {
+    const AtomicFile file(fs::temp_directory_path() / "strut-dry-run.sh");
     write_text_file(file.temporary(), script);
-    const std::string said = dispatcher_->try_script(file.temporary());
-    if (!said.empty()) std::cout << "(" << dispatcher_->name() << " says: " << said << ")\n";
+    return dispatcher_->try_script(file.temporary());
   }
 
   void submit() {
     std::error_code ignored;
     fs::create_directories(sweep_.folder.logs(), ignored);
     const InterruptGuard guard;  // a job that is queued is also written down
-    const Submission s = make_submission(sweep_.folder, make_request());
+    Submission s = make_request();
+    try_out(make_scripts(s).front());
+    s = make_submission(sweep_.folder, std::move(s));
     const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
     std::vector<std::string> jobs;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -348,15 +317,17 @@ class Submitter {
         jobs.push_back(
             dispatcher_->submit(s.script(parts[i]), waits ? jobs : std::vector<std::string>()));
       } catch (const EnvironmentError& e) {
-        if (jobs.empty()) {  // nothing was submitted
-          fs::remove_all(s.folder, ignored);
-          fs::remove(s.folder.parent_path(), ignored);  // where it was the first
-        }
+        // It may be queued all the same: its name finds it, so nothing is removed here.
         throw EnvironmentError(std::string(e.what()) + "; " + std::to_string(jobs.size()) + " of " +
                                std::to_string(parts.size()) +
-                               " jobs are queued, submit again for the rest");
+                               " jobs are known to be queued, submit again for the rest");
       }
       s.write_job(parts[i], jobs.back());
+      if (!s.is_cancelled()) continue;
+      std::map<std::string, std::string> names;
+      for (std::size_t k = 0; k <= i; ++k) names[jobs[k]] = s.job_name(parts[k]);
+      dispatcher_->cancel(names);
+      throw EnvironmentError("submission " + s.name() + ": cancelled meanwhile");
     }
     report(s, parts, jobs);
   }
@@ -391,6 +362,7 @@ class Submitter {
   SiteLimits limits_;
   std::vector<std::int64_t> present_;
   SweepStatus status_;
+  bool retry_is_queued_ = false;
   double shard_seconds_ = 0.0, task_seconds_ = 0.0;
   std::vector<PackedArray> arrays_;
 };

@@ -119,7 +119,7 @@ class Run {
   void retry_shards(const std::vector<std::int64_t>& shards, std::atomic<std::size_t>& next,
                     ShardWriter& writer) {
     CaseSimulator simulator(plan_, *options_.kernel);
-    for (std::size_t i = next++; i < shards.size() && !halt_; i = next++) {
+    for (std::size_t i = next++; i < shards.size() && !halt_ && !is_drained(); i = next++) {
       const std::int64_t shard = shards[i];
       const std::string unit = SweepFolder::retry_unit(shard);
       if (claims_.claim(unit) != Claims::Answer::kMine) continue;
@@ -137,6 +137,8 @@ class Run {
     }
     add_seconds(simulator.seconds());
   }
+
+  bool is_drained() const { return options_.drain != nullptr && *options_.drain; }
 
   /// None, and told, where the shard is damaged.
   ShardRows read_rows(std::int64_t shard) {

@@ -1,6 +1,8 @@
 // Tasks of a submission: which shards each does, what it tells of itself, and how it is judged.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <random>
 #include <string>
@@ -43,7 +45,7 @@ TEST_CASE("Tasks cover what is missing, once, within the limits of a site", "[un
     }
     const Ranges missing = list_missing(shards, present);
     const auto array_tasks = static_cast<std::int64_t>(1 + draw() % 9);
-    const auto tasks = static_cast<std::int64_t>(20 + draw() % 30);
+    const auto tasks = static_cast<std::int64_t>(1 + draw() % 40);
     std::vector<int> covered(static_cast<std::size_t>(shards), 0);
     std::int64_t total = 0;
     for (const PackedArray& array : pack_shards(missing, make_request(array_tasks, tasks))) {
@@ -114,6 +116,12 @@ TEST_CASE("What became of a task is told from its last life", "[unit]") {
   CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, false) == TaskFate::kPreempted);
   CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, true) == TaskFate::kCancelled);
   CHECK(judge_task({make_life(std::nullopt)}, false) == TaskFate::kLost);
+  // Where it says little, what the scheduler remembers.
+  CHECK(judge_task({make_life(std::nullopt)}, false, "TIMEOUT") == TaskFate::kTimeout);
+  CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, false, "CANCELLED") ==
+        TaskFate::kCancelled);
+  CHECK(judge_task({make_life(TaskEnd::kDone)}, false, "CANCELLED") == TaskFate::kDone);
+  CHECK(judge_task({}, false, "FAILED") == TaskFate::kLost);
 }
 
 TEST_CASE("A submission is read back as it was written", "[io]") {
@@ -121,8 +129,9 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   const SweepFolder sweep{folder / "."};
   CHECK(list_submissions(sweep).empty());
   const std::vector<PackedArray> arrays = {{{0, 100}, 7}, {{200, 201}, 7}};
-  const Submission first = make_submission(sweep, {"", "slurm", "strut-abc", arrays, true, true});
-  make_submission(sweep, {"", "local", "strut-abc", {{{5, 6}, 1}}});
+  const Submission first =
+      make_submission(sweep, {"", "slurm", "ours", "", "strut-abc", arrays, true, true});
+  make_submission(sweep, {"", "local", "", "", "strut-abc", {{{5, 6}, 1}}});
   first.write_job("array-1", "4711");
   first.mark_cancelled();
 
@@ -130,7 +139,11 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   REQUIRE(all.size() == 2);
   CHECK(all[0].name() == "001");
   CHECK(all[0].dispatcher == "slurm");
-  CHECK(all[0].job_name("collect") == "strut-abc-001.collect");
+  CHECK(all[0].place == "ours");
+  CHECK(all[0].user == find_user());
+  CHECK(all[0].job_name("collect") == first.job_prefix + ".collect");
+  // A copy of the folder has submissions of its own.
+  CHECK(first.job_prefix != all[1].job_prefix);
   CHECK(all[0].arrays == arrays);
   CHECK(all[0].list_parts() == std::vector<std::string>{"array-0", "array-1", "retry", "collect"});
   CHECK(all[0].read_job("array-0").empty());
@@ -142,12 +155,96 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
 
   folder.write("jobs/001/submission.toml", "dispatcher = 3\n");
   CHECK_THROWS_AS(list_submissions(sweep), InputError);
+  std::vector<std::string> faults;
+  CHECK(list_submissions(sweep, &faults).size() == 1);
+  REQUIRE(faults.size() == 1);
+  CHECK(faults[0].find("dispatcher") != std::string::npos);
+}
+
+/// Commands of a Slurm that says what the test wants.
+class SaidSlurm {
+ public:
+  SaidSlurm() : path_(std::getenv("PATH")) {
+    say("squeue", "");
+    say("scontrol",
+        "[[ $2 == config ]] && echo 'ClusterName = ours' && exit\n"
+        "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1");
+    ::setenv("PATH", ((folder_ / "").string() + ":" + path_).c_str(), 1);
+  }
+  ~SaidSlurm() { ::setenv("PATH", path_.c_str(), 1); }
+  SaidSlurm(const SaidSlurm&) = delete;
+  SaidSlurm& operator=(const SaidSlurm&) = delete;
+
+  void say(const std::string& command, const std::string& script) const {
+    const auto file = folder_.write(command, "#!/bin/bash\n" + script + "\n");
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  }
+
+ private:
+  std::string path_;
+  test::TemporaryFolder folder_;
+};
+
+TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked", "[unit]") {
+  const SaidSlurm slurm;
+  const test::TemporaryFolder folder;
+  const SweepFolder sweep{folder / "."};
+  const auto queue = [&](const std::string& place) {
+    const Submission s = make_submission(sweep, {"", "slurm", place, "", "strut", {{{0, 10}, 5}}});
+    s.write_job("array-0", "4711");
+    return s;
+  };
+  const Submission ended = queue("ours");
+  const std::string name = "|" + ended.job_name("array-0") + "'";
+  slurm.say("squeue",
+            "echo '4711|0|RUNNING|None" + name + "; echo '4711|1|PENDING|Resources" + name);
+  const SubmissionState running = follow(ended);
+  CHECK(running.queue == QueueState::kQueued);
+  CHECK(running.running == 1);
+  CHECK(running.live == Ranges{{0, 5}, {5, 10}});
+  // What the environment would hide from the answer is kept from the command.
+  slurm.say("squeue", "[[ -z ${SQUEUE_PARTITION:-} ]] && echo '4711|0|RUNNING|None" + name);
+  ::setenv("SQUEUE_PARTITION", "x", 1);
+  CHECK(follow(ended).queue == QueueState::kQueued);
+  ::unsetenv("SQUEUE_PARTITION");
+  // Nothing listed, but the controller still knows it, or says nothing.
+  slurm.say("squeue", "");
+  const std::string config = "[[ $2 == config ]] && echo 'ClusterName = ours' && exit\n";
+  const std::string known = "echo 'JobId=4711 JobName=" + ended.job_name("array-0") + " '";
+  for (const std::string& script : {known, std::string("echo 'Unable to contact' >&2; exit 1")}) {
+    INFO(script);
+    slurm.say("scontrol", config + script);
+    const SubmissionState state = follow(ended);
+    CHECK(state.queue == QueueState::kUnknown);
+    CHECK(state.why.find("4711") != std::string::npos);
+    CHECK_FALSE(ended.is_over());
+  }
+  // One that ended: its words outlive the scheduler's memory.
+  slurm.say("scontrol", config + "echo 'Invalid job id specified' >&2; exit 1");
+  slurm.say("squeue", "echo '4711|0|TIMEOUT|TimeLimit" + name);
+  CHECK(follow(ended).fates.at(TaskFate::kTimeout) == 1);
+  REQUIRE(ended.is_over());
+  slurm.say("squeue", "");
+  CHECK(follow(ended).fates.at(TaskFate::kTimeout) == 1);
+
+  // A number that the scheduler has given to another job since.
+  const Submission lost = queue("ours");
+  slurm.say("squeue", "echo '4711|0|RUNNING|None|other'");
+  slurm.say("scontrol", config + "echo 'JobId=4711 JobName=other'");
+  CHECK(follow(lost).queue == QueueState::kEnded);
+
+  const SubmissionState elsewhere = follow(queue("theirs"));
+  CHECK(elsewhere.queue == QueueState::kUnknown);
+  CHECK(elsewhere.why.find("theirs") != std::string::npos);
+  Submission foreign = queue("ours");
+  foreign.user = "4711";
+  CHECK(follow(foreign).queue == QueueState::kUnknown);
 }
 
 TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
-  const Submission s = make_submission(sweep, {"", "local", "strut", {{{10, 35}, 10}}});
+  const Submission s = make_submission(sweep, {"", "local", "", "", "strut", {{{10, 35}, 10}}});
   TaskRun task(sweep, make_task_name("001", 0, "2"));
   CHECK(task.shards() == ShardRange{30, 35});
   task.begin();
@@ -155,15 +252,19 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   REQUIRE(read_task_lives(file).size() == 1);
   CHECK_FALSE(read_task_lives(file)[0].how);
   task.end(TaskEnd::kDrained, 0);
-  CHECK(task.requeue().find("longer --time") != std::string::npos);
+  CHECK(task.requeue().find("does not take it back") != std::string::npos);
+  TaskRun second(sweep, "001/0/2");
+  second.begin();
+  second.end(TaskEnd::kDrained, 0);
+  CHECK(second.requeue().find("longer --time") != std::string::npos);
   TaskRun again(sweep, "001/0/2");
   again.begin();
   again.end(TaskEnd::kDone, 5);
   const std::vector<TaskLife> lives = read_task_lives(file);
-  REQUIRE(lives.size() == 2);
+  REQUIRE(lives.size() == 3);
   CHECK(lives[0].how == TaskEnd::kDrained);
-  CHECK(lives[1].how == TaskEnd::kDone);
-  CHECK(lives[1].shards == 5);
+  CHECK(lives[2].how == TaskEnd::kDone);
+  CHECK(lives[2].shards == 5);
 
   for (const char* name : {"001/0/3", "001/1/0", "002/0/0", "001/0", "001/0/x"}) {
     INFO(name);

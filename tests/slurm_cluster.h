@@ -7,9 +7,12 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -42,6 +45,7 @@ class SlurmCluster {
         "; head -c 1024 /dev/urandom > " + path("munge/key") + "; chmod 600 " + path("munge/key"));
     write_configuration(processors);
     ::setenv("SLURM_CONF", path("slurm.conf").c_str(), 1);
+    watch();
     start("munged --force --key-file=" + path("munge/key") + " --socket=" + path("socket/munge") +
           " --pid-file=" + path("munged.pid") + " --log-file=" + path("munge/log") +
           " --seed-file=" + path("munge/seed"));
@@ -49,29 +53,41 @@ class SlurmCluster {
     for (int i = 1; i <= nodes_; ++i) start("slurmd -N n" + std::to_string(i));
     const bool idle = wait_until([&] { return count_nodes("idle") == nodes_; });
     INFO(read_text(path("log/controller")));
+    if (!idle) stop();  // no destructor after a constructor that throws
     REQUIRE(idle);
   }
   SlurmCluster(const SlurmCluster&) = delete;
   SlurmCluster& operator=(const SlurmCluster&) = delete;
-  ~SlurmCluster() {
-    ask("scancel --user=$(id -un)");
-    wait_until([&] { return ask("squeue -h -t running,completing").empty(); }, 10.0);
-    std::vector<std::string> files = {path("controller.pid"), path("munged.pid")};
-    for (int i = 1; i <= nodes_; ++i) files.insert(files.begin(), path("n" + std::to_string(i)));
-    // PID 1 of a container may reap nobody: daemons that ended are told by their files.
-    for (const std::string& file : files) run("kill $(cat " + file + ") 2>/dev/null");
-    wait_until([&] {
-      return std::none_of(files.begin(), files.end(),
-                          [](const std::string& f) { return std::filesystem::exists(f); });
-    });
-    ::unsetenv("SLURM_CONF");
-  }
+  ~SlurmCluster() { stop(); }
 
   void start_controller() { start("slurmctld"); }
   /// As if its machine had lost power.
   void kill_controller() {
     run("kill -9 $(cat " + path("controller.pid") + ")");
     std::filesystem::remove(path("controller.pid"));
+  }
+
+  /// How long the nodes were given to jobs, as their daemons tell [s].
+  double calc_node_time() const {
+    double total = 0.0;
+    for (int i = 1; i <= nodes_; ++i) {
+      std::istringstream log(read_text(path("log/n" + std::to_string(i))));
+      for (std::string line; std::getline(log, line);) {
+        // [2026-11-22T20:36:02.332]
+        std::tm day{};
+        double seconds = 0.0;
+        if (std::sscanf(line.c_str(), "[%d-%d-%dT%d:%d:%lf]", &day.tm_year, &day.tm_mon,
+                        &day.tm_mday, &day.tm_hour, &day.tm_min, &seconds) != 6) {
+          continue;
+        }
+        day.tm_year -= 1900;
+        --day.tm_mon;
+        const double time = static_cast<double>(::timegm(&day)) + seconds;
+        if (line.find("Launching batch job") != std::string::npos) total -= time;
+        if (line.find("] done with job") != std::string::npos) total += time;
+      }
+    }
+    return total;
   }
 
   /// What a command says, without the last line's end; "" where it fails.
@@ -92,6 +108,33 @@ class SlurmCluster {
 
   static void run(const std::string& command) { run_shell(command); }
 
+  std::vector<std::string> list_process_files() const {
+    std::vector<std::string> files = {path("controller.pid"), path("munged.pid")};
+    for (int i = 1; i <= nodes_; ++i) files.insert(files.begin(), path("n" + std::to_string(i)));
+    return files;
+  }
+
+  void stop() {
+    ask("scancel --user=$(id -un)");
+    wait_until([&] { return ask("squeue -h -t running,completing").empty(); }, 10.0);
+    const std::vector<std::string> files = list_process_files();
+    // PID 1 of a container may reap nobody: daemons that ended are told by their files.
+    for (const std::string& file : files) run("kill $(cat " + file + ") 2>/dev/null");
+    wait_until([&] {
+      return std::none_of(files.begin(), files.end(),
+                          [](const std::string& f) { return std::filesystem::exists(f); });
+    });
+    ::unsetenv("SLURM_CONF");
+  }
+
+  /// Daemons of a test that is killed must not stay.
+  void watch() {
+    std::string command = "setsid sh -c 'while kill -0 " + std::to_string(::getpid()) +
+                          " 2>/dev/null; do sleep 1; done; kill";
+    for (const std::string& file : list_process_files()) command += " $(cat " + file + ")";
+    run("(" + command + "' >/dev/null 2>&1 &)");
+  }
+
   static void start(const std::string& command) {
     const Outcome outcome = run_shell("PATH=$PATH:/usr/sbin " + command + " >/dev/null");
     INFO(command << ": " << outcome.messages);
@@ -99,8 +142,8 @@ class SlurmCluster {
   }
 
   void write_configuration(int processors) {
-    // Daemons of tests that run at once must not meet.
-    const int port = 20000 + (static_cast<int>(::getpid()) % 4000) * 10;
+    // Daemons of tests that run at once must not meet; below the ports that the system gives out.
+    const int port = 20000 + (static_cast<int>(::getpid()) % 1200) * 10;
     const std::string last = std::to_string(nodes_);
     const std::string names = nodes_ == 1 ? "n1" : "n[1-" + last + "]";
     const std::string ports =

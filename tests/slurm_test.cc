@@ -3,10 +3,14 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
+#include "sweep/folder.h"
+#include "sweep/status.h"
 #include "tests/program_sweep.h"
 #include "tests/slurm_cluster.h"
+#include "tests/tolerance.h"
 
 namespace strut {
 namespace {
@@ -38,13 +42,25 @@ bool has_ended(const fs::path& sweep) {
   return status.get_child("submissions").back().second.get<std::string>("state") == "ended";
 }
 
-/// Once all tasks have ended. Slurm lets those that it puts back wait for two minutes; not here.
-bool wait_for_end(const fs::path& sweep) {
+/// Lets tasks that Slurm has put back begin at once, not in two minutes. And what one host as two
+/// nodes brings about: a task put back from one of them is a "duplicate" for the other, which is
+/// drained, and the task is held.
+void hurry() {
+  SlurmCluster::ask(
+      "for job in $(squeue -h -r -t pending -o '%r|%F_%K' | sed -n 's/^BeginTime|//p'); do "
+      "scontrol update JobId=$job StartTime=now; done; "
+      "for node in $(sinfo -h -N -t drained -o %N); do "
+      "scontrol update NodeName=$node State=RESUME; done; "
+      "for job in $(squeue -h -r -t pending -o '%r|%F_%K' | sed -n 's/^.*held|//p'); do "
+      "scontrol release $job; done");
+}
+
+/// Once all tasks have ended; `meanwhile` is done again and again.
+bool wait_for_end(const fs::path& sweep, const std::function<void()>& meanwhile = {}) {
   return wait_until(
       [&] {
-        SlurmCluster::ask(
-            "for job in $(squeue -h -r -t pending -o '%r %F_%K' | sed -n 's/^BeginTime //p'); do "
-            "scontrol update JobId=$job StartTime=now; done");
+        if (meanwhile) meanwhile();
+        hurry();
         return has_ended(sweep);
       },
       180.0);
@@ -60,21 +76,35 @@ std::string find_running() {
   return task;
 }
 
+/// That pgrep finds a task of the first array by, and not the shell that asks.
+std::string make_pattern(const fs::path& sweep, const std::string& task) {
+  return "[r]un " + sweep.string() + " .*--task 001/0/" + task + "$";
+}
+
+bool is_running(const std::string& task) {
+  return !SlurmCluster::ask("squeue -h -r -t running,completing -j " + task).empty();
+}
+
 TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[cluster]") {
   const SlurmCluster cluster(1, 2);
   const fs::path sweep = get_sweep().copy("killed");
   const Outcome outcome = submit(sweep);
   INFO(outcome.messages);
   REQUIRE(outcome.code == 0);
-  SlurmCluster::ask("scancel --signal=KILL --full " + find_running());
-  const std::string requeued = find_running();
-  SlurmCluster::ask("scontrol requeue " + requeued);
+  const std::string killed = find_running();
+  const std::string number = killed.substr(killed.find('_') + 1);
+  REQUIRE(test::run_shell("pkill -KILL -f '" + make_pattern(sweep, number) + "'").code == 0);
+  REQUIRE(wait_until([&] { return !is_running(killed); }));
+  REQUIRE(test::run_shell("scontrol requeue " + find_running()).code == 0);
   REQUIRE(wait_for_end(sweep));
+  const auto first = read_status(sweep);
+  const auto& last = first.get_child("submissions").back().second;
+  CHECK(last.get<int>("ended.lost") == 1);
+  CHECK(last.get<int>("restarts") == 1);
   // What the killed task had not written is missing, and all that another submission queues.
-  if (!read_status(sweep).get<bool>("complete")) {
-    REQUIRE(submit(sweep).code == 0);
-    REQUIRE(wait_for_end(sweep));
-  }
+  CHECK_FALSE(first.get<bool>("complete"));
+  REQUIRE(submit(sweep).code == 0);
+  REQUIRE(wait_for_end(sweep));
   CHECK(read_status(sweep).get<bool>("complete"));
   get_sweep().check_whole(sweep);
   CHECK(fs::exists(sweep / "merged.h5"));
@@ -96,17 +126,35 @@ TEST_CASE("A task warned of its time limit goes on in its next life", "[cluster]
   get_sweep().check_whole(sweep);
 }
 
+TEST_CASE("Slurm warns a task of its time limit", "[cluster][slow]") {
+  const SlurmCluster cluster(1);
+  static const ProgramSweep slow(test::make_coarse_sweep(4, "", "5e-6"));
+  const fs::path sweep = slow.copy("slow");
+  // A minute of time, of which the warning leaves ten seconds or, Slurm looking rarely, none.
+  REQUIRE(submit(sweep, "--tasks 1 --option=--time=1 --option=--signal=B:USR1@50").code == 0);
+  REQUIRE(wait_for_end(sweep));
+  const auto last = read_status(sweep).get_child("submissions").back().second;
+  CHECK(last.get<int>("restarts") >= 1);
+  CHECK(last.count("ended.timeout") == 0);
+  if (!read_status(sweep).get<bool>("complete")) {
+    REQUIRE(submit(sweep, "--tasks 1").code == 0);
+    REQUIRE(wait_for_end(sweep));
+  }
+  slow.check_whole(sweep);
+}
+
 TEST_CASE("A task whose time is over is told from one that failed", "[cluster][slow]") {
   const SlurmCluster cluster(1);
   const fs::path sweep = get_sweep().copy("timeout");
-  // Slurm counts in minutes. This task hangs, as on a file system that does not answer, and the
-  // warning does not reach it.
+  // Slurm counts in minutes. This task hangs, as on a file system that does not answer: whatever
+  // wakes it, it is stopped again.
   REQUIRE(submit(sweep, "--tasks 2 --option=--time=1 --option=--signal=B:URG@1").code == 0);
   REQUIRE(wait_until([&] { return fs::exists(sweep / "jobs/001/array-0/0"); }));
-  REQUIRE(test::run_shell("pkill -STOP -f '[r]un " + sweep.string() + " .*--task 001/0/0'").code ==
-          0);
-  REQUIRE(wait_for_end(sweep));
+  const std::string stop = "pkill -STOP -f '" + make_pattern(sweep, "0") + "'";
+  REQUIRE(test::run_shell(stop).code == 0);
+  REQUIRE(wait_for_end(sweep, [&] { test::run_shell(stop); }));
   const auto last = read_status(sweep).get_child("submissions").back().second;
+  INFO(test::read_text(sweep / "jobs/001/array-0/0"));
   CHECK(last.get<int>("ended.timeout") == 1);
   CHECK(last.get<int>("ended.done") == 1);
   REQUIRE(submit(sweep).code == 0);
@@ -149,15 +197,34 @@ TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]")
   const Outcome refused = submit(sweep);
   CHECK(refused.code == 3);
   cluster.start_controller();
-  find_running();
-  SlurmCluster::ask("scontrol update NodeName=n2 State=DOWN Reason=test");
-  REQUIRE(wait_until([&] { return SlurmCluster::count_nodes("down") == 1; }));
+  REQUIRE(wait_until([] { return !SlurmCluster::ask("squeue -h -t running -w n2").empty(); }));
+  REQUIRE(test::run_shell("scontrol update NodeName=n2 State=DOWN Reason=test >/dev/null").code ==
+          0);
   REQUIRE(wait_for_end(sweep));
-  if (!read_status(sweep).get<bool>("complete")) {
-    REQUIRE(submit(sweep).code == 0);
-    REQUIRE(wait_for_end(sweep));
-  }
+  // The scheduler put what ran there back by itself.
+  const auto ended = read_status(sweep);
+  CHECK(ended.get_child("submissions").back().second.get<int>("restarts") >= 1);
+  CHECK(ended.get<bool>("complete"));
   get_sweep().check_whole(sweep);
+}
+
+TEST_CASE("Of the nodes' time, the scheduler costs the paper's grid less than 2 %",
+          "[cluster][statistical][slow]") {
+  const SlurmCluster cluster(2);
+  const fs::path sweep = get_sweep() / "paper";
+  REQUIRE(
+      test::run_program("plan " STRUT_SOURCE_DIR "/examples/sweeps/paper.toml -o " + sweep.string())
+          .code == 0);
+  REQUIRE(run_sweep_command("submit", sweep, "--to slurm --minutes 0.6").code == 0);
+  REQUIRE(wait_for_end(sweep));
+  REQUIRE(read_status(sweep).get<bool>("complete"));
+  const SweepFolder folder{sweep};
+  const double simulated = read_status(folder, open_sweep_folder(folder)).simulation_seconds;
+  const double given = cluster.calc_node_time();
+  WARN("simulated " << simulated << " s of " << given << " s given, overhead "
+                    << 100.0 * (1.0 - simulated / given) << " %");
+  CHECK(given - simulated < test::tolerance(0.02) * given);
+  CHECK(given > simulated);
 }
 
 TEST_CASE("Slurm is asked before anything is queued", "[cluster]") {

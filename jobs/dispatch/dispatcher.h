@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +20,8 @@ struct Resources {
   double seconds = 0.0;            // wall clock
   double warning = 0.0;            // s before that a task is told to finish
   std::vector<std::string> extra;  // further options, passed on as they are
+  bool is_shared =
+      false;  // all machines see the sweep's folder, whatever its file system looks like
 };
 
 /// What a site allows.
@@ -53,6 +55,13 @@ struct QueuedTasks {
   std::string reason;  // why it waits or ended: "Resources"
 };
 
+/// What a scheduler says of jobs: what is queued, and what it remembers. Of a job that is not among
+/// `tasks` it has said that there is none.
+struct QueueAnswer {
+  std::vector<QueuedTasks> tasks;
+  std::string silence;  // why there is no answer, which tells neither that they run nor that not
+};
+
 /// What one node said.
 struct NodeAnswer {
   std::string name, answer;
@@ -63,6 +72,9 @@ class Dispatcher {
   virtual ~Dispatcher() = default;
 
   virtual std::string name() const = 0;
+  /// Which of them this is, where there may be several that do not know each other's jobs. Throws
+  /// EnvironmentError where it does not answer.
+  virtual std::string find_place() const = 0;
 
   /// Refuses what can be known before anything is queued: the scheduler is not there, it does not
   /// know the partition, its machines cannot see `folder`. Throws InputError or EnvironmentError.
@@ -77,7 +89,8 @@ class Dispatcher {
 
   /// The text of the file that submit() takes.
   virtual std::string make_script(const TaskArray& tasks) const = 0;
-  /// What the scheduler says to it, nothing being queued. "": it cannot be asked.
+  /// What the scheduler says to it, nothing being queued. "": it cannot be asked. Throws
+  /// EnvironmentError where it would refuse it.
   virtual std::string try_script(const std::filesystem::path& script) const = 0;
 
   /// Queues a script, to begin when the jobs `after` have ended in whatever way. Returns the job.
@@ -88,15 +101,12 @@ class Dispatcher {
   /// EnvironmentError where that cannot be told.
   virtual std::string find_job(const std::string& name) const = 0;
 
-  /// Of the jobs, what is queued and what is remembered. Nothing where the scheduler does not
-  /// answer: that tells neither that they run nor that they ended.
-  virtual std::optional<std::vector<QueuedTasks>> query(
-      const std::vector<std::string>& jobs) const = 0;
-  /// Why query() had no answer.
-  virtual std::string explain_silence() const = 0;
+  /// `names`: of the jobs, by what submit() returned. A scheduler that lost its memory may have
+  /// given a number to another job since.
+  virtual QueueAnswer query(const std::map<std::string, std::string>& names) const = 0;
 
-  /// Ends jobs, running or not. Throws EnvironmentError.
-  virtual void cancel(const std::vector<std::string>& jobs) const = 0;
+  /// Ends jobs, running or not; `names` as query()'s. Throws EnvironmentError.
+  virtual void cancel(const std::map<std::string, std::string>& names) const = 0;
 
   /// Of the task that this process is: puts it back into the queue. False where it cannot be.
   virtual bool requeue_own() const = 0;

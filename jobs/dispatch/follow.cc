@@ -8,32 +8,11 @@
 namespace strut {
 namespace {
 
-/// The parts' jobs; also of those that were queued by a submit that was killed before it could say
-/// so. Throws EnvironmentError where that cannot be told.
-std::map<std::string, std::string> find_jobs(const Submission& submission,
-                                             const Dispatcher& dispatcher) {
-  std::map<std::string, std::string> part_of_job;
-  for (const std::string& part : submission.list_parts()) {
-    std::string job = submission.read_job(part);
-    if (job.empty()) job = dispatcher.find_job(submission.job_name(part));
-    if (!job.empty()) part_of_job[job] = part;
-  }
-  return part_of_job;
-}
-
 std::optional<std::size_t> find_array(const Submission& submission, const std::string& part) {
   for (std::size_t i = 0; i < submission.arrays.size(); ++i) {
     if (submission.array_name(i) == part) return i;
   }
   return std::nullopt;
-}
-
-/// What the scheduler remembers of the end of a task that ended without a word.
-TaskFate judge_word(const std::string& word) {
-  if (word == "TIMEOUT" || word == "DEADLINE") return TaskFate::kTimeout;
-  if (word == "PREEMPTED") return TaskFate::kPreempted;
-  if (word == "CANCELLED") return TaskFate::kCancelled;
-  return TaskFate::kLost;
 }
 
 class Follower {
@@ -43,29 +22,49 @@ class Follower {
   SubmissionState follow() {
     if (submission_.is_over()) {
       state_.queue = QueueState::kEnded;
+      state_.words = submission_.read_words();
     } else {
       ask();
+      if (state_.queue == QueueState::kEnded) remember_end();
     }
     if (state_.queue != QueueState::kUnknown) read_tasks();
     return state_;
   }
 
  private:
-  void ask() {
-    const auto dispatcher = make_dispatcher(submission_.dispatcher);
-    std::optional<std::vector<QueuedTasks>> queued;
-    std::map<std::string, std::string> part_of_job;
+  /// Not of one that a submit may still be working on.
+  void remember_end() {
+    for (const std::string& part : submission_.list_parts()) {
+      if (submission_.read_job(part).empty()) return;
+    }
     try {
-      part_of_job = find_jobs(submission_, *dispatcher);
-      std::vector<std::string> jobs;
-      for (const auto& [job, part] : part_of_job) jobs.push_back(job);
-      queued = dispatcher->query(jobs);
-      if (!queued) state_.why = dispatcher->explain_silence();
+      submission_.mark_over(state_.words);
+    } catch (const EnvironmentError&) {
+      // A folder that may only be read: it is asked again next time.
+    }
+  }
+
+  void ask() {
+    try {
+      const auto dispatcher = make_dispatcher(submission_.dispatcher);
+      if (submission_.user != find_user()) {
+        state_.why = "it is another user's (" + submission_.user + ")";
+        return;
+      }
+      if (submission_.place != dispatcher->find_place()) {
+        state_.why = "it was submitted to another cluster (" + submission_.place + ")";
+        return;
+      }
+      std::map<std::string, std::string> part_of_job = find_jobs(submission_, *dispatcher), names;
+      for (const auto& [job, part] : part_of_job) names[job] = submission_.job_name(part);
+      const QueueAnswer answer = dispatcher->query(names);
+      state_.why = answer.silence;
+      if (!state_.why.empty()) return;
+      for (const QueuedTasks& tasks : answer.tasks) count(tasks, part_of_job[tasks.job]);
     } catch (const EnvironmentError& e) {
       state_.why = e.what();
+      return;
     }
-    if (!queued) return;
-    for (const QueuedTasks& tasks : *queued) count(tasks, part_of_job[tasks.job]);
     const bool any = state_.pending + state_.running > 0;
     state_.queue = any ? QueueState::kQueued : QueueState::kEnded;
   }
@@ -73,7 +72,7 @@ class Follower {
   void count(const QueuedTasks& tasks, const std::string& part) {
     const auto array = find_array(submission_, part);
     if (tasks.state == TaskState::kEnded) {
-      if (array) words_[{*array, tasks.task}] = tasks.word;
+      if (array) state_.words[{*array, tasks.task}] = tasks.word;
       return;
     }
     if (tasks.state == TaskState::kPending) {
@@ -82,6 +81,7 @@ class Follower {
     } else {
       state_.running += tasks.count;
     }
+    if (part == Submission::kRetry) state_.retries = true;
     if (!array) return;
     const PackedArray& packed = submission_.arrays[*array];
     if (tasks.task < 0) {
@@ -107,9 +107,9 @@ class Follower {
     if (live_.count({array, task}) > 0) return;
     // Of a job that has no numbers for its tasks, those that have not ended are live.
     if (whole_.count(array) > 0 && (lives.empty() || !lives.back().how)) return;
-    TaskFate fate = judge_task(lives, submission_.is_cancelled());
-    const auto word = words_.find({array, task});
-    if (fate == TaskFate::kLost && word != words_.end()) fate = judge_word(word->second);
+    const auto word = state_.words.find({array, task});
+    const TaskFate fate = judge_task(lives, submission_.is_cancelled(),
+                                     word == state_.words.end() ? "" : word->second);
     ++state_.fates[fate];
   }
 
@@ -118,7 +118,6 @@ class Follower {
   using TaskKey = std::pair<std::size_t, std::int64_t>;
   std::set<TaskKey> live_;
   std::set<std::size_t> whole_;
-  std::map<TaskKey, std::string> words_;
 };
 
 }  // namespace
@@ -126,6 +125,17 @@ class Follower {
 const char* get_name(QueueState state) {
   constexpr std::array<const char*, 3> kNames = {"queued", "ended", "unknown"};
   return kNames[static_cast<std::size_t>(state)];
+}
+
+std::map<std::string, std::string> find_jobs(const Submission& submission,
+                                             const Dispatcher& dispatcher) {
+  std::map<std::string, std::string> part_of_job;
+  for (const std::string& part : submission.list_parts()) {
+    std::string job = submission.read_job(part);
+    if (job.empty()) job = dispatcher.find_job(submission.job_name(part));
+    if (!job.empty()) part_of_job[job] = part;
+  }
+  return part_of_job;
 }
 
 SubmissionState follow(const Submission& submission) { return Follower(submission).follow(); }

@@ -28,9 +28,17 @@ struct SubmissionState {
   std::map<TaskFate, std::int64_t> fates;       // of array tasks that are not queued
   std::int64_t restarts = 0;                    // lives beyond each task's first
   std::vector<ShardRange> live;                 // shards of tasks that wait or run
+  bool retries = false;                         // its task for failed cases waits or runs
+  TaskWords words;                              // of tasks that ended
 };
 
-/// Looks; changes nothing. A submission that is over is not asked about.
+/// Looks, and marks a submission that was queued in full and has ended as over: of such a one
+/// nobody is asked again.
 SubmissionState follow(const Submission& submission);
+
+/// The parts of a submission by their jobs; those included that were queued by a submit that was
+/// killed before it could say so. Throws EnvironmentError where that cannot be told.
+std::map<std::string, std::string> find_jobs(const Submission& submission,
+                                             const Dispatcher& dispatcher);
 
 }  // namespace strut

@@ -13,6 +13,7 @@
 #include "io/input_error.h"
 #include "io/parse_number.h"
 #include "io/process_identity.h"
+#include "jobs/dispatch/quote_word.h"
 #include "model/kernel/simulation.h"
 
 namespace strut {
@@ -35,7 +36,7 @@ ProcessIdentity read_identity(const std::string& text) {
 
 /// In the child: begins a session, so that it outlives the terminal, tells who it is and becomes
 /// the script.
-[[noreturn]] void become(const fs::path& script, const std::string& wait_for, int tell) {
+[[noreturn]] void become(const fs::path& script, const ProcessIdentity& wait_for, int tell) {
   ::setsid();
   const std::string identity = write_identity(find_own_identity());
   const bool told = ::write(tell, identity.data(), identity.size()) >= 0;
@@ -47,7 +48,10 @@ ProcessIdentity read_identity(const std::string& text) {
   sigemptyset(&none);
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-  if (told) ::execlp("bash", "bash", script.c_str(), wait_for.c_str(), nullptr);
+  if (told) {
+    ::execlp("bash", "bash", script.c_str(), wait_for.process.c_str(), wait_for.start.c_str(),
+             nullptr);
+  }
   ::_exit(127);
 }
 
@@ -77,9 +81,17 @@ std::vector<NodeAnswer> LocalDispatcher::ask_nodes(const Resources&) const {
 }
 
 std::string LocalDispatcher::make_script(const TaskArray& tasks) const {
-  std::string text = "#!/bin/bash\n# $1: the process to wait for, if any\nset -u\n";
-  text += "[[ -z \"${1:-}\" ]] || tail --pid=\"$1\" -f /dev/null\n";
-  text += "exec >>'" + (tasks.folder / (tasks.name + ".log")).string() + "' 2>&1\n";
+  // A zombie, which in a container may stay for ever, has ended, too.
+  std::string text = R"(#!/bin/bash
+# $1, $2: the process to wait for, if any, and when it was started
+set -u
+while [[ -n ${1:-} ]] && read -r stat 2>/dev/null </proc/"$1"/stat; do
+  fields=(${stat##*) })
+  [[ ${fields[0]} != [ZX] && ${fields[19]} == "$2" ]] || break
+  sleep 0.2
+done
+)";
+  text += "exec >>" + quote_word((tasks.folder / (tasks.name + ".log")).string()) + " 2>&1\n";
   text += "threads=" + std::to_string(tasks.resources.threads) + "\n";
   text += "for ((task = 0; task < " + std::to_string(tasks.tasks) + "; ++task)); do\n";
   for (const std::string& line : tasks.preparation) text += "  " + line + "\n";
@@ -96,7 +108,7 @@ std::string LocalDispatcher::submit(const fs::path& script,
   }
   if (child == 0) {
     // Its parent ends at once, so that init, not this program, waits for it.
-    if (::fork() == 0) become(script, read_identity(wait_for).process, ends[1]);
+    if (::fork() == 0) become(script, read_identity(wait_for), ends[1]);
     ::_exit(0);
   }
   ::close(ends[1]);
@@ -109,25 +121,25 @@ std::string LocalDispatcher::submit(const fs::path& script,
   return last_;
 }
 
-std::optional<std::vector<QueuedTasks>> LocalDispatcher::query(
-    const std::vector<std::string>& jobs) const {
+QueueAnswer LocalDispatcher::query(const std::map<std::string, std::string>& names) const {
   const ProcessIdentity own = find_own_identity();
-  std::vector<QueuedTasks> tasks;
-  for (const std::string& job : jobs) {
-    const Life life = judge_process(read_identity(job), own);
-    if (life == Life::kUnknown) return std::nullopt;
-    if (life == Life::kRuns) tasks.push_back({job, -1, 1, TaskState::kRunning, "RUNNING", ""});
+  QueueAnswer answer;
+  for (const auto& [job, name] : names) {  // such a job's number is never another's
+    const ProcessIdentity process = read_identity(job);
+    // What ran before a host was started again has ended.
+    if (process.host == own.host && process.boot != own.boot) continue;
+    const Life life = judge_process(process, own);
+    if (life == Life::kUnknown) return {{}, "it was submitted on " + process.host};
+    if (life == Life::kRuns) {
+      answer.tasks.push_back({job, -1, 1, TaskState::kRunning, "RUNNING", ""});
+    }
   }
-  return tasks;
+  return answer;
 }
 
-std::string LocalDispatcher::explain_silence() const {
-  return "it was submitted on another host, or before this one was started again";
-}
-
-void LocalDispatcher::cancel(const std::vector<std::string>& jobs) const {
+void LocalDispatcher::cancel(const std::map<std::string, std::string>& names) const {
   const ProcessIdentity own = find_own_identity();
-  for (const std::string& job : jobs) {
+  for (const auto& [job, name] : names) {
     const ProcessIdentity process = read_identity(job);
     const auto number = parse_number<pid_t>(process.process);
     if (!number || judge_process(process, own) != Life::kRuns) continue;

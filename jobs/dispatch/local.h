@@ -10,6 +10,7 @@ namespace strut {
 class LocalDispatcher : public Dispatcher {
  public:
   std::string name() const override { return "local"; }
+  std::string find_place() const override { return ""; }
   SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
   Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;
   std::vector<NodeAnswer> ask_nodes(const Resources& resources) const override;
@@ -18,10 +19,8 @@ class LocalDispatcher : public Dispatcher {
   std::string submit(const std::filesystem::path& script,
                      const std::vector<std::string>& after) const override;
   std::string find_job(const std::string&) const override { return ""; }
-  std::optional<std::vector<QueuedTasks>> query(
-      const std::vector<std::string>& jobs) const override;
-  std::string explain_silence() const override;
-  void cancel(const std::vector<std::string>& jobs) const override;
+  QueueAnswer query(const std::map<std::string, std::string>& names) const override;
+  void cancel(const std::map<std::string, std::string>& names) const override;
   bool requeue_own() const override { return false; }
   std::int64_t find_own_end() const override { return 0; }
   int count_own_restarts() const override { return 0; }

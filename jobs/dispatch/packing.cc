@@ -11,14 +11,14 @@ namespace {
 /// A sweep with holes everywhere is not worth a job each.
 constexpr std::size_t kMostRanges = 16;
 
-/// Closes the narrowest gaps until few ranges are left.
-void close_gaps(std::vector<ShardRange>& ranges) {
-  if (ranges.size() <= kMostRanges) return;
+/// Closes the narrowest gaps until at most so many ranges are left, fewer where gaps are alike.
+void close_gaps(std::vector<ShardRange>& ranges, std::size_t most) {
+  if (ranges.size() <= most) return;
   std::vector<std::int64_t> gaps;
   for (std::size_t i = 1; i < ranges.size(); ++i) {
     gaps.push_back(ranges[i].first - ranges[i - 1].end);
   }
-  auto cut = gaps.begin() + static_cast<std::ptrdiff_t>(kMostRanges - 1);
+  auto cut = gaps.begin() + static_cast<std::ptrdiff_t>(most - 1);
   std::nth_element(gaps.begin(), cut, gaps.end(), std::greater<>());
   const std::int64_t narrow = *cut;
   std::vector<ShardRange> wide = {ranges.front()};
@@ -63,7 +63,7 @@ ShardRange PackedArray::get_task(std::int64_t task) const {
 
 std::vector<PackedArray> pack_shards(std::vector<ShardRange> missing,
                                      const PackingRequest& request) {
-  close_gaps(missing);
+  close_gaps(missing, std::min(kMostRanges, static_cast<std::size_t>(request.limits.tasks)));
   const double fit = std::floor(request.task_seconds / request.shard_seconds);
   std::int64_t shards_a_task = std::max<std::int64_t>(1, std::llround(std::min(fit, 1e15)));
   std::int64_t total = 0;

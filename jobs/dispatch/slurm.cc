@@ -11,7 +11,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "io/config.h"
 #include "io/input_error.h"
@@ -25,10 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An empty queue is believed when it is seen twice: a controller that has just been started again
-/// may not know its jobs yet.
-constexpr std::chrono::seconds kSecondLook{2};
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -36,9 +31,17 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
+/// A command of Slurm's. What the environment would set in place of our options, or hide from its
+/// answers, is kept from it.
+ChildOutput call(const std::vector<std::string>& words) {
+  ChildOptions options;
+  options.hidden_variables = {"SBATCH_", "SQUEUE_", "SINFO_", "SCANCEL_", "SLURM_CLUSTERS="};
+  return read_child(words, options);
+}
+
 /// Throws EnvironmentError where the command fails.
 std::string ask(const std::vector<std::string>& words) {
-  const ChildOutput output = read_child(words);
+  const ChildOutput output = call(words);
   if (output.code != 0) throw EnvironmentError(words.front() + ": " + output.explain());
   return output.out;
 }
@@ -61,6 +64,16 @@ std::int64_t read_count(const std::map<std::string, std::string>& settings,
   return parse_number<std::int64_t>(found->second).value_or(SiteLimits().tasks);
 }
 
+/// max_array_tasks of SchedulerParameters, where a site sets it.
+std::int64_t read_most_tasks(const std::map<std::string, std::string>& settings) {
+  const auto found = settings.find("SchedulerParameters");
+  const std::string before = "max_array_tasks=";
+  const std::size_t at = found == settings.end() ? std::string::npos : found->second.find(before);
+  if (at == std::string::npos) return SiteLimits().tasks;
+  const std::string value = found->second.substr(at + before.size());
+  return parse_number<std::int64_t>(value.substr(0, value.find(','))).value_or(SiteLimits().tasks);
+}
+
 struct Partition {
   std::string name;
   double seconds = 0.0;
@@ -70,7 +83,7 @@ struct Partition {
 /// The one that is named, or the site's own choice. Throws InputError.
 Partition find_partition(const std::string& wanted) {
   std::vector<std::string> names;
-  for (const std::string& line : split(ask({"sinfo", "-h", "-o", "%P|%l|%a"}), '\n')) {
+  for (const std::string& line : split(ask({"sinfo", "-a", "-h", "-o", "%P|%l|%a"}), '\n')) {
     const std::vector<std::string> parts = split(line, '|');
     if (parts.size() != 3) continue;
     Partition partition{parts[0], parse_slurm_time(parts[1]).value_or(SiteLimits().seconds),
@@ -110,7 +123,8 @@ void check_folder(const std::string& partition, const fs::path& folder) {
   throw InputError(folder.string() + ": lies on a file system of this machine alone (" + kind +
                    "); the nodes of partition " + partition + " (" + *others.begin() +
                    (others.size() > 1 ? ", ..." : "") +
-                   ") cannot see it; put the sweep where all see it, such as your home");
+                   ") cannot see it; put the sweep where all see it, such as your home, or say "
+                   "--shared where they do see it");
 }
 
 const char* read_environment(const char* name) {
@@ -125,26 +139,29 @@ std::string find_own_job() {
   return array + "_" + read_environment("SLURM_ARRAY_TASK_ID");
 }
 
-TaskState judge_word(const std::string& word) {
+/// A word of a later Slurm's is not taken for an end.
+TaskState find_state(const std::string& word) {
   static const std::set<std::string> pending = {"PENDING",      "CONFIGURING",  "REQUEUED",
                                                 "REQUEUE_FED",  "REQUEUE_HOLD", "SPECIAL_EXIT",
                                                 "RESV_DEL_HOLD"};
-  static const std::set<std::string> running = {"RUNNING",   "COMPLETING", "SUSPENDED", "RESIZING",
-                                                "SIGNALING", "STAGE_OUT",  "STOPPED"};
+  static const std::set<std::string> ended = {
+      "BOOT_FAIL", "CANCELLED", "COMPLETED",     "DEADLINE", "FAILED", "LAUNCH_FAILED",
+      "NODE_FAIL", "PREEMPTED", "OUT_OF_MEMORY", "REVOKED",  "TIMEOUT"};
   if (pending.count(word) > 0) return TaskState::kPending;
-  return running.count(word) > 0 ? TaskState::kRunning : TaskState::kEnded;
+  return ended.count(word) > 0 ? TaskState::kEnded : TaskState::kRunning;
 }
 
-/// Lines of `squeue -r -o %F|%K|%T|%r` about these jobs.
+/// Lines of `squeue -r -o %F|%K|%T|%r|%j` about these jobs.
 std::vector<QueuedTasks> parse_queue(const std::string& text,
-                                     const std::vector<std::string>& jobs) {
-  const std::set<std::string> wanted(jobs.begin(), jobs.end());
+                                     const std::map<std::string, std::string>& names) {
   std::vector<QueuedTasks> tasks;
   for (const std::string& line : split(text, '\n')) {
     const std::vector<std::string> parts = split(line, '|');
-    if (parts.size() < 4 || wanted.count(parts[0]) == 0) continue;
+    if (parts.size() < 5) continue;
+    const auto job = names.find(parts[0]);
+    if (job == names.end() || job->second != parts[4]) continue;
     tasks.push_back({parts[0], parse_number<std::int64_t>(parts[1]).value_or(-1), 1,
-                     judge_word(parts[2]), parts[2], parts[3]});
+                     find_state(parts[2]), parts[2], parts[3]});
   }
   return tasks;
 }
@@ -186,13 +203,22 @@ std::string format_slurm_time(double seconds) {
   return text.data();
 }
 
-bool SlurmDispatcher::is_there() { return read_child({"sbatch", "--version"}).code == 0; }
+bool SlurmDispatcher::is_there() { return call({"sbatch", "--version"}).code == 0; }
+
+std::string SlurmDispatcher::find_place() const { return read_settings()["ClusterName"]; }
 
 SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& folder) const {
   if (!is_there()) {
     throw EnvironmentError(
         "sbatch: cannot be started; --to slurm works where Slurm's commands are in PATH, --to "
         "local everywhere");
+  }
+  for (const std::string& option : resources.extra) {
+    if (option.rfind("--clusters", 0) == 0 || option.rfind("-M", 0) == 0) {
+      throw InputError(
+          "--option " + option +
+          ": must be submitted on that cluster itself, where its jobs can be asked for");
+    }
   }
   const auto settings = read_settings();
   const Partition partition = find_partition(resources.partition);
@@ -203,11 +229,15 @@ SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& fo
     throw InputError("--time " + format_slurm_time(resources.seconds) +
                      ": must be at most the partition's, " + format_slurm_time(partition.seconds));
   }
-  check_folder(partition.name, folder);
-  const std::string queue = ask({"squeue", "-h", "-r", "-o", "%A"});
+  if (!resources.is_shared) check_folder(partition.name, folder);
+  const std::string queue = ask({"squeue", "-h", "-a", "-r", "-o", "%A"});
   const std::int64_t queued = std::count(queue.begin(), queue.end(), '\n');
-  return {read_count(settings, "MaxArraySize"),
-          std::max<std::int64_t>(1, read_count(settings, "MaxJobCount") - queued - 1),
+  constexpr std::int64_t kSingleJobs = 2;  // behind the arrays
+  const std::int64_t array_tasks =
+      std::min(read_count(settings, "MaxArraySize"), read_most_tasks(settings));
+  if (array_tasks <= 0) throw EnvironmentError("MaxArraySize: this site allows no job arrays");
+  return {array_tasks,
+          std::max<std::int64_t>(1, read_count(settings, "MaxJobCount") - queued - kSingleJobs),
           partition.seconds};
 }
 
@@ -309,8 +339,9 @@ std::string SlurmDispatcher::make_script(const TaskArray& tasks) const {
 }
 
 std::string SlurmDispatcher::try_script(const fs::path& script) const {
-  const ChildOutput output = read_child({"sbatch", "--test-only", script.string()});
+  const ChildOutput output = call({"sbatch", "--test-only", script.string()});
   if (output.code == ChildOutput::kNotStarted) return "";
+  if (output.code != 0) throw EnvironmentError("sbatch: " + output.explain());
   return output.explain();
 }
 
@@ -330,35 +361,43 @@ std::string SlurmDispatcher::submit(const fs::path& script,
 }
 
 std::string SlurmDispatcher::find_job(const std::string& name) const {
-  const std::string jobs = ask({"squeue", "-h", "--me", "-t", "all", "--name", name, "-o", "%F"});
+  const std::string jobs =
+      ask({"squeue", "-h", "-a", "--me", "-t", "all", "--name", name, "-o", "%F"});
   return jobs.substr(0, jobs.find('\n'));
 }
 
-std::optional<std::vector<QueuedTasks>> SlurmDispatcher::query(
-    const std::vector<std::string>& jobs) const {
-  for (bool again : {false, true}) {
-    const ChildOutput output =
-        read_child({"squeue", "-h", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r"});
-    if (output.code != 0) {
-      silence_ = "squeue: " + output.explain();
-      return std::nullopt;
-    }
-    std::vector<QueuedTasks> tasks = parse_queue(output.out, jobs);
-    if (!tasks.empty() || again) return tasks;
-    std::this_thread::sleep_for(kSecondLook);
+QueueAnswer SlurmDispatcher::query(const std::map<std::string, std::string>& names) const {
+  const ChildOutput output =
+      call({"squeue", "-h", "-a", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r|%j"});
+  if (output.code != 0) return {{}, "squeue: " + output.explain()};
+  QueueAnswer answer{parse_queue(output.out, names), ""};
+  // What squeue passes over has ended only where the controller says that there is no such job, or
+  // that the number is another's.
+  for (const auto& [job, name] : names) {
+    const std::string number = job;  // for the lambda
+    const bool is_listed = std::any_of(answer.tasks.begin(), answer.tasks.end(),
+                                       [&](const QueuedTasks& t) { return t.job == number; });
+    if (is_listed) continue;
+    const ChildOutput known = call({"scontrol", "show", "job", job});
+    const bool is_gone =
+        known.code != 0 && (known.out + known.messages).find("Invalid job id") != std::string::npos;
+    const bool is_ours = known.out.find("JobName=" + name + "\n") != std::string::npos ||
+                         known.out.find("JobName=" + name + " ") != std::string::npos;
+    if (is_gone || (known.code == 0 && !is_ours)) continue;
+    return {{},
+            "squeue does not list job " + job + ", and scontrol " +
+                (known.code == 0 ? "knows it" : "says: " + known.explain())};
   }
-  return std::nullopt;
+  return answer;
 }
 
-void SlurmDispatcher::cancel(const std::vector<std::string>& jobs) const {
-  std::vector<std::string> words = {"scancel"};
-  words.insert(words.end(), jobs.begin(), jobs.end());
-  ask(words);
+void SlurmDispatcher::cancel(const std::map<std::string, std::string>& names) const {
+  for (const auto& [job, name] : names) ask({"scancel", "--name=" + name, job});
 }
 
 bool SlurmDispatcher::requeue_own() const {
   const std::string job = find_own_job();
-  return !job.empty() && read_child({"scontrol", "requeue", job}).code == 0;
+  return !job.empty() && call({"scontrol", "requeue", job}).code == 0;
 }
 
 std::int64_t SlurmDispatcher::find_own_end() const {
@@ -367,7 +406,7 @@ std::int64_t SlurmDispatcher::find_own_end() const {
   if (told) return *told;
   const std::string job = read_environment("SLURM_JOB_ID");
   if (job.empty()) return 0;
-  const ChildOutput left = read_child({"squeue", "-h", "-j", job, "-o", "%L"});
+  const ChildOutput left = call({"squeue", "-h", "-a", "-j", job, "-o", "%L"});
   const auto seconds = parse_slurm_time(left.out.substr(0, left.out.find('\n')));
   const bool is_known = left.code == 0 && seconds && std::isfinite(*seconds);
   return is_known ? std::time(nullptr) + std::lround(*seconds) : 0;

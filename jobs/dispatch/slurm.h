@@ -1,6 +1,8 @@
 // Slurm, by its own commands: no library of one version, no accounting database.
 #pragma once
 
+#include <optional>
+
 #include "jobs/dispatch/dispatcher.h"
 
 namespace strut {
@@ -11,6 +13,7 @@ class SlurmDispatcher : public Dispatcher {
   static bool is_there();
 
   std::string name() const override { return "slurm"; }
+  std::string find_place() const override;
   SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
   Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;
   std::vector<NodeAnswer> ask_nodes(const Resources& resources) const override;
@@ -19,16 +22,11 @@ class SlurmDispatcher : public Dispatcher {
   std::string submit(const std::filesystem::path& script,
                      const std::vector<std::string>& after) const override;
   std::string find_job(const std::string& name) const override;
-  std::optional<std::vector<QueuedTasks>> query(
-      const std::vector<std::string>& jobs) const override;
-  std::string explain_silence() const override { return silence_; }
-  void cancel(const std::vector<std::string>& jobs) const override;
+  QueueAnswer query(const std::map<std::string, std::string>& names) const override;
+  void cancel(const std::map<std::string, std::string>& names) const override;
   bool requeue_own() const override;
   std::int64_t find_own_end() const override;
   int count_own_restarts() const override;
-
- private:
-  mutable std::string silence_;
 };
 
 /// "2-03:04:05", "03:04:05", "04:05", "5" (minutes), "infinite", as Slurm writes durations [s].

@@ -1,7 +1,11 @@
 #include "jobs/dispatch/submission.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
+#include <random>
+#include <sstream>
 #include <system_error>
 
 #include "io/atomic_file.h"
@@ -29,7 +33,8 @@ fs::path make_next(const fs::path& jobs) {
 }
 
 void write_submission(const Submission& s) {
-  std::string text = "dispatcher = \"" + s.dispatcher + "\"\njob_prefix = \"" + s.job_prefix +
+  std::string text = "dispatcher = \"" + s.dispatcher + "\"\nplace = \"" + s.place +
+                     "\"\nuser = \"" + s.user + "\"\njob_prefix = \"" + s.job_prefix +
                      "\"\nretries = " + (s.retries ? "true" : "false") +
                      "\ncollects = " + (s.collects ? "true" : "false") + "\n";
   for (const PackedArray& array : s.arrays) {
@@ -46,6 +51,8 @@ Submission read_submission(const fs::path& folder) {
   Submission s;
   s.folder = folder;
   s.dispatcher = root.text("dispatcher");
+  s.place = root.text("place");
+  s.user = root.text("user");
   s.job_prefix = root.text("job_prefix");
   s.retries = root.boolean_or("retries", false);
   s.collects = root.boolean_or("collects", false);
@@ -83,22 +90,59 @@ void Submission::write_job(const std::string& part, const std::string& job) cons
 
 void Submission::mark_cancelled() const { write_text_file(folder / "cancelled", ""); }
 
-void Submission::mark_over() const { write_text_file(folder / "over", ""); }
+void Submission::take_back_cancelled() const { fs::remove(folder / "cancelled"); }
+
+void Submission::mark_over(const TaskWords& words) const {
+  std::ostringstream text;
+  for (const auto& [task, word] : words) {
+    text << task.first << ' ' << task.second << ' ' << word << '\n';
+  }
+  write_text_file(folder / "over", text.str());
+}
+
+TaskWords Submission::read_words() const {
+  TaskWords words;
+  std::istringstream text(is_over() ? read_text_file(folder / "over") : "");
+  std::size_t array = 0;
+  std::int64_t task = 0;
+  for (std::string word; text >> array >> task >> word;) words[{array, task}] = word;
+  return words;
+}
+
+std::string find_user() { return std::to_string(::getuid()); }
 
 Submission make_submission(const SweepFolder& folder, Submission s) {
   s.folder = make_next(find_jobs(folder));
-  s.job_prefix += "-" + s.name();
+  std::ostringstream prefix;  // copies of a folder have the same plan and the same numbers
+  prefix << s.job_prefix << '-' << std::hex << std::random_device()() << '-' << s.name();
+  s.job_prefix = prefix.str();
+  s.user = find_user();
   for (std::size_t i = 0; i < s.arrays.size(); ++i) fs::create_directory(s.tasks(i));
   write_submission(s);
   return s;
 }
 
-std::vector<Submission> list_submissions(const SweepFolder& folder) {
+Submission find_submission(const SweepFolder& folder, const std::string& name) {
+  const fs::path place = find_jobs(folder) / name;
+  if (name.find('/') != std::string::npos || !fs::exists(place / "submission.toml")) {
+    throw InputError(folder.root.string() + ": holds no submission '" + name + "'");
+  }
+  return read_submission(place);
+}
+
+std::vector<Submission> list_submissions(const SweepFolder& folder,
+                                         std::vector<std::string>* faults) {
   std::vector<Submission> all;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(find_jobs(folder), error)) {
     // Killed before it was written: nothing of it was queued.
-    if (fs::exists(entry.path() / "submission.toml")) all.push_back(read_submission(entry.path()));
+    if (!fs::exists(entry.path() / "submission.toml")) continue;
+    try {
+      all.push_back(read_submission(entry.path()));
+    } catch (const InputError& e) {
+      if (faults == nullptr) throw;
+      faults->push_back(e.what());
+    }
   }
   std::sort(all.begin(), all.end(), [](const Submission& a, const Submission& b) {
     const std::string x = a.name(), y = b.name();

@@ -4,12 +4,15 @@
 //   DIR/jobs/NAME/ARRAY.sh          what the scheduler got
 //   DIR/jobs/NAME/ARRAY.job         the job that the scheduler made of it
 //   DIR/jobs/NAME/ARRAY/TASK        the lives of a task (task_record.h)
-//   DIR/jobs/NAME/cancelled, over   marks
+//   DIR/jobs/NAME/cancelled         a mark
+//   DIR/jobs/NAME/over              a mark; what the scheduler remembered of its tasks' ends
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/sweep_folder.h"
@@ -17,9 +20,14 @@
 
 namespace strut {
 
+/// By array and task, how it ended in the scheduler's own terms, which forgets: "TIMEOUT".
+using TaskWords = std::map<std::pair<std::size_t, std::int64_t>, std::string>;
+
 struct Submission {
   std::filesystem::path folder;  // DIR/jobs/NAME
   std::string dispatcher;
+  std::string place;       // Dispatcher::find_place() of where it was submitted
+  std::string user;        // who submitted it, by number
   std::string job_prefix;  // names of jobs begin so, and nobody else's do
   std::vector<PackedArray> arrays;
   bool retries = false;   // a job behind all arrays tries once more what failed
@@ -43,15 +51,26 @@ struct Submission {
 
   bool is_cancelled() const { return std::filesystem::exists(folder / "cancelled"); }
   void mark_cancelled() const;
+  void take_back_cancelled() const;
   /// Nothing of it is queued any more, and nothing will be.
   bool is_over() const { return std::filesystem::exists(folder / "over"); }
-  void mark_over() const;
+  void mark_over(const TaskWords& words) const;
+  /// As mark_over() left them.
+  TaskWords read_words() const;
 };
 
-/// Gives a submission the next folder, its name, and its submission.toml. Throws EnvironmentError.
+/// The number of the user whom this process runs for.
+std::string find_user();
+
+/// Gives a submission the next folder, its name, a prefix that nobody else's jobs have, and its
+/// submission.toml. Throws EnvironmentError.
 Submission make_submission(const SweepFolder& folder, Submission submission);
 
-/// All of a sweep, the oldest first. Throws InputError where one is damaged.
-std::vector<Submission> list_submissions(const SweepFolder& folder);
+/// One of a sweep, by its name. Throws InputError where there is none, or it is damaged.
+Submission find_submission(const SweepFolder& folder, const std::string& name);
+/// All of a sweep, the oldest first. Throws InputError where one is damaged; or leaves it out and
+/// tells of it in `faults`, where that is given.
+std::vector<Submission> list_submissions(const SweepFolder& folder,
+                                         std::vector<std::string>* faults = nullptr);
 
 }  // namespace strut

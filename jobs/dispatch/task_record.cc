@@ -23,19 +23,28 @@ std::optional<TaskEnd> find_end(const std::string& name) {
   return std::nullopt;
 }
 
+std::optional<TaskFate> find_fate(const std::string& word) {
+  if (word == "TIMEOUT" || word == "DEADLINE") return TaskFate::kTimeout;
+  if (word == "PREEMPTED") return TaskFate::kPreempted;
+  if (word == "CANCELLED") return TaskFate::kCancelled;
+  return std::nullopt;
+}
+
 }  // namespace
 
 const char* get_name(TaskEnd end) { return kEnds[static_cast<std::size_t>(end)]; }
 const char* get_name(TaskFate fate) { return kFates[static_cast<std::size_t>(fate)]; }
 
-TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled) {
-  if (lives.empty()) return cancelled ? TaskFate::kCancelled : TaskFate::kNeverBegun;
-  const TaskLife& last = lives.back();
+TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled, const std::string& word) {
+  const bool has_begun = !lives.empty();
+  const TaskLife last = has_begun ? lives.back() : TaskLife();
   if (last.how == TaskEnd::kDone) return TaskFate::kDone;
   if (last.how == TaskEnd::kFailed) return TaskFate::kFailed;
   if (last.how == TaskEnd::kError) return TaskFate::kError;
   if (cancelled) return TaskFate::kCancelled;
   if (last.how == TaskEnd::kDrained) return TaskFate::kDrained;
+  if (const auto fate = find_fate(word)) return *fate;
+  if (!has_begun) return word.empty() ? TaskFate::kNeverBegun : TaskFate::kLost;
   if (last.how == TaskEnd::kStopped) {
     const bool in_time = last.limit == 0 || last.end < last.limit - kBefore;
     return in_time ? TaskFate::kPreempted : TaskFate::kTimeout;

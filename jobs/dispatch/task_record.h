@@ -31,12 +31,13 @@ struct TaskLife {
   std::int64_t shards = 0;  // that it wrote
 };
 
-/// What became of a task, of its last life unless the scheduler knows better.
+/// What became of a task: of its last life, and where that was stopped or ended without a word, as
+/// the scheduler says.
 enum class TaskFate {
   kNeverBegun,
   kDone,
   kFailed,
-  kDrained,
+  kDrained,    // and not put back into the queue
   kTimeout,    // its time was over before it could stop
   kPreempted,  // stopped or lost, and begun again by the scheduler
   kCancelled,
@@ -46,8 +47,10 @@ enum class TaskFate {
 
 const char* get_name(TaskFate fate);
 
-/// Of a task that is not queued any more.
-TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled);
+/// Of a task that is not queued any more. `word`: how it ended as the scheduler remembers, "" where
+/// it does not.
+TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled,
+                    const std::string& word = "");
 
 /// Throws InputError where the file is none of ours.
 std::vector<TaskLife> read_task_lives(const std::filesystem::path& file);

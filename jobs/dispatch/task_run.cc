@@ -8,17 +8,6 @@
 #include "io/process_identity.h"
 
 namespace strut {
-namespace {
-
-Submission find_submission(const SweepFolder& folder, const std::string& name) {
-  for (Submission& s : list_submissions(folder)) {
-    if (s.name() == name) return std::move(s);
-  }
-  throw InputError("--task: " + folder.root.string() + " holds no submission '" + name + "'");
-}
-
-}  // namespace
-
 std::string make_task_name(const std::string& submission, std::size_t array,
                            const std::string& task) {
   return submission + "/" + std::to_string(array) + "/" + task;
@@ -62,8 +51,10 @@ void TaskRun::end(TaskEnd how, std::int64_t shards_written) {
 }
 
 std::string TaskRun::requeue() const {
-  if (lives_.back().shards == 0) {
-    return "not one shard was finished in its time; submit again with a longer --time";
+  // Once may be bad luck: a warning that came early, shards in other tasks' hands.
+  const auto wrote_none = [](const TaskLife& life) { return life.shards == 0; };
+  if (lives_.size() > 1 && std::all_of(lives_.end() - 2, lives_.end(), wrote_none)) {
+    return "not one shard was finished in two lives; submit again with a longer --time";
   }
   if (submission_.is_cancelled()) return "it was cancelled";
   if (!dispatcher_->requeue_own()) return dispatcher_->name() + " does not take it back";

@@ -25,8 +25,11 @@ class TaskRun {
   /// Throws EnvironmentError.
   void begin();
   void end(TaskEnd how, std::int64_t shards_written);
-  /// Back into the queue, for what was left undone. Not where this life wrote no shard: the next
-  /// would not either. Returns why it is not, "" where it is.
+  /// The submission was cancelled.
+  bool is_cancelled() const { return submission_.is_cancelled(); }
+
+  /// Back into the queue, for what was left undone. Not where the last two lives wrote no shard:
+  /// the next would not either. Returns why it is not, "" where it is.
   std::string requeue() const;
 
  private:
