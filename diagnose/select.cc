@@ -149,16 +149,10 @@ SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const Hyp
   return shared;
 }
 
-/// Where a hypothesis' fit begins, and how far it may go.
-struct Beginning {
-  std::vector<double> values, low, high;  // by its parameters
-  bool operator==(const Beginning&) const = default;
-};
-
 /// For each of the ranked, one before it whose first beginning does the same to all readings: what
 /// no data tell apart is fitted once. Itself where there is none.
 std::vector<std::size_t> find_twins(const std::vector<RankedTrial>& ranked,
-                                    const std::vector<Beginning>& beginnings) {
+                                    const std::vector<std::vector<double>>& beginnings) {
   constexpr double kSame = 1e-9;
   std::vector<std::size_t> twins;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
@@ -375,23 +369,18 @@ class Selector {
                   [&](const RankedTrial& r) { return r.gain.chi2 < 0.3 * round.threshold; });
     tell("fitting the best " + std::to_string(ranked.size()));
     // Each alone on a thread: one fit does not fill several.
-    std::vector<Beginning> beginnings;
+    std::vector<std::vector<double>> beginnings;
     for (const RankedTrial& r : ranked) {
       const HypothesisTrial& trial = evidence.trials[r.trial];
-      const Hypothesis& h = hypotheses[trial.hypothesis];
-      beginnings.push_back({make_beginning(data_, h, trial, r.gain), {}, {}});
-      for (const Unknown& u : make_unknowns(data_, h)) {
-        beginnings.back().low.push_back(u.low);
-        beginnings.back().high.push_back(u.high);
-      }
+      beginnings.push_back(make_beginning(data_, hypotheses[trial.hypothesis], trial, r.gain));
     }
     const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
     std::vector<Candidate> fitted(ranked.size());
     share_items(options_.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
       if (twins[i] != i) return;
       const HypothesisTrial& trial = evidence.trials[ranked[i].trial];
-      fitted[i] = fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain,
-                                beginnings[i].values);
+      fitted[i] =
+          fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain, beginnings[i]);
       fitted[i].stability = calc_stability(evidence, one_sided, trial.hypothesis);
     });
     for (std::size_t i = 0; i < fitted.size(); ++i) {
@@ -401,7 +390,7 @@ class Selector {
     }
     for (Candidate& c : fitted) {
       selection_.simulations += c.simulations;
-      if (c.values.empty() || !is_plausible(data_, c.hypothesis, c.values)) continue;
+      if (c.values.empty() || !is_allowed(c)) continue;
       round.candidates.push_back(std::move(c));
     }
     std::stable_sort(round.candidates.begin(), round.candidates.end(),
@@ -413,6 +402,15 @@ class Selector {
     const bool accepted = accept(selection_.rounds.back());
     selection_.rounds.back().accepted = accepted;
     return accepted;
+  }
+
+  /// Whether a candidate's values are within its own effect's range, and such as that effect has.
+  bool is_allowed(const Candidate& c) const {
+    const std::vector<Unknown> unknowns = make_unknowns(data_, c.hypothesis);
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      if (c.values[i] < unknowns[i].low || c.values[i] > unknowns[i].high) return false;
+    }
+    return is_plausible(data_, c.hypothesis, c.values);
   }
 
   /// Whether the best of a round gains far more than it needs.

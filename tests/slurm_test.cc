@@ -42,13 +42,13 @@ bool has_ended(const fs::path& sweep) {
   return status.get_child("submissions").back().second.get<std::string>("state") == "ended";
 }
 
-/// Lets tasks that Slurm has put back begin at once, not in two minutes. And what one host as two
-/// nodes brings about: a task put back from one of them is a "duplicate" for the other, which is
-/// drained, and the task is held.
+/// Lets tasks that Slurm has put back begin soon, not in two minutes; not at once, as what is left
+/// of their former lives may still end. And what one host as two nodes brings about: a task put
+/// back from one of them is a "duplicate" for the other, which is drained, and the task is held.
 void hurry() {
   SlurmCluster::ask(
       "for job in $(squeue -h -r -t pending -o '%r|%F_%K' | sed -n 's/^BeginTime|//p'); do "
-      "scontrol update JobId=$job StartTime=now; done; "
+      "sleep 2; scontrol update JobId=$job StartTime=now; done; "
       "for node in $(sinfo -h -N -t drained -o %N); do "
       "scontrol update NodeName=$node State=RESUME; done; "
       "for job in $(squeue -h -r -t pending -o '%r|%F_%K' | sed -n 's/^.*held|//p'); do "
@@ -93,7 +93,8 @@ TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[clus
   REQUIRE(outcome.code == 0);
   const std::string killed = find_running();
   const std::string number = killed.substr(killed.find('_') + 1);
-  REQUIRE(test::run_shell("pkill -KILL -f '" + make_pattern(sweep, number) + "'").code == 0);
+  const std::string kill = "pkill -KILL -f '" + make_pattern(sweep, number) + "'";
+  REQUIRE(wait_until([&] { return test::run_shell(kill).code == 0; }, 10.0));
   REQUIRE(wait_until([&] { return !is_running(killed); }));
   REQUIRE(test::run_shell("scontrol requeue " + find_running()).code == 0);
   REQUIRE(wait_for_end(sweep));
@@ -118,6 +119,8 @@ TEST_CASE("A task warned of its time limit goes on in its next life", "[cluster]
   // The signal that Slurm sends --signal's seconds before the limit.
   SlurmCluster::ask("scancel --signal=USR1 --batch " + find_running());
   REQUIRE(wait_for_end(sweep));
+  INFO(test::read_text(sweep / "jobs/001/array-0/0")
+       << SlurmCluster::ask("cat " + (sweep / "logs").string() + "/*"));
   const auto status = read_status(sweep);
   CHECK(status.get<bool>("complete"));
   const auto& last = status.get_child("submissions").back().second;

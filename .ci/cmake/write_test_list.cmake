@@ -36,10 +36,14 @@ foreach(name IN LISTS all)
     list(JOIN STRUT_TEST_LABELS " " known)
     message(FATAL_ERROR "Test \"${name}\" carries none of the tags: ${known}")
   endif()
+  set(lock "")
+  if("cluster" IN_LIST labels)  # two Slurms at once on one machine are late in everything
+    set(lock " RESOURCE_LOCK cluster")
+  endif()
   string(REPLACE "," "\\," specification "${name}")
   string(APPEND script
     "add_test([==[${name}]==] [==[${STRUT_TEST_PROGRAM}]==] [==[${specification}]==])\n"
     "set_tests_properties([==[${name}]==] PROPERTIES\n"
-    "  WORKING_DIRECTORY [==[${STRUT_WORKING_DIRECTORY}]==] LABELS [==[${labels}]==])\n")
+    "  WORKING_DIRECTORY [==[${STRUT_WORKING_DIRECTORY}]==] LABELS [==[${labels}]==]${lock})\n")
 endforeach()
 file(WRITE ${STRUT_OUTPUT} "${script}")
