@@ -71,6 +71,7 @@ pid_t start(const std::vector<std::string>& words, const FileActions& actions, S
       static_cast<short>(POSIX_SPAWN_SETSIGMASK | (how.own_group ? POSIX_SPAWN_SETPGROUP : 0)));
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : copies) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   pid_t child = 0;

@@ -190,7 +190,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
   const auto queue = [&](const std::string& place) {
-    const Submission s = make_submission(sweep, {"", "slurm", place, "", "strut", {{{0, 10}, 5}}});
+    Submission s = make_submission(sweep, {"", "slurm", place, "", "strut", {{{0, 10}, 5}}});
     s.write_job("array-0", "4711");
     return s;
   };

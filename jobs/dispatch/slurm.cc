@@ -355,7 +355,7 @@ std::string SlurmDispatcher::submit(const fs::path& script,
   }
   words.push_back(script.string());
   const std::string answer = ask(words);  // "123" or "123;cluster"
-  const std::string job = answer.substr(0, answer.find_first_of(";\n"));
+  std::string job = answer.substr(0, answer.find_first_of(";\n"));
   if (!parse_number<std::int64_t>(job)) throw EnvironmentError("sbatch: said '" + answer + "'");
   return job;
 }
