@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "diagnose/gain.h"
 #include "diagnose/leftover.h"
@@ -191,6 +192,16 @@ class Diagnoser {
     if (options_.progress) options_.progress(what);
   }
 
+  /// Whether chi2 at the minimum that a calibration has not reached is below its own by a small
+  /// part only of what the causes take of it.
+  bool is_near(const FitResult& calibration) const {
+    constexpr double kSmall = 0.05;
+    const std::vector<double>& gains = diagnosis_.selection.gains;
+    const double gained = std::accumulate(gains.begin(), gains.end(), 0.0);
+    const double unit = std::max(1.0, calibration.chi2_per_degree());
+    return calibration.distance * calibration.distance * unit < kSmall * gained;
+  }
+
   /// What a user must know before anything else is believed.
   void take_notes() {
     for (const bool extended : {false, true}) {
@@ -201,9 +212,9 @@ class Diagnoser {
                                  (extended ? "extended" : "calibrated") +
                                  " model has not converged: its minimum is " +
                                  format_rounded(fit.fit.distance) + " standard deviations away");
-      // What the runs held out confirm stands wherever its fit ended; what they compare it with is
-      // the calibrated model.
-      if (!extended) diagnosis_.is_whole = false;
+      // What the runs held out confirm stands wherever its fit ended. They compare it with the
+      // calibrated model, so that must lack little of its minimum beside what the causes gain.
+      if (!extended) diagnosis_.is_whole = diagnosis_.is_whole && is_near(fit.fit);
     }
     for (const DiagnosedRun& run : diagnosis_.runs) {
       for (const RunEvaluation* model : {&run.before, &run.after}) {

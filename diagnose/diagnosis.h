@@ -91,8 +91,8 @@ struct Diagnosis {
   Selection selection;
   std::vector<DiagnosedRun> runs;
   std::vector<std::string> notes;  // for the user
-  /// Every run held out could be simulated, and the calibration converged or a model extended
-  /// beyond it was confirmed by those runs.
+  /// Every run held out could be simulated, and the calibration converged, or lacks little of its
+  /// minimum beside what confirmed causes gain.
   bool is_whole = true;
 
   /// Whether there is an extended model.
