@@ -208,10 +208,11 @@ bool SlurmDispatcher::is_there() { return call({"sbatch", "--version"}).code == 
 std::string SlurmDispatcher::find_place() const { return read_settings()["ClusterName"]; }
 
 SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& folder) const {
-  if (!is_there()) {
-    throw EnvironmentError(
-        "sbatch: cannot be started; --to slurm works where Slurm's commands are in PATH, --to "
-        "local everywhere");
+  const ChildOutput there = call({"sbatch", "--version"});
+  if (there.code != 0) {
+    throw EnvironmentError("sbatch: " + there.explain() +
+                           "; --to slurm works where Slurm's commands are in PATH, --to "
+                           "local everywhere");
   }
   for (const std::string& option : resources.extra) {
     if (option.rfind("--clusters", 0) == 0 || option.rfind("-M", 0) == 0) {
