@@ -247,10 +247,13 @@ TEST_CASE("Slurm is asked before anything is queued", "[cluster]") {
   CHECK(folder.code == 2);
   CHECK_THAT(folder.messages,
              Contains(sweep.string()) && Contains("far") && Contains("cannot see"));
+  const Outcome doctor = run_sweep_command("doctor", sweep, "--to slurm --nodes");
+  CHECK(doctor.code == 0);
+  CHECK_THAT(doctor.out, Contains("instruction sets of the nodes: n1: ") && Contains("job arrays"));
   const Outcome dry = submit(sweep, "--dry-run");
   CHECK(dry.code == 0);
   CHECK_THAT(dry.out, Contains("#SBATCH") && Contains("afterany"));
-  CHECK(SlurmCluster::count_tasks("all") == 0);
+  CHECK(SlurmCluster::count_tasks("pending,running") == 0);
   CHECK_FALSE(fs::exists(sweep / "jobs"));
 }
 
