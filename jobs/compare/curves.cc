@@ -1,6 +1,7 @@
 #include "jobs/compare/curves.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 
 namespace strut {
@@ -19,34 +20,38 @@ const std::vector<double>& get_curve(const ModelCurves& model, int channel) {
   return model.evaluation->curves.channel[static_cast<std::size_t>(channel)];
 }
 
-/// time, measured, models, residuals of the models
-std::vector<std::vector<double>> make_curve_rows(const std::vector<double>& times,
-                                                 const MeasuredChannel& c,
-                                                 const std::vector<ModelCurves>& models) {
-  const std::size_t stride = choose_stride(times.size());
-  std::vector<std::vector<double>> rows;
-  rows.reserve(times.size() / stride + 1);
-  for (std::size_t t = 0; t < times.size(); t += stride) {
-    std::vector<double> row = {times[t], c.values[t]};
-    for (const ModelCurves& model : models) row.push_back(get_curve(model, c.channel)[t]);
-    for (const ModelCurves& model : models) {
-      row.push_back(c.values[t] - get_curve(model, c.channel)[t]);
-    }
-    rows.push_back(std::move(row));
-  }
-  return rows;
+/// Every so many of the values, as a report needs them.
+std::vector<double> thin(const std::vector<double>& values) {
+  const std::size_t stride = choose_stride(values.size());
+  std::vector<double> kept;
+  kept.reserve(values.size() / stride + 1);
+  for (std::size_t t = 0; t < values.size(); t += stride) kept.push_back(values[t]);
+  return kept;
 }
 
-/// Models from a column of the block on, as what follows "plot".
-std::string plot_models(const std::string& block, std::size_t column,
-                        const std::vector<ModelCurves>& models, bool has_titles) {
-  std::string text;
+std::vector<double> calc_residual(const MeasuredChannel& c, const std::vector<double>& simulated) {
+  std::vector<double> residual(c.values.size());
+  std::transform(c.values.begin(), c.values.end(), simulated.begin(), residual.begin(),
+                 std::minus<>());
+  return residual;
+}
+
+/// A channel's curves, and a panel of what the models leave of it.
+void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
+                 const ChannelInfo& info, const std::vector<ModelCurves>& models,
+                 std::vector<ChartPanel>& panels) {
+  const std::vector<double> x = thin(times);
+  ChartPanel curves{{""}, {make_label(info.name, info.unit)}, {}};
+  ChartPanel residuals{{"time [s]"}, {make_label("residual", info.unit)}, {}};
+  curves.series.push_back({"measured", SeriesKind::kLine, 1, x, thin(c.values)});
   for (const ModelCurves& model : models) {
-    text += (text.empty() ? "" : ", ") + block + " using 1:" + std::to_string(column++) +
-            " with lines linetype " + std::to_string(model.line_type) +
-            (has_titles ? " title '" + model.name + "'" : " notitle");
+    const std::vector<double>& simulated = get_curve(model, c.channel);
+    curves.series.push_back({model.name, SeriesKind::kLine, model.color, x, thin(simulated)});
+    residuals.series.push_back(
+        {model.name, SeriesKind::kLine, model.color, x, thin(calc_residual(c, simulated))});
   }
-  return text;
+  panels.push_back(std::move(curves));
+  panels.push_back(std::move(residuals));
 }
 
 }  // namespace
@@ -63,29 +68,16 @@ std::string make_run_name(const CampaignData& data, std::size_t run) {
 
 std::size_t choose_stride(std::size_t count) { return 1 + count / kMostPoints; }
 
-Figure make_curve_figure(const CampaignData& data, std::size_t run,
-                         const std::vector<ModelCurves>& models) {
-  const std::vector<ModelCurves> simulated = keep_simulated(models);
-  const std::vector<MeasuredChannel>& channels = data.channels(run);
-  Figure figure{make_run_name(data, run) + "_time", 1000,
-                static_cast<int>(360 * channels.size() + 60), ""};
-  std::string& text = figure.commands;
-  text = "set multiplot layout " + std::to_string(2 * channels.size()) +
-         ",1 margins 0.1,0.97,0.08,0.96 spacing 0.05\n"
-         "set grid\nset key outside above horizontal\nset format x ''\n";
-  for (std::size_t k = 0; k < channels.size(); ++k) {
-    const ChannelInfo& info = data.info(channels[k].channel);
-    const std::string block = "$channel" + std::to_string(k);
-    text += make_data(block.substr(1), make_curve_rows(data.times(run), channels[k], simulated));
-    text += "set ylabel " + quote_figure_text(make_words(info.name) + " [" + info.unit + "]") +
-            "\nplot " + block + " using 1:2 with lines linetype 1 title 'measured', " +
-            plot_models(block, 3, simulated, true) + "\nunset key\n";
-    if (k + 1 == channels.size()) text += "set format x '%g'\nset xlabel 'time [s]'\n";
-    text += "set ylabel 'residual [" + info.unit + "]'\nplot " +
-            plot_models(block, 3 + simulated.size(), simulated, false) + "\n";
+Chart make_curve_chart(const CampaignData& data, std::size_t run,
+                       const std::vector<ModelCurves>& models) {
+  Chart chart{make_run_name(data, run) + "_time", {}};
+  chart.panel_height = 240;
+  chart.shares_x = true;
+  chart.caption = "Measured and simulated, and what is left, over time.";
+  for (const MeasuredChannel& c : data.channels(run)) {
+    add_channel(data.times(run), c, data.info(c.channel), keep_simulated(models), chart.panels);
   }
-  text += "unset multiplot\n";
-  return figure;
+  return chart;
 }
 
 std::vector<CsvColumn> make_curve_columns(const CampaignData& data, std::size_t run,

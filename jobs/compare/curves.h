@@ -1,4 +1,4 @@
-// A run's measured curves beside those of models: a figure, and columns of a table.
+// A run's measured curves beside those of models: a chart, and columns of a table.
 #pragma once
 
 #include <string>
@@ -6,13 +6,13 @@
 
 #include "diagnose/baseline.h"
 #include "io/csv.h"
-#include "jobs/report/figure.h"
+#include "jobs/report/chart.h"
 
 namespace strut {
 
 struct ModelCurves {
   std::string name;   // "calibrated"
-  int line_type = 1;  // of figures
+  int color = 1;  // of charts
   const RunEvaluation* evaluation = nullptr;
 
   bool is_simulated() const {
@@ -28,8 +28,8 @@ std::size_t choose_stride(std::size_t count);
 
 /// Every channel over time, below it what the models leave; those that could not be simulated are
 /// left out, one must not be.
-Figure make_curve_figure(const CampaignData& data, std::size_t run,
-                         const std::vector<ModelCurves>& models);
+Chart make_curve_chart(const CampaignData& data, std::size_t run,
+                       const std::vector<ModelCurves>& models);
 
 /// time, and of every channel measured and simulated: "sprung_position",
 /// "sprung_position_calibrated".

@@ -19,9 +19,7 @@ ReportSection make_run_section(const CampaignData& data, const RunComparison& ru
     section.paragraphs.push_back(run.calibrated.evaluation.failure);
     return section;
   }
-  for (const auto& [figure, caption] : make_run_figures(data, run)) {
-    section.figures.push_back(drawer.draw(figure, caption));
-  }
+  drawer.draw_all(make_run_charts(data, run), section);
   section.tables = make_run_tables(data, run);
   return section;
 }

@@ -9,17 +9,11 @@
 #include "jobs/compare/figures.h"
 #include "jobs/diagnose/force_map.h"
 #include "jobs/diagnose/tables.h"
-#include "jobs/report/panels.h"
 
 namespace strut {
 namespace {
 
 using Values = std::vector<double>;
-using Points = std::vector<Values>;
-
-std::string make_label(const std::string& name, const std::string& unit) {
-  return make_words(name) + " [" + unit + "]";
-}
 
 /// How deflection and velocity are called depends on the model; the tire is not of interest here.
 bool is_motion(const StateCurve& state) { return state.name.find("tire") == std::string::npos; }
@@ -64,32 +58,31 @@ void pool(const CampaignData& data, std::size_t run, const RunEvaluation& evalua
   }
 }
 
-PanelLine make_mean_line(const PooledState& pooled, const ModelCurves& model) {
-  PanelLine line{
-      model.name,
-      "linespoints linetype " + std::to_string(model.line_type) + " pointtype 7 pointsize 0.5",
-      {}};
+ChartSeries make_mean_line(const PooledState& pooled, const ModelCurves& model) {
+  ChartSeries line{model.name, SeriesKind::kLinePoints, model.color};
   for (const StateBin& bin :
        calc_state_residual(pooled.name, pooled.unit, pooled.state, pooled.residual).bins) {
-    if (bin.count > 0) line.points.push_back({bin.center, bin.mean});
+    if (bin.count == 0) continue;
+    line.x.push_back(bin.center);
+    line.y.push_back(bin.mean);
   }
   return line;
 }
 
 /// One model's residuals by channel and state, into panels that those before it have made.
 void add_state_lines(const CampaignData& data, const PooledChannels& pooled,
-                     const ModelCurves& model, std::vector<Panel>& panels) {
+                     const ModelCurves& model, std::vector<ChartPanel>& panels) {
   const bool is_first = panels.empty();
   std::size_t panel = 0;
   for (const auto& [channel, states] : pooled) {
     const ChannelInfo& info = data.info(channel);
     for (std::size_t s = 0; s < states.size(); ++s, ++panel) {
       if (is_first) {
-        panels.push_back({make_label(states[s].name, states[s].unit),
-                          s == 0 ? make_label(info.name, info.unit) : "",
+        panels.push_back({{make_label(states[s].name, states[s].unit)},
+                          {s == 0 ? make_label(info.name, info.unit) : ""},
                           {}});
       }
-      panels[panel].lines.push_back(make_mean_line(states[s], model));
+      panels[panel].series.push_back(make_mean_line(states[s], model));
     }
   }
 }
@@ -97,12 +90,15 @@ void add_state_lines(const CampaignData& data, const PooledChannels& pooled,
 /// Points of a force over a motion.
 struct ForceLaw {
   std::string x_label, y_label;
-  Points points;
+  ChartSeries points{"", SeriesKind::kPoints};
 };
 
-void add_points(const Values& x, const Values& y, Points& points) {
+void add_points(const Values& x, const Values& y, ChartSeries& points) {
   const std::size_t stride = choose_stride(x.size());
-  for (std::size_t t = 0; t < x.size(); t += stride) points.push_back({x[t], y[t]});
+  for (std::size_t t = 0; t < x.size(); t += stride) {
+    points.x.push_back(x[t]);
+    points.y.push_back(y[t]);
+  }
 }
 
 const Values& get_channel(const CampaignData& data, const RunCurves& curves,
@@ -120,7 +116,7 @@ std::vector<ForceLaw> list_rig_laws(const CampaignData& data, const RunCurves& c
     const std::string force = *data.campaign.rig == RigKind::kStrutRig ? "force"
                               : is_rate(state)                         ? "damper_force"
                                                                        : "spring_force";
-    ForceLaw law{make_label(state.name, state.unit), make_label(force, "N"), {}};
+    ForceLaw law{make_label(state.name, state.unit), make_label(force, "N")};
     add_points(state.values, get_channel(data, curves, force), law.points);
     laws.push_back(std::move(law));
   }
@@ -133,7 +129,7 @@ std::vector<ForceLaw> list_car_laws(const CampaignData& data, const RunCurves& c
     for (const auto& [motion, unit, force] :
          {std::array{"suspension_deflection", "m", "spring_force"},
           std::array{"suspension_velocity", "m/s", "damper_force"}}) {
-      ForceLaw law{make_label(axle + motion, unit), make_label(axle + force, "N"), {}};
+      ForceLaw law{make_label(axle + motion, unit), make_label(axle + force, "N")};
       for (const char* side : {"left_", "right_"}) {
         add_points(get_channel(data, curves, axle + side + motion),
                    get_channel(data, curves, axle + side + force), law.points);
@@ -150,38 +146,38 @@ std::vector<ForceLaw> list_laws(const CampaignData& data, const RunCurves& curve
 
 /// What a strut rig measures over the motion that drives it.
 void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
-                        std::vector<Panel>& panels) {
+                        std::vector<ChartPanel>& panels) {
   if (data.campaign.rig != RigKind::kStrutRig) return;
   for (const MeasuredChannel& c : data.channels(run.run)) {
     if (c.channel != StrutRigChannel::kForce) continue;
     auto panel = panels.begin();
     for (const StateCurve& state : list_states(data, run.before.curves)) {
-      Points points;
+      ChartSeries points{"measured", SeriesKind::kPoints, 1};
       add_points(state.values, c.values, points);
-      (panel++)->lines.push_back(
-          {"measured", "points linetype 1 pointtype 7 pointsize 0.15", std::move(points)});
+      (panel++)->series.push_back(std::move(points));
     }
   }
 }
 
-Figure make_law_figure(const CampaignData& data, const Diagnosis& diagnosis,
-                       const DiagnosedRun& run) {
-  std::vector<Panel> panels;
+Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
+                     const DiagnosedRun& run) {
+  Chart chart{"force_law", {}, 2};
+  chart.caption = "Forces of the models over the motion, as their sensors read it, in " +
+                  data.campaign.runs[run.run].name + ".";
   for (const ForceLaw& law : list_laws(data, run.before.curves)) {
-    panels.push_back({law.x_label, law.y_label, {}});
+    chart.panels.push_back({{law.x_label}, {law.y_label}, {}});
   }
-  add_measured_force(data, run, panels);
+  add_measured_force(data, run, chart.panels);
   for (const ModelCurves& model : list_model_curves(diagnosis, run)) {
     if (!model.is_simulated()) continue;
     std::size_t panel = 0;
     for (ForceLaw& law : list_laws(data, model.evaluation->curves)) {
-      panels[panel++].lines.push_back(
-          {model.name,
-           "points linetype " + std::to_string(model.line_type) + " pointtype 7 pointsize 0.25",
-           std::move(law.points)});
+      law.points.name = model.name;
+      law.points.color = model.color;
+      chart.panels[panel++].series.push_back(std::move(law.points));
     }
   }
-  return make_panel_figure("force_law", 2, panels);
+  return chart;
 }
 
 std::optional<BodyBalance> calc_balance(const CampaignData& data, std::size_t run,
@@ -193,38 +189,90 @@ std::optional<BodyBalance> calc_balance(const CampaignData& data, std::size_t ru
 
 }  // namespace
 
-std::vector<CaptionedFigure> make_run_figures(const CampaignData& data, const Diagnosis& diagnosis,
-                                              const DiagnosedRun& run) {
+std::vector<Chart> make_run_charts(const CampaignData& data, const Diagnosis& diagnosis,
+                                   const DiagnosedRun& run) {
   const std::vector<ModelCurves> models = list_model_curves(diagnosis, run);
   if (!models.front().is_simulated()) return {};
-  std::vector<CaptionedFigure> figures;
-  figures.emplace_back(make_curve_figure(data, run.run, models),
-                       "Measured and simulated, and what is left, over time.");
+  std::vector<Chart> charts = {make_curve_chart(data, run.run, models)};
   const auto before = calc_balance(data, run.run, diagnosis.selection.base);
   const auto after = calc_balance(data, run.run, diagnosis.selection.extended);
-  if (!before) return figures;
-  std::vector<BalancePoints> balances = {{models.front().name, models.front().line_type, &*before}};
+  if (!before) return charts;
+  std::vector<BalancePoints> balances = {{models.front().name, models.front().color, &*before}};
   if (after && models.size() > 1) {
-    balances.push_back({models.back().name, models.back().line_type, &*after});
+    balances.push_back({models.back().name, models.back().color, &*after});
   }
-  figures.emplace_back(
-      make_panel_figure(make_run_name(data, run.run) + "_balance", 2,
-                        make_balance_panels(balances)),
+  charts.push_back(make_balance_chart(make_run_name(data, run.run) + "_balance", balances));
+  charts.back().caption =
       "Body balance without road: the force that the sprung mass shows and the strut does not "
-      "give.");
-  return figures;
+      "give.";
+  return charts;
 }
 
-std::vector<CaptionedFigure> make_map_figures(const Diagnosis& diagnosis) {
+std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
+  constexpr double kLeast = 0.005;  // smaller ones are not seen
+  ChartPanel panel{{""}, {"probability"}, {}};
+  const auto add = [&](const std::vector<Cause>& causes, const std::string& role, int color) {
+    ChartSeries bars{role, SeriesKind::kBars, color};
+    bars.width = kBarWidth;
+    for (const Cause& cause : causes) {
+      std::string label = cause.effect + (cause.place.empty() ? "" : ", " + cause.place);
+      const auto& seen = panel.x.categories;
+      const bool is_new = std::find(seen.begin(), seen.end(), label) == seen.end();
+      if (cause.probability < kLeast || !is_new) continue;
+      panel.x.categories.push_back(std::move(label));
+      bars.x.push_back(static_cast<double>(panel.x.categories.size()));
+      bars.y.push_back(cause.probability);
+    }
+    if (!bars.x.empty()) panel.series.push_back(std::move(bars));
+  };
+  add(diagnosis.causes, "cause", 1);
+  add(diagnosis.group, "not told apart", 6);
+  add(diagnosis.runners_up, "runner-up", 5);
+  if (panel.series.empty()) return {};
+  panel.x.categories.emplace_back("none of the catalogue");
+  panel.series.push_back({"unknown",
+                          SeriesKind::kBars,
+                          4,
+                          {static_cast<double>(panel.x.categories.size())},
+                          {diagnosis.unknown_share}});
+  panel.series.back().width = kBarWidth;
+  panel.y.range = {0.0, 1.0};
+  Chart chart{"probabilities", {std::move(panel)}};
+  chart.caption =
+      "Probabilities of the causes; where several act at once, each is that of being among them.";
+  return {chart};
+}
+
+std::vector<Chart> make_gain_charts(const Diagnosis& diagnosis) {
+  if (diagnosis.gain.channels.empty() || !diagnosis.is_extended()) return {};
+  constexpr double kWidth = 0.26;
+  ChartPanel panel{{""}, {"rms error held out [% of spread]"}, {}};
+  ChartSeries before{"baseline", SeriesKind::kBars, 2}, after{"extended", SeriesKind::kBars, 3},
+      noise{"noise", SeriesKind::kBars, 6};
+  before.width = after.width = noise.width = kWidth;
+  for (const ChannelGain& c : diagnosis.gain.channels) {
+    panel.x.categories.push_back(make_words(c.channel));
+    const auto x = static_cast<double>(panel.x.categories.size());
+    const double spread = c.rms_before / c.nrmse_before;
+    before.x.push_back(x - kWidth);
+    before.y.push_back(100.0 * c.nrmse_before);
+    after.x.push_back(x);
+    after.y.push_back(100.0 * c.nrmse_after);
+    noise.x.push_back(x + kWidth);
+    noise.y.push_back(100.0 * c.noise_floor / spread);
+  }
+  panel.series = {std::move(before), std::move(after), std::move(noise)};
+  Chart chart{"gain", {std::move(panel)}};
+  chart.caption = "What the extension gains on runs that no fit has seen.";
+  return {chart};
+}
+
+std::vector<Chart> make_map_charts(const Diagnosis& diagnosis) {
   if (!diagnosis.force) return {};
-  return {{make_force_map_figure(*diagnosis.force),
-           "Force map of the " + diagnosis.force->states.describe() +
-               " beside its spring and damper: over velocity, over deflection, as far as the runs "
-               "for fitting went; and where they went."}};
+  return {make_force_map_chart(*diagnosis.force)};
 }
 
-std::vector<CaptionedFigure> make_motion_figures(const CampaignData& data,
-                                                 const Diagnosis& diagnosis) {
+std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis& diagnosis) {
   std::vector<const DiagnosedRun*> runs;
   for (const DiagnosedRun* run : list_held_out(data, diagnosis)) {
     const std::vector<ModelCurves> models = list_model_curves(diagnosis, *run);
@@ -234,22 +282,18 @@ std::vector<CaptionedFigure> make_motion_figures(const CampaignData& data,
     }
   }
   if (runs.empty()) return {};
-  std::vector<Panel> panels;
-  std::size_t columns = 1;
+  Chart states{"states", {}};
+  states.caption = "What the models leave of the runs held out, by the motion: the mean.";
   const std::size_t model_count = list_model_curves(diagnosis, *runs.front()).size();
   for (std::size_t m = 0; m < model_count; ++m) {
     PooledChannels pooled;
     for (const DiagnosedRun* run : runs) {
       pool(data, run->run, *list_model_curves(diagnosis, *run)[m].evaluation, pooled);
     }
-    add_state_lines(data, pooled, list_model_curves(diagnosis, *runs.front())[m], panels);
-    columns = pooled.begin()->second.size();
+    add_state_lines(data, pooled, list_model_curves(diagnosis, *runs.front())[m], states.panels);
+    states.columns = pooled.begin()->second.size();
   }
-  return {{make_panel_figure("states", columns, panels),
-           "What the models leave of the runs held out, by the motion: the mean."},
-          {make_law_figure(data, diagnosis, *runs.front()),
-           "Forces of the models over the motion, as their sensors read it, in " +
-               data.campaign.runs[runs.front()->run].name + "."}};
+  return {states, make_law_chart(data, diagnosis, *runs.front())};
 }
 
 }  // namespace strut

@@ -8,7 +8,6 @@
 #include "diagnose/spread.h"
 #include "jobs/compare/curves.h"
 #include "jobs/report/html.h"
-#include "jobs/report/panels.h"
 
 namespace strut {
 namespace {
@@ -46,42 +45,49 @@ std::array<double, 3> list_cuts(const Values& values) {
 }
 
 /// Curves over one variable at three values of the other, NaN where the strut never was near.
-Panel make_cuts(const UnknownForce& force, bool over_velocity) {
+ChartPanel make_cuts(const UnknownForce& force, bool over_velocity) {
   constexpr std::size_t kPoints = 61, kCoarse = 9;
   const VisitedStates& s = force.states;
   const Values& along = over_velocity ? s.velocity : s.deflection;
   const Values& across = over_velocity ? s.deflection : s.velocity;
   const double width = get_step(list_even(across, kCoarse));
   const Values points = list_even(along, kPoints);
-  Panel panel{over_velocity ? "velocity [m/s]" : "deflection [m]", "force [N]", {}};
+  ChartPanel panel{{over_velocity ? "velocity [m/s]" : "deflection [m]"}, {"force [N]"}, {}};
   for (const double cut : list_cuts(across)) {
-    PanelLine line{"at " + format_short(cut) + (over_velocity ? " m" : " m/s"),
-                   "lines linetype " + std::to_string(panel.lines.size() + 1),
-                   {}};
+    ChartSeries line{"at " + format_short(cut) + (over_velocity ? " m" : " m/s"), SeriesKind::kLine,
+                     static_cast<int>(panel.series.size()) + 1, points};
     for (const double x : points) {
       const double d = over_velocity ? cut : x, v = over_velocity ? x : cut;
       const double step = 2.0 * get_step(points);
       const bool visited = over_velocity ? count_around(s, d, width, v, step) > 0.0
                                          : count_around(s, d, step, v, width) > 0.0;
-      line.points.push_back(
-          {x, visited ? calc_force(force.map, d, v) : std::numeric_limits<double>::quiet_NaN()});
+      line.y.push_back(visited ? calc_force(force.map, d, v)
+                               : std::numeric_limits<double>::quiet_NaN());
     }
-    panel.lines.push_back(std::move(line));
+    panel.series.push_back(std::move(line));
   }
   return panel;
 }
 
 }  // namespace
 
-Figure make_force_map_figure(const UnknownForce& force) {
-  Panel where{"velocity [m/s]", "deflection [m]", {}};
-  where.lines.push_back({"", "points linetype 5 pointtype 7 pointsize 0.15", {}});
+Chart make_force_map_chart(const UnknownForce& force) {
+  ChartSeries visited{"", SeriesKind::kPoints, 5};
   const std::size_t stride = choose_stride(force.states.velocity.size());
   for (std::size_t i = 0; i < force.states.velocity.size(); i += stride) {
-    where.lines.back().points.push_back({force.states.velocity[i], force.states.deflection[i]});
+    visited.x.push_back(force.states.velocity[i]);
+    visited.y.push_back(force.states.deflection[i]);
   }
-  return make_panel_figure("force_map", 3,
-                           {make_cuts(force, true), make_cuts(force, false), where});
+  Chart chart{"force_map",
+              {make_cuts(force, true),
+               make_cuts(force, false),
+               {{"velocity [m/s]"}, {"deflection [m]"}, {visited}}},
+              3};
+  chart.panel_height = 400;
+  chart.caption = "Force map of the " + force.states.describe() +
+                  " beside its spring and damper: over velocity, over deflection, as far as the "
+                  "runs for fitting went; and where they went.";
+  return chart;
 }
 
 std::vector<CsvColumn> make_force_map_columns(const UnknownForce& force, const WhitenedFit& fit) {

@@ -5,13 +5,13 @@
 
 #include "diagnose/diagnosis.h"
 #include "io/csv.h"
-#include "jobs/report/figure.h"
+#include "jobs/report/chart.h"
 
 namespace strut {
 
 /// Force over velocity at three deflections and over deflection at three velocities, as far as the
 /// strut was near both in the runs for fitting; and where it was.
-Figure make_force_map_figure(const UnknownForce& force);
+Chart make_force_map_chart(const UnknownForce& force);
 
 /// deflection, velocity, force, 1 sigma of it, and how many samples of the runs for fitting lie
 /// around: a row a point of an even grid over all that was visited, the velocities of one

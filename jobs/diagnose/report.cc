@@ -8,13 +8,6 @@
 namespace strut {
 namespace {
 
-void draw_all(const FigureDrawer& drawer, const std::vector<CaptionedFigure>& figures,
-              ReportSection& section) {
-  for (const auto& [figure, caption] : figures) {
-    section.figures.push_back(drawer.draw(figure, caption));
-  }
-}
-
 std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
   std::vector<std::string> lead = {diagnosis.sentence};
   const std::string where = make_where_text(diagnosis.where);
@@ -38,7 +31,7 @@ ReportSection make_run_section(const CampaignData& data, const Diagnosis& diagno
     const std::string& failure = model.evaluation->failure;
     if (!failure.empty()) section.paragraphs.push_back(model.name + ": " + failure);
   }
-  draw_all(drawer, make_run_figures(data, diagnosis, run), section);
+  drawer.draw_all(make_run_charts(data, diagnosis, run), section);
   return section;
 }
 
@@ -55,17 +48,21 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
                   make_report_footer()};
   std::vector<ReportSection>& sections = page.sections;
   const std::vector<ReportTable> causes = make_cause_tables(diagnosis);
-  if (!causes.empty()) sections.push_back({"Causes", {}, causes});
+  if (!causes.empty()) {
+    sections.push_back({"Causes", {}, causes});
+    drawer.draw_all(make_cause_charts(diagnosis), sections.back());
+  }
   ReportSection map{"Force map"};
-  draw_all(drawer, make_map_figures(diagnosis), map);
+  drawer.draw_all(make_map_charts(diagnosis), map);
   if (!map.figures.empty()) sections.push_back(std::move(map));
   sections.push_back({"Gain on runs held out", {}, {make_gain_table(diagnosis)}});
+  drawer.draw_all(make_gain_charts(diagnosis), sections.back());
   for (const DiagnosedRun& run : diagnosis.runs) {
     if (data.campaign.runs[run.run].use != RunUse::kHoldOut) continue;
     sections.push_back(make_run_section(data, diagnosis, run, drawer));
   }
   ReportSection motion{"What is left, by the motion"};
-  draw_all(drawer, make_motion_figures(data, diagnosis), motion);
+  drawer.draw_all(make_motion_charts(data, diagnosis), motion);
   if (!motion.figures.empty()) sections.push_back(std::move(motion));
   const std::vector<ReportTable> parameters = make_parameter_tables(diagnosis);
   if (!parameters.empty()) sections.push_back({"Parameters", {}, parameters});

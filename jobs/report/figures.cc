@@ -2,8 +2,12 @@
 
 #include <system_error>
 
+#include "io/atomic_file.h"
 #include "io/config.h"
 #include "jobs/build_info.h"
+#include "jobs/report/chart_csv.h"
+#include "jobs/report/gnuplot.h"
+#include "jobs/report/plotly.h"
 
 namespace strut {
 
@@ -13,20 +17,31 @@ FigureDrawer::FigureDrawer(std::filesystem::path folder) : folder_(std::move(fol
   if (error) throw EnvironmentError(folder_.string() + ": cannot be made: " + error.message());
   if (!has_gnuplot()) {
     note_ =
-        "gnuplot cannot be started, so the figures are left out (Debian: apt install gnuplot-nox); "
-        "`strut report` adds them later";
+        "gnuplot cannot be started, so there are no pictures of the charts as files (Debian: apt "
+        "install gnuplot-nox); `strut report` adds them later";
   }
 }
 
-ReportFigure FigureDrawer::draw(const Figure& figure, const std::string& caption) const {
-  write_figure_script(folder_, figure);
-  return draw_script(figure.name, caption);
+ReportFigure FigureDrawer::draw(const Chart& chart) const {
+  write_text_file(folder_ / (chart.name + ".json"), make_plotly(chart).dump() + "\n");
+  write_text_file(folder_ / (chart.name + ".csv"), make_chart_csv(chart));
+  write_text_file(folder_ / (chart.name + ".gp"), make_gnuplot(chart));
+  return draw_again(chart.name, chart.caption);
 }
 
-ReportFigure FigureDrawer::draw_script(const std::string& name, const std::string& caption) const {
-  if (!note_.empty()) return {name, "", caption};
-  draw_figure(folder_, name);
-  return {name, read_text_file(folder_ / (name + ".svg")), caption};
+void FigureDrawer::draw_all(const std::vector<Chart>& charts, ReportSection& section) const {
+  for (const Chart& chart : charts) section.figures.push_back(draw(chart));
+}
+
+ReportFigure FigureDrawer::draw_again(const std::string& name, const std::string& caption) const {
+  const std::string link = (folder_.filename() / name).generic_string();
+  ReportFigure figure{name, caption, read_text_file(folder_ / (name + ".json")), {}};
+  if (note_.empty()) {
+    draw_picture(folder_, name);
+    figure.files.push_back(link + ".svg");
+  }
+  figure.files.push_back(link + ".csv");
+  return figure;
 }
 
 std::vector<std::string> FigureDrawer::list_notes() const {

@@ -5,22 +5,24 @@
 #include <string>
 #include <vector>
 
-#include "jobs/report/figure.h"
+#include "jobs/report/chart.h"
 #include "jobs/report/html.h"
 
 namespace strut {
 
-/// Draws figures into a folder, which is made where it is missing. Without gnuplot none is drawn,
-/// and `note` says so once.
+/// Writes figures into a folder, which is made where it is missing: NAME.json for the page,
+/// NAME.csv with the numbers, NAME.gp and the picture NAME.svg that gnuplot draws by it. Without
+/// gnuplot there are no pictures, and list_notes() says so.
 class FigureDrawer {
  public:
   explicit FigureDrawer(std::filesystem::path folder);
 
-  /// The drawn figure; without gnuplot one without a picture, whose script waits in the folder.
-  ReportFigure draw(const Figure& figure, const std::string& caption) const;
-  /// The same of a script that is in the folder already.
-  ReportFigure draw_script(const std::string& name, const std::string& caption) const;
-  /// For the user: none where figures are drawn.
+  ReportFigure draw(const Chart& chart) const;
+  /// All of them, at the end of a section.
+  void draw_all(const std::vector<Chart>& charts, ReportSection& section) const;
+  /// The same of a chart that was drawn into the folder before. Throws EnvironmentError.
+  ReportFigure draw_again(const std::string& name, const std::string& caption) const;
+  /// For the user: none where pictures are drawn.
   std::vector<std::string> list_notes() const;
 
  private:

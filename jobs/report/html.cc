@@ -3,47 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
+
+#include "embedded/texts.h"
 
 namespace strut {
 namespace {
-
-constexpr const char* kStyle = R"(
-:root { color-scheme: light dark; --ink: #1b1f24; --soft: #57606a; --line: #d0d7de; --paper: #ffffff; --band: #f3f5f8; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e6e9ee; --soft: #a3acb8; --line: #3b424c; --paper: #16191d; --band: #1f242a; }
-}
-body { margin: 0 auto; max-width: 80rem; padding: 1.5rem; background: var(--paper); color: var(--ink);
-  font: 16px/1.5 system-ui, -apple-system, "Segoe UI", "DejaVu Sans", Arial, sans-serif; }
-h1 { font-size: 1.7rem; line-height: 1.25; margin: 0.5rem 0 1rem; }
-h2 { font-size: 1.25rem; margin: 2.5rem 0 0.75rem; padding-bottom: 0.25rem; border-bottom: 1px solid var(--line); }
-p { max-width: 52rem; }
-nav ul { margin: 0; padding-left: 1.2rem; }
-a { color: inherit; }
-.wide { overflow-x: auto; margin: 1rem 0 1.5rem; }
-table { border-collapse: collapse; font-size: 0.8rem; font-variant-numeric: tabular-nums; }
-caption { text-align: left; font-weight: 600; padding-bottom: 0.4rem; }
-th, td { padding: 0.15rem 0.4rem; text-align: right; white-space: nowrap; }
-th { border-bottom: 2px solid var(--line); }
-td { border-bottom: 1px solid var(--line); }
-.word { text-align: left; }
-td { vertical-align: top; }
-td small { color: var(--soft); font-size: 0.8em; }
-.long { white-space: normal; overflow-wrap: anywhere; min-width: 18rem; }
-tbody tr:nth-child(even) { background: var(--band); }
-.note, footer, figcaption { color: var(--soft); font-size: 0.85rem; }
-figure { margin: 1rem 0 2rem; break-inside: avoid; }
-figure svg { display: block; max-width: 100%; height: auto; background: #ffffff; border-radius: 4px; }
-footer { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: 0.75rem; }
-@page { size: A4 landscape; margin: 12mm; }
-@media print {
-  body { max-width: none; font-size: 10pt; padding: 0; }
-  table { font-size: 6.5pt; }
-  .wide { overflow-x: visible; }
-  tr { break-inside: avoid; }
-  h2 { break-after: avoid; }
-  nav { display: none; }
-}
-)";
 
 std::string replace_all(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos;
@@ -53,18 +18,11 @@ std::string replace_all(std::string text, const std::string& from, const std::st
   return text;
 }
 
-/// The `svg` element alone, its names with a prefix of their own.
-std::string make_inline(const std::string& svg, std::size_t number) {
-  const std::size_t begin = svg.find("<svg");
-  if (begin == std::string::npos) return "";
-  const std::string prefix = "f" + std::to_string(number) + "-";
-  std::string text = svg.substr(begin);
-  for (const char quote : {'"', '\''}) {
-    text = replace_all(text, std::string("id=") + quote, std::string("id=") + quote + prefix);
-    text = replace_all(text, std::string("href=") + quote + "#",
-                       std::string("href=") + quote + "#" + prefix);
-  }
-  return replace_all(text, "url(#", "url(#" + prefix);
+/// Text inside a script element, which nothing but its end tag may end.
+std::string make_script_text(const std::string& text) { return replace_all(text, "</", "<\\/"); }
+
+std::string make_json_element(const std::string& json) {
+  return "<script type=\"application/json\">" + make_script_text(json) + "</script>";
 }
 
 /// Longer texts of a cell may be broken.
@@ -108,6 +66,26 @@ std::string make_paragraphs(const std::vector<std::string>& paragraphs) {
   return text;
 }
 
+std::string make_links(const std::vector<std::string>& files) {
+  std::string text;
+  for (const std::string& file : files) {
+    text += " <a href=\"" + escape_html(file) + "\">" +
+            escape_html(file.substr(file.find_last_of('.') + 1)) + "</a>";
+  }
+  return text;
+}
+
+std::string make_figure(const ReportFigure& figure) {
+  return "<figure id=\"figure-" + escape_html(figure.name) + "\">\n<div class=\"chart\">" +
+         make_json_element(figure.chart) + "</div><figcaption>" + escape_html(figure.caption) +
+         make_links(figure.files) + "</figcaption>\n</figure>\n";
+}
+
+std::string make_motion_figure(const ReportMotion& motion) {
+  return "<figure>\n<div class=\"motion\">" + make_json_element(motion.scene) +
+         "</div><figcaption>" + escape_html(motion.caption) + "</figcaption>\n</figure>\n";
+}
+
 std::string make_contents(const std::vector<ReportSection>& sections) {
   std::string text = "<nav><ul>\n";
   for (std::size_t s = 0; s < sections.size(); ++s) {
@@ -117,7 +95,64 @@ std::string make_contents(const std::vector<ReportSection>& sections) {
   return text + "</ul></nav>\n";
 }
 
+std::string make_section(const ReportSection& section, const std::string& id) {
+  std::string text = "<section>\n<h2 id=\"" + id + "\">" + escape_html(section.heading) +
+                     "</h2>\n" + make_paragraphs(section.paragraphs);
+  for (const ReportMotion& motion : section.motions) text += make_motion_figure(motion);
+  for (const ReportTable& table : section.tables) text += make_table(table);
+  for (const ReportFigure& figure : section.figures) text += make_figure(figure);
+  return text + "</section>\n";
+}
+
+/// What of a page needs scripts.
+struct Moving {
+  bool charts = false, charts_3d = false, motions = false;
+};
+
+Moving find_moving(const ReportPage& page) {
+  Moving found;
+  for (const ReportSection& section : page.sections) {
+    found.motions = found.motions || !section.motions.empty();
+    for (const ReportFigure& figure : section.figures) {
+      found.charts = true;
+      if (figure.is_3d()) found.charts_3d = true;
+    }
+  }
+  return found;
+}
+
+std::string make_script(std::string_view code) {
+  return "<script>\n" + std::string(code) + "\n</script>\n";
+}
+
+/// Both bundles of plotly.js name themselves Plotly, so the first steps aside.
+std::string make_scripts(const ReportPage& page) {
+  const Moving moving = find_moving(page);
+  std::string text;
+  if (moving.charts_3d) {
+    text += make_script(embedded::plotly_gl3d_min_js) +
+            make_script("window.PlotlyThreeD = window.Plotly;");
+  }
+  if (moving.charts) text += make_script(embedded::plotly_cartesian_min_js);
+  if (moving.charts) text += make_script(embedded::page_js);
+  if (moving.motions) text += make_script(embedded::motion_js);
+  return text;
+}
+
+std::string make_footer(const ReportPage& page) {
+  std::string text = "<footer>" + escape_html(page.footer);
+  if (find_moving(page).charts) {
+    text +=
+        "<noscript><p>The charts need JavaScript.</p></noscript><details><summary>Charts by "
+        "plotly.js, whose license is</summary><pre>" +
+        escape_html(std::string(embedded::LICENSE)) + "</pre></details>";
+  }
+  return text + "</footer>\n";
+}
+
 }  // namespace
+
+bool ReportFigure::is_3d() const { return chart.find("\"three_d\": true") != std::string::npos; }
 
 std::string print_number(const char* format, double value) {
   if (std::isnan(value)) return "";
@@ -158,23 +193,13 @@ std::string make_html(const ReportPage& page) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      escape_html(page.title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n<h1>" +
-      escape_html(page.title) + "</h1>\n" + make_paragraphs(page.lead) +
-      make_contents(page.sections);
-  std::size_t figure = 0;
+      escape_html(page.title) + "</title>\n<style>\n" + std::string(embedded::page_css) +
+      "</style>\n</head>\n<body>\n<h1>" + escape_html(page.title) + "</h1>\n" +
+      make_paragraphs(page.lead) + make_contents(page.sections);
   for (std::size_t s = 0; s < page.sections.size(); ++s) {
-    const ReportSection& section = page.sections[s];
-    text += "<section>\n<h2 id=\"part" + std::to_string(s + 1) + "\">" +
-            escape_html(section.heading) + "</h2>\n" + make_paragraphs(section.paragraphs);
-    for (const ReportTable& table : section.tables) text += make_table(table);
-    for (const ReportFigure& f : section.figures) {
-      const std::string missing = f.svg.empty() ? "Left out, gnuplot is not there: " : "";
-      text += "<figure>\n" + make_inline(f.svg, ++figure) + "<figcaption>" +
-              escape_html(missing + f.caption) + "</figcaption>\n</figure>\n";
-    }
-    text += "</section>\n";
+    text += make_section(page.sections[s], "part" + std::to_string(s + 1));
   }
-  return text + "<footer>" + escape_html(page.footer) + "</footer>\n</body>\n</html>\n";
+  return text + make_footer(page) + make_scripts(page) + "</body>\n</html>\n";
 }
 
 std::string make_text(const ReportTable& table) {

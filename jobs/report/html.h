@@ -28,7 +28,16 @@ struct ReportTable {
 
 struct ReportFigure {
   std::string name;  // of its files
-  std::string svg;   // the whole file; empty: could not be drawn
+  std::string caption;
+  std::string chart;               // the text of make_plotly()
+  std::vector<std::string> files;  // beside the page, as its links name them
+
+  bool is_3d() const;
+};
+
+/// A car crossing its bump, with a slider: see jobs/report/motion.h.
+struct ReportMotion {
+  std::string scene;  // the text of make_motion()
   std::string caption;
 };
 
@@ -38,6 +47,7 @@ struct ReportSection {
   std::vector<std::string> paragraphs = {};
   std::vector<ReportTable> tables = {};
   std::vector<ReportFigure> figures = {};
+  std::vector<ReportMotion> motions = {};
 };
 
 struct ReportPage {
@@ -47,8 +57,8 @@ struct ReportPage {
   std::string footer;
 };
 
-/// The page, readable in light and dark and on paper. Names inside the figures are made different,
-/// so that several may stand on one page.
+/// The page, readable in light and dark and on paper; the library that draws its charts is part of
+/// it.
 std::string make_html(const ReportPage& page);
 
 /// The table for a terminal, columns aligned.

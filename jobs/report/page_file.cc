@@ -94,8 +94,8 @@ ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
                          read_list(section, "paragraphs", &read_text),
                          read_list(section, "tables", &read_table),
                          read_list(section, "figures", [&](const Tree& figure) {
-                           return drawer.draw_script(figure.get<std::string>("name"),
-                                                     figure.get<std::string>("caption"));
+                           return drawer.draw_again(figure.get<std::string>("name"),
+                                                    figure.get<std::string>("caption"));
                          })};
   });
   return page;
@@ -108,7 +108,7 @@ void clear_page_folder(const PageFolder& folder, const std::filesystem::path& ma
   remove_file(folder.page());
   remove_file(folder.report());
   remove_files(folder.root, {".csv"});
-  remove_files(folder.figures(), {".gp", ".svg"});
+  remove_files(folder.figures(), {".csv", ".gp", ".json", ".svg"});
 }
 
 void write_page(const PageFolder& folder, const ReportPage& page) {

@@ -9,8 +9,8 @@
 
 namespace strut {
 
-/// A folder of one report: report.html, the page as report.json, figures as scripts and pictures,
-/// tables as CSV.
+/// A folder of one report: report.html, the page as report.json, figures as FigureDrawer
+/// writes them, tables as CSV.
 struct PageFolder {
   std::filesystem::path root;
 

@@ -6,8 +6,10 @@
 #include "io/atomic_file.h"
 #include "io/dataset.h"
 #include "jobs/progress.h"
+#include "jobs/report/coverage.h"
 #include "jobs/report/figures.h"
 #include "jobs/report/html.h"
+#include "jobs/report/sensitivities.h"
 #include "sweep/folder.h"
 #include "sweep/status.h"
 
@@ -25,8 +27,7 @@ struct Cases {
   std::size_t step = 1;  // every so many-th
 };
 
-Cases read_cases(const SweepFolder& folder) {
-  Dataset dataset({folder.root}, {.partial = true});
+Cases read_cases(Dataset& dataset) {
   const ShardSchema& schema = dataset.schema();
   Cases cases{schema.parameters, schema.snapshot, {}, 1};
   cases.step = 1 + dataset.row_count() / kMostCases;
@@ -78,9 +79,9 @@ ReportTable make_channel_table(const Cases& cases) {
   return table;
 }
 
-/// A channel against one parameter: per bin of the parameter center, 5 %, median, 95 %.
-std::vector<std::vector<double>> calc_bands(const Cases& cases, std::size_t parameter,
-                                            std::size_t column) {
+/// A channel against one parameter: median, and the band of 5 to 95 %, per bin of the parameter.
+ChartPanel make_band_panel(const Cases& cases, std::size_t parameter, std::size_t channel) {
+  const std::size_t column = cases.parameters.size() + channel;
   const auto range = sort_column(cases, parameter);
   const double low = range.front(), width = (range.back() - low) / static_cast<double>(kBins);
   std::vector<std::vector<double>> bins(kBins);
@@ -88,34 +89,30 @@ std::vector<std::vector<double>> calc_bands(const Cases& cases, std::size_t para
     const double place = width > 0.0 ? (row[parameter] - low) / width : 0.0;
     bins[std::min(kBins - 1, static_cast<std::size_t>(place))].push_back(row[column]);
   }
-  std::vector<std::vector<double>> bands;
+  ChartSeries band{"5 to 95 %", SeriesKind::kBand, 6}, median{"median", SeriesKind::kLinePoints, 1};
   for (std::size_t b = 0; b < kBins; ++b) {
     if (bins[b].empty()) continue;
     std::sort(bins[b].begin(), bins[b].end());
-    bands.push_back({low + width * (static_cast<double>(b) + 0.5), find_quantile(bins[b], 0.05),
-                     find_quantile(bins[b], 0.5), find_quantile(bins[b], 0.95)});
+    median.x.push_back(low + width * (static_cast<double>(b) + 0.5));
+    median.y.push_back(find_quantile(bins[b], 0.5));
+    band.low.push_back(find_quantile(bins[b], 0.05));
+    band.high.push_back(find_quantile(bins[b], 0.95));
   }
-  return bands;
+  band.x = median.x;
+  const ColumnInfo &p = cases.parameters[parameter], &c = cases.channels[channel];
+  return {{make_label(p.name, p.unit)}, {make_label(c.name, c.unit)}, {band, median}};
 }
 
-Figure draw_channel(const Cases& cases, std::size_t channel) {
-  const std::size_t count = cases.parameters.size(), rows = (count + 1) / 2;
-  Figure figure{"channel_" + cases.channels[channel].name, 1000, static_cast<int>(300 * rows), ""};
-  std::string& text = figure.commands;
-  text =
-      "set multiplot layout " + std::to_string(rows) +
-      ",2\nunset key\nset grid\nset xtics font ',10'\nset format y '%.4g'\n" + "set ylabel " +
-      quote_figure_text(cases.channels[channel].name + " [" + cases.channels[channel].unit + "]") +
-      " font ',11'\n";
-  for (std::size_t p = 0; p < count; ++p) {
-    const std::string block = "$band" + std::to_string(p);
-    text += make_data(block.substr(1), calc_bands(cases, p, count + channel)) + "set xlabel " +
-            quote_figure_text(cases.parameters[p].name + " [" + cases.parameters[p].unit + "]") +
-            "\nplot " + block + " using 1:2:4 with filledcurves linetype 6 fillstyle solid 0.5, " +
-            block + " using 1:3 with linespoints linetype 1 pointtype 7 pointsize 0.5\n";
+Chart make_channel_chart(const Cases& cases, std::size_t channel) {
+  Chart chart{"channel_" + cases.channels[channel].name, {}, 2};
+  chart.caption = "How " + cases.channels[channel].name + " (" +
+                  cases.channels[channel].description +
+                  ") changes with each parameter, whatever the others are: median, and the band of "
+                  "5 to 95 % of the cases.";
+  for (std::size_t p = 0; p < cases.parameters.size(); ++p) {
+    chart.panels.push_back(make_band_panel(cases, p, channel));
   }
-  text += "unset multiplot\n";
-  return figure;
+  return chart;
 }
 
 ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const SweepStatus& s) {
@@ -165,12 +162,29 @@ ReportTable make_fact_table(const Plan& plan) {
   return table;
 }
 
-ReportSection make_failures(const SweepStatus& status) {
+ReportSection make_layers(const Plan& plan) { return {"Coverage", {}, {make_layer_table(plan)}}; }
+
+Chart make_failure_chart(const SweepStatus& status) {
+  ChartSeries bars{"", SeriesKind::kBars, 2};
+  ChartPanel panel{{""}, {"cases"}, {}};
+  for (const auto& [reason, count] : status.failures) {
+    panel.x.categories.push_back(reason);
+    bars.x.push_back(static_cast<double>(panel.x.categories.size()));
+    bars.y.push_back(static_cast<double>(count));
+  }
+  panel.series.push_back(std::move(bars));
+  Chart chart{"failures", {std::move(panel)}};
+  chart.caption = "Why cases failed; where, the coverage shows.";
+  return chart;
+}
+
+ReportSection make_failures(const SweepStatus& status, const FigureDrawer& drawer) {
   ReportSection section{"Failures", {}};
   if (status.failures.empty()) {
     section.paragraphs = {"No case failed."};
     return section;
   }
+  drawer.draw_all({make_failure_chart(status)}, section);
   ReportTable table{"Failed cases", {"reason", "cases"}, {}};
   for (const auto& [reason, count] : status.failures) {
     table.rows.push_back({reason, format_count(count)});
@@ -190,11 +204,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
   }
   section.tables.push_back(make_channel_table(cases));
   for (std::size_t c = 0; c < cases.channels.size(); ++c) {
-    section.figures.push_back(drawer.draw(
-        draw_channel(cases, c), "How " + cases.channels[c].name + " (" +
-                                    cases.channels[c].description +
-                                    ") changes with each parameter, whatever the others are: "
-                                    "median, and the band of 5 to 95 % of the cases."));
+    section.figures.push_back(drawer.draw(make_channel_chart(cases, c)));
   }
   return section;
 }
@@ -210,11 +220,17 @@ std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   page.lead = {format_count(status.done) + " of " + format_count(status.cases) + " cases of " +
                plan.request().base.vehicle.name + " are simulated, " + format_count(status.failed) +
                " failed."};
-  page.sections = {make_progress(folder, plan, status),
-                   {"Layers", {}, {make_layer_table(plan)}},
-                   make_failures(status)};
-  if (status.shards_present > 0 && plan.request().snapshot.on) {
-    page.sections.push_back(make_snapshots(read_cases(folder), drawer));
+  page.sections = {make_progress(folder, plan, status), make_layers(plan),
+                   make_failures(status, drawer)};
+  if (status.shards_present > 0) {
+    Dataset dataset({folder.root}, {.partial = true});
+    drawer.draw_all({make_coverage_chart(count_cases(dataset, plan))}, page.sections[1]);
+    if (plan.request().snapshot.on) {
+      page.sections.push_back(make_snapshots(read_cases(dataset), drawer));
+    }
+  }
+  if (plan.request().snapshot.on) {
+    page.sections.push_back(make_sensitivity_section(plan.request(), drawer));
   }
   page.sections.push_back({"Plan", {}, {make_fact_table(plan)}});
   page.footer = make_report_footer();

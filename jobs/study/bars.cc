@@ -8,58 +8,76 @@
 namespace strut {
 namespace {
 
-using Rows = std::vector<std::vector<double>>;
+/// One bar: a cell, its name below the axis, and the series whose color it has.
+struct Bar {
+  const CellResult* cell;
+  std::string label, series;
+  int color;
+};
 
 /// Bars of the mean absolute error, one panel a parameter.
 struct Bars {
   std::string name, caption;
-  std::vector<const CellResult*> cells;
-  std::vector<std::string> labels;
-  std::vector<int> colors;  // line types
+  std::vector<Bar> bars;
 };
 
-std::string make_panel(const StudyRequest& request, const Bars& bars, std::size_t p) {
-  Rows ours, published;
-  double lowest = 1e300, highest = 0.0;
-  for (std::size_t b = 0; b < bars.cells.size(); ++b) {
-    const CellResult& cell = *bars.cells[b];
-    const Spread& mae = cell.spread[p][kMae];
-    const double x = static_cast<double>(b + 1);
-    const double theirs = find_published(request, cell, p, kMae);
-    ours.push_back({x, mae.median, mae.low, mae.high, static_cast<double>(bars.colors[b])});
-    published.push_back({x, theirs});
-    lowest = std::min(lowest, mae.low);
-    highest = std::max({highest, mae.high, std::isnan(theirs) ? 0.0 : theirs});
-  }
-  const ColumnInfo& parameter = bars.cells.front()->parameters[p];
-  const std::string block = std::to_string(p);
-  // A bar of a logarithmic scale has no zero: it stands on the decade below the smallest.
-  const double floor = std::pow(10.0, std::floor(std::log10(std::max(lowest, 1e-12) * 0.5)));
-  return make_data("ours" + block, ours) + make_data("published" + block, published) +
-         "set title " + quote_figure_text(make_words(parameter.name)) + "\nset ylabel " +
-         quote_figure_text("MAE [" + parameter.unit + "]") + "\nset yrange [" +
-         format_number(floor) + ":" + format_number(highest * 3.0) + "]\nplot $ours" + block +
-         " using 1:2:3:4:(0.7):5 with boxerrorbars linecolor variable notitle, $published" + block +
-         " using 1:2 with points linetype 2 linecolor rgb 'black' pointtype 9 pointsize 1.1 "
-         "notitle\n";
+/// The series of that name, made where it is not yet there.
+ChartSeries& get_series(std::vector<ChartSeries>& all, const Bar& bar) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const ChartSeries& s) { return s.name == bar.series; });
+  if (found != all.end()) return *found;
+  all.push_back({bar.series, SeriesKind::kBars, bar.color});
+  all.back().width = kBarWidth;
+  return all.back();
 }
 
-StudyFigure draw_bars(const StudyRequest& request, const Bars& bars) {
-  const std::size_t count = bars.cells.front()->parameters.size(), rows = (count + 1) / 2;
-  StudyFigure figure{{bars.name, 1000, static_cast<int>(360 * rows), ""}, bars.caption};
-  std::string& text = figure.figure.commands;
-  std::string tics;
-  for (std::size_t b = 0; b < bars.labels.size(); ++b) {
-    tics += (b == 0 ? "'" : ", '") + bars.labels[b] + "' " + std::to_string(b + 1);
+/// A bar of a logarithmic scale has no zero: it stands on the decade below the smallest.
+std::vector<double> calc_range(const std::vector<ChartSeries>& all) {
+  double lowest = 1e300, highest = 0.0;
+  for (const ChartSeries& s : all) {
+    for (std::size_t i = 0; i < s.y.size(); ++i) {
+      if (!std::isfinite(s.y[i])) continue;
+      lowest = std::min(lowest, s.low.empty() ? s.y[i] : s.low[i]);
+      highest = std::max(highest, s.high.empty() ? s.y[i] : s.high[i]);
+    }
   }
-  text = "set multiplot layout " + std::to_string(rows) +
-         ",2\nset logscale y\nset format y '10^{%L}'\nset grid ytics\n"
-         "set style fill solid 0.6 border\nset xrange [0.3:" +
-         std::to_string(bars.cells.size()) +
-         ".7]\nset xtics rotate by -35 font ',11'\nset xtics (" + tics + ")\n";
-  for (std::size_t p = 0; p < count; ++p) text += make_panel(request, bars, p);
-  text += "unset multiplot\n";
-  return figure;
+  return {std::pow(10.0, std::floor(std::log10(std::max(lowest, 1e-12) * 0.5))), highest * 3.0};
+}
+
+ChartPanel make_panel(const StudyRequest& request, const Bars& bars, std::size_t p) {
+  const ColumnInfo& parameter = bars.bars.front().cell->parameters[p];
+  ChartPanel panel{{""}, {make_label("MAE", parameter.unit), true}, {}, make_words(parameter.name)};
+  ChartSeries published{"the paper", SeriesKind::kPoints, kInk};
+  published.marker = Marker::kTriangle;
+  for (const Bar& bar : bars.bars) {
+    const Spread& mae = bar.cell->spread[p][kMae];
+    panel.x.categories.push_back(bar.label);
+    const auto x = static_cast<double>(panel.x.categories.size());
+    ChartSeries& series = get_series(panel.series, bar);
+    series.x.push_back(x);
+    series.y.push_back(mae.median);
+    series.low.push_back(mae.low);
+    series.high.push_back(mae.high);
+    const double theirs = find_published(request, *bar.cell, p, kMae);
+    if (std::isnan(theirs)) continue;
+    published.x.push_back(x);
+    published.y.push_back(theirs);
+  }
+  if (!published.x.empty()) panel.series.push_back(published);
+  panel.x.range = {0.3, static_cast<double>(bars.bars.size()) + 0.7};
+  panel.y.range = calc_range(panel.series);
+  return panel;
+}
+
+Chart make_bar_chart(const StudyRequest& request, const Bars& bars) {
+  Chart chart{bars.name, {}, 2};
+  chart.panel_height = 380;
+  chart.caption = bars.caption;
+  const std::size_t parameters = bars.bars.front().cell->parameters.size();
+  for (std::size_t p = 0; p < parameters; ++p) {
+    chart.panels.push_back(make_panel(request, bars, p));
+  }
+  return chart;
 }
 
 constexpr char kBarsNote[] =
@@ -77,10 +95,9 @@ Bars make_network_bars(const StudyRequest& request, const StudyResults& results,
   for (const CellResult& cell : results.cells) {
     const StudyCell& c = cell.cell;
     if (c.preload != preload || c.inputs != request.main_inputs || c.best_instant) continue;
-    bars.cells.push_back(&cell);
-    bars.labels.push_back(request.networks[c.network].name + " " +
-                          std::to_string(request.samples[c.samples]));
-    bars.colors.push_back(1 + static_cast<int>(c.samples % 3) * 2);
+    const std::string samples = std::to_string(request.samples[c.samples]);
+    bars.bars.push_back({&cell, request.networks[c.network].name + " " + samples,
+                         samples + " cases", 1 + static_cast<int>(c.samples % 3) * 2});
   }
   return bars;
 }
@@ -98,23 +115,23 @@ Bars make_input_bars(const StudyRequest& request, const StudyResults& results,
     const bool here = c.preload == preload && c.samples == request.main_samples &&
                       c.network == request.main_network;
     if (!here) continue;
-    bars.cells.push_back(&cell);
-    bars.labels.push_back(request.inputs[c.inputs].name + (c.best_instant ? ", best" : ""));
-    bars.colors.push_back(c.best_instant ? 3 : 1);
+    bars.bars.push_back({&cell, request.inputs[c.inputs].name + (c.best_instant ? ", best" : ""),
+                         c.best_instant ? "best instant" : "the sweep's instant",
+                         c.best_instant ? 3 : 1});
   }
   return bars;
 }
 
 }  // namespace
 
-std::vector<StudyFigure> make_bar_figures(const StudyRequest& request, const StudyResults& results,
-                                          std::size_t preload) {
-  std::vector<StudyFigure> figures;
+std::vector<Chart> make_bar_charts(const StudyRequest& request, const StudyResults& results,
+                                   std::size_t preload) {
+  std::vector<Chart> charts;
   for (const auto& make : {make_network_bars, make_input_bars}) {
     const Bars bars = make(request, results, preload);
-    if (bars.cells.size() > 1) figures.push_back(draw_bars(request, bars));
+    if (bars.bars.size() > 1) charts.push_back(make_bar_chart(request, bars));
   }
-  return figures;
+  return charts;
 }
 
 }  // namespace strut

@@ -9,7 +9,7 @@ namespace strut {
 
 /// Of all networks and numbers of cases, as the paper's Figure 8, and of all inputs and instants,
 /// as its Figure 9; without those of only one bar, which compares nothing.
-std::vector<StudyFigure> make_bar_figures(const StudyRequest& request, const StudyResults& results,
-                                          std::size_t preload);
+std::vector<Chart> make_bar_charts(const StudyRequest& request, const StudyResults& results,
+                                   std::size_t preload);
 
 }  // namespace strut

@@ -4,21 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "jobs/report/figure.h"
+#include "jobs/report/chart.h"
 #include "jobs/study/results.h"
 
 namespace strut {
-
-struct StudyFigure {
-  Figure figure;
-  std::string caption;
-};
 
 /// Of one preload: the inputs over two parameters, identified against true (the paper's Figure 6);
 /// box plots of the percentage errors (7); mean absolute errors of all networks (8), of all inputs
 /// (9); loss and validation against epoch. Reads the main cell's median training and its cases
 /// anew. Throws InputError.
-std::vector<StudyFigure> make_study_figures(const StudyFolder& folder, const StudyRequest& request,
-                                            const StudyResults& results, std::size_t preload);
+std::vector<Chart> make_study_charts(const StudyFolder& folder, const StudyRequest& request,
+                                     const StudyResults& results, std::size_t preload);
 
 }  // namespace strut

@@ -7,6 +7,6 @@
 namespace strut {
 
 /// Errors and bounds over the noise, one panel a parameter, both axes logarithmic.
-StudyFigure make_noise_figure(const NoiseStudy& study);
+Chart make_noise_chart(const NoiseStudy& study);
 
 }  // namespace strut

@@ -191,8 +191,7 @@ ReportSection make_noise_section(const NoiseStudy& study, const FigureDrawer& dr
   section.tables = make_noise_tables(study);
   section.tables.push_back(make_fit_table(study));
   section.tables.push_back(make_sensor_table(study));
-  const StudyFigure figure = make_noise_figure(study);
-  section.figures = {drawer.draw(figure.figure, figure.caption)};
+  section.figures = {drawer.draw(make_noise_chart(study))};
   return section;
 }
 

@@ -95,9 +95,7 @@ ReportSection make_preload(const StudyFolder& folder, const StudyRequest& reques
   ReportSection section;
   section.heading = "Preload " + request.preloads[preload].name;
   section.tables = make_study_tables(request, results, preload, TableDetail::kSpread);
-  for (const StudyFigure& f : make_study_figures(folder, request, results, preload)) {
-    section.figures.push_back(drawer.draw(f.figure, f.caption));
-  }
+  drawer.draw_all(make_study_charts(folder, request, results, preload), section);
   return section;
 }
 

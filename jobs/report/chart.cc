@@ -1,0 +1,63 @@
+#include "jobs/report/chart.h"
+
+#include <algorithm>
+#include <set>
+
+namespace strut {
+namespace {
+
+// px of a chart as wide as a page
+constexpr double kWidth = 1000.0;
+constexpr double kLeftLabel = 85.0, kRightEdge = 25.0, kBottomLabel = 60.0, kTitle = 30.0;
+constexpr int kLegendRow = 26, kLegendColumns = 5;
+
+int calc_legend_height(const Chart& chart) {
+  const int entries = static_cast<int>(chart.list_legend().size());
+  return entries == 0 ? 0 : kLegendRow * (1 + (entries - 1) / kLegendColumns) + kLegendRow / 2;
+}
+
+}  // namespace
+
+bool Chart::is_3d() const {
+  return std::any_of(panels.begin(), panels.end(), [](const ChartPanel& panel) {
+    return std::any_of(panel.series.begin(), panel.series.end(),
+                       [](const ChartSeries& s) { return s.kind == SeriesKind::kPoints3d; });
+  });
+}
+
+std::vector<const ChartSeries*> Chart::list_legend() const {
+  std::vector<const ChartSeries*> entries;
+  std::set<std::string> names = {""};
+  for (const ChartPanel& panel : panels) {
+    for (const ChartSeries& s : panel.series) {
+      if (names.insert(s.name).second) entries.push_back(&s);
+    }
+  }
+  return entries;
+}
+
+int calc_height(const Chart& chart) {
+  return calc_legend_height(chart) + static_cast<int>(chart.rows()) * chart.panel_height;
+}
+
+PanelPlace calc_place(const Chart& chart, std::size_t panel) {
+  const std::size_t row = panel / chart.columns, column = panel % chart.columns;
+  const double height = calc_height(chart);
+  const double top =
+      height - calc_legend_height(chart) - static_cast<double>(row) * chart.panel_height;
+  const double width = kWidth / static_cast<double>(chart.columns);
+  const double left = width * static_cast<double>(column);
+  return {(left + kLeftLabel) / kWidth, (left + width - kRightEdge) / kWidth,
+          (top - chart.panel_height + kBottomLabel) / height, (top - kTitle) / height};
+}
+
+std::string make_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+std::string make_label(const std::string& name, const std::string& unit) {
+  return make_words(name) + " [" + unit + "]";
+}
+
+}  // namespace strut

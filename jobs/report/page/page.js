@@ -1,0 +1,130 @@
+// Draws the charts of a report. Each stands in a div.chart whose script element holds what
+// make_plotly() wrote. When all are drawn, or have failed, the body's data-charts says
+// "drawn/wanted".
+"use strict";
+
+const strutCharts = [];
+const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
+
+// What is printed stands on white, also where the screen is dark; while "beforeprint" runs the
+// styles are still those of the screen.
+const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de"};
+let isForPaper = false;
+
+function readColor(name) {
+  if (isForPaper) return paperColors[name];
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+// Colors of the page for a chart's axes and texts.
+function makeTemplate() {
+  const ink = readColor("--ink");
+  const line = readColor("--line");
+  const axis = {gridcolor: line, zerolinecolor: line, linecolor: ink, showline: true, ticks: "outside",
+                automargin: false, title: {standoff: 8}};
+  const solid = {gridcolor: line, zerolinecolor: line, showbackground: false, color: ink, nticks: 4,
+                 tickfont: {size: 10}, title: {font: {size: 12}}};
+  return {layout: {
+    font: {color: ink, size: 13, family: "system-ui, 'DejaVu Sans', Arial, sans-serif"},
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", xaxis: axis, yaxis: axis,
+    scene: {xaxis: solid, yaxis: solid, zaxis: solid},
+    hoverlabel: {namelength: -1}}};
+}
+
+// A copy of a trace in which the color "ink" is the page's.
+function paint(value, ink) {
+  if (value === "ink") return ink;
+  if (Array.isArray(value)) {
+    return value.some((item) => typeof item === "object" && item) ? value.map((v) => paint(v, ink)) : value;
+  }
+  if (value === null || typeof value !== "object") return value;
+  return Object.fromEntries(Object.entries(value).map(([key, v]) => [key, paint(v, ink)]));
+}
+
+function quoteCsv(text) {
+  return '"' + String(text).replaceAll('"', '""') + '"';
+}
+
+// The numbers of a chart as drawn, a line a point.
+function makeCsv(chart) {
+  const lines = ["panel,series,x,y,z"];
+  for (const trace of chart.data) {
+    const panel = trace.scene ?? trace.yaxis ?? "y";
+    trace.x.forEach((x, i) => lines.push(
+        [quoteCsv(panel), quoteCsv(trace.name), x, trace.y[i] ?? "", trace.z?.[i] ?? ""].join(",")));
+  }
+  return lines.join("\n") + "\n";
+}
+
+function saveText(name, text) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], {type: "text/csv"}));
+  link.download = name;
+  link.click();
+  URL.revokeObjectURL(link.href);
+}
+
+function makeConfig(chart) {
+  const icon = {width: 24, height: 24, path: "M4 3h16v18H4zM4 9h16M4 15h16M12 3v18"};
+  return {
+    responsive: true, displaylogo: false,
+    showSendToCloud: false, plotlyServerURL: "",  // a report's numbers stay where the report is
+    toImageButtonOptions: {format: chart.three_d ? "png" : "svg", filename: chart.name},
+    modeBarButtonsToAdd: [{name: "Numbers as CSV", icon: icon,
+                           click: () => saveText(chart.name + ".csv", makeCsv(chart))}]};
+}
+
+function hasWebGl() {
+  const canvas = document.createElement("canvas");
+  return Boolean(canvas.getContext("webgl2") ?? canvas.getContext("webgl"));
+}
+
+function explain(div, text) {
+  const note = document.createElement("p");
+  note.className = "problem";
+  note.textContent = text;
+  div.style.height = "auto";
+  div.append(note);
+}
+
+async function drawChart(div) {
+  const chart = JSON.parse(div.querySelector("script").textContent);
+  div.style.height = chart.height + "px";
+  if (chart.three_d && !hasWebGl()) {
+    explain(div, "This chart needs WebGL, which this browser does not give; the picture beside the report shows it.");
+    return false;
+  }
+  const plotly = chart.three_d ? window.PlotlyThreeD : window.Plotly;
+  const layout = {...chart.layout, template: makeTemplate()};
+  await plotly.newPlot(div, paint(chart.data, readColor("--ink")), layout, makeConfig(chart));
+  strutCharts.push({div, chart, plotly});
+  return true;
+}
+
+// Light, dark or paper: the same charts in other colors.
+function repaintAll(forPaper) {
+  isForPaper = forPaper;
+  for (const {div, chart, plotly} of strutCharts) {
+    plotly.react(div, paint(chart.data, readColor("--ink")),
+                 {...div.layout, template: makeTemplate()}, makeConfig(chart));
+  }
+}
+
+async function drawAll() {
+  const divs = [...document.querySelectorAll("div.chart")];
+  let drawn = 0;
+  for (const div of divs) {
+    try {
+      drawn += await drawChart(div) ? 1 : 0;
+    } catch (error) {
+      console.error(error);
+      explain(div, "This chart could not be drawn: " + error.message);
+    }
+  }
+  document.body.dataset.charts = drawn + "/" + divs.length;
+}
+
+darkMode.addEventListener("change", () => repaintAll(false));
+window.addEventListener("beforeprint", () => repaintAll(true));
+window.addEventListener("afterprint", () => repaintAll(false));
+drawAll();

@@ -1,0 +1,137 @@
+#include "jobs/report/sensitivities.h"
+
+#include <cmath>
+
+#include "io/input_error.h"
+#include "jobs/design_report.h"
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kMostPoints = 600;  // of a curve
+
+DesignReport calc_report(const SweepRequest& request) {
+  DesignReport report;
+  report.noise = make_default_noise();
+  report.channels = request.snapshot.channels;
+  SensitivityOptions options;
+  options.integrate = make_accurate(request.integrate);
+  report.sensitivity = calc_sensitivity(make_base_point(request, {}, {}), request.grid.axes(),
+                                        request.snapshot.offset, options);
+  report.design = calc_design(report.sensitivity, report.channels, report.noise);
+  return report;
+}
+
+int get_color(std::size_t series) { return 1 + static_cast<int>(series % std::size(kChartColors)); }
+
+/// A curve over the way: get(i) at the i-th instant.
+template <class Get>
+ChartSeries make_curve(const Sensitivity& s, std::size_t parameter, const Get& get) {
+  ChartSeries series{make_words(s.parameters[parameter].name), SeriesKind::kLine,
+                     get_color(parameter)};
+  const std::size_t stride = 1 + s.instants.size() / kMostPoints;
+  for (std::size_t i = 0; i < s.instants.size(); i += stride) {
+    series.x.push_back(s.instants[i].offset);
+    series.y.push_back(get(i));
+  }
+  return series;
+}
+
+const char kWay[] = "rear wheels beyond the bump's center [m]";
+
+Chart make_bound_chart(const DesignReport& report) {
+  const Sensitivity& s = report.sensitivity;
+  ChartPanel panel{{kWay}, {"bound, 1 sigma [%]", true}, {}};
+  double least = INFINITY;
+  for (std::size_t p = 0; p < s.parameters.size(); ++p) {
+    panel.series.push_back(make_curve(s, p, [&](std::size_t i) {
+      const double bound = report.design.scan[i].bound[p];
+      least = std::min(least, bound);
+      return bound <= kIdentifiable ? bound : NAN;
+    }));
+  }
+  const double best = s.instants[report.design.best[0].instants[0]].offset;
+  for (const auto& [name, offset] :
+       {std::pair{"the sweep's instant", s.snapshot.offset}, std::pair{"best instant", best}}) {
+    panel.series.push_back({name,
+                            SeriesKind::kDashedLine,
+                            offset == best ? 3 : kInk,
+                            {offset, offset},
+                            {least, kIdentifiable}});
+  }
+  Chart chart{"bounds", {std::move(panel)}};
+  chart.panel_height = 420;
+  chart.caption =
+      "What one snapshot can tell at most, by where it is taken: the Cramer-Rao bound of each "
+      "parameter, as a share of its value; bounds above " +
+      format_short(kIdentifiable) + " % are left out.";
+  return chart;
+}
+
+Chart make_sensitivity_chart(const DesignReport& report) {
+  const Sensitivity& s = report.sensitivity;
+  Chart chart{"sensitivities", {}, 2};
+  chart.panel_height = 280;
+  chart.caption = "How much each channel of the snapshot changes with one per cent of a parameter.";
+  for (const int channel : report.channels) {
+    const ChannelInfo& info = get_channel(channel);
+    ChartPanel panel{{kWay}, {make_label(info.name, info.unit + " per %")}, {}};
+    for (std::size_t p = 0; p < s.parameters.size(); ++p) {
+      panel.series.push_back(make_curve(s, p, [&](std::size_t i) {
+        return to_unit(s.parameters[p], s.get(s.instants[i], channel, p));
+      }));
+    }
+    chart.panels.push_back(std::move(panel));
+  }
+  return chart;
+}
+
+std::vector<std::string> make_row(const Sensitivity& s, const std::string& label,
+                                  const std::string& offset, const Bounds& bounds) {
+  std::vector<std::string> row = {label, offset};
+  for (std::size_t p = 0; p < s.parameters.size(); ++p) {
+    row.push_back(bounds.bound[p] <= kIdentifiable ? print_number("%.3g", bounds.bound[p])
+                                                   : "free");
+  }
+  return row;
+}
+
+ReportTable make_bound_table(const DesignReport& report) {
+  const Sensitivity& s = report.sensitivity;
+  ReportTable table{"Cramer-Rao bounds, 1 sigma [%]", {"measured at", "offset [m]"}};
+  for (const SensitivityParameter& p : s.parameters) table.header.push_back(p.name);
+  const auto print_place = [](const Instant& i) { return print_number("%.3f", i.offset); };
+  table.rows.push_back(
+      make_row(s, "the sweep's instant", print_place(s.snapshot), report.design.snapshot));
+  for (const DesignChoice& choice : report.design.best) {
+    std::string places;
+    for (const std::size_t i : choice.instants) {
+      places += (places.empty() ? "" : ", ") + print_place(s.instants[i]);
+    }
+    const std::size_t count = choice.instants.size();
+    table.rows.push_back(
+        make_row(s, count == 1 ? "best instant" : "best " + std::to_string(count) + " instants",
+                 places, choice.bounds));
+  }
+  table.rows.push_back(make_row(s, "all instants", "", report.design.window));
+  return table;
+}
+
+}  // namespace
+
+ReportSection make_sensitivity_section(const SweepRequest& request, const FigureDrawer& drawer) {
+  ReportSection section{"Sensitivities and the best instant"};
+  try {
+    const DesignReport report = calc_report(request);
+    section.paragraphs = {
+        "What the snapshot's channels can tell about the parameters with the noise of usual "
+        "sensors, at the middle of the grid. `strut design` has other sensors and base points."};
+    section.tables = {make_bound_table(report)};
+    drawer.draw_all({make_bound_chart(report), make_sensitivity_chart(report)}, section);
+  } catch (const InputError& e) {
+    section.paragraphs = {std::string("Could not be calculated: ") + e.what()};
+  }
+  return section;
+}
+
+}  // namespace strut
