@@ -48,7 +48,8 @@ struct ReportKind {
 constexpr ReportKind kKinds[] = {{"study", "study.toml", &report_study},
                                  {"sweep", "plan.h5", &report_sweep},
                                  {"diagnosis", "verdict.json", &report_page},
-                                 {"comparison", "compare.json", &report_page}};
+                                 {"comparison", "compare.json", &report_page},
+                                 {"simulated run", "report.json", &report_page}};
 
 const ReportKind& find_kind(const fs::path& root) {
   std::vector<std::string> kinds;

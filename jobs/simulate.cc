@@ -15,6 +15,7 @@
 #include "jobs/run_file.h"
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
+#include "jobs/simulate/run_report.h"
 #include "model/effects/read_out.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
@@ -56,6 +57,8 @@ Arguments make_arguments() {
   arguments.add_list("set", "NAME=VALUE",
                      "change a parameter, e.g. front_stiffness=38000; may be "
                      "repeated");
+  arguments.add_option("report", "DIR",
+                       "also write DIR/report.html: the car crossing the bump, and its curves");
   arguments.add_switch("json", "print the snapshot as JSON");
   arguments.add_switch("kinematics", "write the suspension's kinematics instead of a run");
   return arguments;
@@ -103,10 +106,12 @@ SimulateOptions read_options(const Arguments& arguments) {
   options.source.settings = arguments.list("set");
   if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
   options.output = arguments.text("output");
+  if (arguments.has("report")) options.report = arguments.text("report");
   if (options.kinematics) {
-    refuse_options(arguments,
-                   {"integrator", "step", "coarse-step", "closure", "spin", "no-events", "rate"},
-                   "--kinematics runs nothing over time; allowed without it");
+    refuse_options(
+        arguments,
+        {"integrator", "step", "coarse-step", "closure", "spin", "no-events", "rate", "report"},
+        "--kinematics runs nothing over time; allowed without it");
   }
   read_integration(arguments, options);
   return options;
@@ -252,6 +257,11 @@ int run_case(const SimulateOptions& options) {
   run.parameters = list_case_parameters(input);
   run.provenance = describe_run(options, run.results);
   write_run(options.output, format, run);
+  if (!options.report.empty()) {
+    for (const std::string& note : write_run_report(options.report, options.source, input, run)) {
+      std::cerr << "strut: " << note << "\n";
+    }
+  }
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
   print_summary(options, run.results, duration, seconds);
   return kExitDone;
@@ -274,7 +284,7 @@ int run_simulate(const std::vector<std::string>& arguments) {
   const SimulateOptions options = read_options(parsed);
   if (options.kinematics) return run_kinematics(options);
   if (const auto rig = find_rig_kind(options.source.vehicle)) {
-    refuse_options(parsed, {"coarse-step", "closure", "spin"},
+    refuse_options(parsed, {"coarse-step", "closure", "spin", "report"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");
     return run_rig(options, *rig);
   }

@@ -13,6 +13,7 @@
 #include "jobs/diagnose/report.h"
 #include "jobs/diagnose/tables.h"
 #include "tests/campaign_files.h"
+#include "tests/check_page.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/tolerance.h"
@@ -139,7 +140,6 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
   CHECK_THAT(report, Contains("b.csv, held out") && !Contains("a.csv, held out"));
   CHECK_THAT(report, Contains("all masses and stiffnesses scale together") &&
                          Contains("a note of the diagnosis") && Contains("</html>"));
-  CHECK_THAT(report, !Contains("src=\"http") && !Contains("<img"));
   if (!notes.empty()) {
     WARN("figures not checked: " << notes.front());
     return;
@@ -147,7 +147,7 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
   for (const char* figure : {"run_2_b_time", "states", "force_law"}) {
     CHECK(std::filesystem::exists(out.figures() / (std::string(figure) + ".svg")));
   }
-  CHECK_THAT(report, Contains("<svg"));
+  test::check_page(out.report().string(), 5);
 }
 
 TEST_CASE("strut report makes a diagnosis' page again from what its folder holds", "[io]") {
@@ -163,7 +163,7 @@ TEST_CASE("strut report makes a diagnosis' page again from what its folder holds
       test::run_shell("PATH=" + std::string(folder / "nothing") + make_again);
   CHECK(bare.code == 0);
   CHECK_THAT(bare.messages, Contains("gnuplot cannot be started"));
-  CHECK_THAT(test::read_text(out.report()), Contains("Left out, gnuplot is not there"));
+  CHECK_THAT(test::read_text(out.report()), !Contains(".svg\""));
 
   const test::Outcome whole = test::run_shell(make_again);
   CHECK(whole.code == 0);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "jobs/study/results.h"
+#include "tests/check_page.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/study_files.h"
@@ -234,49 +235,10 @@ TEST_CASE("Wrong words and numbers of a study file are told", "[io]") {
   }
 }
 
-constexpr char kCheckHtml[] = R"py(
-import html.parser, re, sys
-VOID = {"meta", "br", "hr", "img", "link"}
-class Checker(html.parser.HTMLParser):
-    def __init__(self):
-        super().__init__(); self.open = []; self.ids = set(); self.pictures = 0
-    def handle_starttag(self, tag, attributes):
-        if tag == "svg": self.pictures += 1
-        for name, value in attributes:
-            if name in ("src", "href", "xlink:href", "data", "action"):
-                assert value.startswith("#"), value
-            if name == "id":
-                assert value not in self.ids, value
-                self.ids.add(value)
-        assert tag not in ("script", "link", "iframe", "img"), tag
-        if tag not in VOID: self.open.append(tag)
-    def handle_startendtag(self, tag, attributes):
-        self.handle_starttag(tag, attributes)
-        if tag not in VOID: self.open.pop()
-    def handle_endtag(self, tag):
-        assert self.open and self.open[-1] == tag, (tag, self.open)
-        self.open.pop()
-text = open(sys.argv[1], encoding="utf-8").read()
-checker = Checker(); checker.feed(text); checker.close()
-assert not checker.open, checker.open
-assert not re.search(r"@import|url\((?!#)", text)
-for link in re.findall(r"(?:https?:)?//[^\s\"'<>]+", text):
-    assert link.startswith("http://www.w3.org/"), link  # names of XML's vocabularies
-print(checker.pictures)
-)py";
-
-Outcome check_html(const StudyFiles& files, const fs::path& page) {
-  std::ofstream(files / "check.py") << kCheckHtml;
-  return run_shell("python3 " + (files / "check.py").string() + " " + page.string());
-}
-
 TEST_CASE("A study's report is one well-formed page that needs no other file", "[io][slow]") {
   const StudyFiles& files = get_study();
   const fs::path page = files / "made/report.html";
-  const Outcome checked = check_html(files, page);
-  INFO(checked.messages);
-  CHECK(checked.code == 0);
-  CHECK(checked.out == "10\n");  // five figures for each preload
+  test::check_page(page.string(), 10);  // five charts for each preload
   const std::string text = test::read_text(page);
   CHECK_THAT(text, Contains("Small &lt;study&gt;") && !Contains("Small <study>"));
   CHECK_THAT(text, Contains("A remark.") && Contains("Somebody"));
@@ -286,17 +248,15 @@ TEST_CASE("A study's report is one well-formed page that needs no other file", "
   }
 }
 
-TEST_CASE("Without gnuplot a study and its report say that figures are left out", "[io][slow]") {
+TEST_CASE("Without gnuplot a study and its report say that pictures are left out", "[io][slow]") {
   const StudyFiles& files = get_study();
   const fs::path root = files.copy("bare");
   const Outcome outcome = run_shell("PATH=" + (files / "nothing").string() +
                                     " " STRUT_PROGRAM " report " + root.string());
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.messages, Contains("gnuplot cannot be started") && Contains("left out"));
-  const Outcome checked = check_html(files, root / "report.html");
-  INFO(checked.messages);
-  CHECK(checked.out == "0\n");
-  CHECK_THAT(test::read_text(root / "report.html"), Contains("Left out, gnuplot is not there"));
+  CHECK_THAT(outcome.messages, Contains("gnuplot cannot be started") && Contains("no pictures"));
+  CHECK_THAT(test::read_text(root / "report.html"),
+             !Contains(".svg\"") && Contains("href=\"figures/training_trimmed.csv\""));
 }
 
 TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]") {
@@ -305,9 +265,8 @@ TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]"
   fs::remove_all(root);
   fs::copy(files / "made/sweeps/trimmed_90", root, fs::copy_options::recursive);
   REQUIRE(run_program("report " + root.string()).code == 0);
-  const Outcome checked = check_html(files, root / "report.html");
-  INFO(checked.messages);
-  CHECK(checked.out == "4\n");  // a figure for each channel
+  // Four channels, the coverage, bounds and sensitivities.
+  test::check_page((root / "report.html").string(), 7);
   const std::string text = test::read_text(root / "report.html");
   CHECK_THAT(text, Contains("90 of 90 cases") && Contains("No case failed.") &&
                        Contains("Layers by front_stiffness") && Contains("body_velocity_z"));

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "io/toml_text.h"
-#include "jobs/report/figure.h"
 #include "jobs/report/html.h"
 #include "tests/temporary_folder.h"
 #include "tests/test_sweep.h"
@@ -140,44 +139,9 @@ TEST_CASE("Texts of a page cannot become its markup", "[unit]") {
   }
 }
 
-TEST_CASE("Figures on one page share no name", "[unit]") {
-  const std::string svg =
-      "<?xml version=\"1.0\"?><svg><defs><g id='p'/></defs><use xlink:href='#p'/>"
-      "<a fill=\"url(#p)\"/></svg>";
-  ReportPage page;
-  page.sections = {{"Two", {}, {}, {{"a", svg, "one"}, {"b", svg, "other"}}}};
-  const std::string html = make_html(page);
-  CHECK_THAT(html, Contains("id='f1-p'") && Contains("href='#f1-p'") && Contains("url(#f1-p)"));
-  CHECK_THAT(html, Contains("id='f2-p'") && Contains("href='#f2-p'") && Contains("url(#f2-p)"));
-  CHECK_THAT(html, !Contains("<?xml"));
-}
-
-TEST_CASE("Numbers of a figure read back, and what is none is left out by name", "[unit]") {
-  CHECK(make_data("d", {{1.0, 0.1}, {std::nan(""), -2e-9}}) ==
-        "$d << END\n1 0.1\nNaN -2e-09\nEND\n");
-  CHECK(quote_figure_text("driver's_gain") == "'driver''s_gain' noenhanced");
-}
-
 TEST_CASE("A terminal's table is as wide as its widest cells", "[unit]") {
   const ReportTable table{"Caption", {"name", "value"}, {{"a", "1.25"}, {"longer", "3"}}, {}, 1};
   CHECK(make_text(table) == "Caption\nname    value\na        1.25\nlonger      3\n");
-}
-
-TEST_CASE("A figure that gnuplot cannot draw is told with gnuplot's words", "[io]") {
-  if (!has_gnuplot()) {
-    WARN("gnuplot is not there; not checked");
-    return;
-  }
-  const TemporaryFolder folder;
-  Figure figure{"broken", 300, 200, "plot nonsense(\n"};
-  write_figure_script(folder / "", figure);
-  CHECK_THROWS_WITH(draw_figure(folder / "", figure.name), Contains("broken.gp"));
-  CHECK_FALSE(fs::exists(folder / "broken.svg"));
-  figure.commands = "plot x\n";
-  write_figure_script(folder / "", figure);
-  draw_figure(folder / "", figure.name);
-  CHECK_THAT(test::read_text(folder / "broken.svg"), Contains("</svg>"));
-  CHECK(folder.file_count() == 2);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 namespace strut {
 namespace {
 
-// px of a chart as wide as a page
-constexpr double kWidth = 1000.0;
-constexpr double kLeftLabel = 85.0, kRightEdge = 25.0, kBottomLabel = 60.0, kTitle = 30.0;
+// px
+constexpr double kLeftLabel = 85.0, kRightEdge = 25.0;
+constexpr double kBottomLabel = 60.0, kTics = 28.0, kTitle = 30.0, kNoTitle = 12.0;
 constexpr int kLegendRow = 26, kLegendColumns = 5;
 
 int calc_legend_height(const Chart& chart) {
@@ -42,13 +42,17 @@ int calc_height(const Chart& chart) {
 
 PanelPlace calc_place(const Chart& chart, std::size_t panel) {
   const std::size_t row = panel / chart.columns, column = panel % chart.columns;
-  const double height = calc_height(chart);
+  const double height = calc_height(chart), all = chart.width;
   const double top =
       height - calc_legend_height(chart) - static_cast<double>(row) * chart.panel_height;
-  const double width = kWidth / static_cast<double>(chart.columns);
+  const double width = all / static_cast<double>(chart.columns);
   const double left = width * static_cast<double>(column);
-  return {(left + kLeftLabel) / kWidth, (left + width - kRightEdge) / kWidth,
-          (top - chart.panel_height + kBottomLabel) / height, (top - kTitle) / height};
+  const ChartPanel& about = chart.panels[panel];
+  const bool has_label = !about.x.label.empty() || !about.x.categories.empty();
+  const double below = has_label ? kBottomLabel : kTics;
+  const double above = about.title.empty() ? kNoTitle : kTitle;
+  return {(left + kLeftLabel) / all, (left + width - kRightEdge) / all,
+          (top - chart.panel_height + below) / height, (top - above) / height};
 }
 
 std::string make_words(std::string name) {

@@ -63,6 +63,7 @@ struct Chart {
   std::vector<ChartPanel> panels;
   std::size_t columns = 1;
   int panel_height = 320;  // px, with its axis
+  int width = 1000;        // px that it is made for
   bool shares_x = false;   // panels below each other are zoomed together
   std::string caption = "";
 

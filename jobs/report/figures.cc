@@ -44,6 +44,17 @@ ReportFigure FigureDrawer::draw_again(const std::string& name, const std::string
   return figure;
 }
 
+ReportMotion FigureDrawer::draw_motion(const Json& scene, const std::string& name,
+                                       const std::string& caption) const {
+  write_text_file(folder_ / (name + ".json"), scene.dump() + "\n");
+  return draw_motion_again(name, caption);
+}
+
+ReportMotion FigureDrawer::draw_motion_again(const std::string& name,
+                                             const std::string& caption) const {
+  return {name, caption, read_text_file(folder_ / (name + ".json"))};
+}
+
 std::vector<std::string> FigureDrawer::list_notes() const {
   return note_.empty() ? std::vector<std::string>{} : std::vector<std::string>{note_};
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/json.h"
 #include "jobs/report/chart.h"
 #include "jobs/report/html.h"
 
@@ -22,6 +23,10 @@ class FigureDrawer {
   void draw_all(const std::vector<Chart>& charts, ReportSection& section) const;
   /// The same of a chart that was drawn into the folder before. Throws EnvironmentError.
   ReportFigure draw_again(const std::string& name, const std::string& caption) const;
+  /// A scene of make_motion() as NAME.json.
+  ReportMotion draw_motion(const Json& scene, const std::string& name,
+                           const std::string& caption) const;
+  ReportMotion draw_motion_again(const std::string& name, const std::string& caption) const;
   /// For the user: none where pictures are drawn.
   std::vector<std::string> list_notes() const;
 

@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMissing =
     "gnuplot: cannot be started; pictures need it (Debian: apt install gnuplot-nox)";
-constexpr int kWidth = 1000;  // px
 
 std::string quote(const std::string& text) {
   std::string quoted = "'";
@@ -24,7 +23,7 @@ std::string quote(const std::string& text) {
 }
 
 std::string make_head(const Chart& chart) {
-  std::string text = "set terminal svg size " + std::to_string(kWidth) + "," +
+  std::string text = "set terminal svg size " + std::to_string(chart.width) + "," +
                      std::to_string(calc_height(chart)) +
                      " font \"Arial,13\" background \"white\"\nset encoding utf8\n";
   int type = 0;
@@ -190,6 +189,17 @@ std::string make_depth(const ChartPanel& panel) {
          "set ticslevel 0.05\n";
 }
 
+/// Whether a panel shows anything: gnuplot finds no range for nothing.
+bool has_points(const ChartPanel& panel) {
+  return std::any_of(panel.series.begin(), panel.series.end(), [](const ChartSeries& s) {
+    const std::vector<double>& values = s.kind == SeriesKind::kBand ? s.low : s.y;
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      if (std::isfinite(s.x[i]) && std::isfinite(values[i])) return true;
+    }
+    return false;
+  });
+}
+
 std::string make_panel(const Chart& chart, std::size_t p, bool is_3d) {
   const ChartPanel& panel = chart.panels[p];
   std::string text, plot;
@@ -201,6 +211,7 @@ std::string make_panel(const Chart& chart, std::size_t p, bool is_3d) {
   text += make_margins(calc_place(chart, p)) + "unset key\nset grid\nset title " +
           quote(panel.title) + "\n" + make_axis("x", panel.x) + make_axis("y", panel.y);
   if (is_3d) text += make_depth(panel);
+  if (!has_points(panel)) text += "set xrange [1:2]\nset yrange [1:2]\nset zrange [1:2]\n";
   return text + (is_3d ? "splot " : "plot ") + (plot.empty() ? "NaN notitle" : plot) + "\n";
 }
 

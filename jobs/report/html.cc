@@ -96,8 +96,9 @@ std::string make_contents(const std::vector<ReportSection>& sections) {
 }
 
 std::string make_section(const ReportSection& section, const std::string& id) {
-  std::string text = "<section>\n<h2 id=\"" + id + "\">" + escape_html(section.heading) +
-                     "</h2>\n" + make_paragraphs(section.paragraphs);
+  std::string text = section.motions.empty() ? "<section>" : "<section class=\"beside\">";
+  text += "\n<h2 id=\"" + id + "\">" + escape_html(section.heading) + "</h2>\n" +
+          make_paragraphs(section.paragraphs);
   for (const ReportMotion& motion : section.motions) text += make_motion_figure(motion);
   for (const ReportTable& table : section.tables) text += make_table(table);
   for (const ReportFigure& figure : section.figures) text += make_figure(figure);
@@ -135,7 +136,8 @@ std::string make_scripts(const ReportPage& page) {
   }
   if (moving.charts) text += make_script(embedded::plotly_cartesian_min_js);
   if (moving.charts) text += make_script(embedded::page_js);
-  if (moving.motions) text += make_script(embedded::motion_js);
+  if (moving.motions) return text + make_script(embedded::motion_js);
+  if (moving.charts) text += make_script("drawAll();");
   return text;
 }
 

@@ -35,10 +35,11 @@ struct ReportFigure {
   bool is_3d() const;
 };
 
-/// A car crossing its bump, with a slider: see jobs/report/motion.h.
+/// A car crossing its bump, with a slider: see jobs/simulate/motion.h.
 struct ReportMotion {
-  std::string scene;  // the text of make_motion()
+  std::string name;  // of its file
   std::string caption;
+  std::string scene;  // the text of make_motion()
 };
 
 /// A part of a report. Whoever has something to report fills one of these.

@@ -34,14 +34,19 @@ Json make_table_json(const ReportTable& table) {
       .set("text_columns", static_cast<long>(table.text_columns));
 }
 
+/// A figure or a motion, whose content stands in a file of its name.
+template <class T>
+Json make_named(const T& figure) {
+  return Json::object().set("name", figure.name).set("caption", figure.caption);
+}
+
 Json make_section_json(const ReportSection& section) {
   return Json::object()
       .set("heading", section.heading)
       .set("paragraphs", Json::texts(section.paragraphs))
       .set("tables", make_list(section.tables, &make_table_json))
-      .set("figures", make_list(section.figures, [](const ReportFigure& figure) {
-             return Json::object().set("name", figure.name).set("caption", figure.caption);
-           }));
+      .set("figures", make_list(section.figures, &make_named<ReportFigure>))
+      .set("motions", make_list(section.motions, &make_named<ReportMotion>));
 }
 
 Json make_page_json(const ReportPage& page) {
@@ -93,9 +98,14 @@ ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
     return ReportSection{section.get<std::string>("heading"),
                          read_list(section, "paragraphs", &read_text),
                          read_list(section, "tables", &read_table),
-                         read_list(section, "figures", [&](const Tree& figure) {
-                           return drawer.draw_again(figure.get<std::string>("name"),
-                                                    figure.get<std::string>("caption"));
+                         read_list(section, "figures",
+                                   [&](const Tree& figure) {
+                                     return drawer.draw_again(figure.get<std::string>("name"),
+                                                              figure.get<std::string>("caption"));
+                                   }),
+                         read_list(section, "motions", [&](const Tree& motion) {
+                           return drawer.draw_motion_again(motion.get<std::string>("name"),
+                                                           motion.get<std::string>("caption"));
                          })};
   });
   return page;

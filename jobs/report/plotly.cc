@@ -227,8 +227,8 @@ Json make_layout(const Chart& chart) {
       Json::object().set("margin", Json::object().set("l", 0).set("r", 0).set("t", 0).set("b", 0));
   layout.set("legend", Json::object()
                            .set("orientation", "h")
-                           .set("x", 0.5)
-                           .set("xanchor", "center")
+                           .set("x", 0.05)
+                           .set("xanchor", "left")
                            .set("y", 1)
                            .set("yanchor", "top"));
   layout.set("barmode", "overlay").set("hovermode", "closest");

@@ -17,6 +17,7 @@ inline constexpr double kRetryFraction = 0.125;
 struct SimulateOptions {
   CaseSource source;
   std::filesystem::path output;
+  std::filesystem::path report;  // folder; empty: none
   int integrator = 0;  // of kIntegrators
   IntegrateOptions integrate;
   double rate = 1000.0;  // Hz

@@ -8,7 +8,7 @@ const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 
 // What is printed stands on white, also where the screen is dark; while "beforeprint" runs the
 // styles are still those of the screen.
-const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de"};
+const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a"};
 let isForPaper = false;
 
 function readColor(name) {
@@ -21,12 +21,13 @@ function makeTemplate() {
   const ink = readColor("--ink");
   const line = readColor("--line");
   const axis = {gridcolor: line, zerolinecolor: line, linecolor: ink, showline: true, ticks: "outside",
-                automargin: false, title: {standoff: 8}};
+                automargin: false, title: {standoff: 8, font: {size: 12}}};
   const solid = {gridcolor: line, zerolinecolor: line, showbackground: false, color: ink, nticks: 4,
                  tickfont: {size: 10}, title: {font: {size: 12}}};
   return {layout: {
     font: {color: ink, size: 13, family: "system-ui, 'DejaVu Sans', Arial, sans-serif"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", xaxis: axis, yaxis: axis,
+    modebar: {bgcolor: "rgba(0,0,0,0)", color: readColor("--soft"), activecolor: ink},
     scene: {xaxis: solid, yaxis: solid, zaxis: solid},
     hoverlabel: {namelength: -1}}};
 }
@@ -127,4 +128,3 @@ async function drawAll() {
 darkMode.addEventListener("change", () => repaintAll(false));
 window.addEventListener("beforeprint", () => repaintAll(true));
 window.addEventListener("afterprint", () => repaintAll(false));
-drawAll();

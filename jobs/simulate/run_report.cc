@@ -1,0 +1,55 @@
+#include "jobs/simulate/run_report.h"
+
+#include "io/config.h"
+#include "jobs/report/figures.h"
+#include "jobs/report/page_file.h"
+#include "jobs/simulate/motion.h"
+
+namespace strut {
+namespace {
+
+ReportTable make_parameter_table(const RunRecord& run) {
+  ReportTable table{"Parameters", {"name", "what", "value", "unit"}, {}, {}, 2};
+  for (const RunParameter& p : run.parameters) {
+    table.rows.push_back({p.name, p.description, format_short(p.value), p.unit});
+  }
+  return table;
+}
+
+ReportTable make_source_table(const RunRecord& run) {
+  ReportTable table{"How it was made", {"what", "value"}, {}, {}, 2};
+  for (const auto& [name, value] : run.provenance) table.rows.push_back({name, value});
+  return table;
+}
+
+std::string describe(const Case& c) {
+  const RoadSpec& road = c.maneuver.road;
+  std::string text = c.vehicle.name + " at " + format_short(c.maneuver.speed) + " m/s";
+  if (road.shape == BumpShape::kNone) return text + " on a flat road.";
+  return text + " over a bump of " + format_short(1e3 * road.height) + " mm.";
+}
+
+}  // namespace
+
+std::vector<std::string> write_run_report(const std::filesystem::path& folder,
+                                          const CaseSource& source, const Case& c,
+                                          const RunRecord& run) {
+  const PageFolder out{folder};
+  clear_page_folder(out, out.page());
+  const FigureDrawer drawer(out.figures());
+  ReportSection motion{"Motion"};
+  motion.motions = {drawer.draw_motion(
+      make_motion(c, run.results), "motion",
+      "From the left, wheels of the right side dashed. Springs are as long as they were simulated; "
+      "their mounts stand where they are at nominal trim.")};
+  drawer.draw_all({make_motion_curves(run.results)}, motion);
+  ReportPage page{
+      "Run of " + source.vehicle.filename().string(),
+      {describe(c)},
+      {std::move(motion), {"Parameters", {}, {make_parameter_table(run), make_source_table(run)}}},
+      make_report_footer()};
+  write_page(out, page);
+  return drawer.list_notes();
+}
+
+}  // namespace strut

@@ -1,0 +1,19 @@
+// The report of one simulated run: a page with the car in motion and its curves.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "jobs/run_file.h"
+#include "model/vehicle/case.h"
+
+namespace strut {
+
+/// Writes FOLDER/report.html and what it is made of. Returns what could not be made, for the user.
+/// Throws EnvironmentError.
+std::vector<std::string> write_run_report(const std::filesystem::path& folder,
+                                          const CaseSource& source, const Case& c,
+                                          const RunRecord& run);
+
+}  // namespace strut

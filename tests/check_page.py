@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Reads a report as a browser does and fails on what a reader would miss.
+
+    check_page.py PAGE [CHARTS]     CHARTS: how many must be drawn; default: as many as there are
+
+In the text: tags that close, names that are there once, nothing fetched from elsewhere. In headless
+Chromium: every chart drawn, the car in motion where there is one, nothing said on the console, no
+button that would send the numbers away. Exit 77: Chromium is not there; the text was checked.
+"""
+
+import html.parser
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+VOID = {"meta", "br", "hr", "img", "link", "input"}
+# What graphics drivers and canvases say of their own speed.
+HARMLESS = re.compile(r"willReadFrequently|GL Driver Message|GPU stall")
+
+
+class Page(html.parser.HTMLParser):
+    """The tags of a page: checks them on the way, counts charts and motions."""
+
+    def __init__(self):
+        super().__init__()
+        self.open = []
+        self.names = set()
+        self.charts = self.motions = 0
+
+    def handle_starttag(self, tag, attributes):
+        about = dict(attributes)
+        for name in ("src", "action", "data"):
+            assert name not in about, f"{tag} fetches {about[name]}"
+        assert tag not in ("link", "iframe", "img"), tag
+        assert not re.match(r"[a-z]+:|//", about.get("href", "")), about["href"]
+        if "id" in about:
+            assert about["id"] not in self.names, f"id {about['id']} is there twice"
+            self.names.add(about["id"])
+        self.charts += about.get("class") == "chart"
+        self.motions += about.get("class") == "motion"
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open[-1] == tag, (tag, self.open)
+        self.open.pop()
+
+
+def read_text(path):
+    page = Page()
+    text = path.read_text(encoding="utf-8")
+    page.feed(text)
+    page.close()
+    assert not page.open, page.open
+    style = re.search(r"<style>(.*?)</style>", text, re.S).group(1)
+    assert not re.search(r"@import|url\(", style)
+    return page
+
+
+def find_browser():
+    return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def draw(browser, path):
+    """The page after its scripts have run, and what they said."""
+    with tempfile.TemporaryDirectory() as profile:
+        done = subprocess.run(
+            [browser, "--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--no-first-run",
+             f"--user-data-dir={profile}", "--host-resolver-rules=MAP * ~NOTFOUND",
+             "--virtual-time-budget=120000", "--enable-logging=stderr", "--log-level=0", "--dump-dom",
+             path.resolve().as_uri()],
+            capture_output=True, text=True, timeout=240, check=True)
+    said = [line for line in done.stderr.splitlines() if "CONSOLE" in line and not HARMLESS.search(line)]
+    return done.stdout, said
+
+
+def main():
+    path = pathlib.Path(sys.argv[1])
+    page = read_text(path)
+    wanted = int(sys.argv[2]) if len(sys.argv) > 2 else page.charts
+    assert page.charts == wanted, f"{page.charts} charts instead of {wanted}"
+    browser = find_browser()
+    if browser is None:
+        print("no Chromium: only the text was checked")
+        return 77
+    dom, said = draw(browser, path)
+    assert not said, said
+    if wanted or page.motions:
+        assert f'data-charts="{wanted}/{wanted}"' in dom, re.findall(r'data-charts="[^"]*"', dom)
+    drawn = dom.count('data-motion="drawn"')
+    assert drawn == page.motions, f"{drawn} of {page.motions} motions drawn"
+    assert dom.count('data-title="Numbers as CSV"') == wanted
+    assert 'data-title="Share' not in dom, "a button sends the chart away"
+    print(f"{wanted} charts, {page.motions} motions")
+    return 0
+
+
+sys.exit(main())
