@@ -9,6 +9,7 @@ const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 // What is printed stands on white, also where the screen is dark; while "beforeprint" runs the
 // styles are still those of the screen.
 const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a"};
+const paperWidth = 980;  // px
 let isForPaper = false;
 
 function readColor(name) {
@@ -106,8 +107,10 @@ async function drawChart(div) {
 function repaintAll(forPaper) {
   isForPaper = forPaper;
   for (const {div, chart, plotly} of strutCharts) {
+    const size = forPaper ? {autosize: false, width: paperWidth, height: chart.height} : {autosize: true};
     plotly.react(div, paint(chart.data, readColor("--ink")),
-                 {...div.layout, template: makeTemplate()}, makeConfig(chart));
+                 {...div.layout, width: undefined, height: undefined, ...size, template: makeTemplate()},
+                 makeConfig(chart));
   }
 }
 
