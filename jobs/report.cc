@@ -64,11 +64,14 @@ const ReportKind& find_kind(const fs::path& root) {
 }  // namespace
 
 int run_report(const std::vector<std::string>& words) {
-  Arguments arguments("strut report DIR",
-                      "Writes DIR/report.html, one file that needs no other, about the study, "
-                      "sweep, diagnosis or comparison\nin DIR, from what is there: nothing is "
-                      "simulated or trained.",
-                      "  strut report study\n  strut report sweep\n  strut report diagnosis");
+  Arguments arguments(
+      "strut report DIR",
+      "Writes DIR/report.html, one file that needs no other, about the study, "
+      "sweep, diagnosis, comparison\nor simulated run in DIR, from what is there: "
+      "no case is simulated, no network trained; of a sweep\nonly the few runs by "
+      "which its sensitivities are told. Charts are also in DIR/figures as SVG, and\n"
+      "their numbers as CSV.",
+      "  strut report study\n  strut report sweep\n  strut report diagnosis");
   if (!arguments.parse(words)) return kExitDone;
   const auto& names = arguments.positional();
   if (names.size() != 1) {

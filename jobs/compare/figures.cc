@@ -43,7 +43,8 @@ Chart make_balance_chart(const std::string& name, const std::vector<BalancePoint
   chart.panel_height = 400;
   for (const BalancePoints& points : balances) {
     const BodyBalance& b = *points.balance;
-    ChartSeries deflection{points.name, SeriesKind::kPoints, points.color}, velocity = deflection;
+    ChartSeries deflection{points.name, SeriesKind::kPoints, points.color};
+    ChartSeries velocity{points.name, SeriesKind::kPoints, points.color};
     const std::size_t stride = choose_stride(b.residual.size());
     for (std::size_t t = 0; t < b.residual.size(); t += stride) {
       deflection.x.push_back(b.deflection[t]);

@@ -53,7 +53,7 @@ struct ChartAxis {
 struct ChartPanel {
   ChartAxis x, y;
   std::vector<ChartSeries> series;
-  std::string title = "";
+  std::string title = {};
   ChartAxis z = {""};  // of kPoints3d
 };
 
@@ -65,7 +65,7 @@ struct Chart {
   int panel_height = 320;  // px, with its axis
   int width = 1000;        // px that it is made for
   bool shares_x = false;   // panels below each other are zoomed together
-  std::string caption = "";
+  std::string caption = {};
 
   std::size_t rows() const { return (panels.size() + columns - 1) / columns; }
   bool is_3d() const;

@@ -26,8 +26,8 @@ std::vector<double> thin_channel(const LaneResults& results, std::size_t channel
 }
 
 std::size_t get_corner_channel(int corner, int channel) {
-  return static_cast<std::size_t>(CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
-                                  channel);
+  const int first = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels;
+  return static_cast<std::size_t>(first) + static_cast<std::size_t>(channel);
 }
 
 /// Five digits after the point of a meter are more than a screen shows.
