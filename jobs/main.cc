@@ -4,6 +4,7 @@
 #include <sundials/sundials_version.h>
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 
 #include "io/hdf5.h"
@@ -49,7 +50,9 @@ void print_version() {
 /// The path of an example file; where there is none, as it lies in the sources.
 std::string name_example(const std::string& name) {
   try {
-    return strut::find_example(name).string();
+    const std::filesystem::path found = strut::find_example(name);
+    const std::filesystem::path near = std::filesystem::proximate(found);
+    return *near.begin() == ".." ? found.string() : near.string();
   } catch (const strut::InputError&) {
     return "examples/" + name;
   }
@@ -63,8 +66,9 @@ int show_beginning() {
                    "one car over one bump");
   strut::tell_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "sweep"},
                    "many cars, to train a network on");
-  strut::tell_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
-                   "measured runs against simulated ones: docs/diagnosis.md");
+  strut::tell_next(
+      {"strut", "compare", name_example("extended_loop/campaign.toml"), "-o", "comparison"},
+      "measured runs against simulated ones: docs/diagnosis.md");
   return strut::kExitInput;
 }
 
@@ -73,6 +77,7 @@ int run_command(const Command& command, const std::vector<std::string>& words) {
   if (!arguments.parse(words)) return strut::kExitDone;
   if (arguments.is_on("quiet")) set_loudness(strut::Loudness::kQuiet);
   if (arguments.is_on("verbose")) set_loudness(strut::Loudness::kVerbose);
+  strut::prepare_interrupt(arguments);
   const strut::BuildInfo& build = strut::get_build_info();
   strut::tell_detail("version " + std::string(build.version) + " (" + build.commit + ")");
   const strut::Stage stage("all of " + arguments.command());
@@ -98,6 +103,7 @@ int run(const std::vector<std::string>& words) {
 
 int run_and_flush(const std::vector<std::string>& words) {
   const int code = run(words);
+  strut::say_next();
   std::cout.flush();
   if (!std::cout) {
     throw strut::EnvironmentError(

@@ -67,6 +67,16 @@ std::string make_text(const std::string& text) {
   return page;
 }
 
+/// Several ways to call a command stand below each other in the help.
+std::string make_synopsis(const std::string& synopsis) {
+  std::string page = ".PP\n.nf\n";
+  std::istringstream lines(synopsis);
+  for (std::string line; std::getline(lines, line);) {
+    page += escape(line.substr(line.find_first_not_of(' '))) + "\n";
+  }
+  return page + ".fi\n";
+}
+
 std::string make_item(const std::string& label, const std::string& text) {
   return ".TP\n" + label + "\n" + escape(text) + "\n";
 }
@@ -87,7 +97,7 @@ std::string make_options(const std::vector<ArgumentOption>& options) {
 std::string make_command(const Command& command) {
   const Arguments arguments = command.describe();
   return ".SS strut " + std::string(command.name) + "\n" + make_text(command.purpose) +
-         make_verbatim(arguments.synopsis()) + make_text(arguments.description()) +
+         make_synopsis(arguments.synopsis()) + make_text(arguments.description()) +
          make_options(arguments.options()) + ".PP\nExamples:\n" +
          make_verbatim(arguments.examples());
 }

@@ -25,7 +25,8 @@ void tell_notes(const std::vector<std::string>& texts);
 void tell_detail(const std::string& text);
 
 /// "next: strut run sweep  # why": the command that is to follow, quoted for a shell where it must
-/// be. Not said with --quiet. Words in capitals stand for what only the user knows.
+/// be; by say_next(), as the last that a command says. Not said with --quiet. Words in capitals
+/// stand for what only the user knows.
 void tell_next(const std::vector<std::string>& words, const std::string& why = "");
 /// The same with a line of shell as it stands.
 void tell_next_line(const std::string& line, const std::string& why = "");
@@ -34,6 +35,9 @@ void tell_next_again(const Arguments& arguments, const std::string& why,
                      const std::vector<std::string>& added = {});
 /// How to look at a page.
 void tell_next_page(const std::string& file);
+void say_next();
+/// Lets a signal that ends the program say that it did, and the command once more.
+void prepare_interrupt(const Arguments& arguments);
 
 /// Tells, with --verbose, how long it lived: "NAME: 1.2 s".
 class Stage {
