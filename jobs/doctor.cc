@@ -145,7 +145,8 @@ int run_doctor(const Arguments& arguments) {
                                 " arguments; expected DIR, a folder");
   }
   const fs::path root = arguments.positional().front();
-  if (!fs::is_directory(root)) throw InputError(root.string() + ": must be a folder");
+  if (!fs::is_directory(root))
+    throw InputError(root.string() + ": must be a folder; one that shall hold a sweep will do");
   const Findings findings = examine(arguments, fs::canonical(root));
   if (arguments.is_on("json")) {
     std::cout << make_json(findings).dump() << "\n";

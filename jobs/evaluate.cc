@@ -79,7 +79,9 @@ Arguments describe_evaluate() {
 
 int run_evaluate(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.size() < 2) throw arguments.usage_error("expected MODEL and DATA");
+  if (names.size() < 2)
+    throw arguments.usage_error(
+        "expected MODEL, of strut train, and DATA, a sweep folder, shards or a merged file");
   const Model model = read_model(names.front());
   DatasetOptions options;
   options.partial = arguments.is_on("partial");

@@ -89,13 +89,15 @@ Arguments describe_export() {
 
 int run_export(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.size() != 1) throw arguments.usage_error("expected one MODEL");
+  if (names.size() != 1) throw arguments.usage_error("expected one MODEL, a file of strut train");
   const fs::path output = find_output_file(arguments, names);
   const Model model = read_model(names.front());
   if (model.window) {
     throw InputError(names.front() +
                      ": a network over windows of time histories: its inputs are no channels but "
-                     "what is left of a window, so that it cannot be exported alone");
+                     "what is left of a window, so that it cannot be exported alone; `strut train` "
+                     "without --window "
+                     "makes one that can");
   }
   write_text_file(output, make_text(arguments, model, output));
   std::cout << output.string() << "\n";

@@ -7,8 +7,9 @@ namespace strut {
 OpenSweep open_sweep(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
-    throw arguments.usage_error(std::to_string(names.size()) +
-                                " arguments; expected DIR, a folder made by strut plan");
+    throw arguments.usage_error(
+        std::to_string(names.size()) +
+        " arguments; expected DIR, a folder made by `strut plan SWEEP.toml -o DIR`");
   }
   SweepFolder folder{names.front()};
   Plan plan = open_sweep_folder(folder);

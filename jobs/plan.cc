@@ -134,7 +134,8 @@ int run_plan(const Arguments& arguments) {
                                 " files; expected SWEEP.toml");
   }
   const bool dry = arguments.is_on("dry-run");
-  if (!dry && !arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!dry && !arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the folder to write with -o");
 
   const Plan plan(read_request(arguments.positional().front()));
   check_plan(plan);

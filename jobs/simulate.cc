@@ -69,7 +69,8 @@ SimulateOptions read_options(const Arguments& arguments) {
   options.source.vehicle = files[0];
   if (!options.kinematics) options.source.maneuver = files[1];
   options.source.settings = arguments.list("set");
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the file to write with -o");
   options.output = arguments.text("output");
   if (options.kinematics) {
     refuse_options(arguments,

@@ -164,7 +164,8 @@ int run_study(const Arguments& arguments) {
   if (names.size() != 1) {
     throw arguments.usage_error(std::to_string(names.size()) + " files; expected STUDY.toml");
   }
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the folder to write with -o");
   const StudyRequest asked = read_study(names.front());
   const int threads = find_threads(arguments);
   InterruptWatcher watcher;

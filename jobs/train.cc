@@ -280,7 +280,8 @@ Arguments describe_train() {
 
 int run_train(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.empty()) throw arguments.usage_error("DATA: missing");
+  if (names.empty())
+    throw arguments.usage_error("DATA: missing; name a sweep folder, shards or a merged file");
   const fs::path output = find_output_file(arguments, names);
   std::vector<std::string> others = names;
   others.push_back(output.string());

@@ -3,12 +3,12 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
-#include <sstream>
 
 #include "jobs/commands.h"
 #include "jobs/completion.h"
 #include "jobs/dispatch/quote_word.h"
 #include "jobs/man_page.h"
+#include "tests/check_hint.h"
 #include "tests/program_sweep.h"
 #include "tests/run_program.h"
 
@@ -18,10 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 
 using Catch::Matchers::Contains;
+using test::check_hint;
 using test::Outcome;
 using test::read_text;
 using test::run_program;
 using test::run_shell;
+using test::split_as_bash;
+using test::split_lines;
 using test::TemporaryFolder;
 
 const std::string kExamples = STRUT_SOURCE_DIR "/examples/";
@@ -33,22 +36,6 @@ std::vector<ArgumentOption> list_all_options(const Arguments& arguments) {
   const std::vector<ArgumentOption>& common = Arguments::common_options();
   all.insert(all.end(), common.begin(), common.end());
   return all;
-}
-
-std::vector<std::string> split_lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// The words of a line as bash sees them, without a comment at its end.
-std::vector<std::string> split_as_bash(const std::string& line) {
-  const Outcome outcome =
-      run_shell("bash -c " + quote_word("eval \"w=($0\n)\"; printf '%s\\n' \"${w[@]}\"") + " " +
-                quote_word(line));
-  REQUIRE(outcome.code == 0);
-  return split_lines(outcome.out);
 }
 
 TEST_CASE("Every command is in the help, and explains itself by its table", "[io]") {
@@ -238,22 +225,6 @@ TEST_CASE("The manual page has every command and every option, and groff nothing
     CHECK_THAT(section, Contains("Examples:"));
   }
   CHECK_THAT(outcome.out, Contains("--quiet") && Contains("--verbose"));
-}
-
-/// The hint at the end of what a command says: its words; and that they can be typed: the command
-/// is one, its options are its own.
-std::vector<std::string> check_hint(const std::string& messages) {
-  INFO(messages);
-  const std::vector<std::string> lines = split_lines(messages);
-  REQUIRE_FALSE(lines.empty());
-  REQUIRE(lines.back().starts_with("next: "));
-  std::vector<std::string> words = split_as_bash(lines.back().substr(6));
-  if (words.front() != "strut") return words;
-  REQUIRE(words.size() > 1);
-  Arguments arguments = find_command(words[1]).describe();
-  const auto redirection = std::find(words.begin(), words.end(), ">");
-  CHECK(arguments.parse({words.begin() + 2, redirection}));
-  return words;
 }
 
 struct HintCase {

@@ -218,7 +218,9 @@ void require_fit_arguments(const Arguments& arguments, const fs::path& vehicle,
     throw InputError(vehicle.string() +
                      ": is a rig; identify fits cars only, `strut compare` calibrates rigs");
   }
-  if (files.empty()) throw arguments.usage_error("MEASURED: missing");
+  if (files.empty())
+    throw arguments.usage_error(
+        "MEASURED: missing; name a history with a column time and the --channels");
   if (!arguments.has("maneuver"))
     throw arguments.usage_error("--maneuver: missing; give the file of what was driven");
 }
@@ -286,7 +288,9 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
     print_fit(fit, runs, parameter_count);
   }
   const bool held = std::find(fit.at_bound.begin(), fit.at_bound.end(), true) != fit.at_bound.end();
-  if (fit.converged && fit.is_adequate()) {
+  if (!row.in_range()) {
+    tell_next({"strut", "design", "SWEEP.toml"}, "which channels and instants tell what is open");
+  } else if (fit.converged && fit.is_adequate()) {
     tell_next_simulation({row}, vehicle.string(), arguments.list("maneuver").front());
   } else {
     tell_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
