@@ -83,6 +83,7 @@ int run_compare(const Arguments& arguments) {
     write_compare_tables(folder, data, comparison);
     tell_notes(write_compare_report(folder, data, comparison));
     write_text_file(folder.json(), json);
+    tell_detail("written: " + folder.json().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {
     std::cout << json;

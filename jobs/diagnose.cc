@@ -105,6 +105,7 @@ int run_diagnose(const Arguments& arguments) {
     write_diagnose_tables(folder, data, diagnosis);
     tell_notes(write_diagnose_report(folder, data, diagnosis));
     write_text_file(folder.verdict(), json);
+    tell_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {
     std::cout << json;

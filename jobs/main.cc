@@ -79,7 +79,8 @@ int run_command(const Command& command, const std::vector<std::string>& words) {
   if (arguments.is_on("verbose")) set_loudness(strut::Loudness::kVerbose);
   strut::prepare_interrupt(arguments);
   const strut::BuildInfo& build = strut::get_build_info();
-  strut::tell_detail("version " + std::string(build.version) + " (" + build.commit + ")");
+  strut::tell_detail("version " + std::string(build.version) + " (" + build.commit +
+                     "), instruction set " + strut::list_kernels().front().isa);
   const strut::Stage stage("all of " + arguments.command());
   return command.run(arguments);
 }

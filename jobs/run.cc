@@ -236,8 +236,9 @@ int run(bool retries, const Arguments& arguments) {
     tell_next({"strut", "status", sweep.folder.root.string()});
     return kExitDone;
   }
-  tell_detail(std::to_string(options.threads) + " threads, " + options.kernel->isa + ", shards " +
-              std::to_string(options.first_shard) + " to " + std::to_string(options.end_shard - 1));
+  tell_detail(std::to_string(options.threads) + " threads, instruction set " + options.kernel->isa +
+              ", shards " + std::to_string(options.first_shard) + " to " +
+              std::to_string(options.end_shard - 1));
   InterruptWatcher watcher;
   options.drain = &watcher.warned();
   RunProgress progress;

@@ -288,7 +288,7 @@ Arguments describe_simulate() {
 int run_simulate(const Arguments& arguments) {
   const SimulateOptions options = read_options(arguments);
   if (options.kinematics) return run_kinematics(options);
-  tell_detail("integrator " + options.integrator_name() + ", " + list_kernels().front().isa);
+  tell_detail("integrator " + options.integrator_name());
   if (const auto rig = find_rig_kind(options.source.vehicle)) {
     refuse_options(arguments, {"coarse-step", "closure", "spin"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");

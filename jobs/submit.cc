@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -76,8 +77,10 @@ class Submitter {
                 std::to_string(resources_.threads) + " threads");
     if (arguments_.is_on("dry-run")) {
       show();
-      tell_next({"strut", "submit", arguments_.positional().front(), "--to", dispatcher_->name()},
-                "with the options above, without --dry-run");
+      std::vector<std::string> words = {"strut", "submit"};
+      std::copy_if(arguments_.words().begin(), arguments_.words().end(), std::back_inserter(words),
+                   [](const std::string& word) { return word != "--dry-run"; });
+      tell_next(words);
     } else {
       submit();
       const std::string root = sweep_.folder.root.string();

@@ -8,6 +8,7 @@
 #include "jobs/completion.h"
 #include "jobs/dispatch/quote_word.h"
 #include "jobs/man_page.h"
+#include "jobs/progress.h"
 #include "tests/check_hint.h"
 #include "tests/program_sweep.h"
 #include "tests/run_program.h"
@@ -339,6 +340,12 @@ TEST_CASE("A command that a signal ended is named again", "[io]") {
   const std::vector<std::string> words = check_hint(outcome.messages);
   CHECK(words[1] == "simulate");
   CHECK(words.back() == file);
+}
+
+TEST_CASE("Progress tells the share done and the time to go once that is known", "[unit]") {
+  CHECK(describe_share(0, 5000, "cases", 3.0) == "0/5,000 cases");
+  CHECK(describe_share(1250, 5000, "cases", 100.0) == "1,250/5,000 cases, 5 min 0 s to go");
+  CHECK(describe_share(5000, 5000, "cases", 100.0) == "5,000/5,000 cases");
 }
 
 TEST_CASE("Words are quoted for a shell where they must be", "[unit]") {
