@@ -1,9 +1,14 @@
 #include "jobs/arguments.h"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <iostream>
+#include <utility>
 
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
+#include "jobs/terminal.h"
 
 namespace strut {
 namespace {
@@ -17,37 +22,123 @@ std::string strip_dashes(const std::string& option) {
   return begin == std::string::npos ? option : option.substr(begin);
 }
 
+void add_to(po::options_description& all, const ArgumentOption& option) {
+  const std::string name = option.name + (option.letter.empty() ? "" : "," + option.letter);
+  const char* help = option.help.c_str();
+  if (option.is_switch) {
+    all.add_options()(name.c_str(), po::bool_switch(), help);
+  } else if (option.repeats) {
+    using Texts = std::vector<std::string>;
+    all.add_options()(name.c_str(), po::value<Texts>()->value_name(option.value.name), help);
+  } else {
+    all.add_options()(name.c_str(), po::value<std::string>()->value_name(option.value.name), help);
+  }
+}
+
+std::string join_words(const std::vector<std::string>& words) {
+  std::string joined;
+  for (const std::string& word : words) joined += (joined.empty() ? "" : "|") + word;
+  return joined;
+}
+
+std::string make_heading(const std::string& text) {
+  return paint(text, Style::kBold, STDOUT_FILENO);
+}
+
 }  // namespace
 
-Arguments::Arguments(std::string synopsis, std::string text, std::string examples)
+ArgumentValue ArgumentValue::file(const char* name, std::vector<std::string> endings) {
+  ArgumentValue value(name);
+  value.kind = Kind::kFile;
+  value.endings = std::move(endings);
+  return value;
+}
+
+ArgumentValue ArgumentValue::folder(const char* name) {
+  ArgumentValue value(name);
+  value.kind = Kind::kFolder;
+  return value;
+}
+
+ArgumentValue ArgumentValue::path(const char* name, std::vector<std::string> endings) {
+  ArgumentValue value = file(name, std::move(endings));
+  value.kind = Kind::kPath;
+  return value;
+}
+
+ArgumentValue ArgumentValue::one_of(std::vector<std::string> words) {
+  const std::string name = join_words(words);
+  return one_of(name.c_str(), std::move(words));
+}
+
+ArgumentValue ArgumentValue::one_of(const char* name, std::vector<std::string> words) {
+  ArgumentValue value(name);
+  value.kind = Kind::kChoice;
+  value.words = std::move(words);
+  return value;
+}
+
+Arguments::Arguments(std::string synopsis, std::string description, std::string examples)
     : synopsis_(std::move(synopsis)),
-      text_(std::move(text)),
-      examples_(std::move(examples)),
-      options_("Options", 100, 60) {
-  options_.add_options()("help,h", po::bool_switch(), "show this text");
+      description_(std::move(description)),
+      examples_(std::move(examples)) {}
+
+void Arguments::add_operand(ArgumentValue value) { operands_.push_back(std::move(value)); }
+
+void Arguments::add_operands(ArgumentValue value) {
+  add_operand(std::move(value));
+  last_operand_repeats_ = true;
 }
 
-void Arguments::add_switch(const char* name, const char* help) {
-  options_.add_options()(name, po::bool_switch(), help);
+void Arguments::add(const std::string& name, ArgumentOption option) {
+  const std::size_t comma = name.find(',');
+  option.name = name.substr(0, comma);
+  if (comma != std::string::npos) option.letter = name.substr(comma + 1);
+  options_.push_back(std::move(option));
 }
 
-void Arguments::add_option(const char* name, const char* value, const char* help) {
-  options_.add_options()(name, po::value<std::string>()->value_name(value), help);
+void Arguments::add_switch(const std::string& name, const std::string& help) {
+  add(name, {"", "", true, false, "", help});
 }
 
-void Arguments::add_list(const char* name, const char* value, const char* help) {
-  options_.add_options()(name, po::value<std::vector<std::string>>()->value_name(value), help);
+void Arguments::add_option(const std::string& name, ArgumentValue value, const std::string& help) {
+  add(name, {"", "", false, false, std::move(value), help});
 }
 
-bool Arguments::parse(const std::vector<std::string>& arguments) {
-  po::options_description all;
-  all.add(options_).add_options()(kPositional, po::value<std::vector<std::string>>());
+void Arguments::add_list(const std::string& name, ArgumentValue value, const std::string& help) {
+  add(name, {"", "", false, true, std::move(value), help});
+}
+
+const std::vector<ArgumentOption>& Arguments::common_options() {
+  static const std::vector<ArgumentOption> options = {
+      {"quiet", "q", true, false, "", "say nothing on standard error but errors"},
+      {"verbose", "v", true, false, "", "say more there: settings, files, seconds"},
+      {"help", "h", true, false, "", "show this text"}};
+  return options;
+}
+
+std::string Arguments::command() const {
+  const std::size_t begin = synopsis_.find(' ') + 1;
+  return synopsis_.substr(begin, synopsis_.find_first_of(" \n", begin) - begin);
+}
+
+po::options_description Arguments::describe_options() const {
+  po::options_description all("", 100, 60);
+  for (const ArgumentOption& option : options_) add_to(all, option);
+  for (const ArgumentOption& option : common_options()) add_to(all, option);
+  return all;
+}
+
+bool Arguments::parse(const std::vector<std::string>& words) {
+  words_ = words;
+  po::options_description all = describe_options();
+  all.add_options()(kPositional, po::value<std::vector<std::string>>());
   po::positional_options_description places;
   places.add(kPositional, -1);
   using po::command_line_style::allow_guessing;
   using po::command_line_style::unix_style;
   try {
-    po::store(po::command_line_parser(arguments)
+    po::store(po::command_line_parser(words)
                   .options(all)
                   .positional(places)
                   .style(unix_style & ~allow_guessing)
@@ -64,26 +155,43 @@ bool Arguments::parse(const std::vector<std::string>& arguments) {
   if (values_.count(kPositional) > 0) {
     positional_ = values_[kPositional].as<std::vector<std::string>>();
   }
-  if (!is_on("help")) return true;
-  std::cout << "Usage: " << synopsis_ << "\n\n"
-            << text_ << "\n\n"
-            << options_ << "\nExamples:\n"
+  if (is_on("help")) {
+    print_help();
+    return false;
+  }
+  if (is_on("quiet") && is_on("verbose")) {
+    throw InputError("--quiet, --verbose: must not both be given");
+  }
+  return true;
+}
+
+void Arguments::print_help() const {
+  std::cout << make_heading("Usage:") << " " << synopsis_ << "\n\n"
+            << description_ << "\n\n"
+            << make_heading("Options:") << "\n"
+            << describe_options() << "\n"
+            << make_heading("Examples:") << "\n"
             << examples_ << "\n";
-  return false;
 }
 
 InputError Arguments::usage_error(const std::string& what) const {
-  return InputError(what + "\nUsage: " + synopsis_);
+  return InputError(what + "\nUsage: " + synopsis_ + "\n`strut " + command() +
+                    " --help` explains it");
 }
 
 std::vector<std::string> Arguments::known_options() const {
   std::vector<std::string> names;
-  for (const auto& option : options_.options()) names.push_back(option->long_name());
+  for (const ArgumentOption& option : options_) names.push_back(option.name);
+  for (const ArgumentOption& option : common_options()) names.push_back(option.name);
   return names;
 }
 
 std::string Arguments::text(const std::string& name) const {
   return values_[name].as<std::string>();
+}
+
+std::string Arguments::text_or(const std::string& name, const std::string& fallback) const {
+  return has(name) ? text(name) : fallback;
 }
 
 std::vector<std::string> Arguments::list(const std::string& name) const {
@@ -109,15 +217,18 @@ std::int64_t Arguments::integer_or(const std::string& name, std::int64_t fallbac
                    std::to_string(low) + ", " + std::to_string(high) + "]");
 }
 
-int Arguments::choice_or(const std::string& name, int fallback,
-                         const std::vector<std::string>& names) const {
+int Arguments::choice_or(const std::string& name, int fallback) const {
   if (!has(name)) return fallback;
   const std::string value = text(name);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i] == value) return static_cast<int>(i);
+  const auto option =
+      std::find_if(options_.begin(), options_.end(),
+                   [&name](const ArgumentOption& candidate) { return candidate.name == name; });
+  const std::vector<std::string>& words = option->value.words;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == value) return static_cast<int>(i);
   }
-  throw InputError("--" + name + " = " + value + ": must be one of " + join_names(names) +
-                   suggest_name(value, names));
+  throw InputError("--" + name + " = " + value + ": must be one of " + join_names(words) +
+                   suggest_name(value, words));
 }
 
 }  // namespace strut

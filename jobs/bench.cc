@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <mutex>
 #include <optional>
 
 #include "jobs/arguments.h"
@@ -11,7 +12,9 @@
 #include "jobs/bench/report.h"
 #include "jobs/command.h"
 #include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
+#include "jobs/progress.h"
 
 namespace strut {
 namespace {
@@ -80,12 +83,41 @@ ThreadFigure measure_threads(const BenchCases& bench, const Kernel& kernel,
   return {threads, rate, 0.5 * (before + measure_spins(threads)) / best_spin};
 }
 
+/// What is being measured, and the share of it that is done.
+class BenchProgress {
+ public:
+  explicit BenchProgress(std::size_t total)
+      : total_(total), line_([this, start = now()] { return describe(now() - start); }) {}
+
+  void begin(const std::string& doing) {
+    tell_detail(doing);
+    const std::lock_guard lock(mutex_);
+    doing_ = doing;
+    ++begun_;
+  }
+
+ private:
+  std::string describe(double seconds) {
+    const std::lock_guard lock(mutex_);
+    return std::to_string(begun_) + "/" + std::to_string(total_) + ": " + doing_ + ", " +
+           format_duration(seconds);
+  }
+
+  const std::size_t total_;
+  std::mutex mutex_;
+  std::string doing_;
+  std::size_t begun_ = 0;
+  ProgressLine line_;  // last: it asks for the others from a thread of its own
+};
+
 BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool quick,
                           const std::filesystem::path& scratch) {
   const Effort effort = quick ? Effort{0.05, 2} : Effort{};
   BenchResult result;
   result.machine = read_machine(kernel);
-  std::cerr << "preparing " << kernel.lanes << " cases and their references\n";
+  BenchProgress progress(list_standard_settings().size() +
+                         static_cast<std::size_t>(result.machine.cores) + 3);
+  progress.begin("preparing " + std::to_string(kernel.lanes) + " cases and their references");
   const BenchCases bench = make_bench_cases(source, kernel.lanes);
   result.seconds_to_prepare = bench.seconds_to_prepare;
   const double spin = calibrate_spin();
@@ -94,11 +126,11 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
   result.table = count_flops(bench.cases[0], Closure::kTable);
 
   for (const BenchSetting& setting : list_standard_settings()) {
-    std::cerr << "measuring " << setting.label << "\n";
+    progress.begin("measuring " + std::string(setting.label));
     result.single_core.push_back(measure(bench, kernel, setting, effort, spin));
     result.single_core.back().error = measure_error(bench, kernel, setting);
   }
-  std::cerr << "searching the fastest setting\n";
+  progress.begin("searching the fastest setting");
   BenchSetting fastest = find_fastest(bench, kernel, quick);
   fastest.label = "fastest";
   Figure figure = measure(bench, kernel, fastest, effort, spin);
@@ -106,7 +138,7 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
   result.single_core.push_back(figure);
 
   for (int threads = 1; threads <= result.machine.cores; ++threads) {
-    std::cerr << "measuring " << threads << " threads\n";
+    progress.begin("measuring " + std::to_string(threads) + " threads");
     ThreadFigure best;
     for (int repeat = 0; repeat < std::max(2, effort.repeats / 2); ++repeat) {
       const ThreadFigure f = measure_threads(bench, kernel, fastest, threads, effort.seconds, spin);
@@ -114,15 +146,25 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
     }
     result.threads.push_back(best);
   }
-  std::cerr << "measuring a sweep\n";
+  progress.begin("measuring a sweep");
   result.pipeline = measure_pipeline(quick ? 320 : 2000, result.machine.cores, spin, scratch);
   return result;
 }
 
+void tell_next_of(const Arguments& arguments) {
+  if (arguments.has("baseline")) {
+    tell_next_line("strut bench --json > new.json", "a baseline for later; docs/performance.md");
+  } else if (arguments.is_on("json")) {
+    tell_next({"strut", "bench", "--baseline", "OLD.json"}, "this output, in a file");
+  } else {
+    tell_next_line("strut bench --json > old.json", "then strut bench --baseline old.json");
+  }
+}
+
 }  // namespace
 
-int run_bench(const std::vector<std::string>& arguments) {
-  Arguments parsed(
+Arguments describe_bench() {
+  Arguments arguments(
       "strut bench [VEHICLE MANEUVER] [OPTIONS]",
       "Measures how many runs a second this machine simulates on one core and on all, and how\n"
       "exactly. Without files: examples/vehicles/paper_sedan.toml over\n"
@@ -130,18 +172,25 @@ int run_bench(const std::vector<std::string>& arguments) {
       "Then\n"
       "runs a sweep of examples/sweeps/paper_fast.toml from plan to shards.",
       "  strut bench --json > old.json\n  strut bench --baseline old.json");
-  parsed.add_switch("json", "print JSON instead of a table");
-  parsed.add_option("baseline", "FILE", "print each figure relative to this output of --json");
-  parsed.add_option("isa", "NAME", "instruction set, one that --version lists (default: widest)");
-  parsed.add_option("scratch", "DIR",
-                    "where the sweep's files go for a moment (default: the system's temporary "
-                    "folder)");
-  parsed.add_switch("quick", "a tenth of the time, rougher figures");
-  if (!parsed.parse(arguments)) return kExitDone;
-  const auto& files = parsed.positional();
+  arguments.add_operand(ArgumentValue::file("VEHICLE", {"toml"}));
+  arguments.add_operand(ArgumentValue::file("MANEUVER", {"toml"}));
+  arguments.add_switch("json", "print JSON instead of a table");
+  arguments.add_option("baseline", ArgumentValue::file("FILE", {"json"}),
+                       "print each figure relative to this output of --json");
+  arguments.add_option("isa", isa_value(),
+                       "instruction set, one that --version lists (default: widest)");
+  arguments.add_option("scratch", ArgumentValue::folder("DIR"),
+                       "where the sweep's files go for a moment (default: the system's temporary "
+                       "folder)");
+  arguments.add_switch("quick", "a tenth of the time, rougher figures");
+  return arguments;
+}
+
+int run_bench(const Arguments& arguments) {
+  const auto& files = arguments.positional();
   if (!files.empty() && files.size() != 2) {
-    throw parsed.usage_error(std::to_string(files.size()) +
-                             " files; expected VEHICLE and MANEUVER, or none");
+    throw arguments.usage_error(std::to_string(files.size()) +
+                                " files; expected VEHICLE and MANEUVER, or none");
   }
   CaseSource source;
   source.vehicle =
@@ -149,16 +198,17 @@ int run_bench(const std::vector<std::string>& arguments) {
   source.maneuver =
       files.empty() ? find_example("maneuvers/bump_20mps.toml") : std::filesystem::path(files[1]);
   std::optional<Baseline> baseline;
-  if (parsed.has("baseline")) baseline = read_baseline(parsed.text("baseline"));
+  if (arguments.has("baseline")) baseline = read_baseline(arguments.text("baseline"));
 
   const BenchResult result =
-      run_benchmark(source, find_kernel(parsed), parsed.is_on("quick"),
-                    parsed.has("scratch") ? std::filesystem::path(parsed.text("scratch"))
-                                          : std::filesystem::temp_directory_path());
+      run_benchmark(source, find_kernel(arguments), arguments.is_on("quick"),
+                    arguments.has("scratch") ? std::filesystem::path(arguments.text("scratch"))
+                                             : std::filesystem::temp_directory_path());
   const std::vector<FigureRatio> ratios =
       baseline ? compare(result, *baseline) : std::vector<FigureRatio>{};
-  parsed.is_on("json") ? print_json(std::cout, result, ratios)
-                       : print_table(std::cout, result, ratios);
+  arguments.is_on("json") ? print_json(std::cout, result, ratios)
+                          : print_table(std::cout, result, ratios);
+  tell_next_of(arguments);
   return kExitDone;
 }
 

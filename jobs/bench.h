@@ -1,12 +1,11 @@
 // `strut bench`: throughput and accuracy of this machine.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// Exit code of the command; see its --help.
-int run_bench(const std::vector<std::string>& arguments);
+Arguments describe_bench();
+int run_bench(const Arguments& arguments);
 
 }  // namespace strut

@@ -5,6 +5,7 @@
 
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 
 namespace strut {
@@ -30,29 +31,39 @@ void cancel(const Submission& submission) {
 
 }  // namespace
 
-int run_cancel(const std::vector<std::string>& words) {
-  Arguments arguments("strut cancel DIR",
-                      "Takes back what `strut submit` queued for the sweep in DIR: tasks that wait "
-                      "are dropped, tasks\n"
-                      "that run stop cleanly. What is written stays; `strut submit` or `strut run` "
-                      "goes on from there.\n"
-                      "Runners that somebody started by hand are left alone.",
-                      "  strut cancel sweep");
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_cancel() {
+  Arguments arguments(
+      "strut cancel DIR",
+      "Takes back what `strut submit` queued for the sweep in DIR: tasks that wait are dropped, "
+      "tasks\n"
+      "that run stop cleanly. What is written stays; `strut submit` or `strut run` goes on from\n"
+      "there. Runners that somebody started by hand are left alone.",
+      "  strut cancel sweep");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
+  return arguments;
+}
+
+int run_cancel(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
-  int cancelled = 0;
+  const std::string root = sweep.folder.root.string();
+  std::string dispatcher;  // of the last that was cancelled
   for (const Submission& submission : list_submissions(sweep.folder)) {
     const SubmissionState state = follow(submission);
     if (state.queue == QueueState::kEnded) continue;
     if (state.queue == QueueState::kUnknown) {
       throw EnvironmentError("submission " + submission.name() +
                              ": whether it still runs is unknown: " + state.why +
-                             "; nothing of it is cancelled");
+                             "; nothing of it is cancelled; try again once the scheduler answers");
     }
     cancel(submission);
-    ++cancelled;
+    dispatcher = submission.dispatcher;
   }
-  if (cancelled == 0) std::cout << "nothing to cancel: no submission waits or runs\n";
+  if (dispatcher.empty()) {
+    std::cout << "nothing to cancel: no submission waits or runs\n";
+    tell_next({"strut", "status", root});
+  } else {
+    tell_next({"strut", "submit", root, "--to", dispatcher}, "goes on from here");
+  }
   return kExitDone;
 }
 

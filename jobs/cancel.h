@@ -1,12 +1,11 @@
 // strut cancel: ends what `strut submit` began.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// The command; exit code. Throws InputError, EnvironmentError.
-int run_cancel(const std::vector<std::string>& arguments);
+Arguments describe_cancel();
+int run_cancel(const Arguments& arguments);
 
 }  // namespace strut

@@ -1,8 +1,7 @@
 // What a command of the program is, and the exit codes all of them share.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
@@ -17,9 +16,10 @@ enum ExitCode : int {
 struct Command {
   const char* name;
   const char* purpose;  // one line
-  /// Takes the arguments after the command's name, returns an exit code. Throws InputError,
-  /// EnvironmentError.
-  int (*run)(const std::vector<std::string>& arguments);
+  /// The table of its arguments: what --help, completion and man page are made of.
+  Arguments (*describe)();
+  /// Takes them parsed, returns an exit code. Throws InputError, EnvironmentError.
+  int (*run)(const Arguments& arguments);
 };
 
 }  // namespace strut

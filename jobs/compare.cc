@@ -11,26 +11,12 @@
 #include "jobs/compare/report.h"
 #include "jobs/compare/tables.h"
 #include "jobs/interrupt.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
+#include "jobs/progress.h"
 
 namespace strut {
 namespace {
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut compare CAMPAIGN.toml -o DIR [OPTIONS]",
-      "Measured against simulated: every run of the campaign with the model as its file says and\n"
-      "with the parameters that the campaign lets it adjust, fitted to the runs for fitting. Says\n"
-      "for every channel what is left, when, in which band, in which state, and whether the model\n"
-      "is adequate. Writes DIR/compare.json, CSV tables, figures and report.html\n"
-      "(docs/diagnosis.md).",
-      "  strut compare examples/campaigns/quarter_car.toml -o comparison");
-  arguments.add_option("output,o", "DIR", "folder of the comparison");
-  arguments.add_option("threads", "N", "threads (default: all processors)");
-  arguments.add_switch("force", "replace the comparison that is in DIR");
-  arguments.add_switch("json", "print compare.json instead of tables");
-  return arguments;
-}
 
 /// Every run went through with the calibrated model, and the fit that calibrated it converged.
 bool is_whole(const Comparison& comparison) {
@@ -43,40 +29,61 @@ bool is_whole(const Comparison& comparison) {
 
 void tell(const Comparison& comparison) {
   if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) {
-    std::cerr << "strut: the calibration has not converged: its minimum is "
-              << format_rounded(comparison.baseline.fit.distance) << " standard deviations away\n";
+    tell_error("the calibration has not converged: its minimum is " +
+               format_rounded(comparison.baseline.fit.distance) + " standard deviations away");
   }
   for (const RunComparison& run : comparison.runs) {
     for (const ModelComparison* model : {&run.nominal, &run.calibrated}) {
       const std::string& failure = model->evaluation.failure;
-      if (!failure.empty()) std::cerr << "strut: " << failure << "\n";
+      if (!failure.empty()) tell_error(failure);
     }
   }
 }
 
 }  // namespace
 
-int run_compare(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_compare() {
+  Arguments arguments(
+      "strut compare CAMPAIGN.toml -o DIR [OPTIONS]",
+      "Measured against simulated: every run of the campaign with the model as its file says and\n"
+      "with the parameters that the campaign lets it adjust, fitted to the runs for fitting. Says\n"
+      "for every channel what is left, when, in which band, in which state, and whether the model\n"
+      "is adequate. Writes DIR/compare.json, CSV tables, figures and report.html\n"
+      "(docs/diagnosis.md).",
+      "  strut compare examples/campaigns/quarter_car.toml -o comparison");
+  arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder of the comparison");
+  arguments.add_option("threads", "N", "threads (default: all processors)");
+  arguments.add_switch("force", "replace the comparison that is in DIR");
+  arguments.add_switch("json", "print compare.json instead of tables");
+  return arguments;
+}
+
+int run_compare(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
     throw arguments.usage_error(std::to_string(arguments.positional().size()) +
                                 " files; expected CAMPAIGN.toml");
   }
   const CompareFolder folder = find_compare_folder(arguments);
   const CampaignData data = read_campaign_data(arguments.positional().front());
-  for (const std::string& note : data.notes) std::cerr << "strut: " << note << "\n";
-  const Comparison comparison = compare_campaign(data, find_threads(arguments));
+  tell_notes(data.notes);
+  const int threads = find_threads(arguments);
+  tell_detail(std::to_string(data.run_count()) + " runs, " + std::to_string(threads) + " threads");
+  const Comparison comparison = [&] {
+    const Stage stage("calibration and comparison");
+    const ProgressLine line("calibrating, then comparing " + std::to_string(data.run_count()) +
+                            " runs");
+    return compare_campaign(data, threads);
+  }();
   tell(comparison);
   const std::string json = make_compare_json(data, comparison).dump() + "\n";
   {
     const InterruptGuard guard;
     clear_page_folder(folder, folder.json());
     write_compare_tables(folder, data, comparison);
-    for (const std::string& note : write_compare_report(folder, data, comparison)) {
-      std::cerr << "strut: " << note << "\n";
-    }
+    tell_notes(write_compare_report(folder, data, comparison));
     write_text_file(folder.json(), json);
+    tell_detail("written: " + folder.json().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {
     std::cout << json;
@@ -85,6 +92,11 @@ int run_compare(const std::vector<std::string>& words) {
       std::cout << make_text(table) << "\n";
     }
     std::cout << make_verdict_text(data, comparison) << "\n" << folder.report().string() << "\n";
+  }
+  if (comparison.is_adequate()) {
+    tell_next_page(folder.report().string());
+  } else {
+    tell_next({"strut", "diagnose", arguments.positional().front(), "-o", "diagnosis"});
   }
   return is_whole(comparison) ? kExitDone : kExitNo;
 }

@@ -1,13 +1,11 @@
 // `strut compare`: measured against simulated, channel by channel.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// Takes the arguments after the command's name, returns an exit code. Throws InputError,
-/// EnvironmentError.
-int run_compare(const std::vector<std::string>& arguments);
+Arguments describe_compare();
+int run_compare(const Arguments& arguments);
 
 }  // namespace strut

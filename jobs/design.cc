@@ -1,6 +1,7 @@
 #include "jobs/design.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 
 #include "jobs/arguments.h"
@@ -8,37 +9,14 @@
 #include "jobs/design_report.h"
 #include "jobs/interrupt.h"
 #include "jobs/lists.h"
+#include "jobs/messages.h"
+#include "jobs/progress.h"
 #include "sweep/find_channel.h"
 
 namespace strut {
 namespace {
 
 constexpr double kMostSamples = 20000.0;  // of each run: 2 GB of history in all at most
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut design SWEEP.toml [OPTIONS]",
-      "Which instant, window and sensors identify the parameters of a sweep's grid best: the\n"
-      "sensitivity of every channel to every grid parameter, and from it, for given sensor noise,\n"
-      "the Cramer-Rao bound of the sweep's snapshot, of every instant along the way, of the best\n"
-      "one, two and three instants, and of the whole window. Proposes the best instant.",
-      "  strut design examples/sweeps/paper.toml\n"
-      "  strut design examples/sweeps/paper.toml --at front_stiffness=38000,rear_damping=1850 \\\n"
-      "      --noise pitch_rate=0.002 --csv sensitivity.csv --json");
-  arguments.add_option("at", "NAME=VALUE,...", "base point; axes not named: their middle");
-  arguments.add_list("set", "NAME=VALUE", "any parameter at the base point, repeatable");
-  arguments.add_option("channels", "NAME,...", "what is measured (default: the snapshot's)");
-  arguments.add_list("noise", "CHANNEL=SIGMA",
-                     "1 sigma of a sensor's white noise per sample, repeatable");
-  arguments.add_option("rate", "HZ", "instants a second (default 1000)");
-  arguments.add_option("difference", "SHARE",
-                       "step of the differences as a share of the base value (default 1e-4)");
-  arguments.add_switch("as-requested",
-                       "integrate as the sweep does, not by RK4 1 ms with Newton closure");
-  arguments.add_option("csv", "FILE", "write the sensitivity curves");
-  arguments.add_switch("json", "print JSON");
-  return arguments;
-}
 
 std::vector<std::string> list_or_empty(const Arguments& arguments, const std::string& name) {
   return arguments.has(name) ? split_list(arguments.text(name)) : std::vector<std::string>{};
@@ -91,34 +69,72 @@ SensitivityOptions read_options(const Arguments& arguments, const SweepRequest& 
   return options;
 }
 
+void tell_next_of(const std::string& sweep, const DesignReport& report) {
+  const Design& design = report.design;
+  const Instant& best = report.sensitivity.instants[design.best[0].instants[0]];
+  char offset[32];
+  std::snprintf(offset, sizeof offset, "%.3f", best.offset);
+  tell_next({"strut", "plan", sweep, "-o", "sweep"},
+            design.best[0].bounds.rms < design.snapshot.rms
+                ? std::string("with offset = ") + offset + " in its [record]"
+                : "its instant is the best one");
+}
+
 }  // namespace
 
-int run_design(const std::vector<std::string>& arguments) {
-  Arguments parsed = make_arguments();
-  if (!parsed.parse(arguments)) return kExitDone;
-  if (parsed.positional().size() != 1) {
-    throw parsed.usage_error(std::to_string(parsed.positional().size()) +
-                             " files; expected SWEEP.toml");
+Arguments describe_design() {
+  Arguments arguments(
+      "strut design SWEEP.toml [OPTIONS]",
+      "Which instant, window and sensors identify the parameters of a sweep's grid best: the\n"
+      "sensitivity of every channel to every grid parameter, and from it, for given sensor noise,\n"
+      "the Cramer-Rao bound of the sweep's snapshot, of every instant along the way, of the best\n"
+      "one, two and three instants, and of the whole window. Proposes the best instant.",
+      "  strut design examples/sweeps/paper.toml\n"
+      "  strut design examples/sweeps/paper.toml --at front_stiffness=38000,rear_damping=1850 \\\n"
+      "      --noise pitch_rate=0.002 --csv sensitivity.csv --json");
+  arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
+  arguments.add_option("at", "NAME=VALUE,...", "base point; axes not named: their middle");
+  arguments.add_list("set", "NAME=VALUE", "any parameter at the base point, repeatable");
+  arguments.add_option("channels", "NAME,...", "what is measured (default: the snapshot's)");
+  arguments.add_list("noise", "CHANNEL=SIGMA",
+                     "1 sigma of a sensor's white noise per sample, repeatable");
+  arguments.add_option("rate", "HZ", "instants a second (default 1000)");
+  arguments.add_option("difference", "SHARE",
+                       "step of the differences as a share of the base value (default 1e-4)");
+  arguments.add_switch("as-requested",
+                       "integrate as the sweep does, not by RK4 1 ms with Newton closure");
+  arguments.add_option("csv", ArgumentValue::file("FILE", {"csv"}), "write the sensitivity curves");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+int run_design(const Arguments& arguments) {
+  if (arguments.positional().size() != 1) {
+    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
+                                " files; expected SWEEP.toml");
   }
-  const SweepRequest request = read_request(parsed.positional().front());
+  const SweepRequest request = read_request(arguments.positional().front());
   DesignReport report;
-  report.noise = read_noise(parsed);
-  report.channels = read_channels(parsed, request);
-  const Case base = make_base_point(request, list_or_empty(parsed, "at"), parsed.list("set"));
-  const SensitivityOptions options = read_options(parsed, request, base.maneuver.duration);
+  report.noise = read_noise(arguments);
+  report.channels = read_channels(arguments, request);
+  const Case base = make_base_point(request, list_or_empty(arguments, "at"), arguments.list("set"));
+  const SensitivityOptions options = read_options(arguments, request, base.maneuver.duration);
   report.sensitivity = name_option(request.path.string() + ":", [&] {
+    const Stage stage("sensitivities");
+    const ProgressLine line("simulating the sensitivities");
     return calc_sensitivity(base, request.grid.axes(), request.snapshot.offset, options);
   });
   report.design = calc_design(report.sensitivity, report.channels, report.noise);
-  if (parsed.has("csv")) {
+  if (arguments.has("csv")) {
     const InterruptGuard guard;
-    write_design_csv(parsed.text("csv"), report);
+    write_design_csv(arguments.text("csv"), report);
   }
-  if (parsed.is_on("json")) {
+  if (arguments.is_on("json")) {
     std::cout << make_design_json(report).dump() << "\n";
   } else {
     print_design(report);
   }
+  tell_next_of(arguments.positional().front(), report);
   return kExitDone;
 }
 

@@ -1,12 +1,11 @@
 // `strut design`: which snapshot instant, window and sensors identify a sweep's parameters best.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// Returns an exit code. Throws InputError, EnvironmentError.
-int run_design(const std::vector<std::string>& arguments);
+Arguments describe_design();
+int run_design(const Arguments& arguments);
 
 }  // namespace strut

@@ -13,45 +13,26 @@
 #include "jobs/diagnose/report.h"
 #include "jobs/diagnose/tables.h"
 #include "jobs/interrupt.h"
+#include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
 
 namespace strut {
 namespace {
 
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut diagnose CAMPAIGN.toml -o DIR [OPTIONS]",
-      "Names what the simulation gets wrong: fits the model to the runs for fitting, tries every\n"
-      "effect of the catalogue at every place, and lets the runs held out judge. Says how sure it\n"
-      "is, what it cannot tell apart, what the extended model gains, and what to measure next.\n"
-      "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures\n"
-      "and "
-      "report.html (docs/diagnosis.md). Ends with code 1 where a run held out cannot be "
-      "simulated,\n"
-      "or the calibration has not converged and nothing was confirmed beyond it.",
-      "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
-  arguments.add_option("output,o", "DIR", "folder of the diagnosis");
-  arguments.add_option("threads", "N", "threads (default: all processors)");
-  arguments.add_switch("force", "replace the diagnosis that is in DIR");
-  arguments.add_switch("json", "print verdict.json instead of text");
-  return arguments;
-}
-
-void tell(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) std::cerr << "strut: " << note << "\n";
-}
-
 Diagnosis diagnose(const CampaignData& data, int threads) {
   std::mutex mutex;
   std::string doing = "begins";
-  const ProgressLine line([&] {
+  const Stage stage("diagnosis");
+  const ProgressLine line([&, start = now()] {
     const std::lock_guard lock(mutex);
-    return "diagnose: " + doing;
+    return "diagnose: " + doing + ", " + format_duration(now() - start);
   });
   DiagnoseOptions options;
   options.threads = threads;
   options.progress = [&](const std::string& what) {
+    tell_detail(what);
     const std::lock_guard lock(mutex);
     doing = what;
   };
@@ -68,34 +49,70 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
   }
 }
 
+/// The loop goes on with the extended model, or, where there is none, with other measurements.
+void tell_next_of(const Arguments& arguments, const DiagnoseFolder& folder,
+                  const CampaignData& data, const Diagnosis& diagnosis) {
+  if (diagnosis.is_extended() && data.is_rig()) {
+    tell_next({"strut", "simulate", folder.extended_model().string(), "MANEUVER.toml", "-o",
+               "extended.csv"});
+  } else if (diagnosis.is_extended()) {
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", "sweep"},
+              "with vehicle = \"" + folder.extended_model().string() + "\"");
+  } else if (diagnosis.kind == VerdictKind::kAdequate || diagnosis.next_measurement.empty()) {
+    tell_next_page(folder.report().string());
+  } else {
+    tell_next_again(arguments, "with one more run: " + diagnosis.next_measurement);
+  }
+}
+
 }  // namespace
 
-int run_diagnose(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_diagnose() {
+  Arguments arguments(
+      "strut diagnose CAMPAIGN.toml -o DIR [OPTIONS]",
+      "Names what the simulation gets wrong: fits the model to the runs for fitting, tries every\n"
+      "effect of the catalogue at every place, and lets the runs held out judge. Says how sure it\n"
+      "is, what it cannot tell apart, what the extended model gains, and what to measure next.\n"
+      "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures\n"
+      "and "
+      "report.html (docs/diagnosis.md). Ends with code 1 where a run held out cannot be "
+      "simulated,\n"
+      "or the calibration has not converged and nothing was confirmed beyond it.",
+      "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
+  arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder of the diagnosis");
+  arguments.add_option("threads", "N", "threads (default: all processors)");
+  arguments.add_switch("force", "replace the diagnosis that is in DIR");
+  arguments.add_switch("json", "print verdict.json instead of text");
+  return arguments;
+}
+
+int run_diagnose(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
     throw arguments.usage_error(std::to_string(arguments.positional().size()) +
                                 " files; expected CAMPAIGN.toml");
   }
   const DiagnoseFolder folder = find_diagnose_folder(arguments);
   const CampaignData data = read_campaign_data(arguments.positional().front());
-  tell(data.notes);
+  tell_notes(data.notes);
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
-  tell(diagnosis.notes);
+  tell_notes(diagnosis.notes);
   const std::string json = make_verdict_json(data, diagnosis).dump() + "\n";
   {
     const InterruptGuard guard;
     clear_page_folder(folder, folder.verdict());
     write_extended_model(folder, data, diagnosis);
     write_diagnose_tables(folder, data, diagnosis);
-    tell(write_diagnose_report(folder, data, diagnosis));
+    tell_notes(write_diagnose_report(folder, data, diagnosis));
     write_text_file(folder.verdict(), json);
+    tell_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {
     std::cout << json;
   } else {
     std::cout << make_diagnose_text(diagnosis) << "\n" << folder.report().string() << "\n";
   }
+  tell_next_of(arguments, folder, data, diagnosis);
   return diagnosis.is_whole ? kExitDone : kExitNo;
 }
 

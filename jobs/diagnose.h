@@ -1,13 +1,11 @@
 // `strut diagnose`: what the simulation gets wrong, why, and what mending it gains.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// Takes the arguments after the command's name, returns an exit code. Throws InputError,
-/// EnvironmentError.
-int run_diagnose(const std::vector<std::string>& arguments);
+Arguments describe_diagnose();
+int run_diagnose(const Arguments& arguments);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "jobs/doctor.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -11,31 +13,16 @@
 #include "jobs/dispatch/dispatcher.h"
 #include "jobs/doctor/file_checks.h"
 #include "jobs/json.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/plan_estimate.h"
+#include "jobs/progress.h"
+#include "jobs/terminal.h"
 
 namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut doctor DIR [OPTIONS]",
-      "Tries what a sweep in DIR (a planned one, or any folder that shall hold some) relies upon: "
-      "the file\n"
-      "system, the scheduler, and with --nodes the processors of its nodes, which a job of a "
-      "second "
-      "asks.\n"
-      "Says which promises hold. Ends with code 1 where one does not.",
-      "  strut doctor sweep\n  strut doctor sweep --to slurm --partition short --nodes");
-  arguments.add_option("to", "NAME",
-                       "scheduler: slurm or local (default: slurm where it is there)");
-  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
-  arguments.add_switch("nodes", "ask every idle node for its instruction sets");
-  arguments.add_switch("json", "print JSON");
-  return arguments;
-}
 
 /// Of what a planned sweep still lacks; none for another folder.
 SpaceNeeds calc_needs(const fs::path& root) {
@@ -74,14 +61,17 @@ std::string find_isa() {
   return names;
 }
 
+/// The scheduler that --to names, or that is here.
+std::string choose_dispatcher(const Arguments& arguments) {
+  if (!arguments.has("to")) return find_dispatcher();
+  return list_dispatchers()[static_cast<std::size_t>(arguments.choice_or("to", 0))];
+}
+
 Findings examine(const Arguments& arguments, const fs::path& root) {
+  const ProgressLine line("trying the file system and the scheduler");
   Findings findings = check_file_system(root, calc_needs(root));
   findings.push_back({"instruction sets here", Health::kGood, find_isa(), ""});
-  const std::vector<std::string> names = list_dispatchers();
-  const std::string name =
-      arguments.has("to") ? names[static_cast<std::size_t>(arguments.choice_or("to", 0, names))]
-                          : find_dispatcher();
-  const auto dispatcher = make_dispatcher(name);
+  const auto dispatcher = make_dispatcher(choose_dispatcher(arguments));
   Resources resources;
   if (arguments.has("partition")) resources.partition = arguments.text("partition");
   for (Finding& f : dispatcher->examine(resources, root)) findings.push_back(std::move(f));
@@ -109,22 +99,54 @@ Json make_json(const Findings& findings) {
 void print_text(const Findings& findings) {
   for (const Finding& f : findings) {
     const std::string health = get_name(f.health);
-    std::cout << health << std::string(9 - health.size(), ' ') << f.check << ": " << f.found
+    std::cout << (f.health == Health::kBad ? paint(health, Style::kRed, STDOUT_FILENO) : health)
+              << std::string(9 - health.size(), ' ') << f.check << ": " << f.found
               << (f.meaning.empty() ? "" : "; " + f.meaning) << "\n";
+  }
+}
+
+void tell_next_of(const Arguments& arguments, bool holds) {
+  const std::string root = arguments.positional().front();
+  if (!holds) {
+    tell_next_again(arguments, "once what is bad above is mended");
+  } else if (!fs::exists(SweepFolder{root}.plan())) {
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", root});
+  } else if (choose_dispatcher(arguments) == "slurm") {
+    tell_next({"strut", "submit", root, "--to", "slurm"});
+  } else {
+    tell_next({"strut", "run", root});
   }
 }
 
 }  // namespace
 
-int run_doctor(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_doctor() {
+  Arguments arguments(
+      "strut doctor DIR [OPTIONS]",
+      "Tries what a sweep in DIR (a planned one, or any folder that shall hold some) relies upon: "
+      "the file\n"
+      "system, the scheduler, and with --nodes the processors of its nodes, which a job of a "
+      "second "
+      "asks.\n"
+      "Says which promises hold. Ends with code 1 where one does not.",
+      "  strut doctor sweep\n  strut doctor sweep --to slurm --partition short --nodes");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
+  arguments.add_option("to", ArgumentValue::one_of(list_dispatchers()),
+                       "scheduler (default: slurm where it is there)");
+  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
+  arguments.add_switch("nodes", "ask every idle node for its instruction sets");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+int run_doctor(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
     throw arguments.usage_error(std::to_string(arguments.positional().size()) +
                                 " arguments; expected DIR, a folder");
   }
   const fs::path root = arguments.positional().front();
-  if (!fs::is_directory(root)) throw InputError(root.string() + ": must be a folder");
+  if (!fs::is_directory(root))
+    throw InputError(root.string() + ": must be a folder; one that shall hold a sweep will do");
   const Findings findings = examine(arguments, fs::canonical(root));
   if (arguments.is_on("json")) {
     std::cout << make_json(findings).dump() << "\n";
@@ -133,6 +155,7 @@ int run_doctor(const std::vector<std::string>& words) {
   }
   const bool holds = std::none_of(findings.begin(), findings.end(),
                                   [](const Finding& f) { return f.health == Health::kBad; });
+  tell_next_of(arguments, holds);
   return holds ? kExitDone : kExitNo;
 }
 

@@ -1,12 +1,11 @@
 // strut doctor: can a file system, a scheduler and its processors keep what a sweep promises?
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// The command; exit code. Throws InputError, EnvironmentError.
-int run_doctor(const std::vector<std::string>& arguments);
+Arguments describe_doctor();
+int run_doctor(const Arguments& arguments);
 
 }  // namespace strut

@@ -4,30 +4,15 @@
 #include <filesystem>
 #include <iostream>
 
+#include "io/nearest_name.h"
+#include "io/shard_layout.h"
 #include "jobs/arguments.h"
 #include "jobs/command.h"
+#include "jobs/messages.h"
 #include "jobs/progress.h"
 
 namespace strut {
-namespace {
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut evaluate MODEL DATA... [OPTIONS]",
-      "Lets the network in MODEL identify the parameters of the cases in DATA (a sweep folder,\n"
-      "shards of one sweep, or a merged file) and compares them with the true ones: largest error\n"
-      "ME, mean absolute error MAE, mean absolute percentage error MAPE, root mean square error\n"
-      "RMSE, coefficient of determination R2.",
-      "  strut evaluate model.h5 sweep\n  strut evaluate model.h5 other_sweep --part all --json");
-  arguments.add_option("part", "PART",
-                       "test: the cases that training left aside, of the data it had; all: every\n"
-                       "case. By itself test where DATA is of the plan trained on, else all");
-  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
-  arguments.add_switch("json", "print JSON");
-  return arguments;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Json make_json(const Model& model, const Evaluation& evaluation) {
   Json parameters = Json::object();
@@ -59,32 +44,65 @@ void print_table(const Model& model, const Evaluation& evaluation) {
   }
   std::fflush(stdout);
   if (evaluation.out_of_range > 0) {
-    std::cerr << "strut: " << format_count(evaluation.out_of_range) << " of "
-              << format_count(evaluation.samples)
-              << " cases have inputs outside of the range trained on\n";
+    tell_note(format_count(evaluation.out_of_range) + " of " + format_count(evaluation.samples) +
+              " cases have inputs outside of the range trained on");
   }
 }
 
-int run_evaluate(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+void tell_next_identify(const std::string& file, const Model& model) {
+  std::vector<std::string> columns = list_names(model.inputs);
+  if (model.window) {
+    columns = list_names(model.window->channels);
+    columns.insert(columns.begin(), "time");
+  }
+  tell_next({"strut", "identify", file, "MEASURED.csv"},
+            "a table with columns " + join_names(columns));
+}
+
+Arguments describe_evaluate() {
+  Arguments arguments(
+      "strut evaluate MODEL DATA... [OPTIONS]",
+      "Lets the network in MODEL identify the parameters of the cases in DATA (a sweep folder,\n"
+      "shards of one sweep, or a merged file) and compares them with the true ones: largest error\n"
+      "ME, mean absolute error MAE, mean absolute percentage error MAPE, root mean square error\n"
+      "RMSE, coefficient of determination R2.",
+      "  strut evaluate model.h5 sweep\n  strut evaluate model.h5 other_sweep --part all --json");
+  arguments.add_operand(ArgumentValue::file("MODEL", {"h5"}));
+  arguments.add_operands(ArgumentValue::path("DATA", {"h5", "hdf5"}));
+  arguments.add_option("part", ArgumentValue::one_of({"test", "all"}),
+                       "test: the cases that training left aside, of the data it had; all: every\n"
+                       "case. By itself test where DATA is of the plan trained on, else all");
+  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+int run_evaluate(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.size() < 2) throw arguments.usage_error("expected MODEL and DATA");
+  if (names.size() < 2)
+    throw arguments.usage_error(
+        "expected MODEL, of strut train, and DATA, a sweep folder, shards or a merged file");
   const Model model = read_model(names.front());
   DatasetOptions options;
   options.partial = arguments.is_on("partial");
   options.histories = model.window.has_value();
   Dataset dataset({names.begin() + 1, names.end()}, options);
   const int own = dataset.plan_hash() == model.plan_hash ? 0 : 1;
-  const bool all = arguments.choice_or("part", own, {"test", "all"}) == 1;
+  const bool all = arguments.choice_or("part", own) == 1;
   const EvaluatedPart part = all ? EvaluatedPart::kAll : EvaluatedPart::kTest;
-  const Evaluation evaluation = evaluate_model(model, dataset, part);
+  const Evaluation evaluation = [&] {
+    const Stage stage("evaluation");
+    const ProgressLine line("evaluating cases");
+    return evaluate_model(model, dataset, part);
+  }();
   if (arguments.is_on("json")) {
     std::cout << make_json(model, evaluation).dump() << "\n";
-    return kExitDone;
+  } else {
+    std::cout << format_count(evaluation.samples)
+              << (all ? " cases\n" : " cases of the test part\n");
+    print_table(model, evaluation);
   }
-  std::cout << format_count(evaluation.samples) << (all ? " cases\n" : " cases of the test part\n");
-  print_table(model, evaluation);
+  tell_next_identify(names.front(), model);
   return kExitDone;
 }
 

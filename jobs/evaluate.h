@@ -2,19 +2,23 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "jobs/arguments.h"
 #include "jobs/json.h"
 #include "train/evaluate.h"
 
 namespace strut {
 
-int run_evaluate(const std::vector<std::string>& arguments);
+Arguments describe_evaluate();
+int run_evaluate(const Arguments& arguments);
 
 /// {"parameters": {"front_stiffness": {"ME":, "MAE":, "MAPE":, "RMSE":, "R2":}, ...}, "samples":}
 Json make_json(const Model& model, const Evaluation& evaluation);
 
 /// The same as a table for people.
 void print_table(const Model& model, const Evaluation& evaluation);
+
+/// Names `strut identify` as what comes after a model in `file`, and what it takes.
+void tell_next_identify(const std::string& file, const Model& model);
 
 }  // namespace strut

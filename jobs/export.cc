@@ -7,6 +7,7 @@
 #include "jobs/arguments.h"
 #include "jobs/build_info.h"
 #include "jobs/command.h"
+#include "jobs/messages.h"
 #include "jobs/output_file.h"
 #include "train/export/header.h"
 #include "train/export/onnx.h"
@@ -16,21 +17,6 @@ namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut export MODEL -o model.onnx|model.h|model.c [OPTIONS]",
-      "Writes the network in MODEL for other programs, in the units of its columns: as an ONNX\n"
-      "model, or as C source that needs nothing but tanh, for C99 and C++.",
-      "  strut export model.h5 -o model.onnx\n"
-      "  strut export model.h5 -o strut_identify.h --name sedan");
-  arguments.add_option("output,o", "FILE", "file to write; its name ends in .onnx, .h or .c");
-  arguments.add_option("name", "NAME",
-                       "C: of the function strut_identify_NAME; default: the file's name");
-  arguments.add_switch("float", "ONNX: single precision, for runtimes that know no other");
-  arguments.add_switch("force", "replace FILE where it exists");
-  return arguments;
-}
 
 enum class ExportFormat { kOnnx, kHeader, kSource };
 
@@ -65,22 +51,57 @@ std::string make_text(const Arguments& arguments, const Model& model, const fs::
   return make_c_source(model, find_name(arguments, output), kind);
 }
 
+/// How other programs call it.
+void tell_next_of(const Arguments& arguments, const fs::path& output) {
+  const std::string file = output.string();
+  if (find_format(output) == ExportFormat::kOnnx) {
+    tell_next(
+        {"python3", "-c", "import onnx, sys; print(onnx.load(sys.argv[1]).graph.input)", file},
+        "its input; onnxruntime and others run it");
+    return;
+  }
+  const std::string call = "then call strut_identify_" + find_name(arguments, output) + "(in, out)";
+  if (find_format(output) == ExportFormat::kHeader) {
+    tell_next({"cc", "-x", "c", "-fsyntax-only", file}, "#include it, " + call);
+  } else {
+    tell_next({"cc", "-c", file}, call);
+  }
+}
+
 }  // namespace
 
-int run_export(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_export() {
+  Arguments arguments(
+      "strut export MODEL -o model.onnx|model.h|model.c [OPTIONS]",
+      "Writes the network in MODEL for other programs, in the units of its columns: as an ONNX\n"
+      "model, or as C source that needs nothing but tanh, for C99 and C++.",
+      "  strut export model.h5 -o model.onnx\n"
+      "  strut export model.h5 -o strut_identify.h --name sedan");
+  arguments.add_operand(ArgumentValue::file("MODEL", {"h5"}));
+  arguments.add_option("output,o", ArgumentValue::file("FILE", {"onnx", "h", "c"}),
+                       "file to write; its name ends in .onnx, .h or .c");
+  arguments.add_option("name", "NAME",
+                       "C: of the function strut_identify_NAME; default: the file's name");
+  arguments.add_switch("float", "ONNX: single precision, for runtimes that know no other");
+  arguments.add_switch("force", "replace FILE where it exists");
+  return arguments;
+}
+
+int run_export(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.size() != 1) throw arguments.usage_error("expected one MODEL");
+  if (names.size() != 1) throw arguments.usage_error("expected one MODEL, a file of strut train");
   const fs::path output = find_output_file(arguments, names);
   const Model model = read_model(names.front());
   if (model.window) {
     throw InputError(names.front() +
                      ": a network over windows of time histories: its inputs are no channels but "
-                     "what is left of a window, so that it cannot be exported alone");
+                     "what is left of a window, so that it cannot be exported alone; `strut train` "
+                     "without --window "
+                     "makes one that can");
   }
   write_text_file(output, make_text(arguments, model, output));
   std::cout << output.string() << "\n";
+  tell_next_of(arguments, output);
   return kExitDone;
 }
 

@@ -1,11 +1,11 @@
 // strut export: a trained network for other programs.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_export(const std::vector<std::string>& words);
+Arguments describe_export();
+int run_export(const Arguments& arguments);
 
 }  // namespace strut

@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Arguments make_arguments() {
+}  // namespace
+
+Arguments describe_identify() {
   Arguments arguments(
       "strut identify MODEL MEASURED... [OPTIONS]\n"
       "       strut identify VEHICLE.toml MEASURED... --maneuver MANEUVER.toml [OPTIONS]",
@@ -34,19 +36,19 @@ Arguments make_arguments() {
       "  strut identify model.h5 --set body_position_z=0.55 --set body_velocity_z=0.02 \\\n"
       "      --set body_acceleration_z=-0.3 --set pitch_angle=0.008\n"
       "  strut identify vehicle.toml drive.csv --maneuver bump.toml --window 0.3:2");
+  arguments.add_operand(ArgumentValue::file("MODEL|VEHICLE.toml", {"h5", "toml"}));
+  arguments.add_operands(ArgumentValue::file("MEASURED", {"csv", "h5", "hdf5"}));
   add_snapshot_options(arguments);
   add_fit_options(arguments);
   add_result_options(arguments);
   return arguments;
 }
 
-}  // namespace
-
-int run_identify(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+int run_identify(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.empty()) throw arguments.usage_error("MODEL: missing");
+  if (names.empty())
+    throw arguments.usage_error(
+        "MODEL: missing; `strut train` makes one, or name a VEHICLE.toml to be fitted");
   const std::vector<fs::path> files(names.begin() + 1, names.end());
   if (fs::path(names.front()).extension() == ".toml") {
     return identify_by_fit(arguments, names.front(), files);

@@ -1,11 +1,11 @@
 // strut identify: parameters from measurements.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_identify(const std::vector<std::string>& words);
+Arguments describe_identify();
+int run_identify(const Arguments& arguments);
 
 }  // namespace strut

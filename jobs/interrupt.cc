@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <initializer_list>
@@ -14,8 +16,15 @@ using SteadyClock = std::chrono::steady_clock;
 /// How long work may take to stop after the first signal.
 constexpr std::chrono::milliseconds kPatience{1500};
 
+/// Set before a signal can come: a handler must neither allocate nor lock.
+std::array<char, 4000> last_words;
+std::atomic<std::size_t> last_words_size{0};
+
 /// Nothing is half done outside of an InterruptGuard, so there is nothing to clean up.
-extern "C" void end_now(int signal) { _exit(128 + signal); }
+extern "C" void end_now(int signal) {
+  if (write(STDERR_FILENO, last_words.data(), last_words_size) < 0) _exit(128 + signal);
+  _exit(128 + signal);
+}
 
 sigset_t make_interrupts() {
   sigset_t all;
@@ -28,6 +37,13 @@ sigset_t make_interrupts() {
 
 void end_on_interrupt() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, &end_now);
+}
+
+void set_last_words(const std::string& text) {
+  last_words_size = 0;
+  const std::size_t size = std::min(text.size(), last_words.size());
+  std::copy_n(text.begin(), size, last_words.begin());
+  last_words_size = size;
 }
 
 InterruptGuard::InterruptGuard() {

@@ -3,12 +3,16 @@
 
 #include <atomic>
 #include <csignal>
+#include <string>
 #include <thread>
 
 namespace strut {
 
 /// From now on SIGINT and SIGTERM end the program with code 128 + signal.
 void end_on_interrupt();
+
+/// What is then said to standard error, as far as 4000 bytes go.
+void set_last_words(const std::string& text);
 
 /// Holds those signals, and SIGUSR1, back while it lives, so that a file is finished or cleaned up
 /// first.

@@ -1,76 +1,37 @@
-// The program `strut`: a table of commands, and the one place where exceptions become exit codes.
+// The program `strut`: the command that is named, and the one place where exceptions become exit
+// codes.
 
 #include <sundials/sundials_version.h>
 
 #include <exception>
+#include <filesystem>
 #include <iostream>
 
 #include "io/hdf5.h"
-#include "io/nearest_name.h"
-#include "jobs/bench.h"
+#include "jobs/bench/find_example.h"
 #include "jobs/build_info.h"
-#include "jobs/cancel.h"
-#include "jobs/command.h"
-#include "jobs/compare.h"
-#include "jobs/design.h"
-#include "jobs/diagnose.h"
-#include "jobs/doctor.h"
-#include "jobs/evaluate.h"
-#include "jobs/export.h"
-#include "jobs/identify.h"
+#include "jobs/commands.h"
 #include "jobs/interrupt.h"
-#include "jobs/merge.h"
-#include "jobs/plan.h"
-#include "jobs/report.h"
-#include "jobs/run.h"
-#include "jobs/simulate.h"
-#include "jobs/status.h"
-#include "jobs/study.h"
-#include "jobs/submit.h"
-#include "jobs/train.h"
-#include "jobs/verify.h"
+#include "jobs/messages.h"
 #include "model/kernel/simulation.h"
 
 namespace {
 
 using strut::Command;
 
-constexpr Command kCommands[] = {
-    {"simulate", "run a car through a maneuver, or write its suspension's kinematics",
-     &strut::run_simulate},
-    {"plan", "make the folder of a sweep: which cases, in which shards", &strut::run_plan},
-    {"run", "simulate what a sweep still lacks", &strut::run_run},
-    {"resume", "the same, and try again what failed", &strut::run_resume},
-    {"status", "how far a sweep has come", &strut::run_status},
-    {"submit", "a sweep as Slurm jobs, or in the background here", &strut::run_submit},
-    {"cancel", "take back what submit queued", &strut::run_cancel},
-    {"doctor", "can this file system and scheduler keep what a sweep promises?",
-     &strut::run_doctor},
-    {"verify", "check every byte of a sweep, simulate some of it again", &strut::run_verify},
-    {"merge", "one HDF5 file of all shards, copied or virtual", &strut::run_merge},
-    {"train", "a network that identifies parameters, from a sweep's cases", &strut::run_train},
-    {"evaluate", "how well a trained network identifies them", &strut::run_evaluate},
-    {"identify", "parameters with intervals, from measured data", &strut::run_identify},
-    {"compare", "measured against simulated: what the simulation gets wrong", &strut::run_compare},
-    {"diagnose", "name the cause, extend the model, measure the gain", &strut::run_diagnose},
-    {"export", "a trained network as ONNX or C source", &strut::run_export},
-    {"design", "which instant, window and sensors identify a sweep's parameters best",
-     &strut::run_design},
-    {"study", "a table of trainings beside published numbers, with figures and a report",
-     &strut::run_study},
-    {"report", "one HTML file about a study or a sweep", &strut::run_report},
-    {"bench", "measure how fast this machine simulates, and how exactly", &strut::run_bench},
-};
-
 void print_help() {
   std::cout << "Usage: strut COMMAND [ARGUMENTS]\n\nCommands:\n";
-  for (const Command& command : kCommands) {
+  for (const Command& command : strut::list_commands()) {
     const std::string name = command.name;
     std::cout << "  " << name << std::string(12 - name.size(), ' ') << command.purpose << "\n";
   }
-  std::cout << "\n`strut COMMAND --help` explains a command; `strut --version` says what this is.\n"
-               "\nExit codes: 0 done; 1 ran, and the answer is no; 2 the input is wrong; 3 the\n"
-               "environment failed; 130, 143 interrupted.\n";
+  std::cout << "\n`strut COMMAND --help` or `strut help COMMAND` explains a command; "
+               "`strut --version` says what\nthis is. --quiet and --verbose are options of all.\n"
+               "\nExit codes:\n";
+  for (const strut::ExitMeaning& exit : strut::list_exit_meanings()) {
+    const std::string code = exit.code;
+    std::cout << "  " << code << std::string(12 - code.size(), ' ') << exit.meaning << "\n";
+  }
 }
 
 void print_version() {
@@ -86,8 +47,50 @@ void print_version() {
   std::cout << "\nHDF5: " << strut::hdf5_version() << "\nSUNDIALS: " << sundials << "\n";
 }
 
-int run(const std::vector<std::string>& arguments) {
-  const std::string first = arguments.empty() ? "" : arguments.front();
+/// The path of an example file; where there is none, as it lies in the sources.
+std::string name_example(const std::string& name) {
+  try {
+    const std::filesystem::path found = strut::find_example(name);
+    const std::filesystem::path near = std::filesystem::proximate(found);
+    return *near.begin() == ".." ? found.string() : near.string();
+  } catch (const strut::InputError&) {
+    return "examples/" + name;
+  }
+}
+
+/// What `strut` alone answers: three commands to begin with.
+int show_beginning() {
+  strut::tell_error("which command? `strut --help` lists them all; to begin with:");
+  strut::tell_next({"strut", "simulate", name_example("vehicles/paper_sedan.toml"),
+                    name_example("maneuvers/bump_20mps.toml"), "-o", "run.csv"},
+                   "one car over one bump");
+  strut::tell_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "sweep"},
+                   "many cars, to train a network on");
+  strut::tell_next(
+      {"strut", "compare", name_example("extended_loop/campaign.toml"), "-o", "comparison"},
+      "measured runs against simulated ones: docs/diagnosis.md");
+  return strut::kExitInput;
+}
+
+int run_command(const Command& command, const std::vector<std::string>& words) {
+  strut::Arguments arguments = command.describe();
+  if (!arguments.parse(words)) return strut::kExitDone;
+  if (arguments.is_on("quiet")) set_loudness(strut::Loudness::kQuiet);
+  if (arguments.is_on("verbose")) set_loudness(strut::Loudness::kVerbose);
+  strut::prepare_interrupt(arguments);
+  const strut::BuildInfo& build = strut::get_build_info();
+  strut::tell_detail("version " + std::string(build.version) + " (" + build.commit +
+                     "), instruction set " + strut::list_kernels().front().isa);
+  const strut::Stage stage("all of " + arguments.command());
+  return command.run(arguments);
+}
+
+int run(const std::vector<std::string>& words) {
+  if (words.empty()) return show_beginning();
+  const std::string& first = words.front();
+  if (first == "help" && words.size() > 1) {
+    return run_command(strut::find_command(words[1]), {"--help"});
+  }
   if (first == "--help" || first == "-h" || first == "help") {
     print_help();
     return strut::kExitDone;
@@ -96,20 +99,17 @@ int run(const std::vector<std::string>& arguments) {
     print_version();
     return strut::kExitDone;
   }
-  std::vector<std::string> names;
-  for (const Command& command : kCommands) {
-    if (first == command.name) return command.run({arguments.begin() + 1, arguments.end()});
-    names.push_back(command.name);
-  }
-  throw strut::InputError((first.empty() ? "no command" : "unknown command '" + first + "'") +
-                          strut::suggest_name(first, names) +
-                          "; commands: " + strut::join_names(names) + "; see strut --help");
+  return run_command(strut::find_command(first), {words.begin() + 1, words.end()});
 }
 
-int run_and_flush(const std::vector<std::string>& arguments) {
-  const int code = run(arguments);
+int run_and_flush(const std::vector<std::string>& words) {
+  const int code = run(words);
+  strut::say_next();
   std::cout.flush();
-  if (!std::cout) throw strut::EnvironmentError("standard output: cannot be written");
+  if (!std::cout) {
+    throw strut::EnvironmentError(
+        "standard output: cannot be written; is its disk full, or what reads it gone?");
+  }
   return code;
 }
 
@@ -117,14 +117,14 @@ int run_and_flush(const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   strut::end_on_interrupt();
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const std::vector<std::string> words(argv + 1, argv + argc);
   try {
-    return run_and_flush(arguments);
+    return run_and_flush(words);
   } catch (const strut::InputError& e) {
-    std::cerr << "strut: " << e.what() << "\n";
+    strut::tell_error(e.what());
     return strut::kExitInput;
   } catch (const std::exception& e) {
-    std::cerr << "strut: " << e.what() << "\n";
+    strut::tell_error(e.what());
     return strut::kExitEnvironment;
   }
 }

@@ -9,6 +9,8 @@
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
 #include "jobs/json.h"
+#include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/output_file.h"
 #include "jobs/progress.h"
@@ -18,26 +20,6 @@ namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut merge DIR -o dataset.h5 [OPTIONS]",
-      "Writes the cases of all shards of the sweep in DIR to one HDF5 file for other tools: the\n"
-      "datasets of a shard, in the order of the plan, retried cases in their place. Where a shard\n"
-      "is missing or damaged, the exit code is 2 and nothing is written; cases that failed are "
-      "rows\n"
-      "of NaN.",
-      "  strut merge sweep -o dataset.h5\n"
-      "  strut merge sweep -o view.h5 --virtual");
-  arguments.add_option("output,o", "FILE", "file to write");
-  arguments.add_switch("virtual",
-                       "virtual datasets over the shards: small, but the shards must stay, and\n"
-                       "what vanishes reads as NaN");
-  arguments.add_switch("partial", "leave out what is missing instead of refusing");
-  arguments.add_switch("force", "replace FILE where it exists");
-  arguments.add_switch("json", "print JSON");
-  return arguments;
-}
 
 /// A file that the sweep is made of, or a place in one of its subfolders.
 bool is_own(const SweepFolder& folder, const fs::path& output) {
@@ -89,9 +71,28 @@ void print(const MergeReport& report, const fs::path& output, bool as_json) {
 
 }  // namespace
 
-int run_merge(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_merge() {
+  Arguments arguments(
+      "strut merge DIR -o dataset.h5 [OPTIONS]",
+      "Writes the cases of all shards of the sweep in DIR to one HDF5 file for other tools: the\n"
+      "datasets of a shard, in the order of the plan, retried cases in their place. Where a shard\n"
+      "is missing or damaged, the exit code is 2 and nothing is written; cases that failed are "
+      "rows\n"
+      "of NaN.",
+      "  strut merge sweep -o dataset.h5\n"
+      "  strut merge sweep -o view.h5 --virtual");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
+  arguments.add_option("output,o", ArgumentValue::file("FILE", {"h5", "hdf5"}), "file to write");
+  arguments.add_switch("virtual",
+                       "virtual datasets over the shards: small, but the shards must stay, and\n"
+                       "what vanishes reads as NaN");
+  arguments.add_switch("partial", "leave out what is missing instead of refusing");
+  arguments.add_switch("force", "replace FILE where it exists");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+int run_merge(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const fs::path output = find_output(arguments, sweep.folder);
   MergeOptions options;
@@ -105,8 +106,9 @@ int run_merge(const std::vector<std::string>& words) {
   std::atomic<std::int64_t> done{0};
   MergeReport report;
   {
+    const double start = now();
     const ProgressLine line([&] {
-      return format_count(done) + "/" + format_count(sweep.plan.case_count()) + " cases merged";
+      return describe_share(done, sweep.plan.case_count(), "cases merged", now() - start);
     });
     report =
         merge_sweep(sweep.folder, make_input(sweep.plan), output, options, [&](std::int64_t cases) {
@@ -115,10 +117,12 @@ int run_merge(const std::vector<std::string>& words) {
         });
   }
   if (report.data_digest.empty()) {
-    std::cerr << "strut: interrupted; nothing is written\n";
+    tell_error("interrupted; nothing is written");
+    tell_next_again(arguments, "begins anew");
     return 128 + interrupt.signal();
   }
   print(report, output, arguments.is_on("json"));
+  tell_next({"strut", "train", output.string(), "-o", "model.h5"});
   return kExitDone;
 }
 

@@ -1,11 +1,11 @@
 // strut merge: one file of all shards.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_merge(const std::vector<std::string>& arguments);
+Arguments describe_merge();
+int run_merge(const Arguments& arguments);
 
 }  // namespace strut

@@ -7,19 +7,24 @@ namespace strut {
 OpenSweep open_sweep(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
-    throw arguments.usage_error(std::to_string(names.size()) +
-                                " arguments; expected DIR, a folder made by strut plan");
+    throw arguments.usage_error(
+        std::to_string(names.size()) +
+        " arguments; expected DIR, a folder made by `strut plan SWEEP.toml -o DIR`");
   }
   SweepFolder folder{names.front()};
   Plan plan = open_sweep_folder(folder);
   return {std::move(folder), std::move(plan)};
 }
 
-const Kernel& find_kernel(const Arguments& arguments) {
+ArgumentValue isa_value() {
   std::vector<std::string> names;
   names.reserve(list_kernels().size());
   for (const Kernel& kernel : list_kernels()) names.emplace_back(kernel.isa);
-  return list_kernels()[static_cast<std::size_t>(arguments.choice_or("isa", 0, names))];
+  return ArgumentValue::one_of("NAME", names);
+}
+
+const Kernel& find_kernel(const Arguments& arguments) {
+  return list_kernels()[static_cast<std::size_t>(arguments.choice_or("isa", 0))];
 }
 
 int find_threads(const Arguments& arguments) {

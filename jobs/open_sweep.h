@@ -14,6 +14,9 @@ struct OpenSweep {
 /// The one positional argument as a planned folder. Throws InputError.
 OpenSweep open_sweep(const Arguments& arguments);
 
+/// The instruction sets that this machine has, for `--isa NAME`.
+ArgumentValue isa_value();
+
 /// The kernel of `--isa NAME`, the widest without.
 const Kernel& find_kernel(const Arguments& arguments);
 

@@ -7,13 +7,15 @@ namespace strut {
 namespace fs = std::filesystem;
 
 fs::path find_output_file(const Arguments& arguments, const std::vector<std::string>& inputs) {
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the file to write with -o");
   fs::path output = arguments.text("output");
   const std::string start = "--output = " + output.string() + ": ";
   if (fs::is_directory(output)) throw InputError(start + "a folder; must be a file");
   for (const std::string& input : inputs) {
     std::error_code ignored;
-    if (fs::equivalent(output, input, ignored)) throw InputError(start + "is what is read");
+    if (fs::equivalent(output, input, ignored))
+      throw InputError(start + "is what is read; must be another file");
   }
   if (fs::exists(output) && !arguments.is_on("force")) {
     throw InputError(start + "exists; --force replaces it");
@@ -21,14 +23,15 @@ fs::path find_output_file(const Arguments& arguments, const std::vector<std::str
   // Told before the work, not after it.
   const fs::path folder = fs::absolute(output).parent_path();
   if (!fs::is_directory(folder)) {
-    throw EnvironmentError(start + "there is no folder " + folder.string());
+    throw EnvironmentError(start + "there is no folder " + folder.string() + "; mkdir -p makes it");
   }
   return output;
 }
 
 fs::path find_output_folder(const Arguments& arguments, const std::string& file,
                             const std::string& content) {
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the folder to write with -o");
   fs::path folder = fs::path(arguments.text("output")).lexically_normal();
   const std::string start = "--output = " + folder.string() + ": ";
   if (fs::exists(folder) && !fs::is_directory(folder)) {

@@ -7,6 +7,7 @@
 #include "jobs/arguments.h"
 #include "jobs/command.h"
 #include "jobs/json.h"
+#include "jobs/messages.h"
 #include "jobs/plan_estimate.h"
 #include "jobs/progress.h"
 #include "sweep/case_order.h"
@@ -15,21 +16,6 @@
 
 namespace strut {
 namespace {
-
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut plan SWEEP.toml -o DIR [OPTIONS]",
-      "Reads a sweep file (every key: docs/sweeps.md), draws its cases and makes the folder DIR\n"
-      "that `strut run` fills. The folder holds copies of every file that the sweep names. "
-      "Planning\n"
-      "the same again changes nothing; another sweep in the same folder is refused.",
-      "  strut plan examples/sweeps/paper.toml --dry-run\n"
-      "  strut plan examples/sweeps/paper.toml -o sweep");
-  arguments.add_option("output,o", "DIR", "folder to make");
-  arguments.add_switch("dry-run", "print layers, shards, estimated time and bytes; write nothing");
-  arguments.add_switch("json", "print JSON instead of text");
-  return arguments;
-}
 
 std::string describe_order(const Plan& plan) {
   const SweepRequest& request = plan.request();
@@ -108,37 +94,62 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
 
 void warn(const SweepEstimate& estimate) {
   if (estimate.without_event == estimate.measured) {
-    std::cerr << "strut plan: warning: none of the " << estimate.measured
-              << " cases looked at meets the snapshot's line; a longer duration may\n";
+    tell_note("warning: none of the " + std::to_string(estimate.measured) +
+              " cases looked at meets the snapshot's line; a longer duration may");
   }
   if (estimate.failed == estimate.measured) {
-    std::cerr << "strut plan: warning: all of the " << estimate.measured
-              << " cases looked at fail\n";
+    tell_note("warning: all of the " + std::to_string(estimate.measured) +
+              " cases looked at fail; `strut simulate` on one of them says why");
   }
+}
+
+/// From a few cases simulated right now.
+SweepEstimate estimate_time(const Plan& plan) {
+  const Stage stage("estimate");
+  const ProgressLine line("simulating a few cases for an estimate");
+  return estimate_sweep(plan, list_kernels().front());
 }
 
 }  // namespace
 
-int run_plan(const std::vector<std::string>& arguments) {
-  Arguments parsed = make_arguments();
-  if (!parsed.parse(arguments)) return kExitDone;
-  if (parsed.positional().size() != 1) {
-    throw parsed.usage_error(std::to_string(parsed.positional().size()) +
-                             " files; expected SWEEP.toml");
-  }
-  const bool dry = parsed.is_on("dry-run");
-  if (!dry && !parsed.has("output")) throw parsed.usage_error("--output: missing");
+Arguments describe_plan() {
+  Arguments arguments(
+      "strut plan SWEEP.toml -o DIR [OPTIONS]",
+      "Reads a sweep file (every key: docs/sweeps.md), draws its cases and makes the folder DIR\n"
+      "that `strut run` fills. The folder holds copies of every file that the sweep names. "
+      "Planning\n"
+      "the same again changes nothing; another sweep in the same folder is refused.",
+      "  strut plan examples/sweeps/paper.toml --dry-run\n"
+      "  strut plan examples/sweeps/paper.toml -o sweep");
+  arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder to make");
+  arguments.add_switch("dry-run", "print layers, shards, estimated time and bytes; write nothing");
+  arguments.add_switch("json", "print JSON instead of text");
+  return arguments;
+}
 
-  const Plan plan(read_request(parsed.positional().front()));
+int run_plan(const Arguments& arguments) {
+  if (arguments.positional().size() != 1) {
+    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
+                                " files; expected SWEEP.toml");
+  }
+  const bool dry = arguments.is_on("dry-run");
+  if (!dry && !arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the folder to write with -o");
+
+  const Plan plan(read_request(arguments.positional().front()));
   check_plan(plan);
   std::optional<SweepFolder> folder;
-  if (!dry) folder = make_sweep_folder(parsed.text("output"), plan);
-  const SweepEstimate estimate = estimate_sweep(plan, list_kernels().front());
-  parsed.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
+  if (!dry) folder = make_sweep_folder(arguments.text("output"), plan);
+  const SweepEstimate estimate = estimate_time(plan);
+  arguments.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
   warn(estimate);
   if (folder) {
-    std::cerr << folder->root.string() << ": planned; `strut run " << folder->root.string()
-              << "` simulates it\n";
+    tell_note(folder->root.string() + ": planned");
+    tell_next({"strut", "run", folder->root.string()});
+  } else {
+    tell_next({"strut", "plan", arguments.positional().front(), "-o",
+               arguments.text_or("output", "sweep")});
   }
   return kExitDone;
 }

@@ -1,11 +1,11 @@
 // strut plan: from a sweep file to a sweep folder.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_plan(const std::vector<std::string>& arguments);
+Arguments describe_plan();
+int run_plan(const Arguments& arguments);
 
 }  // namespace strut

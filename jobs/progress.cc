@@ -6,36 +6,59 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <utility>
+
+#include "jobs/interrupt.h"
+#include "jobs/machine.h"
+#include "jobs/messages.h"
+#include "jobs/terminal.h"
 
 namespace strut {
 namespace {
 
-constexpr const char* kEraseLine = "\r\033[K";
+std::function<std::string()> describe_elapsed(const std::string& doing) {
+  return [doing, start = now()] { return doing + ", " + format_duration(now() - start); };
+}
 
 }  // namespace
 
 ProgressLine::ProgressLine(std::function<std::string()> line)
-    : line_(std::move(line)), live_(isatty(STDERR_FILENO) == 1), thread_([this] { work(); }) {}
+    : line_(std::move(line)), live_(is_live_terminal(STDERR_FILENO)) {
+  if (get_loudness() == Loudness::kQuiet) return;
+  // A signal is for the threads that work: this one would end the program amid what they guard.
+  const InterruptGuard guard;
+  thread_ = std::thread([this] { work(); });
+}
+
+ProgressLine::ProgressLine(const std::string& doing) : ProgressLine(describe_elapsed(doing)) {}
 
 ProgressLine::~ProgressLine() {
+  if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     over_ = true;
   }
   over_changed_.notify_all();
   thread_.join();
-  if (live_) std::cerr << kEraseLine << std::flush;
+  erase_live_line();
 }
 
 void ProgressLine::work() {
   const auto pause = live_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(10000);
   std::unique_lock lock(mutex_);
   while (!over_changed_.wait_for(lock, pause, [this] { return over_; })) {
-    const std::string text = line_();
-    std::cerr << (live_ ? kEraseLine : "") << text << (live_ ? "" : "\n") << std::flush;
+    live_ ? show_live_line(line_()) : show_line(line_());
   }
+}
+
+std::string describe_share(std::int64_t done, std::int64_t total, const std::string& what,
+                           double seconds) {
+  std::string line = format_count(done) + "/" + format_count(total) + " " + what;
+  if (done > 0 && done < total) {
+    const double left = static_cast<double>(total - done) / static_cast<double>(done);
+    line += ", " + format_duration(left * seconds) + " to go";
+  }
+  return line;
 }
 
 std::string format_duration(double seconds) {

@@ -11,10 +11,12 @@
 namespace strut {
 
 /// Prints `line()` to standard error from a thread of its own: on a terminal five times a second in
-/// place, elsewhere every ten seconds. The destructor erases the live line.
+/// place, elsewhere every ten seconds, with --quiet never. The destructor erases the live line.
 class ProgressLine {
  public:
   explicit ProgressLine(std::function<std::string()> line);
+  /// Of work whose share done cannot be told: "DOING, 12 s".
+  explicit ProgressLine(const std::string& doing);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -29,6 +31,10 @@ class ProgressLine {
   bool over_ = false;
   std::thread thread_;
 };
+
+/// "1,200/4,800 cases verified, 12 s to go" where `seconds` were spent on those done.
+std::string describe_share(std::int64_t done, std::int64_t total, const std::string& what,
+                           double seconds);
 
 /// "12 s", "3 min 20 s", "5 h 12 min", "9 d 4 h"; "unknown" where not finite.
 std::string format_duration(double seconds);

@@ -7,6 +7,8 @@
 #include "jobs/arguments.h"
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
+#include "jobs/messages.h"
+#include "jobs/progress.h"
 #include "jobs/report/page_file.h"
 #include "jobs/report/sweep.h"
 #include "jobs/study/report.h"
@@ -63,24 +65,33 @@ const ReportKind& find_kind(const fs::path& root) {
 
 }  // namespace
 
-int run_report(const std::vector<std::string>& words) {
+Arguments describe_report() {
   Arguments arguments(
       "strut report DIR",
-      "Writes DIR/report.html, one file that needs no other, about the study, "
-      "sweep, diagnosis, comparison\nor simulated run in DIR, from what is there: "
-      "no case is simulated, no network trained; of a sweep\nonly the few runs by "
-      "which its sensitivities are told. Charts are also in DIR/figures as SVG, and\n"
-      "their numbers as CSV.",
+      "Writes DIR/report.html, one file that needs no other, about the study, sweep, comparison,\n"
+      "diagnosis or simulated run in DIR, from what is there: no case is simulated, no network\n"
+      "trained; of a sweep only the few runs by which its sensitivities are told. Charts are also "
+      "in\n"
+      "DIR/figures as SVG, their numbers as CSV.",
       "  strut report study\n  strut report sweep\n  strut report diagnosis");
-  if (!arguments.parse(words)) return kExitDone;
+  arguments.add_operand(ArgumentValue::folder("DIR"));
+  return arguments;
+}
+
+int run_report(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
     throw arguments.usage_error(std::to_string(names.size()) + " folders; expected DIR");
   }
   const fs::path root = names.front();
-  const Written written = find_kind(root).write(root);
-  for (const std::string& note : written.notes) std::cerr << "strut: " << note << "\n";
+  const ReportKind& kind = find_kind(root);
+  const Written written = [&] {
+    const ProgressLine line(std::string("writing the report of a ") + kind.name);
+    return kind.write(root);
+  }();
+  tell_notes(written.notes);
   std::cout << written.file.string() << "\n";
+  tell_next_page(written.file.string());
   return kExitDone;
 }
 

@@ -1,11 +1,11 @@
 // strut report: one HTML file about a folder of ours.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_report(const std::vector<std::string>& arguments);
+Arguments describe_report();
+int run_report(const Arguments& arguments);
 
 }  // namespace strut

@@ -15,6 +15,7 @@
 #include "jobs/interrupt.h"
 #include "jobs/json.h"
 #include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
 #include "sweep/run.h"
@@ -22,7 +23,7 @@
 namespace strut {
 namespace {
 
-Arguments make_arguments(const std::string& name, bool retries) {
+Arguments describe(const std::string& name, bool retries) {
   Arguments arguments(
       "strut " + name + " DIR [OPTIONS]",
       std::string("Simulates every case of the sweep in DIR that is not done yet, and writes whole "
@@ -35,10 +36,11 @@ Arguments make_arguments(const std::string& name, bool retries) {
           "Ends with code 1 where cases failed.",
       "  strut plan examples/sweeps/paper.toml -o sweep\n  strut " + name +
           " sweep --threads 2\n  strut status sweep");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("threads", "N", "worker threads (default: one for each processor)");
   arguments.add_option("shards", "A:B", "only shards A to B - 1 (default: all)");
   arguments.add_option("task", "NAME", "the shards of a task that `strut submit` made");
-  arguments.add_option("isa", "NAME",
+  arguments.add_option("isa", isa_value(),
                        "instruction set, one that --version lists (default: widest)");
   arguments.add_option("lease", "S",
                        "a runner on another host counts as dead after S seconds without a sign of "
@@ -147,12 +149,9 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
             << format_bytes(static_cast<double>(summary.bytes)) << " new)\n";
 }
 
-void print_notes(const RunSummary& summary) {
-  for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
-  for (const auto& [shard, what] : summary.damaged) std::cerr << "strut: " << what << "\n";
-  if (!summary.damaged.empty()) {
-    std::cerr << "strut: `strut verify DIR --quarantine` moves damaged files aside\n";
-  }
+void tell(const RunSummary& summary) {
+  tell_notes(summary.notes);
+  for (const auto& [shard, what] : summary.damaged) tell_error(what);
 }
 
 /// The task of --task, whose shards are then those to be done.
@@ -168,6 +167,11 @@ std::optional<TaskRun> find_task(const Arguments& arguments, const OpenSweep& sw
 
 bool is_complete(const RunProgress& progress) {
   return progress.present + progress.written + progress.elsewhere >= progress.cases;
+}
+
+/// The same of the whole sweep, where this run was to do some shards of it.
+bool is_complete_sweep(const OpenSweep& sweep, const RunProgress& progress) {
+  return progress.cases == sweep.plan.case_count() && is_complete(progress);
 }
 
 TaskEnd judge_end(const RunProgress& progress, const RunSummary& summary) {
@@ -196,23 +200,45 @@ RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& opt
 
 /// What is said, and done, where a scheduler's warning ended the run.
 void leave_drained(const OpenSweep& sweep, const std::optional<TaskRun>& task) {
-  std::cerr << "strut: warned of a time limit (SIGUSR1); what is written is whole, `strut run "
-            << sweep.folder.root.string() << "` goes on from here" << std::endl;
-  if (!task) return;
-  const std::string why = task->requeue();
-  std::cerr << "strut: " << (why.empty() ? "queued again" : "not queued again: " + why) << "\n";
+  const std::string root = sweep.folder.root.string();
+  tell_error("warned of a time limit (SIGUSR1); what is written is whole, `strut run " + root +
+             "` goes on from here");
+  const std::string why = task ? task->requeue() : "";
+  if (task) tell_note(why.empty() ? "queued again" : "not queued again: " + why);
+  if (task && why.empty()) {
+    tell_next({"strut", "status", root, "--watch"});
+  } else {
+    tell_next({"strut", "run", root});
+  }
 }
 
-int run(const std::string& name, bool retries, const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments(name, retries);
-  if (!arguments.parse(words)) return kExitDone;
+/// What is to be done with the sweep as it is now.
+void tell_next_of(const OpenSweep& sweep, const RunProgress& progress, const RunSummary& summary,
+                  bool retries) {
+  const std::string root = sweep.folder.root.string();
+  if (!summary.damaged.empty()) {
+    tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside, then run");
+  } else if (summary.failed > 0 && !retries) {
+    tell_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
+  } else if (summary.failed > 0 || !is_complete_sweep(sweep, progress)) {
+    tell_next({"strut", "status", root});
+  } else {
+    tell_next({"strut", "verify", root});
+  }
+}
+
+int run(bool retries, const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   RunOptions options = read_options(arguments, sweep.plan, retries);
   std::optional<TaskRun> task = find_task(arguments, sweep, options);
   if (task && task->is_cancelled()) {
-    std::cerr << "strut: its submission is cancelled\n";
+    tell_note("its submission is cancelled");
+    tell_next({"strut", "status", sweep.folder.root.string()});
     return kExitDone;
   }
+  tell_detail(std::to_string(options.threads) + " threads, instruction set " + options.kernel->isa +
+              ", shards " + std::to_string(options.first_shard) + " to " +
+              std::to_string(options.end_shard - 1));
   InterruptWatcher watcher;
   options.drain = &watcher.warned();
   RunProgress progress;
@@ -224,21 +250,23 @@ int run(const std::string& name, bool retries, const std::vector<std::string>& w
                    : run_sweep(sweep.folder, sweep.plan, options, progress, watcher.halt());
   }
   const double seconds = now() - start;
-  print_notes(summary);
+  tell(summary);
   if (arguments.is_on("json")) {
     std::cout << make_json(progress, summary, seconds).dump() << "\n";
   } else {
     print_summary(sweep, progress, summary, seconds);
   }
   if (watcher.signal() != 0) {
-    std::cerr << "strut: interrupted; what is written is whole, `strut run "
-              << sweep.folder.root.string() << "` goes on from here\n";
+    tell_error("interrupted; what is written is whole, `strut run " + sweep.folder.root.string() +
+               "` goes on from here");
+    tell_next_again(arguments, "goes on");
     return 128 + watcher.signal();
   }
   if (watcher.warned() && !is_complete(progress)) {
     leave_drained(sweep, task);
     return 128 + SIGUSR1;
   }
+  tell_next_of(sweep, progress, summary, retries);
   return summary.failed > 0 || !summary.damaged.empty() ? kExitNo : kExitDone;
 }
 
@@ -254,8 +282,12 @@ std::vector<std::pair<std::string, std::string>> make_run_provenance() {
           {"host", host.data()}};
 }
 
-int run_run(const std::vector<std::string>& arguments) { return run("run", false, arguments); }
+Arguments describe_run() { return describe("run", false); }
 
-int run_resume(const std::vector<std::string>& arguments) { return run("resume", true, arguments); }
+int run_run(const Arguments& arguments) { return run(false, arguments); }
+
+Arguments describe_resume() { return describe("resume", true); }
+
+int run_resume(const Arguments& arguments) { return run(true, arguments); }
 
 }  // namespace strut

@@ -5,12 +5,16 @@
 #include <utility>
 #include <vector>
 
+#include "jobs/arguments.h"
+
 namespace strut {
 
 /// Who runs this: program and host, as attributes of every shard.
 std::vector<std::pair<std::string, std::string>> make_run_provenance();
 
-int run_run(const std::vector<std::string>& arguments);
-int run_resume(const std::vector<std::string>& arguments);
+Arguments describe_run();
+int run_run(const Arguments& arguments);
+Arguments describe_resume();
+int run_resume(const Arguments& arguments);
 
 }  // namespace strut

@@ -12,6 +12,8 @@
 #include "jobs/bench/step_check.h"
 #include "jobs/command.h"
 #include "jobs/json.h"
+#include "jobs/messages.h"
+#include "jobs/progress.h"
 #include "jobs/run_file.h"
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
@@ -28,42 +30,6 @@ constexpr std::array<int, 5> kInputs = {CarChannel::kBodyPositionZ, CarChannel::
                                         CarChannel::kBodyAccelerationZ, CarChannel::kPitchAngle,
                                         CarChannel::kPitchRate};
 
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut simulate VEHICLE MANEUVER -o FILE [OPTIONS]\n"
-      "       strut simulate --kinematics VEHICLE -o FILE.csv",
-      "Runs a car through a maneuver. Writes all channels over time with their units to FILE "
-      "(.csv\n"
-      "or .h5) and prints the snapshot: the body's motion when the rear wheels are on the bump.\n"
-      "With --kinematics: wheel travel -100 to +100 mm against camber, toe, wheel center, caster,\n"
-      "spring, damper and track of the left corners.",
-      "  strut simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml \\\n"
-      "      --set front_stiffness=38000 -o run.h5\n"
-      "  strut simulate --kinematics examples/vehicles/paper_sedan.toml -o curves.csv");
-  arguments.add_option("output,o", "FILE", "file to write: .csv, .h5 or .hdf5");
-  arguments.add_option("integrator", "NAME",
-                       "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, 1e-12");
-  arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
-  arguments.add_option(
-      "coarse-step", "S",
-      "longer step [s], from --step to 0.02, away from the bump (default: --step)");
-  arguments.add_option("closure", "NAME",
-                       "newton (default): loops closed in every step; table: corner kinematics "
-                       "tabulated over their coordinate");
-  arguments.add_option("spin", "NAME",
-                       "wheel spin: exponential (default), stable at any speed; or explicit");
-  arguments.add_switch("no-events", "do not end steps where a wheel lifts off or meets a kink");
-  arguments.add_option("rate", "HZ", "samples a second in FILE (default 1000)");
-  arguments.add_list("set", "NAME=VALUE",
-                     "change a parameter, e.g. front_stiffness=38000; may be "
-                     "repeated");
-  arguments.add_option("report", "DIR",
-                       "also write DIR/report.html: the car crossing the bump, and its curves");
-  arguments.add_switch("json", "print the snapshot as JSON");
-  arguments.add_switch("kinematics", "write the suspension's kinematics instead of a run");
-  return arguments;
-}
-
 /// What would have no effect is refused: `why` says what makes it so.
 void refuse_options(const Arguments& arguments, std::initializer_list<const char*> names,
                     const std::string& why) {
@@ -74,7 +40,7 @@ void refuse_options(const Arguments& arguments, std::initializer_list<const char
 }
 
 void read_integration(const Arguments& arguments, SimulateOptions& options) {
-  options.integrator = arguments.choice_or("integrator", 0, kIntegrators);
+  options.integrator = arguments.choice_or("integrator", 0);
   if (options.integrator == kCvode) {
     refuse_options(arguments, {"step", "coarse-step", "spin", "no-events"},
                    "cvode chooses its own; allowed with rk4, abm4");
@@ -86,8 +52,8 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
   step.stepper = options.integrator == kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.locate_events = !arguments.is_on("no-events");
-  integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0, kClosures));
-  integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0, kSpins));
+  integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0));
+  integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0));
   options.rate = arguments.number_or("rate", options.rate, between(1.0, 1e6, "Hz"));
 }
 
@@ -104,7 +70,8 @@ SimulateOptions read_options(const Arguments& arguments) {
   options.source.vehicle = files[0];
   if (!options.kinematics) options.source.maneuver = files[1];
   options.source.settings = arguments.list("set");
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the file to write with -o");
   options.output = arguments.text("output");
   if (arguments.has("report")) options.report = arguments.text("report");
   if (options.kinematics) {
@@ -151,11 +118,15 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
                                 "runs through");
     }
   }
-  std::cerr << "strut simulate: the run failed at t = " << at << ": "
-            << (out ? "a wheel left the +-100 mm over which its suspension is modeled; a lower "
-                      "bump, a lower speed or a stiffer spring keeps it inside"
-                    : "the motion is no longer finite; a shorter --step does not help")
-            << "; nothing was written\n";
+  tell_error("the run failed at t = " + at + ": " +
+             (out ? "a wheel left the +-100 mm over which its suspension is modeled; a lower bump, "
+                    "a lower speed or a stiffer spring keeps it inside"
+                  : "the motion is no longer finite; a shorter --step does not help") +
+             "; nothing was written");
+  tell_next(
+      {"strut", "simulate", options.source.vehicle.string(), options.source.maneuver.string(), "-o",
+       options.output.string(), "--set", out ? "bump_height=VALUE" : "NAME=VALUE"},
+      out ? "with less of a bump, or --set speed=VALUE" : "with a parameter nearer to a car's");
   return kExitNo;
 }
 
@@ -232,10 +203,10 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
   char line[256];
   std::snprintf(line, sizeof line,
                 ": %d samples, %ld contact events, suspension deflection up to %.1f mm; %.4g s "
-                "simulated in %.3g s (%.4g x real time)\n",
+                "simulated in %.3g s (%.4g x real time)",
                 results.sample_count, results.event_count, 1e3 * travel, duration, seconds,
                 duration / seconds);
-  std::cerr << options.output.string() << line;
+  tell_note(options.output.string() + line);
 }
 
 int run_case(const SimulateOptions& options) {
@@ -249,7 +220,10 @@ int run_case(const SimulateOptions& options) {
   RunRecord run;
   run.channels = &list_car_channels();
   const auto start = std::chrono::steady_clock::now();
-  run.results = integrate(prepared, options, options.integrate.step);
+  {
+    const ProgressLine line("simulating " + format_duration(duration));
+    run.results = integrate(prepared, options, options.integrate.step);
+  }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (run.results.status[0] != 0) return explain_failure(prepared, options, run.results);
@@ -258,12 +232,15 @@ int run_case(const SimulateOptions& options) {
   run.provenance = describe_run(options, run.results);
   write_run(options.output, format, run);
   if (!options.report.empty()) {
-    for (const std::string& note : write_run_report(options.report, options.source, input, run)) {
-      std::cerr << "strut: " << note << "\n";
-    }
+    tell_notes(write_run_report(options.report, options.source, input, run));
+    tell_next_page((options.report / "report.html").string());
   }
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
   print_summary(options, run.results, duration, seconds);
+  if (options.report.empty()) {
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", "sweep"},
+              "many such runs; or this one with --report DIR, to see it");
+  }
   return kExitDone;
 }
 
@@ -272,19 +249,59 @@ int run_kinematics(const SimulateOptions& options) {
     throw InputError("--output = " + options.output.string() + ": the name must end in .csv");
   }
   write_kinematics(options.source, options.output);
-  std::cerr << options.output.string() << ": front and rear left corner, -100 to +100 mm\n";
+  tell_note(options.output.string() + ": front and rear left corner, -100 to +100 mm");
+  tell_next(
+      {"strut", "simulate", options.source.vehicle.string(), "MANEUVER.toml", "-o", "run.csv"});
   return kExitDone;
 }
 
 }  // namespace
 
-int run_simulate(const std::vector<std::string>& arguments) {
-  Arguments parsed = make_arguments();
-  if (!parsed.parse(arguments)) return kExitDone;
-  const SimulateOptions options = read_options(parsed);
+Arguments describe_simulate() {
+  Arguments arguments(
+      "strut simulate VEHICLE MANEUVER -o FILE [OPTIONS]\n"
+      "       strut simulate --kinematics VEHICLE -o FILE.csv",
+      "Runs a car through a maneuver. Writes all channels over time with their units to FILE "
+      "(.csv\n"
+      "or .h5) and prints the snapshot: the body's motion when the rear wheels are on the bump.\n"
+      "With --kinematics: wheel travel -100 to +100 mm against camber, toe, wheel center, caster,\n"
+      "spring, damper and track of the left corners.",
+      "  strut simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml \\\n"
+      "      --set front_stiffness=38000 -o run.h5\n"
+      "  strut simulate --kinematics examples/vehicles/paper_sedan.toml -o curves.csv");
+  arguments.add_operand(ArgumentValue::file("VEHICLE", {"toml"}));
+  arguments.add_operand(ArgumentValue::file("MANEUVER", {"toml"}));
+  arguments.add_option("output,o", ArgumentValue::file("FILE", {"csv", "h5", "hdf5"}),
+                       "file to write: .csv, .h5 or .hdf5");
+  arguments.add_option("integrator", ArgumentValue::one_of(kIntegrators),
+                       "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, 1e-12");
+  arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
+  arguments.add_option(
+      "coarse-step", "S",
+      "longer step [s], from --step to 0.02, away from the bump (default: --step)");
+  arguments.add_option("closure", ArgumentValue::one_of(kClosures),
+                       "newton (default): loops closed in every step; table: corner kinematics "
+                       "tabulated over their coordinate");
+  arguments.add_option("spin", ArgumentValue::one_of(kSpins),
+                       "wheel spin: exponential (default), stable at any speed; or explicit");
+  arguments.add_switch("no-events", "do not end steps where a wheel lifts off or meets a kink");
+  arguments.add_option("rate", "HZ", "samples a second in FILE (default 1000)");
+  arguments.add_list("set", "NAME=VALUE",
+                     "change a parameter, e.g. front_stiffness=38000; may be "
+                     "repeated");
+  arguments.add_option("report", ArgumentValue::folder("DIR"),
+                       "also write DIR/report.html: the car crossing the bump, and its curves");
+  arguments.add_switch("json", "print the snapshot as JSON");
+  arguments.add_switch("kinematics", "write the suspension's kinematics instead of a run");
+  return arguments;
+}
+
+int run_simulate(const Arguments& arguments) {
+  const SimulateOptions options = read_options(arguments);
   if (options.kinematics) return run_kinematics(options);
+  tell_detail("integrator " + options.integrator_name());
   if (const auto rig = find_rig_kind(options.source.vehicle)) {
-    refuse_options(parsed, {"coarse-step", "closure", "spin", "report"},
+    refuse_options(arguments, {"coarse-step", "closure", "spin", "report"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");
     return run_rig(options, *rig);
   }

@@ -1,12 +1,11 @@
 // `strut simulate`: one run, all channels over time; or the suspension's kinematics.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// Exit code of the command; see its --help.
-int run_simulate(const std::vector<std::string>& arguments);
+Arguments describe_simulate();
+int run_simulate(const Arguments& arguments);
 
 }  // namespace strut

@@ -10,8 +10,10 @@
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
 #include "jobs/json.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
+#include "jobs/terminal.h"
 #include "sweep/status.h"
 
 namespace strut {
@@ -128,24 +130,51 @@ void print_text(const SweepStatus& status, const std::vector<Followed>& submissi
                      format_bytes(static_cast<double>(status.bytes)));
   if (status.duplicates > 0) line("made twice", format_count(status.duplicates) + " shards");
   for (const Followed& followed : submissions) line("submitted", describe(followed));
-  for (const std::string& fault : status.faults) std::cerr << "strut: " << fault << "\n";
+  for (const std::string& fault : status.faults) tell_error(fault);
+}
+
+/// Whether somebody works on it, or is about to.
+bool is_under_way(const SweepStatus& status, const std::vector<Followed>& submissions) {
+  if (!status.claims.empty()) return true;
+  for (const Followed& followed : submissions) {
+    if (followed.state.running + followed.state.pending > 0) return true;
+  }
+  return false;
+}
+
+void tell_next_of(const std::string& root, const SweepStatus& status,
+                  const std::vector<Followed>& submissions) {
+  if (!status.faults.empty()) {
+    tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside");
+  } else if (!status.complete() && is_under_way(status, submissions)) {
+    tell_next({"strut", "status", root, "--watch"});
+  } else if (!status.complete()) {
+    tell_next({"strut", "run", root});
+  } else if (status.failed > 0) {
+    tell_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
+  } else {
+    tell_next({"strut", "verify", root});
+  }
 }
 
 }  // namespace
 
-int run_status(const std::vector<std::string>& words) {
+Arguments describe_status() {
   Arguments arguments(
       "strut status DIR [OPTIONS]",
-      "How far the sweep in DIR has come, from its files, and what the scheduler says of "
-      "what was\n"
-      "submitted; `strut verify` checks every byte. Ends with code 1 where cases failed or files "
+      "How far the sweep in DIR has come, from its files, and what the scheduler says of what was\n"
+      "submitted; `strut verify` checks every byte. Ends with code 1 where cases failed or files\n"
       "cannot be read.",
       "  strut status sweep --watch\n  strut status sweep --json");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_switch("json", "print JSON");
   arguments.add_switch("watch", "print again every second until the sweep is complete");
-  if (!arguments.parse(words)) return kExitDone;
+  return arguments;
+}
+
+int run_status(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
-  const bool on_terminal = isatty(STDOUT_FILENO) == 1;
+  const bool on_terminal = is_live_terminal(STDOUT_FILENO);
   // A scheduler is not to be asked every second.
   constexpr int kAskEvery = 10;
   std::vector<Followed> submissions;
@@ -165,6 +194,7 @@ int run_status(const std::vector<std::string>& words) {
       std::cout << std::flush;
     }
     if (!arguments.is_on("watch") || status.complete()) {
+      tell_next_of(sweep.folder.root.string(), status, submissions);
       return status.faults.empty() && status.failed == 0 ? kExitDone : kExitNo;
     }
     std::this_thread::sleep_for(std::chrono::seconds(1));

@@ -1,11 +1,11 @@
 // `strut status`.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_status(const std::vector<std::string>& arguments);
+Arguments describe_status();
+int run_status(const Arguments& arguments);
 
 }  // namespace strut

@@ -6,6 +6,7 @@
 #include "jobs/command.h"
 #include "jobs/interrupt.h"
 #include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
 #include "jobs/run.h"
@@ -20,23 +21,6 @@
 namespace strut {
 namespace {
 
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut study STUDY.toml -o DIR [OPTIONS]",
-      "Simulates, trains and evaluates a table of networks: cases with each preload, numbers of\n"
-      "cases, networks, inputs and seeds (every key: docs/studies.md). Prints the errors beside\n"
-      "published ones and writes DIR/report.html, results.json, tables.csv, figures, models and\n"
-      "sweeps; with a [noise] section also what sensor noise does to it. Running it again does\n"
-      "only what is missing; Ctrl-C stops it cleanly.",
-      "  strut study examples/studies/paper_quick.toml -o study\n"
-      "  strut study examples/studies/paper.toml -o study --threads 2");
-  arguments.add_option("output,o", "DIR", "folder of the study");
-  arguments.add_option("threads", "N",
-                       "trainings at a time, one thread each (default: all processors)");
-  arguments.add_switch("json", "print results.json instead of tables");
-  return arguments;
-}
-
 /// Simulates what a sweep lacks; false where a signal came.
 bool run_study_sweep(const SweepFolder& folder, const Plan& plan, int threads,
                      std::atomic<bool>& halt) {
@@ -49,20 +33,21 @@ bool run_study_sweep(const SweepFolder& folder, const Plan& plan, int threads,
   RunProgress progress;
   RunSummary summary;
   {
-    const ProgressLine line([&] {
-      return name + ": " + format_count(progress.present + progress.simulated) + "/" +
-             format_count(plan.case_count()) + " cases simulated";
+    const Stage stage(name + ": simulation");
+    const ProgressLine line([&, start = now()] {
+      const std::int64_t left = plan.case_count() - progress.present;
+      return name + ": " +
+             describe_share(progress.simulated, left, "cases simulated", now() - start);
     });
     summary = run_sweep(folder, plan, options, progress, halt);
   }
-  for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
+  tell_notes(summary.notes);
   for (const auto& [shard, what] : summary.damaged) {
     throw InputError(what + "; `strut verify " + folder.root.string() +
                      " --quarantine` moves it aside, then run this again");
   }
   if (summary.failed > 0) {
-    std::cerr << "strut: " << name << ": " << format_count(summary.failed)
-              << " cases failed and are left out\n";
+    tell_note(name + ": " + format_count(summary.failed) + " cases failed and are left out");
   }
   return !halt;
 }
@@ -92,9 +77,10 @@ bool train_all(const StudyFolder& folder, const StudyRequest& request, int threa
     const ProgressLine line([&] { return describe_progress(progress, start); });
     summary = run_training_table(trainings, options, progress, halt);
   }
-  for (const std::string& note : summary.notes) std::cerr << "strut: " << note << "\n";
-  std::cerr << "strut: " << summary.trained << " networks trained in "
-            << format_duration(now() - start) << ", " << summary.kept << " were there already\n";
+  tell_notes(summary.notes);
+  tell_note(std::to_string(summary.trained) + " networks trained in " +
+            format_duration(now() - start) + ", " + std::to_string(summary.kept) +
+            " were there already");
   return !summary.stopped;
 }
 
@@ -106,14 +92,16 @@ bool fit_all(const StudyFolder& folder, const StudyRequest& request, int threads
   std::vector<std::string> notes;
   bool whole = false;
   {
-    const ProgressLine line([&] {
-      return "noise: " + std::to_string(progress.done) + "/" + std::to_string(progress.total) +
-             " bounds and fits";
+    const Stage stage("noise");
+    const ProgressLine line([&, start = now()] {
+      return "noise: " + describe_share(static_cast<std::int64_t>(progress.done),
+                                        static_cast<std::int64_t>(progress.total),
+                                        "bounds and fits", now() - start);
     });
     whole =
         update_noise_limits(*request.noise, data, folder.noise(), threads, progress, notes, halt);
   }
-  for (const std::string& note : notes) std::cerr << "strut: " << note << "\n";
+  tell_notes(notes);
   return whole;
 }
 
@@ -153,32 +141,54 @@ void print_tables(const StudyRequest& request, const StudyResults& results) {
 
 }  // namespace
 
-int run_study(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_study() {
+  Arguments arguments(
+      "strut study STUDY.toml -o DIR [OPTIONS]",
+      "Simulates, trains and evaluates a table of networks: cases with each preload, numbers of\n"
+      "cases, networks, inputs and seeds (every key: docs/studies.md). Prints the errors beside\n"
+      "published ones and writes DIR/report.html, results.json, tables.csv, figures, models and\n"
+      "sweeps; with a [noise] section also what sensor noise does to it. Running it again does\n"
+      "only what is missing; Ctrl-C stops it cleanly.",
+      "  strut study examples/studies/paper_quick.toml -o study\n"
+      "  strut study examples/studies/paper.toml -o study --threads 2");
+  arguments.add_operand(ArgumentValue::file("STUDY.toml", {"toml"}));
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder of the study");
+  arguments.add_option("threads", "N",
+                       "trainings at a time, one thread each (default: all processors)");
+  arguments.add_switch("json", "print results.json instead of tables");
+  return arguments;
+}
+
+int run_study(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
     throw arguments.usage_error(std::to_string(names.size()) + " files; expected STUDY.toml");
   }
-  if (!arguments.has("output")) throw arguments.usage_error("--output: missing");
+  if (!arguments.has("output"))
+    throw arguments.usage_error("--output: missing; name the folder to write with -o");
   const StudyRequest asked = read_study(names.front());
   const int threads = find_threads(arguments);
   InterruptWatcher watcher;
   const StudyFolder folder = make_study_folder(arguments.text("output"), asked);
   const StudyRequest request = open_study_folder(folder);
   if (!work(folder, request, threads, watcher.halt())) {
-    std::cerr << "strut: interrupted; what is simulated and trained is kept, the same command goes "
-                 "on\n";
+    tell_error("interrupted; what is simulated and trained is kept, the same command goes on");
+    tell_next_again(arguments, "goes on");
     return 128 + watcher.signal();
   }
-  const StudyOutput output = write_study_output(folder, request);
+  const StudyOutput output = [&] {
+    const Stage stage("tables and figures");
+    const ProgressLine line("writing tables and figures");
+    return write_study_output(folder, request);
+  }();
   if (arguments.is_on("json")) {
     std::cout << make_json(request, output.results).dump() << "\n";
   } else {
     print_tables(request, output.results);
   }
-  for (const std::string& note : output.notes) std::cerr << "strut: " << note << "\n";
-  std::cerr << "strut: " << folder.report().string() << "\n";
+  tell_notes(output.notes);
+  tell_note(folder.report().string());
+  tell_next_page(folder.report().string());
   return kExitDone;
 }
 

@@ -1,11 +1,11 @@
 // strut study: a table of trainings, from sweeps to a report.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_study(const std::vector<std::string>& arguments);
+Arguments describe_study();
+int run_study(const Arguments& arguments);
 
 }  // namespace strut

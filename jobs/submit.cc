@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -12,10 +13,12 @@
 #include "io/nearest_name.h"
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
+#include "jobs/dispatch/quote_word.h"
 #include "jobs/dispatch/scripts.h"
 #include "jobs/dispatch/slurm.h"
 #include "jobs/interrupt.h"
 #include "jobs/json.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/output_file.h"
 #include "jobs/plan_estimate.h"
@@ -34,50 +37,6 @@ constexpr double kReserve = 2.0;
 /// Least time that a task is warned before its walltime ends [s]: schedulers look once a minute.
 constexpr double kLeastWarning = 60.0;
 
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut submit DIR --to slurm|local [OPTIONS]",
-      "Queues what the sweep in DIR still lacks: arrays of tasks of some minutes each, and behind "
-      "them one\n"
-      "that merges. Submitting again queues only what is neither there nor queued. Tasks near "
-      "their "
-      "time\n"
-      "limit finish the shard in hand and queue themselves again. `--to local` works through the "
-      "tasks on\n"
-      "this machine, in the background.",
-      "  strut submit sweep --to slurm --dry-run\n"
-      "  strut submit sweep --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
-      "  strut status sweep\n  strut cancel sweep");
-  arguments.add_option("to", "NAME", "slurm or local");
-  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
-  arguments.add_option("account", "A", "that pays");
-  arguments.add_option("constraint", "C", "that nodes must meet");
-  arguments.add_option("memory", "M", "of a task, as the site writes it: 4G");
-  arguments.add_option("time", "T",
-                       "wall clock of a task: minutes, HH:MM:SS or D-HH:MM:SS (default: twice what "
-                       "it is expected to take)");
-  arguments.add_option("threads", "N", "processors of a task (default 1; local: all)");
-  arguments.add_option("minutes", "M", "what a task is to take (default 10)");
-  arguments.add_option("tasks", "N", "at most N tasks in all");
-  arguments.add_option("at-once", "N", "at most N tasks of an array run at once");
-  arguments.add_list("option", "OPTION", "a further option for the scheduler, as it stands");
-  arguments.add_option("scratch", "PATH",
-                       "node-local folder, $NAMES as the node has them, where each node keeps a "
-                       "copy of the program");
-  arguments.add_switch("shared",
-                       "all nodes see DIR, though it lies on a disk of this machine (which serves "
-                       "it to them)");
-  arguments.add_switch("retry",
-                       "behind the arrays, a task that tries failed cases once more, as `strut "
-                       "resume` does");
-  arguments.add_switch("no-merge", "no last task that writes DIR/merged.h5");
-  arguments.add_switch("again",
-                       "submit although it is unknown whether an earlier submission still runs");
-  arguments.add_switch("dry-run", "print the scripts and what waits for what; queue nothing");
-  arguments.add_switch("json", "print JSON");
-  return arguments;
-}
-
 /// One submission in the making.
 class Submitter {
  public:
@@ -88,7 +47,7 @@ class Submitter {
       throw InputError("--to: missing; must be one of " + join_names(list_dispatchers()));
     }
     const std::vector<std::string> names = list_dispatchers();
-    const auto which = static_cast<std::size_t>(arguments.choice_or("to", 0, names));
+    const auto which = static_cast<std::size_t>(arguments.choice_or("to", 0));
     dispatcher_ = make_dispatcher(names[which]);
     read_resources();
     limits_ = dispatcher_->check(resources_, sweep_.folder.root);
@@ -114,10 +73,19 @@ class Submitter {
     }
     measure_cost();
     pack(missing);
+    tell_detail("a shard takes some " + format_duration(shard_seconds_) + " on " +
+                std::to_string(resources_.threads) + " threads");
     if (arguments_.is_on("dry-run")) {
       show();
+      std::vector<std::string> words = {"strut", "submit"};
+      std::copy_if(arguments_.words().begin(), arguments_.words().end(), std::back_inserter(words),
+                   [](const std::string& word) { return word != "--dry-run"; });
+      tell_next(words);
     } else {
       submit();
+      const std::string root = sweep_.folder.root.string();
+      tell_note("`strut cancel " + quote_if_needed(root) + "` stops it");
+      tell_next({"strut", "status", root, "--watch"});
     }
     return kExitDone;
   }
@@ -170,8 +138,14 @@ class Submitter {
     std::cout << "nothing to submit: of " << format_count(sweep_.plan.shard_count()) << " shards "
               << format_count(static_cast<std::int64_t>(present_.size()))
               << " are there, the others in the hands of tasks that wait or run\n";
+    const std::string root = sweep_.folder.root.string();
     if (status_.failed > 0) {
       std::cout << format_count(status_.failed) << " cases failed; --retry tries them once more\n";
+      tell_next_again(arguments_, "tries what failed once more", {"--retry"});
+    } else if (status_.complete()) {
+      tell_next({"strut", "verify", root});
+    } else {
+      tell_next({"strut", "status", root, "--watch"});
     }
   }
 
@@ -182,6 +156,7 @@ class Submitter {
     if (simulated > 0) {
       thread_seconds = status_.simulation_seconds / static_cast<double>(simulated);
     } else {
+      const ProgressLine line("simulating a few cases for an estimate");
       const SweepEstimate estimate = estimate_sweep(sweep_.plan, find_kernel_or_widest());
       thread_seconds =
           estimate.seconds * estimate.cores / static_cast<double>(sweep_.plan.case_count());
@@ -350,9 +325,6 @@ class Submitter {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       std::cout << "  " << parts[i] << ": " << s.dispatcher << " " << jobs[i] << "\n";
     }
-    const std::string root = sweep_.folder.root.string();
-    std::cout << "`strut status " << root << "` follows it, `strut cancel " << root
-              << "` stops it\n";
   }
 
   const Arguments& arguments_;
@@ -369,10 +341,51 @@ class Submitter {
 
 }  // namespace
 
-int run_submit(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
-  return Submitter(arguments).run();
+Arguments describe_submit() {
+  Arguments arguments(
+      "strut submit DIR --to slurm|local [OPTIONS]",
+      "Queues what the sweep in DIR still lacks: arrays of tasks of some minutes each, and behind "
+      "them one\n"
+      "that merges. Submitting again queues only what is neither there nor queued. Tasks near "
+      "their "
+      "time\n"
+      "limit finish the shard in hand and queue themselves again. `--to local` works through the "
+      "tasks on\n"
+      "this machine, in the background.",
+      "  strut submit sweep --to slurm --dry-run\n"
+      "  strut submit sweep --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
+      "  strut status sweep\n  strut cancel sweep");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
+  arguments.add_option("to", ArgumentValue::one_of(list_dispatchers()), "who works through it");
+  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
+  arguments.add_option("account", "A", "that pays");
+  arguments.add_option("constraint", "C", "that nodes must meet");
+  arguments.add_option("memory", "M", "of a task, as the site writes it: 4G");
+  arguments.add_option("time", "T",
+                       "wall clock of a task: minutes, HH:MM:SS or D-HH:MM:SS (default: twice what "
+                       "it is expected to take)");
+  arguments.add_option("threads", "N", "processors of a task (default 1; local: all)");
+  arguments.add_option("minutes", "M", "what a task is to take (default 10)");
+  arguments.add_option("tasks", "N", "at most N tasks in all");
+  arguments.add_option("at-once", "N", "at most N tasks of an array run at once");
+  arguments.add_list("option", "OPTION", "a further option for the scheduler, as it stands");
+  arguments.add_option("scratch", ArgumentValue::folder("PATH"),
+                       "node-local folder, $NAMES as the node has them, where each node keeps a "
+                       "copy of the program");
+  arguments.add_switch("shared",
+                       "all nodes see DIR, though it lies on a disk of this machine (which serves "
+                       "it to them)");
+  arguments.add_switch("retry",
+                       "behind the arrays, a task that tries failed cases once more, as `strut "
+                       "resume` does");
+  arguments.add_switch("no-merge", "no last task that writes DIR/merged.h5");
+  arguments.add_switch("again",
+                       "submit although it is unknown whether an earlier submission still runs");
+  arguments.add_switch("dry-run", "print the scripts and what waits for what; queue nothing");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
 }
+
+int run_submit(const Arguments& arguments) { return Submitter(arguments).run(); }
 
 }  // namespace strut

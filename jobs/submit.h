@@ -1,12 +1,11 @@
 // strut submit: a sweep as tasks that run elsewhere.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-/// The command; exit code. Throws InputError, EnvironmentError.
-int run_submit(const std::vector<std::string>& arguments);
+Arguments describe_submit();
+int run_submit(const Arguments& arguments);
 
 }  // namespace strut

@@ -1,5 +1,6 @@
 #include "jobs/train.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +15,8 @@
 #include "jobs/evaluate.h"
 #include "jobs/interrupt.h"
 #include "jobs/lists.h"
+#include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/output_file.h"
 #include "jobs/progress.h"
@@ -30,53 +33,6 @@ constexpr std::int64_t kMostInt64 = std::numeric_limits<std::int64_t>::max();
 /// Epochs between two checkpoints.
 constexpr int kCheckpointEpochs = 25;
 
-Arguments make_arguments() {
-  Arguments arguments(
-      "strut train DATA... -o model.h5 [OPTIONS]",
-      "Trains a network that tells the parameters of a case from its snapshot, or from a window\n"
-      "of its histories, by Levenberg-Marquardt, and judges it by cases that training never saw.\n"
-      "DATA is a sweep folder, shards of one sweep, or a merged file. 70 % of the cases train,\n"
-      "15 % validate, 15 % test. The result does not depend on --threads or --batch, nor on how\n"
-      "the cases are stored.",
-      "  strut run sweep\n  strut train sweep -o model.h5\n"
-      "  strut train sweep -o noisy.h5 --noise default --noise pitch_angle=2e-4\n"
-      "  strut train sweep -o window.h5 --window 0.3:2.5 --targets front_stiffness,rear_stiffness\n"
-      "  strut train sweep -o small.h5 --samples 1000 --hidden 12,8 --seed 3");
-  arguments.add_option("output,o", "FILE", "model to write");
-  arguments.add_option("hidden", "N,N,...", "neurons of the hidden layers; default 27,19,11");
-  arguments.add_option("inputs", "NAME,...",
-                       "channels of the snapshot; default body_position_z,body_velocity_z,\n"
-                       "body_acceleration_z,pitch_angle");
-  arguments.add_option("targets", "NAME,...", "parameters to identify; default all of the grid's");
-  add_noise_options(arguments);
-  arguments.add_option("samples", "N", "use the first N cases; the run order is random");
-  arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
-  arguments.add_switch("growing",
-                       "start on few cases and take more, at last all, as soon as a step's gain\n"
-                       "is no longer told from chance: for data beyond some 10,000 cases");
-  arguments.add_option("gram-rows", "N",
-                       "curvature from N rows, others in each epoch, the gradient from all: for\n"
-                       "data beyond 100,000 cases");
-  arguments.add_option("seed", "S", "of the split and the start weights; default 1");
-  arguments.add_option("rule", "RULE", "damping: gain-ratio (default) or trainlm, as MATLAB's");
-  arguments.add_option("epochs", "N", "most steps; default 1000");
-  arguments.add_option("max-failures", "N",
-                       "stop N epochs after the validation minimum; default 6");
-  arguments.add_option("goal", "MSE", "stop at this loss of normalized values; default 0");
-  arguments.add_option("min-gradient", "G", "stop at this length of its gradient; default 1e-7");
-  arguments.add_option("damping", "MU", "first damping; by itself the rule's, docs/training.md");
-  arguments.add_option("max-damping", "MU", "stop beyond this damping; default 1e10");
-  arguments.add_option("max-time", "S", "stop after so many seconds; by itself never");
-  arguments.add_option("threads", "N", "default: all processors");
-  arguments.add_option("checkpoint", "FILE", "keep the training's state there");
-  arguments.add_switch("resume", "go on from that file, to the same bits");
-  arguments.add_switch("allow-few", "train with fewer equations than weights");
-  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
-  arguments.add_switch("force", "replace FILE where it exists");
-  arguments.add_switch("json", "print JSON");
-  return arguments;
-}
-
 std::vector<int> read_hidden(const Arguments& arguments) {
   const std::string text = arguments.text("hidden");
   std::vector<int> sizes;
@@ -92,9 +48,8 @@ std::vector<int> read_hidden(const Arguments& arguments) {
 }
 
 void read_limits(const Arguments& arguments, LevenbergMarquardtOptions& options) {
-  options.rule = arguments.choice_or("rule", 0, {"gain-ratio", "trainlm"}) == 0
-                     ? DampingRule::kGainRatio
-                     : DampingRule::kTrainlm;
+  options.rule =
+      arguments.choice_or("rule", 0) == 0 ? DampingRule::kGainRatio : DampingRule::kTrainlm;
   options.epochs = static_cast<int>(arguments.integer_or("epochs", options.epochs, 0, kMostInt));
   options.max_failures =
       static_cast<int>(arguments.integer_or("max-failures", options.max_failures, 1, kMostInt));
@@ -154,33 +109,48 @@ fs::path find_checkpoint(const Arguments& arguments, const std::vector<std::stri
 /// The line of progress, shared with the thread that prints it.
 class Progress {
  public:
+  explicit Progress(const LevenbergMarquardtOptions& options) : options_(options) {}
   void set(const EpochRecord& record, std::size_t rows) {
     const std::scoped_lock lock(mutex_);
+    if (rows_ == 0) first_ = record.epoch;
     record_ = record;
     rows_ = rows;
   }
   std::string line() const {
     const std::scoped_lock lock(mutex_);
-    if (rows_ == 0) return "first epoch";
-    char text[128];
-    std::snprintf(text, sizeof text, "epoch %d, loss %.3g, validation %.3g, damping %.1g",
-                  record_.epoch, record_.loss, record_.validation, record_.damping);
-    return text + (", " + format_count(static_cast<std::int64_t>(rows_))) + " rows";
+    if (rows_ == 0) return "first epoch, " + format_duration(now() - start_);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "epoch %d of at most %d, loss %.3g, validation %.3g, damping %.1g", record_.epoch,
+                  options_.epochs, record_.loss, record_.validation, record_.damping);
+    return text + (", " + format_count(static_cast<std::int64_t>(rows_))) + " rows, at most " +
+           format_duration(calc_seconds_left()) + " to go";
   }
 
  private:
+  /// To the last epoch, or to the limit of time.
+  double calc_seconds_left() const {
+    const double spent = now() - start_;
+    const double done = record_.epoch - first_ + 1, left = options_.epochs - record_.epoch;
+    return std::max(0.0, std::min(left * spent / done, options_.seconds - spent));
+  }
+
+  const LevenbergMarquardtOptions options_;
+  const double start_ = now();
   mutable std::mutex mutex_;
+  int first_ = 0;  // epoch that was seen first: not 1 after a resume
   EpochRecord record_;
   std::size_t rows_ = 0;
 };
 
 /// Steps until the training stops; false where a signal came first.
-bool train(Training& training, const fs::path& checkpoint, const std::atomic<bool>& halt) {
+bool train(Training& training, const LevenbergMarquardtOptions& options, const fs::path& checkpoint,
+           const std::atomic<bool>& halt) {
   const auto keep = [&] {
     if (!checkpoint.empty()) write_checkpoint(checkpoint, training.make_checkpoint());
   };
   keep();  // a place where it cannot be is told before the work, not after it
-  Progress progress;
+  Progress progress(options);
   bool goes_on = true;
   {
     const ProgressLine line([&] { return progress.line(); });
@@ -234,13 +204,84 @@ void print(const Training& training, const Model& model, const fs::path& output,
   std::cout << "\n" << output.string() << "\n";
 }
 
+std::string describe(const TrainingRequest& request) {
+  std::string text = "layers";
+  for (const int size : request.hidden) text += " " + std::to_string(size);
+  text += ", inputs";
+  for (const std::string& input : request.rows.inputs) text += " " + input;
+  return text + ", seed " + std::to_string(request.seed) + ", " +
+         std::to_string(request.options.threads) + " threads";
+}
+
+void tell_interrupted(const Arguments& arguments, const fs::path& checkpoint) {
+  if (checkpoint.empty()) {
+    tell_error("interrupted; no model is written");
+    tell_next_again(arguments, "keeps what is trained from now on",
+                    {"--checkpoint", "training.checkpoint"});
+    return;
+  }
+  tell_error("interrupted; no model is written, --resume goes on from the checkpoint");
+  const bool resumes = arguments.is_on("resume");
+  tell_next_again(arguments, "goes on",
+                  resumes ? std::vector<std::string>() : std::vector<std::string>{"--resume"});
+}
+
 }  // namespace
 
-int run_train(const std::vector<std::string>& words) {
-  Arguments arguments = make_arguments();
-  if (!arguments.parse(words)) return kExitDone;
+Arguments describe_train() {
+  Arguments arguments(
+      "strut train DATA... -o model.h5 [OPTIONS]",
+      "Trains a network that tells the parameters of a case from its snapshot, or from a window\n"
+      "of its histories, by Levenberg-Marquardt, and judges it by cases that training never saw.\n"
+      "DATA is a sweep folder, shards of one sweep, or a merged file. 70 % of the cases train,\n"
+      "15 % validate, 15 % test. The result does not depend on --threads or --batch, nor on how\n"
+      "the cases are stored.",
+      "  strut run sweep\n  strut train sweep -o model.h5\n"
+      "  strut train sweep -o noisy.h5 --noise default --noise pitch_angle=2e-4\n"
+      "  strut train sweep -o window.h5 --window 0.3:2.5 --targets front_stiffness,rear_stiffness\n"
+      "  strut train sweep -o small.h5 --samples 1000 --hidden 12,8 --seed 3");
+  arguments.add_operands(ArgumentValue::path("DATA", {"h5", "hdf5"}));
+  arguments.add_option("output,o", ArgumentValue::file("FILE", {"h5"}), "model to write");
+  arguments.add_option("hidden", "N,N,...", "neurons of the hidden layers; default 27,19,11");
+  arguments.add_option("inputs", "NAME,...",
+                       "channels of the snapshot; default body_position_z,body_velocity_z,\n"
+                       "body_acceleration_z,pitch_angle");
+  arguments.add_option("targets", "NAME,...", "parameters to identify; default all of the grid's");
+  add_noise_options(arguments);
+  arguments.add_option("samples", "N", "use the first N cases; the run order is random");
+  arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
+  arguments.add_switch("growing",
+                       "start on few cases and take more, at last all, as soon as a step's gain\n"
+                       "is no longer told from chance: for data beyond some 10,000 cases");
+  arguments.add_option("gram-rows", "N",
+                       "curvature from N rows, others in each epoch, the gradient from all: for\n"
+                       "data beyond 100,000 cases");
+  arguments.add_option("seed", "S", "of the split and the start weights; default 1");
+  arguments.add_option("rule", ArgumentValue::one_of({"gain-ratio", "trainlm"}),
+                       "of the damping: gain-ratio (default), or MATLAB's");
+  arguments.add_option("epochs", "N", "most steps; default 1000");
+  arguments.add_option("max-failures", "N",
+                       "stop N epochs after the validation minimum; default 6");
+  arguments.add_option("goal", "MSE", "stop at this loss of normalized values; default 0");
+  arguments.add_option("min-gradient", "G", "stop at this length of its gradient; default 1e-7");
+  arguments.add_option("damping", "MU", "first damping; by itself the rule's, docs/training.md");
+  arguments.add_option("max-damping", "MU", "stop beyond this damping; default 1e10");
+  arguments.add_option("max-time", "S", "stop after so many seconds; by itself never");
+  arguments.add_option("threads", "N", "default: all processors");
+  arguments.add_option("checkpoint", ArgumentValue::file("FILE"),
+                       "keep the training's state there");
+  arguments.add_switch("resume", "go on from that file, to the same bits");
+  arguments.add_switch("allow-few", "train with fewer equations than weights");
+  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
+  arguments.add_switch("force", "replace FILE where it exists");
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+int run_train(const Arguments& arguments) {
   const auto& names = arguments.positional();
-  if (names.empty()) throw arguments.usage_error("DATA: missing");
+  if (names.empty())
+    throw arguments.usage_error("DATA: missing; name a sweep folder, shards or a merged file");
   const fs::path output = find_output_file(arguments, names);
   std::vector<std::string> others = names;
   others.push_back(output.string());
@@ -252,11 +293,15 @@ int run_train(const std::vector<std::string>& words) {
   InterruptWatcher watcher;
   Dataset dataset({names.begin(), names.end()}, options);
   read_noise_options(arguments, dataset.schema(), request);
-  Training training(dataset, request);
+  Training training = [&] {
+    const Stage reading("reading");
+    const ProgressLine line("reading cases");
+    return Training(dataset, request);
+  }();
   if (arguments.is_on("resume")) training.resume(checkpoint, read_checkpoint(checkpoint));
-  if (!train(training, checkpoint, watcher.halt())) {
-    std::cerr << "strut: interrupted; no model is written"
-              << (checkpoint.empty() ? "" : ", --resume goes on from the checkpoint") << "\n";
+  tell_detail(describe(request));
+  if (!train(training, request.options, checkpoint, watcher.halt())) {
+    tell_interrupted(arguments, checkpoint);
     return 128 + watcher.signal();
   }
   Model model = training.make_model();
@@ -264,6 +309,7 @@ int run_train(const std::vector<std::string>& words) {
   model.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
   write_model(output, model);
   print(training, model, output, arguments.is_on("json"));
+  tell_next_identify(output.string(), model);
   return kExitDone;
 }
 

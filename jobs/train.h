@@ -1,11 +1,11 @@
 // strut train: a network that identifies parameters from a snapshot.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_train(const std::vector<std::string>& arguments);
+Arguments describe_train();
+int run_train(const Arguments& arguments);
 
 }  // namespace strut

@@ -1,13 +1,18 @@
 #include "jobs/verify.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <iostream>
 #include <limits>
 
 #include "jobs/command.h"
 #include "jobs/json.h"
+#include "jobs/machine.h"
+#include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
+#include "jobs/terminal.h"
 #include "sweep/shard_store.h"
 #include "sweep/verify.h"
 
@@ -49,7 +54,9 @@ void print_text(const VerifyReport& report) {
     std::cout << "\n";
   }
   std::cout << "data digest " << report.data_digest << "\n"
-            << (report.ok() ? "sound and complete\n" : "NOT sound and complete\n");
+            << (report.ok() ? "sound and complete"
+                            : paint("NOT sound and complete", Style::kRed, STDOUT_FILENO))
+            << "\n";
 }
 
 /// Moves files that are not the plan's out of the way of `strut run`.
@@ -58,23 +65,41 @@ void move_aside(const SweepFolder& folder, const VerifyReport& report) {
     const auto file = folder.root / what.substr(0, what.find(": "));
     if (!std::filesystem::exists(file)) continue;
     quarantine(folder, file);
-    std::cerr << "strut: moved to quarantine: " << file.string() << "\n";
+    tell_note("moved to quarantine: " + file.string());
+  }
+}
+
+void tell_next_of(const Arguments& arguments, const std::string& root, const VerifyReport& report) {
+  const bool is_moved = arguments.is_on("quarantine");
+  if (report.ok()) {
+    tell_next({"strut", "train", root, "-o", "model.h5"},
+              "or strut merge, for one file for other tools");
+  } else if (!report.damaged.empty() && !is_moved) {
+    tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside, then run");
+  } else if (report.missing > 0 || !report.damaged.empty()) {
+    tell_next({"strut", "run", root}, "simulates what is missing");
+  } else {
+    tell_next({"strut", "doctor", root}, "what of this machine cannot be relied upon");
   }
 }
 
 }  // namespace
 
-int run_verify(const std::vector<std::string>& words) {
+Arguments describe_verify() {
   Arguments arguments(
       "strut verify DIR [OPTIONS]",
       "Reads every byte of the sweep in DIR: checksums, columns, plan, no case missing, double or\n"
       "foreign. Prints the data digest: the same for the same plan, however it was run.",
       "  strut verify sweep --sample 20\n  strut verify sweep --quarantine && strut run sweep");
+  arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("sample", "N", "simulate N cases again and compare bit for bit (default 0)");
   arguments.add_option("seed", "S", "of the choice of those (default 1)");
   arguments.add_switch("quarantine", "move damaged files aside, so that strut run makes them anew");
   arguments.add_switch("json", "print JSON");
-  if (!arguments.parse(words)) return kExitDone;
+  return arguments;
+}
+
+int run_verify(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   VerifyOptions options;
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
@@ -84,8 +109,11 @@ int run_verify(const std::vector<std::string>& words) {
   std::atomic<std::int64_t> read{0};
   VerifyReport report;
   {
+    const double start = now();
     const ProgressLine line([&] {
-      return format_count(read) + "/" + format_count(sweep.plan.case_count()) + " cases verified";
+      return read < sweep.plan.case_count() || options.sample == 0
+                 ? describe_share(read, sweep.plan.case_count(), "cases verified", now() - start)
+                 : "simulating " + format_count(options.sample) + " cases again";
     });
     report =
         verify_sweep(sweep.folder, sweep.plan, options, [&](std::int64_t cases) { read = cases; });
@@ -93,6 +121,7 @@ int run_verify(const std::vector<std::string>& words) {
   arguments.is_on("json") ? void(std::cout << make_json(report).dump() << "\n")
                           : print_text(report);
   if (arguments.is_on("quarantine")) move_aside(sweep.folder, report);
+  tell_next_of(arguments, sweep.folder.root.string(), report);
   return report.ok() ? kExitDone : kExitNo;
 }
 

@@ -1,11 +1,11 @@
 // `strut verify`.
 #pragma once
 
-#include <string>
-#include <vector>
+#include "jobs/arguments.h"
 
 namespace strut {
 
-int run_verify(const std::vector<std::string>& arguments);
+Arguments describe_verify();
+int run_verify(const Arguments& arguments);
 
 }  // namespace strut

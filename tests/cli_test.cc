@@ -8,6 +8,7 @@
 #include "jobs/bench/cases.h"
 #include "jobs/json.h"
 #include "model/vehicle/channels.h"
+#include "tests/check_hint.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/temporary_folder.h"
@@ -376,6 +377,7 @@ TEST_CASE("The benchmark prints the agreed keys and compares with itself", "[io]
   const std::string file = folder / "old.json";
   const Outcome first = run("bench --quick --json");
   REQUIRE(first.code == 0);
+  CHECK(test::check_hint(first.messages)[1] == "bench");
   folder.write("old.json", first.out);
   const test::JsonTree json = test::parse_json(first.out);
   for (const char* name : {"double", "lanes", "lanes_tabulated", "fastest"}) {

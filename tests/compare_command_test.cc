@@ -7,6 +7,7 @@
 
 #include "io/csv.h"
 #include "tests/campaign_files.h"
+#include "tests/check_hint.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 #include "tests/test_car.h"
@@ -74,7 +75,9 @@ TEST_CASE("compare does not replace a comparison without being told to", "[io]")
   test::CampaignText text;
   text.fit = "";  // nothing is free: quick
   const auto campaign = test::write_campaign(folder, text);
-  CHECK(run_program(compare(campaign, folder / "out")).code == 0);
+  const test::Outcome first = run_program(compare(campaign, folder / "out"));
+  CHECK(first.code == 0);
+  CHECK(test::check_hint(first.messages)[1] == "diagnose");
   const test::Outcome again = run_program(compare(campaign, folder / "out"));
   CHECK(again.code == 2);
   CHECK_THAT(again.messages, Contains("--force"));

@@ -13,6 +13,7 @@
 #include "jobs/diagnose/report.h"
 #include "jobs/diagnose/tables.h"
 #include "tests/campaign_files.h"
+#include "tests/check_hint.h"
 #include "tests/check_page.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
@@ -216,6 +217,7 @@ test::JsonTree diagnose_truth(const test::TemporaryFolder& folder,
   INFO(outcome.messages << outcome.out);
   REQUIRE(outcome.code == 0);
   CHECK(test::read_text(folder / "out" / "verdict.json") == outcome.out);
+  test::check_hint(outcome.messages);
   return test::parse_json(outcome.out);
 }
 

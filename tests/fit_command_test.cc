@@ -6,6 +6,7 @@
 
 #include "io/config.h"
 #include "io/csv.h"
+#include "tests/check_hint.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
 
@@ -41,6 +42,7 @@ TEST_CASE("identify fits a simulated history and gives its parameters back", "[i
   const test::Outcome outcome = run_program(fit(file) + " --window 0.3:2 --json");
   CHECK(outcome.code == 0);
   const auto json = test::parse_json(outcome.out);
+  CHECK(test::check_hint(outcome.messages)[1] == "simulate");
   CHECK(json.get<double>("parameters.front_stiffness.value") == Approx(37000.0).epsilon(1e-3));
   CHECK(json.get<double>("parameters.front_damping.value") == Approx(1980.0).epsilon(1e-3));
   CHECK(json.get<double>("parameters.rear_stiffness.value") == Approx(35000.0).epsilon(1e-3));
@@ -62,6 +64,7 @@ TEST_CASE("identify by a fit tells what is not identifiable", "[io]") {
   const test::Outcome outcome = run_program(fit(file) + options);
   CHECK(outcome.code == 1);
   CHECK_THAT(outcome.messages, Contains("not identifiable: yaw_inertia, which moves no reading"));
+  CHECK(test::check_hint(outcome.messages)[1] == "design");
   CHECK_THAT(outcome.out, Contains("rear_damping"));
   const test::Outcome two = run_program(fit(file + " " + file) + options + " --json");
   CHECK(test::parse_json(two.out).get_child("nuisances").size() == 8);
@@ -137,6 +140,7 @@ TEST_CASE("identify by a fit tells what is amiss with a record", "[io]") {
              Contains("imu_acceleration_z is 9.81 in all 241 readings: does its sensor work?") &&
                  Contains("residuals are larger than the noise") &&
                  Contains("dead.csv: imu_acceleration_z: chi2 "));
+  CHECK(test::check_hint(stuck.messages)[1] == "compare");
   // 8 sigma of the clock off: its bound is no answer, and a wider one is.
   const std::string shifted = fit(folder.write("late.csv", late)) + " --window 0.3:1.5";
   const test::Outcome held = run_program(shifted);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "jobs/study/results.h"
+#include "tests/check_hint.h"
 #include "tests/check_page.h"
 #include "tests/parse_json.h"
 #include "tests/run_program.h"
@@ -142,6 +143,8 @@ TEST_CASE("A study that is done does nothing twice and repeats its bytes", "[io]
   const Outcome again = get_study().run("--threads 1");
   CHECK(again.code == 0);
   CHECK_THAT(again.messages, Contains("0 networks trained") && Contains("24 were there already"));
+  CHECK(test::check_hint(again.messages) ==
+        std::vector<std::string>{"xdg-open", (root / "report.html").string()});
   CHECK(read_folder(root) == before);
   CHECK(run_program("report " + root.string()).code == 0);
   CHECK(read_folder(root) == before);
@@ -157,6 +160,7 @@ TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow
       "/models 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.002; done; kill -INT $!; wait $!'");
   CHECK(stopped.code == 130);
   CHECK_THAT(stopped.messages, Contains("the same command goes on"));
+  CHECK(test::check_hint(stopped.messages)[1] == "study");
   CHECK_FALSE(fs::exists(files / "stopped/results.json"));
   const Outcome resumed = files.run("--threads 1", "stopped");
   CHECK(resumed.code == 0);

@@ -12,4 +12,12 @@ inline std::string quote_word(const std::string& word) {
   return quoted + "'";
 }
 
+/// The same for people: as it is where bash takes it so.
+inline std::string quote_if_needed(const std::string& word) {
+  constexpr char kPlain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,+@%=-";
+  const bool is_plain = !word.empty() && word.find_first_not_of(kPlain) == std::string::npos;
+  return is_plain ? word : quote_word(word);
+}
+
 }  // namespace strut

@@ -224,7 +224,8 @@ SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& fo
   const auto settings = read_settings();
   const Partition partition = find_partition(resources.partition);
   if (!partition.is_up) {
-    throw InputError("--partition " + partition.name + ": is down, as sinfo says");
+    throw InputError("--partition " + partition.name +
+                     ": is down, as sinfo says; name another, or wait");
   }
   if (resources.seconds > partition.seconds) {
     throw InputError("--time " + format_slurm_time(resources.seconds) +
@@ -236,7 +237,11 @@ SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& fo
   constexpr std::int64_t kSingleJobs = 2;  // behind the arrays
   const std::int64_t array_tasks =
       std::min(read_count(settings, "MaxArraySize"), read_most_tasks(settings));
-  if (array_tasks <= 0) throw EnvironmentError("MaxArraySize: this site allows no job arrays");
+  if (array_tasks <= 0)
+    throw EnvironmentError(
+        "MaxArraySize: this site allows no job arrays; a job of your own with `strut run DIR` does "
+        "the "
+        "same");
   return {array_tasks,
           std::max<std::int64_t>(1, read_count(settings, "MaxJobCount") - queued - kSingleJobs),
           partition.seconds};
@@ -357,7 +362,9 @@ std::string SlurmDispatcher::submit(const fs::path& script,
   words.push_back(script.string());
   const std::string answer = ask(words);  // "123" or "123;cluster"
   std::string job = answer.substr(0, answer.find_first_of(";\n"));
-  if (!parse_number<std::int64_t>(job)) throw EnvironmentError("sbatch: said '" + answer + "'");
+  if (!parse_number<std::int64_t>(job))
+    throw EnvironmentError("sbatch: said '" + answer +
+                           "', no job's number; `squeue` tells whether it is queued");
   return job;
 }
 

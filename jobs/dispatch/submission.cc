@@ -125,7 +125,8 @@ Submission make_submission(const SweepFolder& folder, Submission s) {
 Submission find_submission(const SweepFolder& folder, const std::string& name) {
   const fs::path place = find_jobs(folder) / name;
   if (name.find('/') != std::string::npos || !fs::exists(place / "submission.toml")) {
-    throw InputError(folder.root.string() + ": holds no submission '" + name + "'");
+    throw InputError(folder.root.string() + ": holds no submission '" + name +
+                     "'; `strut status` lists them");
   }
   return read_submission(place);
 }

@@ -24,7 +24,8 @@ TaskRun::TaskRun(const SweepFolder& folder, const std::string& name) {
   const auto task = parse_number<std::int64_t>(name.substr(second + 1));
   if (!array || *array >= submission_.arrays.size() || !task || *task < 0 ||
       *task >= submission_.arrays[*array].tasks()) {
-    throw InputError("--task " + name + ": submission " + submission_.name() + " has no such task");
+    throw InputError("--task " + name + ": submission " + submission_.name() +
+                     " has no such task; `strut run` without --task does all that is missing");
   }
   shards_ = submission_.arrays[*array].get_task(*task);
   file_ = submission_.tasks(*array) / std::to_string(*task);

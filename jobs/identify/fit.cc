@@ -13,7 +13,9 @@
 #include "jobs/identify/fit_report.h"
 #include "jobs/lists.h"
 #include "jobs/load_case.h"
+#include "jobs/messages.h"
 #include "jobs/output_file.h"
+#include "jobs/progress.h"
 #include "sweep/find_channel.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
@@ -47,7 +49,8 @@ std::vector<int> read_channels(const Arguments& arguments) {
   std::vector<int> channels;
   for (const std::string& name : split_list(arguments.text("channels"))) {
     const int channel = name_option("channels", [&] { return find_car_channel(name); });
-    if (channel == CarChannel::kTime) throw InputError("--channels: time is the abscissa");
+    if (channel == CarChannel::kTime)
+      throw InputError("--channels: time is the abscissa; name what was measured at it");
     channels.push_back(channel);
   }
   if (channels.empty()) throw InputError("--channels: empty; allowed: names of channels");
@@ -100,10 +103,9 @@ void tell_constant(const MeasuredRun& run) {
     const bool constant = std::all_of(c.values.begin(), c.values.end(),
                                       [first](double value) { return value == first; });
     if (!constant || c.values.size() < 2) continue;
-    std::cerr << "strut: " << run.name << ": "
-              << list_car_channels()[static_cast<std::size_t>(c.channel)].name << " is "
-              << format_number(first) << " in all " << c.values.size()
-              << " readings: does its sensor work?\n";
+    tell_note(run.name + ": " + list_car_channels()[static_cast<std::size_t>(c.channel)].name +
+              " is " + format_number(first) + " in all " + std::to_string(c.values.size()) +
+              " readings: does its sensor work?");
   }
 }
 
@@ -116,11 +118,14 @@ MeasuredRun read_run(const Arguments& arguments, const fs::path& file, const Cas
     run.channels.push_back({c, noise[at], measurement.values(list_car_channels()[at].name)});
   }
   check_measured_run(run);
+  const double first = run.times.front(), last = run.times.back();
   if (arguments.has("window")) {
     const auto [from, to] = read_window(arguments);
     cut_window(run, from, to);
   }
-  if (run.times.empty()) throw InputError("--window: no sample of " + run.name + " lies in it");
+  if (run.times.empty())
+    throw InputError("--window: no sample of " + run.name + " lies in it; its times are " +
+                     format_number(first) + " to " + format_number(last) + " s");
   tell_constant(run);
   return run;
 }
@@ -210,10 +215,14 @@ void require_fit_arguments(const Arguments& arguments, const fs::path& vehicle,
   }
   if (arguments.is_on("extrapolate")) throw InputError("--extrapolate: allowed with a model only");
   if (find_rig_kind(vehicle)) {
-    throw InputError(vehicle.string() + ": is a rig; identify fits cars only");
+    throw InputError(vehicle.string() +
+                     ": is a rig; identify fits cars only, `strut compare` calibrates rigs");
   }
-  if (files.empty()) throw arguments.usage_error("MEASURED: missing");
-  if (!arguments.has("maneuver")) throw arguments.usage_error("--maneuver: missing");
+  if (files.empty())
+    throw arguments.usage_error(
+        "MEASURED: missing; name a history with a column time and the --channels");
+  if (!arguments.has("maneuver"))
+    throw arguments.usage_error("--maneuver: missing; give the file of what was driven");
 }
 
 /// Where --output goes, so that a fit is not made in vain; none without that option.
@@ -227,7 +236,7 @@ std::optional<fs::path> find_table_file(const Arguments& arguments) {
 }  // namespace
 
 void add_fit_options(Arguments& arguments) {
-  arguments.add_list("maneuver", "FILE",
+  arguments.add_list("maneuver", ArgumentValue::file("FILE", {"toml"}),
                      "fit: what was driven; one for all measured files or, repeated, one\n"
                      "each");
   arguments.add_option("free", "NAME,...",
@@ -263,7 +272,13 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   for (const std::string& setting : arguments.list("prior")) apply_prior(unknowns, setting);
   FitOptions options;
   options.linearize.threads = static_cast<int>(arguments.integer_or("threads", 1, 1, 1024));
-  const FitResult fit = fit_simulation(runs, unknowns, options);
+  tell_detail(std::to_string(unknowns.size()) + " unknowns, " +
+              std::to_string(options.linearize.threads) + " threads");
+  const FitResult fit = [&] {
+    const Stage stage("fit");
+    const ProgressLine line("fitting the simulation to " + std::to_string(runs.size()) + " runs");
+    return fit_simulation(runs, unknowns, options);
+  }();
 
   const IdentifiedRow row = make_fit_row(fit, parameter_count);
   if (output) write_identified_csv(*output, {row});
@@ -273,6 +288,14 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
     print_fit(fit, runs, parameter_count);
   }
   const bool held = std::find(fit.at_bound.begin(), fit.at_bound.end(), true) != fit.at_bound.end();
+  if (!row.in_range()) {
+    tell_next({"strut", "design", "SWEEP.toml"}, "which channels and instants tell what is open");
+  } else if (fit.converged && fit.is_adequate()) {
+    tell_next_simulation({row}, vehicle.string(), arguments.list("maneuver").front());
+  } else {
+    tell_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
+              "which channel the model gets wrong, and when");
+  }
   return fit.converged && row.in_range() && !held ? kExitDone : kExitNo;
 }
 

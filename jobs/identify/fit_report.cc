@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <limits>
 
 #include "io/config.h"
+#include "jobs/messages.h"
 #include "train/interval.h"
 
 namespace strut {
@@ -102,55 +102,56 @@ Json make_correlation_json(const FitResult& fit, std::size_t count) {
 }
 
 void tell_quality(const FitResult& fit) {
-  std::cerr << "strut: chi2 per degree of freedom " << format_short(fit.chi2_per_degree()) << " ("
-            << fit.degrees << " degrees), " << fit.iterations << " iterations, " << fit.simulations
-            << " simulations\n";
+  tell_note("chi2 per degree of freedom " + format_short(fit.chi2_per_degree()) + " (" +
+            std::to_string(fit.degrees) + " degrees), " + std::to_string(fit.iterations) +
+            " iterations, " + std::to_string(fit.simulations) + " simulations");
   if (fit.outside > 0) {
-    std::cerr
-        << "strut: " << fit.outside
-        << " readings left aside: before the maneuver or after its duration for some possible "
-           "hit time\n";
+    tell_note(std::to_string(fit.outside) +
+              " readings left aside: before the maneuver or after its duration for some possible "
+              "hit time");
   }
   if (!fit.converged) {
-    std::cerr << "strut: not converged: the minimum is some " << format_short(fit.distance)
-              << " standard deviations away; either the model does not fit at all, or it needs a "
-                 "nearer start (--set, --prior)\n";
+    tell_error("not converged: the minimum is some " + format_short(fit.distance) +
+               " standard deviations away; either the model does not fit at all, or it needs a "
+               "nearer start (--set, --prior)");
   } else if (fit.at_kink) {
-    std::cerr << "strut: ends at a kink of chi2, where a contact event passes a reading, some "
-              << format_short(fit.distance) << " standard deviations from the minimum\n";
+    tell_note("ends at a kink of chi2, where a contact event passes a reading, some " +
+              format_short(fit.distance) + " standard deviations from the minimum");
   }
 }
 
 /// Whether the noise is what it is said to be.
 void tell_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
   if (fit.is_quiet()) {
-    std::cerr << "strut: the residuals are smaller than the noise, which seems to be smaller than "
-                 "assumed (--noise); the intervals are too wide\n";
+    tell_note(
+        "the residuals are smaller than the noise, which seems to be smaller than assumed "
+        "(--noise); the intervals are too wide");
   }
   if (fit.is_adequate()) return;
-  std::cerr << "strut: the residuals are larger than the noise: the model lacks something or the "
-               "noise is larger (--noise); the intervals are too narrow\n";
+  tell_note(
+      "the residuals are larger than the noise: the model lacks something or the noise is "
+      "larger (--noise); the intervals are too narrow");
   for (const ChannelFit& c : fit.channels) {
-    std::cerr << "strut:   " << get_file_name(runs, c) << ": " << get_channel_name(c) << ": chi2 "
-              << format_short(calc_chi2_per_reading(c)) << " per reading, neighboring residuals "
-              << "correlate by " << format_short(c.neighbor_correlation) << "\n";
+    tell_note("  " + get_file_name(runs, c) + ": " + get_channel_name(c) + ": chi2 " +
+              format_short(calc_chi2_per_reading(c)) +
+              " per reading, neighboring residuals correlate by " +
+              format_short(c.neighbor_correlation));
   }
 }
 
 void tell_open(const FitResult& fit) {
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
     if (!fit.at_bound[i]) continue;
-    std::cerr << "strut: " << fit.unknowns[i].name << " = " << format_number(fit.values[i]) << " "
-              << fit.unknowns[i].unit << ": held by its bound"
-              << (fit.unknowns[i].prior.informs() ? ", beyond what --prior says of it" : "")
-              << "\n";
+    const std::string beyond =
+        fit.unknowns[i].prior.informs() ? ", beyond what --prior says of it" : "";
+    tell_error(fit.unknowns[i].name + " = " + format_number(fit.values[i]) + " " +
+               fit.unknowns[i].unit + ": held by its bound" + beyond);
   }
   for (const NullDirection& d : fit.uncertainty.null_directions) {
-    std::cerr << "strut: not identifiable: " << describe_direction(d, fit.unknowns)
-              << (std::isfinite(d.sigma)
-                      ? ", known to " + format_short(100.0 * d.sigma) + " % (1 sigma) only"
-                      : ", which moves no reading")
-              << "\n";
+    tell_error("not identifiable: " + describe_direction(d, fit.unknowns) +
+               (std::isfinite(d.sigma)
+                    ? ", known to " + format_short(100.0 * d.sigma) + " % (1 sigma) only"
+                    : ", which moves no reading"));
   }
 }
 

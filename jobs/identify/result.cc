@@ -8,6 +8,7 @@
 #include "io/config.h"
 #include "io/csv.h"
 #include "jobs/command.h"
+#include "jobs/messages.h"
 #include "jobs/output_file.h"
 #include "jobs/progress.h"
 
@@ -128,14 +129,13 @@ std::string describe_excess(const OutsideChannel& channel) {
 
 void tell_outside(const IdentifiedRow& row) {
   for (const OutsideChannel& channel : row.outside) {
-    std::cerr << "strut: " << row.place << ": " << channel.name << " = "
-              << format_number(channel.value) << " " << channel.unit << ": "
-              << describe_excess(channel) << "\n";
+    tell_error(row.place + ": " + channel.name + " = " + format_number(channel.value) + " " +
+               channel.unit + ": " + describe_excess(channel));
   }
   for (const IdentifiedParameter& p : row.parameters) {
     if (p.in_range || !row.outside.empty()) continue;
-    std::cerr << "strut: " << row.place << ": " << p.name << " = " << format_number(p.value) << " "
-              << p.unit << " lies outside of the range trained on\n";
+    tell_error(row.place + ": " + p.name + " = " + format_number(p.value) + " " + p.unit +
+               " lies outside of the range trained on");
   }
 }
 
@@ -147,9 +147,9 @@ void tell_trouble(const std::vector<IdentifiedRow>& rows) {
     if (told++ < kMostTold) tell_outside(row);
   }
   if (rows.size() > 1 && troubled > 0) {
-    std::cerr << "strut: " << format_count(static_cast<std::int64_t>(troubled)) << " of "
-              << format_count(static_cast<std::int64_t>(rows.size()))
-              << " rows are outside of the range trained on\n";
+    tell_error(format_count(static_cast<std::int64_t>(troubled)) + " of " +
+               format_count(static_cast<std::int64_t>(rows.size())) +
+               " rows are outside of the range trained on");
   }
 }
 
@@ -202,9 +202,18 @@ void write_identified_csv(const std::filesystem::path& path,
 }
 
 void add_result_options(Arguments& arguments) {
-  arguments.add_option("output,o", "FILE", "write a table (CSV)");
+  arguments.add_option("output,o", ArgumentValue::file("FILE", {"csv"}), "write a table (CSV)");
   arguments.add_switch("force", "replace FILE where it exists");
   arguments.add_switch("json", "print JSON");
+}
+
+void tell_next_simulation(const std::vector<IdentifiedRow>& rows, const std::string& vehicle,
+                          const std::string& maneuver) {
+  std::vector<std::string> words = {"strut", "simulate", vehicle, maneuver, "-o", "identified.csv"};
+  for (const IdentifiedParameter& p : rows.front().parameters) {
+    words.insert(words.end(), {"--set", p.name + "=" + format_value(p)});
+  }
+  tell_next(words, rows.size() == 1 ? "" : "the first of these rows");
 }
 
 int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& rows) {
@@ -216,7 +225,13 @@ int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>
   } else {
     print_identified(rows);
   }
-  return are_in_range(rows) ? kExitDone : kExitNo;
+  if (!are_in_range(rows)) {
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", "sweep"},
+              "a sweep whose grid reaches to what was measured, for a network that knows it");
+    return kExitNo;
+  }
+  tell_next_simulation(rows);
+  return kExitDone;
 }
 
 }  // namespace strut

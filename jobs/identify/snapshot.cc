@@ -66,8 +66,10 @@ std::vector<double> read_settings(const Arguments& arguments, const Model& model
   for (const std::string& setting : arguments.list(option)) {
     const auto [name, value] = parse_setting(setting);
     double& place = values[find_input(model, option, name)];
-    if (!std::isfinite(value)) throw InputError("--" + option + ": " + setting + ": not finite");
-    if (!std::isnan(place)) throw InputError("--" + option + ": '" + name + "' twice");
+    if (!std::isfinite(value))
+      throw InputError("--" + option + ": " + setting + ": not finite; must be a number");
+    if (!std::isnan(place))
+      throw InputError("--" + option + ": '" + name + "' twice; allowed: once");
     place = value;
   }
   return values;
@@ -118,7 +120,7 @@ void append_instant(const Model& model, const Measurement& history, double time,
   const auto unordered = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>());
   if (unordered != times.end()) {
     throw InputError(history.locate(static_cast<std::size_t>(unordered - times.begin()) + 1) +
-                     ": time must ascend");
+                     ": time must ascend; sort or cut the file there");
   }
   if (!(time >= times.front() && time <= times.back())) {
     throw InputError(history.path.string() + ": --event-time = " + format_number(time) +
@@ -165,7 +167,9 @@ Snapshots read_snapshots(const Arguments& arguments, const Model& model,
     throw arguments.usage_error("--set gives the snapshot: name no file beside it");
   }
   if (arguments.has("set")) return read_command_line(arguments, model);
-  if (files.empty()) throw arguments.usage_error("MEASURED: missing");
+  if (files.empty())
+    throw arguments.usage_error(
+        "MEASURED: missing; name a table with a column for each input, or give --set");
   Snapshots snapshots;
   for (const fs::path& file : files) append_file(arguments, model, file, snapshots);
   return snapshots;

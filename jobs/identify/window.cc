@@ -47,7 +47,8 @@ void require_rate(const Measurement& measurement, double interval) {
 void require_times(const Measurement& measurement, double interval) {
   const std::vector<double>& times = measurement.values(kTime);
   for (std::size_t i = 1; i < times.size(); ++i) {
-    if (!(times[i] > times[i - 1])) throw InputError(measurement.locate(i) + ": time must ascend");
+    if (!(times[i] > times[i - 1]))
+      throw InputError(measurement.locate(i) + ": time must ascend; sort or cut the file there");
   }
   if (times.size() > 1) require_rate(measurement, interval);
 }
@@ -102,7 +103,8 @@ TimeGrid find_grid(const WindowTransform& window, const Measurement& measurement
     throw InputError(measurement.path.string() + ": the record is from " +
                      format_rounded(times.front()) + " to " + format_rounded(times.back()) +
                      " s; the window takes " + format_rounded(needed) + " s" +
-                     (aligned ? "" : " from " + format_rounded(grid.begin) + " s on"));
+                     (aligned ? "" : " from " + format_rounded(grid.begin) + " s on") +
+                     "; record longer, or `strut train` with a shorter --window");
   }
   return grid;
 }
@@ -193,7 +195,8 @@ IdentifiedRow identify_record(const Model& model, const Identifier& identifier,
 
 int identify_by_window(const Arguments& arguments, const Model& model,
                        const std::vector<fs::path>& files) {
-  if (files.empty()) throw arguments.usage_error("MEASURED: missing");
+  if (files.empty())
+    throw arguments.usage_error("MEASURED: missing; name a history with the model's channels");
   for (const char* option : {"set", "event-time", "noise"}) {
     if (!arguments.has(option)) continue;
     throw InputError("--" + std::string(option) +

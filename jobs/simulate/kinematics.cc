@@ -48,7 +48,7 @@ void write_kinematics(const CaseSource& source, const std::filesystem::path& out
   for (const KinematicsPoint& p : front) write_row(stream, p, "front");
   for (const KinematicsPoint& p : rear) write_row(stream, p, "rear");
   stream.close();
-  if (!stream) throw EnvironmentError(output.string() + ": cannot be written: disk full?");
+  if (!stream) throw EnvironmentError(output.string() + ": cannot be written: is its disk full?");
   file.commit();
 }
 

@@ -2,9 +2,10 @@
 
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 
 #include "jobs/command.h"
+#include "jobs/messages.h"
+#include "jobs/progress.h"
 #include "jobs/run_file.h"
 #include "model/effects/read_out.h"
 #include "model/integrate/rig_system.h"
@@ -35,9 +36,12 @@ int explain_failure(const SimulateOptions& options, const RigSpec& rig, const Ri
                      options.source.maneuver.string() + " diverged at t = " + at + "; a step of " +
                      format_number(shorter.step) + " s runs through");
   }
-  std::cerr << "strut simulate: the run failed at t = " << at
-            << ": the motion is no longer finite, nor with a step of "
-            << format_number(shorter.step) << " s; nothing was written\n";
+  tell_error("the run failed at t = " + at +
+             ": the motion is no longer finite, nor with a step of " + format_number(shorter.step) +
+             " s; nothing was written");
+  tell_next({"strut", "simulate", options.source.vehicle.string(), options.source.maneuver.string(),
+             "-o", options.output.string(), "--set", "NAME=VALUE"},
+            "with a parameter nearer to a rig's");
   return kExitNo;
 }
 
@@ -77,9 +81,12 @@ int run_rig(const SimulateOptions& options, RigKind kind) {
   run.channels = &list_rig_channels(kind);
   const auto start = std::chrono::steady_clock::now();
   const ReadOut out(*run.channels, {&rig.effects});
-  run.results = simulate_readings(out, plan, [&](const SamplePlan& record) {
-    return simulate_rig(rig, maneuver.inputs, options.integrate.step, record);
-  });
+  {
+    const ProgressLine line("simulating " + format_duration(maneuver.duration));
+    run.results = simulate_readings(out, plan, [&](const SamplePlan& record) {
+      return simulate_rig(rig, maneuver.inputs, options.integrate.step, record);
+    });
+  }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (run.results.status[0] != 0) {
@@ -88,9 +95,11 @@ int run_rig(const SimulateOptions& options, RigKind kind) {
   describe_run(options, rig, kind, run);
   write_run(options.output, format, run);
   char line[160];
-  std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s\n",
+  std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s",
                 run.results.sample_count, run.channels->size(), maneuver.duration, seconds);
-  std::cerr << options.output.string() << line;
+  tell_note(options.output.string() + line);
+  tell_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
+            "measured runs against this rig");
   return kExitDone;
 }
 

@@ -46,7 +46,7 @@ Columns make_columns(const std::vector<std::string>& parameters, std::size_t row
 CsvTable read_table(const std::filesystem::path& file) {
   CsvTable table = read_csv(file);
   if (table.row_count() > 0) return table;
-  throw InputError(file.string() + ": no rows");
+  throw InputError(file.string() + ": no rows; remove it, and `strut study` computes it anew");
 }
 
 BoundedCase read_case(const CsvTable& table, const std::vector<std::string>& parameters,

@@ -1,0 +1,163 @@
+#include "jobs/man_page.h"
+
+#include <unistd.h>
+
+#include <iostream>
+#include <sstream>
+
+#include "jobs/build_info.h"
+#include "jobs/commands.h"
+#include "jobs/messages.h"
+
+namespace strut {
+namespace {
+
+/// As text of a line: neither an escape nor a request; dashes stay those of a keyboard.
+std::string escape(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '\\') {
+      escaped += "\\e";
+    } else if (c == '-' || c == '\'' || c == '`' || c == '^' || c == '~') {
+      escaped += c == '-'    ? "\\-"
+                 : c == '\'' ? "\\(aq"
+                 : c == '`'  ? "\\(ga"
+                 : c == '^'  ? "\\(ha"
+                             : "\\(ti";
+    } else {
+      escaped += c == '\n' ? ' ' : c;
+    }
+  }
+  return (escaped.starts_with('.') ? "\\&" : "") + escaped;
+}
+
+std::string bold(const std::string& text) { return "\\fB" + escape(text) + "\\fR"; }
+std::string italic(const std::string& text) { return "\\fI" + escape(text) + "\\fR"; }
+
+std::string make_section(const std::string& title) { return ".SH " + title + "\n"; }
+
+/// Lines as they are.
+std::string make_verbatim(const std::string& text) {
+  std::string page = ".PP\n.nf\n";
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) page += escape(line) + "\n";
+  return page + ".fi\n";
+}
+
+/// A paragraph; lines that begin with a blank are a list and stay as they are.
+std::string make_text(const std::string& text) {
+  std::string page, paragraph, list;
+  const auto flush = [&page](std::string& part, const auto& make) {
+    if (!part.empty()) page += make(part);
+    part.clear();
+  };
+  const auto make_paragraph = [](const std::string& part) { return ".PP\n" + part; };
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(' ')) {
+      flush(paragraph, make_paragraph);
+      list += line + "\n";
+    } else {
+      flush(list, make_verbatim);
+      paragraph += escape(line) + "\n";
+    }
+  }
+  flush(list, make_verbatim);
+  flush(paragraph, make_paragraph);
+  return page;
+}
+
+/// Several ways to call a command stand below each other in the help.
+std::string make_synopsis(const std::string& synopsis) {
+  std::string page = ".PP\n.nf\n";
+  std::istringstream lines(synopsis);
+  for (std::string line; std::getline(lines, line);) {
+    page += escape(line.substr(line.find_first_not_of(' '))) + "\n";
+  }
+  return page + ".fi\n";
+}
+
+std::string make_item(const std::string& label, const std::string& text) {
+  return ".TP\n" + label + "\n" + escape(text) + "\n";
+}
+
+std::string make_option(const ArgumentOption& option) {
+  std::string label = option.letter.empty() ? "" : bold("-" + option.letter) + ", ";
+  label += bold("--" + option.name);
+  if (!option.is_switch) label += " " + italic(option.value.name);
+  return make_item(label, option.help);
+}
+
+std::string make_options(const std::vector<ArgumentOption>& options) {
+  std::string page;
+  for (const ArgumentOption& option : options) page += make_option(option);
+  return page;
+}
+
+std::string make_command(const Command& command) {
+  const Arguments arguments = command.describe();
+  return ".SS strut " + std::string(command.name) + "\n" + make_text(command.purpose) +
+         make_synopsis(arguments.synopsis()) + make_text(arguments.description()) +
+         make_options(arguments.options()) + ".PP\nExamples:\n" +
+         make_verbatim(arguments.examples());
+}
+
+std::string make_exit_codes() {
+  std::string page;
+  for (const ExitMeaning& exit : list_exit_meanings()) {
+    page += make_item(bold(exit.code), exit.meaning);
+  }
+  return page;
+}
+
+constexpr const char* kDescription =
+    "Simulates cars over bumps by the thousand, trains networks on the results that tell a car's "
+    "springs and dampers from how its body moves, and compares measured runs with the simulation: "
+    "what it gets wrong, why, and what mending it gains. Data goes to standard output or the named "
+    "file, messages to standard error.";
+
+constexpr const char* kWay =
+    "  strut plan examples/sweeps/paper.toml -o sweep\n"
+    "  strut run sweep\n"
+    "  strut verify sweep\n"
+    "  strut train sweep -o model.h5\n"
+    "  strut identify model.h5 measured.csv";
+
+}  // namespace
+
+Arguments describe_man_page() {
+  return {"strut man",
+          "Prints the manual page strut(1) in troff's man macros. An installed strut brings it "
+          "along.",
+          "  strut man | man -l -"};
+}
+
+int run_man_page(const Arguments& arguments) {
+  if (!arguments.positional().empty()) throw arguments.usage_error("expected no arguments");
+  std::cout << make_man_page();
+  if (isatty(STDOUT_FILENO) == 1) tell_next_line("strut man | man -l -");
+  return kExitDone;
+}
+
+std::string make_man_page() {
+  std::string page =
+      ".TH STRUT 1 \"\" \"strut " + escape(get_build_info().version) + "\" \"User Commands\"\n" +
+      make_section("NAME") + "strut \\- simulate suspensions, identify and diagnose them\n" +
+      make_section("SYNOPSIS") +
+      make_verbatim(
+          "strut COMMAND [ARGUMENTS]\n"
+          "strut help COMMAND\n"
+          "strut --version") +
+      make_section("DESCRIPTION") + make_text(kDescription) + make_section("COMMANDS");
+  for (const Command& command : list_commands()) page += make_command(command);
+  return page + make_section("OPTIONS OF EVERY COMMAND") +
+         make_options(Arguments::common_options()) + make_section("EXIT STATUS") +
+         make_exit_codes() + make_section("ENVIRONMENT") +
+         make_item(bold("NO_COLOR"), "set and not empty: no colors on a terminal") +
+         make_item(bold("TERM"), "dumb: neither colors nor lines that change in place") +
+         make_section("EXAMPLES") + make_text("From a sweep to what a car has:") +
+         make_verbatim(kWay) + make_section("SEE ALSO") +
+         make_text("The documents in the folder docs of the sources.");
+}
+
+}  // namespace strut

@@ -1,0 +1,33 @@
+#include "jobs/terminal.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+
+namespace strut {
+namespace {
+
+std::string read_variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+}  // namespace
+
+bool is_live_terminal(int descriptor) {
+  const std::string kind = read_variable("TERM");
+  return isatty(descriptor) == 1 && !kind.empty() && kind != "dumb";
+}
+
+bool shows_colors(int descriptor) {
+  return read_variable("NO_COLOR").empty() && is_live_terminal(descriptor);
+}
+
+std::string paint(const std::string& text, Style style, int descriptor) {
+  constexpr std::array<const char*, 3> kBegin = {"\033[31m", "\033[1m", "\033[2m"};  // Style
+  if (!shows_colors(descriptor)) return text;
+  return kBegin[static_cast<std::size_t>(style)] + text + "\033[0m";
+}
+
+}  // namespace strut
