@@ -95,7 +95,8 @@ TEST_CASE("A choice that is refused names those of the table", "[io]") {
 }
 
 /// What bash offers for the last of the words, by the script in `folder`.
-std::set<std::string> complete(const TemporaryFolder& folder, std::vector<std::string> words) {
+std::set<std::string> complete(const TemporaryFolder& folder,
+                               const std::vector<std::string>& words) {
   std::string line = "cd " + quote_word(folder / "files") + "; source " +
                      quote_word(folder / "strut.bash") + "; COMP_WORDS=(strut";
   for (const std::string& word : words) line += " " + quote_word(word);
