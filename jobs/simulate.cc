@@ -15,9 +15,9 @@
 #include "jobs/run_file.h"
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
-#include "model/effects/read_out.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
+#include "sweep/simulate_case.h"
 
 namespace strut {
 namespace {
@@ -114,19 +114,12 @@ SimulateOptions read_options(const Arguments& arguments) {
 
 LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
                       const StepOptions& step) {
-  SamplePlan plan;
-  plan.interval = 1.0 / options.rate;
-  const ReadOut out(list_car_channels(), {&c.sensors});
-  return simulate_readings(out, plan, [&](const SamplePlan& record) {
-    if (options.integrator == kCvode) {
-      ReferenceOptions reference;
-      reference.closure = options.integrate.closure;
-      return run_cvode(c, reference, record);
-    }
-    IntegrateOptions integrate = options.integrate;
-    integrate.step = step;
-    return list_kernels().front().run_scalar(c, integrate, record);
-  });
+  IntegrateRequest request;
+  request.solver = options.integrator == kCvode ? Solver::kCvode : Solver::kLanes;
+  request.options = options.integrate;
+  request.options.step = step;
+  request.reference.closure = options.integrate.closure;
+  return simulate_case(c, request, 1.0 / options.rate);
 }
 
 /// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.
