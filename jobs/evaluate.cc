@@ -29,7 +29,7 @@ Arguments make_arguments() {
 
 }  // namespace
 
-Json make_json(const Model& model, const Evaluation& evaluation) {
+Json make_json(const Model& model, const ModelEvaluation& evaluation) {
   Json parameters = Json::object();
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const Metrics& m = evaluation.metrics[i];
@@ -48,7 +48,7 @@ Json make_json(const Model& model, const Evaluation& evaluation) {
   return json;
 }
 
-void print_table(const Model& model, const Evaluation& evaluation) {
+void print_table(const Model& model, const ModelEvaluation& evaluation) {
   std::printf("%-24s%-8s%12s%12s%12s%12s%12s\n", "parameter", "unit", "ME", "MAE", "MAPE %", "RMSE",
               "1 - R2");
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
@@ -78,7 +78,7 @@ int run_evaluate(const std::vector<std::string>& words) {
   const int own = dataset.plan_hash() == model.plan_hash ? 0 : 1;
   const bool all = arguments.choice_or("part", own, {"test", "all"}) == 1;
   const EvaluatedPart part = all ? EvaluatedPart::kAll : EvaluatedPart::kTest;
-  const Evaluation evaluation = evaluate_model(model, dataset, part);
+  const ModelEvaluation evaluation = evaluate_model(model, dataset, part);
   if (arguments.is_on("json")) {
     std::cout << make_json(model, evaluation).dump() << "\n";
     return kExitDone;

@@ -12,9 +12,9 @@ namespace strut {
 int run_evaluate(const std::vector<std::string>& arguments);
 
 /// {"parameters": {"front_stiffness": {"ME":, "MAE":, "MAPE":, "RMSE":, "R2":}, ...}, "samples":}
-Json make_json(const Model& model, const Evaluation& evaluation);
+Json make_json(const Model& model, const ModelEvaluation& evaluation);
 
 /// The same as a table for people.
-void print_table(const Model& model, const Evaluation& evaluation);
+void print_table(const Model& model, const ModelEvaluation& evaluation);
 
 }  // namespace strut

@@ -72,7 +72,7 @@ void refuse_options(const Arguments& arguments, std::initializer_list<const char
 
 void read_integration(const Arguments& arguments, SimulateOptions& options) {
   options.integrator = arguments.choice_or("integrator", 0, kIntegrators);
-  if (options.integrator == kCvode) {
+  if (options.integrator == kIntegratorCvode) {
     refuse_options(arguments, {"step", "coarse-step", "spin", "no-events"},
                    "cvode chooses its own; allowed with rk4, abm4");
   }
@@ -81,7 +81,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   step.step = arguments.number_or("step", step.step,
                                   {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
-  step.stepper = options.integrator == kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.stepper = options.integrator == kIntegratorAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.locate_events = !arguments.is_on("no-events");
   integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0, kClosures));
   integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0, kSpins));
@@ -115,7 +115,7 @@ SimulateOptions read_options(const Arguments& arguments) {
 LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
                       const StepOptions& step) {
   IntegrateRequest request;
-  request.solver = options.integrator == kCvode ? Solver::kCvode : Solver::kLanes;
+  request.solver = options.integrator == kIntegratorCvode ? Solver::kCvode : Solver::kLanes;
   request.options = options.integrate;
   request.options.step = step;
   request.reference.closure = options.integrate.closure;
@@ -127,7 +127,7 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
                     const LaneResults& results) {
   const std::string at = format_number(results.failure_time[0]) + " s";
   const bool out = results.status[0] == static_cast<int>(RunStatus::kOutOfTravel);
-  if (options.integrator != kCvode) {
+  if (options.integrator != kIntegratorCvode) {
     const StepOptions& step = options.integrate.step;
     StepOptions shorter = step;
     shorter.step = kRetryFraction * step.step;
@@ -150,7 +150,7 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
 std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOptions& options,
                                                               const LaneResults& results) {
   const IntegrateOptions& integrate = options.integrate;
-  const bool cvode = options.integrator == kCvode;
+  const bool cvode = options.integrator == kIntegratorCvode;
   auto list = describe_program(options.source);
   list.insert(
       list.end(),

@@ -13,8 +13,9 @@ namespace {
 
 void identify_by_network(const char* model_file, const char* run_file) {
   const strut::Model model = strut::read_model(model_file);
-  const strut::Measurement snapshot =
-      strut::read_measurement(run_file, {strut::list_names(model.inputs)});
+  std::vector<std::string> names;
+  for (const auto& input : model.inputs) names.push_back(input.name);
+  const strut::Measurement snapshot = strut::read_measurement(run_file, {names});
   std::vector<double> inputs, values(model.targets.size());
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     const auto [low, high] = std::pair{model.input_map.low()[i], model.input_map.high()[i]};

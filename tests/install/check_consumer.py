@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 
@@ -112,6 +113,17 @@ def check_identification(build, strut, car, sweep, folder):
     check(abs(own["fit front_stiffness"] - 38200) < 10, f"the fit found another car: {own}")
 
 
+def check_own_examples(strut):
+    """Without files the benchmark takes the examples installed with it: it starts to measure."""
+    with subprocess.Popen([strut, "bench", "--quick"], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True) as bench:
+        told = ""
+        while "measuring" not in told and (line := bench.stderr.readline()):
+            told += line
+        bench.terminate()
+    check("measuring" in told, f"strut bench: {told}")
+
+
 def main():
     build, source = pathlib.Path(sys.argv[1]), pathlib.Path(__file__).resolve().parents[2]
     cache = read_cache(build)
@@ -136,8 +148,7 @@ def main():
         check_simulation(folder / "plain", strut, car, folder)
         check_sweep(folder / "plain", strut, examples / "api/small_sweep.toml", sweep)
         check_identification(folder / "plain", strut, car, sweep, folder)
-        bench = json.loads(run(strut, "bench", "--quick", "--json"))
-        check(bench["single_core"]["lanes"]["runs_per_s"] > 0, "bench found no examples")
+        check_own_examples(strut)
 
 
 main()
