@@ -8,9 +8,12 @@
 # Nothing of it knows its prefix: a tree that is moved still works.
 include(CMakePackageConfigHelpers)
 
+set(strut_of_programs OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+  WORLD_READ WORLD_EXECUTE)
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/strut/examples
-  USE_SOURCE_PERMISSIONS
-  PATTERN __pycache__ EXCLUDE)
+  PATTERN __pycache__ EXCLUDE
+  PATTERN *.py PERMISSIONS ${strut_of_programs}
+  PATTERN run_loop PERMISSIONS ${strut_of_programs})
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES .ci/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})

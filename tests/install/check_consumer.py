@@ -80,7 +80,8 @@ def check_simulation(build, strut, car, folder):
     told = json.loads(run(strut, "simulate", *car, "--set", "front_left_stiffness=38000", "--json",
                           "-o", folder / "one.csv"))
     own = read_lines(run(build / "simulate_one_run", *car))
-    check(own["event_time"] == told["event_time"], f"{own}, {told}")
+    check(own["event_time"] == told["event_time"],
+          f"event_time: {own['event_time']}, strut simulate: {told['event_time']}")
     check(len(told["snapshot"]) == 5, "the program's snapshot")
     for name, value in told["snapshot"].items():
         check(own[name] == value, f"{name}: {own[name]}, strut simulate: {value}")
