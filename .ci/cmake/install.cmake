@@ -37,23 +37,26 @@ foreach(room IN LISTS strut_rooms)
   endif()
 endforeach()
 
-# Inline functions of Eigen are compiled here and there, and the linker keeps one of each: both must
-# agree on threads and on alignment, which Eigen takes from -march. model/math/eigen_abi.h compares.
+# Matrices of Eigen are allocated here and freed there, and of its inline functions the linker keeps
+# one of each: both sides must agree on threads, on alignment, which Eigen takes from -march and which
+# model/math/eigen_abi.h compares, and on the heap, which Eigen takes otherwise for -fsanitize=address.
 separate_arguments(strut_flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
 get_target_property(strut_eigen_folders Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 list(TRANSFORM strut_eigen_folders PREPEND -I)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/eigen_alignment.cc
-  "#include <Eigen/Core>\nstrut_alignment EIGEN_DEFAULT_ALIGN_BYTES EIGEN_MAX_STATIC_ALIGN_BYTES\n")
+  "#include <Eigen/Core>\nstrut_alignment EIGEN_DEFAULT_ALIGN_BYTES EIGEN_MAX_STATIC_ALIGN_BYTES \
+EIGEN_MALLOC_ALREADY_ALIGNED\n")
 execute_process(
   COMMAND ${CMAKE_CXX_COMPILER} ${strut_flags} ${strut_eigen_folders} -E -P
     ${CMAKE_CURRENT_BINARY_DIR}/eigen_alignment.cc
   OUTPUT_VARIABLE strut_preprocessed COMMAND_ERROR_IS_FATAL ANY)
-if(NOT strut_preprocessed MATCHES "strut_alignment ([0-9]+) ([0-9]+)")
+if(NOT strut_preprocessed MATCHES "strut_alignment ([0-9]+) ([0-9]+) ([01])")
   message(FATAL_ERROR "Eigen/Core does not tell its alignment")
 endif()
 foreach(room IN ITEMS sweep diagnose)
   target_compile_definitions(strut_${room} INTERFACE
     $<INSTALL_INTERFACE:EIGEN_DONT_PARALLELIZE>
+    $<INSTALL_INTERFACE:EIGEN_MALLOC_ALREADY_ALIGNED=${CMAKE_MATCH_3}>
     $<INSTALL_INTERFACE:STRUT_EIGEN_HEAP_ALIGNMENT=${CMAKE_MATCH_1}>
     $<INSTALL_INTERFACE:STRUT_EIGEN_STATIC_ALIGNMENT=${CMAKE_MATCH_2}>)
 endforeach()

@@ -60,7 +60,8 @@ def check_interface(build, source):
         check(str(source) not in command, f"the sources are named: {command}")
         check("-std=gnu++20" in command or "-std=c++20" in command, f"not C++20: {command}")
         check(not re.search(r" -(W|fsanitize|m|fno-|fopenmp|O)", command), f"flags leak: {command}")
-        check(" -DEIGEN_DONT_PARALLELIZE" in command, f"not told how to use Eigen: {command}")
+        for word in ("EIGEN_DONT_PARALLELIZE", "EIGEN_MALLOC_ALREADY_ALIGNED="):
+            check(f" -D{word}" in command, f"not told how to use Eigen: {command}")
 
 
 def check_other_alignment(project, folder, prefix, cache):
