@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diagnose/whitener.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

@@ -10,6 +10,7 @@
 
 #include "diagnose/hypothesis.h"
 #include "diagnose/whitener.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

@@ -8,6 +8,7 @@
 
 #include "diagnose/reading_model.h"
 #include "diagnose/run_readings.h"
+#include "model/math/eigen_abi.h"
 #include "sweep/parameters.h"
 #include "sweep/run_prepared.h"
 

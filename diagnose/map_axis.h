@@ -5,6 +5,7 @@
 
 #include "model/effects/force_map.h"
 #include "model/force/force_map.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

@@ -16,6 +16,7 @@
 
 #include "diagnose/visited_states.h"
 #include "model/effects/force_map.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

@@ -16,6 +16,7 @@
 #include <array>
 
 #include "diagnose/map_basis.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

@@ -29,6 +29,7 @@
 #include <vector>
 
 #include "diagnose/baseline.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

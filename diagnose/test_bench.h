@@ -10,6 +10,7 @@
 #include "diagnose/evidence.h"
 #include "diagnose/hypothesis_search.h"
 #include "diagnose/whitened_fit.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

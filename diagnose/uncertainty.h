@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/unknown.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

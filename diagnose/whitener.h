@@ -13,6 +13,7 @@
 
 #include "diagnose/noise_spectrum.h"
 #include "diagnose/reading_model.h"
+#include "model/math/eigen_abi.h"
 
 namespace strut {
 

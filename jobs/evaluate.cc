@@ -12,9 +12,7 @@
 #include "jobs/progress.h"
 
 namespace strut {
-namespace {}  // namespace
-
-Json make_json(const Model& model, const Evaluation& evaluation) {
+Json make_json(const Model& model, const ModelEvaluation& evaluation) {
   Json parameters = Json::object();
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const Metrics& m = evaluation.metrics[i];
@@ -33,7 +31,7 @@ Json make_json(const Model& model, const Evaluation& evaluation) {
   return json;
 }
 
-void print_table(const Model& model, const Evaluation& evaluation) {
+void print_table(const Model& model, const ModelEvaluation& evaluation) {
   std::printf("%-24s%-8s%12s%12s%12s%12s%12s\n", "parameter", "unit", "ME", "MAE", "MAPE %", "RMSE",
               "1 - R2");
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
@@ -90,7 +88,7 @@ int run_evaluate(const Arguments& arguments) {
   const int own = dataset.plan_hash() == model.plan_hash ? 0 : 1;
   const bool all = arguments.choice_or("part", own) == 1;
   const EvaluatedPart part = all ? EvaluatedPart::kAll : EvaluatedPart::kTest;
-  const Evaluation evaluation = [&] {
+  const ModelEvaluation evaluation = [&] {
     const Stage stage("evaluation");
     const ProgressLine line("evaluating cases");
     return evaluate_model(model, dataset, part);

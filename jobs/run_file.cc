@@ -1,11 +1,10 @@
 #include "jobs/run_file.h"
 
-#include <cmath>
-
 #include "io/csv.h"
 #include "io/hdf5.h"
 #include "jobs/build_info.h"
 #include "jobs/interrupt.h"
+#include "sweep/simulate_case.h"
 
 namespace strut {
 namespace {
@@ -54,17 +53,6 @@ RunFormat find_run_format(const std::filesystem::path& path) {
   if (extension == ".csv") return RunFormat::kCsv;
   if (extension == ".h5" || extension == ".hdf5") return RunFormat::kHdf5;
   throw InputError("--output = " + path.string() + ": the name must end in .csv, .h5 or .hdf5");
-}
-
-bool has_snapshot(const LaneResults& results) { return std::isfinite(results.event_time[0]); }
-
-std::vector<double> get_history(const LaneResults& results, std::size_t channels,
-                                std::size_t channel) {
-  std::vector<double> values(static_cast<std::size_t>(results.sample_count));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = results.history[i * channels + channel];
-  }
-  return values;
 }
 
 std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source) {

@@ -30,13 +30,6 @@ struct RunRecord {
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 
-/// True where the snapshot's line was reached.
-bool has_snapshot(const LaneResults& results);
-
-/// One channel of the history of `channels` channels.
-std::vector<double> get_history(const LaneResults& results, std::size_t channels,
-                                std::size_t channel);
-
 /// Version, commit, compiler and instruction set of this program, and the files of the run.
 std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source);
 

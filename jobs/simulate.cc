@@ -18,9 +18,9 @@
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
 #include "jobs/simulate/run_report.h"
-#include "model/effects/read_out.h"
 #include "sweep/parameters.h"
 #include "sweep/read_rig.h"
+#include "sweep/simulate_case.h"
 
 namespace strut {
 namespace {
@@ -41,7 +41,7 @@ void refuse_options(const Arguments& arguments, std::initializer_list<const char
 
 void read_integration(const Arguments& arguments, SimulateOptions& options) {
   options.integrator = arguments.choice_or("integrator", 0);
-  if (options.integrator == kCvode) {
+  if (options.integrator == kIntegratorCvode) {
     refuse_options(arguments, {"step", "coarse-step", "spin", "no-events"},
                    "cvode chooses its own; allowed with rk4, abm4");
   }
@@ -50,7 +50,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   step.step = arguments.number_or("step", step.step,
                                   {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
-  step.stepper = options.integrator == kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.stepper = options.integrator == kIntegratorAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.locate_events = !arguments.is_on("no-events");
   integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0));
   integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0));
@@ -86,19 +86,12 @@ SimulateOptions read_options(const Arguments& arguments) {
 
 LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
                       const StepOptions& step) {
-  SamplePlan plan;
-  plan.interval = 1.0 / options.rate;
-  const ReadOut out(list_car_channels(), {&c.sensors});
-  return simulate_readings(out, plan, [&](const SamplePlan& record) {
-    if (options.integrator == kCvode) {
-      ReferenceOptions reference;
-      reference.closure = options.integrate.closure;
-      return run_cvode(c, reference, record);
-    }
-    IntegrateOptions integrate = options.integrate;
-    integrate.step = step;
-    return list_kernels().front().run_scalar(c, integrate, record);
-  });
+  IntegrateRequest request;
+  request.solver = options.integrator == kIntegratorCvode ? Solver::kCvode : Solver::kLanes;
+  request.options = options.integrate;
+  request.options.step = step;
+  request.reference.closure = options.integrate.closure;
+  return simulate_case(c, request, 1.0 / options.rate);
 }
 
 /// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.
@@ -106,7 +99,7 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
                     const LaneResults& results) {
   const std::string at = format_number(results.failure_time[0]) + " s";
   const bool out = results.status[0] == static_cast<int>(RunStatus::kOutOfTravel);
-  if (options.integrator != kCvode) {
+  if (options.integrator != kIntegratorCvode) {
     const StepOptions& step = options.integrate.step;
     StepOptions shorter = step;
     shorter.step = kRetryFraction * step.step;
@@ -133,7 +126,7 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
 std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOptions& options,
                                                               const LaneResults& results) {
   const IntegrateOptions& integrate = options.integrate;
-  const bool cvode = options.integrator == kCvode;
+  const bool cvode = options.integrator == kIntegratorCvode;
   auto list = describe_program(options.source);
   list.insert(
       list.end(),

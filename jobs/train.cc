@@ -171,7 +171,7 @@ int count_copies(const TrainingRows& data) {
 }
 
 void print(const Training& training, const Model& model, const fs::path& output, bool as_json) {
-  const Evaluation test = evaluate_rows(model, training.data().test);
+  const ModelEvaluation test = evaluate_rows(model, training.data().test);
   const TrainingRows& data = training.data();
   const TrainingSummary summary = training.summarize();
   const int copies = count_copies(data);

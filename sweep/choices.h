@@ -9,7 +9,7 @@ namespace strut {
 inline const std::vector<std::string> kIntegrators = {"rk4", "abm4", "cvode"};
 inline const std::vector<std::string> kClosures = {"newton", "table"};       // Closure
 inline const std::vector<std::string> kSpins = {"exponential", "explicit"};  // SpinTreatment
-inline constexpr int kAbm4 = 1, kCvode = 2;                                  // of kIntegrators
+inline constexpr int kIntegratorAbm4 = 1, kIntegratorCvode = 2;              // of kIntegrators
 
 inline const std::vector<std::string> kSampleMethods = {"grid", "latin_hypercube",
                                                         "sobol"};           // SampleMethod

@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "model/math/eigen_abi.h"
+
 namespace strut {
 
 /// Directions whose information is below this share of the largest, after scaling F to a unit

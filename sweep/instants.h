@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "model/math/eigen_abi.h"
 #include "sweep/fisher.h"
 #include "sweep/sensitivity.h"
 #include "sweep/sensor_noise.h"

@@ -181,7 +181,7 @@ IntegrateRequest read_integrate(const std::optional<Table>& table) {
   const int method = table->choice_or("method", 0, kIntegrators);
   const auto closure = static_cast<Closure>(table->choice_or("closure", 0, kClosures));
   request.options.closure = request.reference.closure = closure;
-  if (method == kCvode) {
+  if (method == kIntegratorCvode) {
     request.solver = Solver::kCvode;
     for (const char* key : {"step", "coarse_step", "locate_events"}) {
       if (table->has(key)) throw table->error(key, "cvode chooses its own; allowed with rk4, abm4");
@@ -189,7 +189,7 @@ IntegrateRequest read_integrate(const std::optional<Table>& table) {
     return request;
   }
   StepOptions& step = request.options.step;
-  step.stepper = method == kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.stepper = method == kIntegratorAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.step = table->number_or("step", step.step,
                                {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   step.coarse_step = table->number_or("coarse_step", 0.0, between(step.step, kMaxStep, "s"));

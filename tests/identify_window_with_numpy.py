@@ -9,7 +9,6 @@ Exit code 77: h5py is not there.
 
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 
@@ -19,6 +18,12 @@ try:
 except ImportError:
     print("skipped: no h5py (Debian: python3-h5py)")
     sys.exit(77)
+
+from run_commands import run
+
+sys.path.insert(0, str(pathlib.Path(sys.argv[2]) / "examples/python"))
+sys.dont_write_bytecode = True
+from identify_with_network import calc_outputs, read_csv
 
 SWEEP = """
 vehicle = "{examples}/vehicles/paper_sedan.toml"
@@ -36,19 +41,6 @@ closure = "table"
 [record]
 history = {{ rate = 250, channels = ["imu_acceleration_z", "imu_rate_y"] }}
 """
-
-
-def run(*words):
-    done = subprocess.run([str(w) for w in words], capture_output=True, text=True)
-    if done.returncode not in (0, 1):
-        sys.exit(f"failed: {' '.join(map(str, words))}\n{done.stderr}")
-    return done.stdout
-
-
-def read_table(path):
-    lines = path.read_text().splitlines()
-    values = np.loadtxt([line for line in lines[1:] if not line.startswith("#")], delimiter=",")
-    return dict(zip(lines[0].split(","), values.T))
 
 
 def find_begin(y, reference, n):
@@ -85,17 +77,7 @@ def identify(model, record):
         values, vectors = np.linalg.eigh(sigma[c] ** 2 * np.eye(n) + bias[c] ** 2 * np.ones((n, n)))
         z[c] = vectors @ ((vectors.T @ z[c]) / np.sqrt(values))
     x = window["basis"][:] @ (z - window["mean"][:].reshape(-1, n)).ravel()
-    low, high = model["inputs"][:]
-    a, at, weights = 2 * (x - low) / (high - low) - 1, 0, model["weights"][:]
-    sizes = model["layer_sizes"][:]
-    for layer, (i, o) in enumerate(zip(sizes[:-1], sizes[1:])):
-        w, b = weights[at:at + i * o].reshape(o, i), weights[at + i * o:at + i * o + o]
-        at += i * o + o
-        a = w @ a + b
-        if layer < len(sizes) - 2:
-            a = np.tanh(a)
-    low, high = model["targets"][:]
-    return low + 0.5 * (a + 1) * (high - low)
+    return calc_outputs(model, x[None, :])[0]
 
 
 def main():
@@ -111,10 +93,11 @@ def main():
         run(strut, "simulate", examples / "vehicles/paper_sedan.toml",
             examples / "maneuvers/bump_20mps.toml", "-o", folder / "run.csv", "--rate", "250",
             "--set", "front_stiffness=37654", "--set", "bump_distance=10.234")
-        told = json.loads(run(strut, "identify", folder / "m.h5", folder / "run.csv", "--json"))
+        told = json.loads(run(strut, "identify", folder / "m.h5", folder / "run.csv", "--json",
+                              codes=(0, 1)))
         value = told["parameters"]["front_stiffness"]["value"]
         with h5py.File(folder / "m.h5") as model:
-            own = identify(model, read_table(folder / "run.csv"))[0]
+            own = identify(model, read_csv(folder / "run.csv"))[0]
     # The range of 4500 N/m times what eigenvectors of condition 10^4 lose.
     if not abs(value - own) < 1e-6:
         sys.exit(f"failed: strut says {value}, numpy {own}")

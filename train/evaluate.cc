@@ -98,8 +98,8 @@ RowStore read_test_rows(const Model& model, Dataset& dataset, const RowStoreOpti
   return read_rows(model, dataset, EvaluatedPart::kTest, store);
 }
 
-Evaluation evaluate_rows(const Model& model, const RowStore& rows) {
-  Evaluation evaluation;
+ModelEvaluation evaluate_rows(const Model& model, const RowStore& rows) {
+  ModelEvaluation evaluation;
   evaluation.samples = static_cast<std::int64_t>(rows.row_count());
   const RowStore predicted = predict_rows(model, rows, &evaluation.out_of_range);
   evaluation.metrics.reserve(model.targets.size());
@@ -110,8 +110,8 @@ Evaluation evaluate_rows(const Model& model, const RowStore& rows) {
   return evaluation;
 }
 
-Evaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
-                          const RowStoreOptions& store) {
+ModelEvaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
+                               const RowStoreOptions& store) {
   return evaluate_rows(model, read_rows(model, dataset, part, store));
 }
 

@@ -15,7 +15,7 @@ enum class EvaluatedPart {
   kAll,
 };
 
-struct Evaluation {
+struct ModelEvaluation {
   std::vector<Metrics> metrics;  // per parameter
   std::int64_t samples = 0;
   std::int64_t out_of_range = 0;  // samples with an input outside of those trained on
@@ -29,11 +29,11 @@ RowStore predict_rows(const Model& model, const RowStore& rows, std::int64_t* ou
 RowStore read_test_rows(const Model& model, Dataset& dataset, const RowStoreOptions& store = {});
 
 /// Rows as recorded, the model's inputs before its targets.
-Evaluation evaluate_rows(const Model& model, const RowStore& rows);
+ModelEvaluation evaluate_rows(const Model& model, const RowStore& rows);
 
 /// Throws InputError where the data lacks a column of the model, or is not what the model was
 /// trained on and its test part is asked for.
-Evaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
-                          const RowStoreOptions& store = {});
+ModelEvaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
+                               const RowStoreOptions& store = {});
 
 }  // namespace strut

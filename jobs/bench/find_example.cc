@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 fs::path find_example(const fs::path& name) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (fs::path folder : {fs::current_path(error), program.parent_path()}) {
+  for (fs::path folder : {program.parent_path(), fs::current_path(error)}) {
     for (; !folder.empty(); folder = folder.parent_path()) {
       for (const char* place : {"examples", "share/strut/examples"}) {
         fs::path candidate = folder / place / name;
@@ -21,7 +21,7 @@ fs::path find_example(const fs::path& name) {
     }
   }
   throw InputError("examples/" + name.string() +
-                   ": not found above the working directory or the program; name a vehicle and a "
+                   ": not found above the program or the working directory; name a vehicle and a "
                    "maneuver");
 }
 

@@ -5,9 +5,9 @@
 
 namespace strut {
 
-/// Path of examples/`name`, looked for in the folders above the working directory and above the
-/// program (a build folder within the sources), and in share/strut of an installation. Throws
-/// InputError.
+/// Path of examples/`name`, looked for in the folders above the program (a build folder within the
+/// sources), in share/strut of its installation, wherever that was moved, and at last above the
+/// working directory. Throws InputError.
 std::filesystem::path find_example(const std::filesystem::path& name);
 
 }  // namespace strut

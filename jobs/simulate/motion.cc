@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "jobs/run_file.h"
+#include "sweep/simulate_case.h"
 
 namespace strut {
 namespace {

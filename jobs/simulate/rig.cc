@@ -65,7 +65,7 @@ void describe_run(const SimulateOptions& options, const RigSpec& rig, RigKind ki
 }  // namespace
 
 int run_rig(const SimulateOptions& options, RigKind kind) {
-  if (options.integrator == kCvode) {
+  if (options.integrator == kIntegratorCvode) {
     throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
   }
   const RunFormat format = find_run_format(options.output);

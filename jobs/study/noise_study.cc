@@ -17,7 +17,7 @@ std::vector<double> evaluate(const fs::path& file, const fs::path& data, NoiseSt
   const Model model = read_model(file);
   study.parameters = model.targets;
   Dataset dataset({data}, {.histories = model.window.has_value()});
-  const Evaluation evaluation = evaluate_model(model, dataset, EvaluatedPart::kTest);
+  const ModelEvaluation evaluation = evaluate_model(model, dataset, EvaluatedPart::kTest);
   std::vector<double> errors;
   errors.reserve(evaluation.metrics.size());
   for (const Metrics& metrics : evaluation.metrics) errors.push_back(metrics.rms_error);

@@ -21,7 +21,7 @@ SeedResult read_seed(const StudyFolder& folder, const std::string& name, Dataset
                      CellResult& cell) {
   const std::filesystem::path file = folder.model(name);
   const Model model = read_model(file);
-  const Evaluation test = evaluate_model(model, dataset, EvaluatedPart::kTest);
+  const ModelEvaluation test = evaluate_model(model, dataset, EvaluatedPart::kTest);
   cell.parameters = model.targets;
   SeedResult seed;
   seed.model = file.lexically_relative(folder.root).generic_string();

@@ -1,0 +1,74 @@
+# What `cmake --install` puts where, for whoever uses strut from elsewhere: docs/api.md, docs/install.md.
+#
+#   bin/strut                        the program
+#   share/strut/examples             what the documentation names examples/
+#   share/doc/strut                  the documentation
+#   include/strut, lib, lib/cmake    the rooms as libraries: find_package(strut)
+#
+# Nothing of it knows its prefix: a tree that is moved still works.
+include(CMakePackageConfigHelpers)
+
+set(strut_of_programs OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+  WORLD_READ WORLD_EXECUTE)
+install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/strut/examples
+  PATTERN __pycache__ EXCLUDE
+  PATTERN *.py PERMISSIONS ${strut_of_programs}
+  PATTERN run_loop PERMISSIONS ${strut_of_programs})
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES .ci/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Headers that need libraries which only our sources are given stay here.
+set(strut_inner_headers
+  model/parallel/team model/math/xsimd_backend model/kernel/run_cases model/integrate/sundials
+  train/block_layers io/hdf5_calls io/parse_toml)
+list(JOIN strut_inner_headers "|" strut_inner_headers)
+set(strut_rooms model kernel io sweep train diagnose)
+foreach(room IN LISTS strut_rooms)
+  set_target_properties(strut_${room} PROPERTIES EXPORT_NAME ${room})
+  target_compile_features(strut_${room} INTERFACE cxx_std_20)
+  target_include_directories(strut_${room} INTERFACE
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/strut>)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${room})  # the kernel's headers are within the model's
+    install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/strut
+      FILES_MATCHING PATTERN *.h
+      REGEX "/parallel$" EXCLUDE
+      REGEX "/(${strut_inner_headers})\\.h$" EXCLUDE)
+  endif()
+endforeach()
+
+# Matrices of Eigen are allocated here and freed there, and of its inline functions the linker keeps
+# one of each: both sides must agree on threads, on alignment, which Eigen takes from -march and which
+# model/math/eigen_abi.h compares, and on the heap, which Eigen takes otherwise for -fsanitize=address.
+separate_arguments(strut_flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
+get_target_property(strut_eigen_folders Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+list(TRANSFORM strut_eigen_folders PREPEND -I)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/eigen_alignment.cc
+  "#include <Eigen/Core>\nstrut_alignment EIGEN_DEFAULT_ALIGN_BYTES EIGEN_MAX_STATIC_ALIGN_BYTES \
+EIGEN_MALLOC_ALREADY_ALIGNED\n")
+execute_process(
+  COMMAND ${CMAKE_CXX_COMPILER} ${strut_flags} ${strut_eigen_folders} -E -P
+    ${CMAKE_CURRENT_BINARY_DIR}/eigen_alignment.cc
+  OUTPUT_VARIABLE strut_preprocessed COMMAND_ERROR_IS_FATAL ANY)
+if(NOT strut_preprocessed MATCHES "strut_alignment ([0-9]+) ([0-9]+) ([01])")
+  message(FATAL_ERROR "Eigen/Core does not tell its alignment")
+endif()
+foreach(room IN ITEMS sweep diagnose)
+  target_compile_definitions(strut_${room} INTERFACE
+    $<INSTALL_INTERFACE:EIGEN_DONT_PARALLELIZE>
+    $<INSTALL_INTERFACE:EIGEN_MALLOC_ALREADY_ALIGNED=${CMAKE_MATCH_3}>
+    $<INSTALL_INTERFACE:STRUT_EIGEN_HEAP_ALIGNMENT=${CMAKE_MATCH_1}>
+    $<INSTALL_INTERFACE:STRUT_EIGEN_STATIC_ALIGNMENT=${CMAKE_MATCH_2}>)
+endforeach()
+
+set(strut_package ${CMAKE_INSTALL_LIBDIR}/cmake/strut)
+list(TRANSFORM strut_rooms PREPEND strut_ OUTPUT_VARIABLE strut_libraries)
+install(TARGETS ${strut_libraries} EXPORT strut ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT strut NAMESPACE strut:: FILE strutTargets.cmake DESTINATION ${strut_package})
+configure_package_config_file(.ci/cmake/strutConfig.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/strutConfig.cmake INSTALL_DESTINATION ${strut_package})
+# Below 1.0 the second number counts.
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/strutConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/strutConfig.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/strutConfigVersion.cmake DESTINATION ${strut_package})

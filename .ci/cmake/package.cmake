@@ -1,0 +1,22 @@
+# `cpack -G DEB` in the build folder makes strut_VERSION_ARCHITECTURE.deb: docs/install.md.
+set(STRUT_MAINTAINER "The strut authors <strut@example.org>" CACHE STRING
+  "Name and address in the package, of whoever hands it out")
+set(CPACK_PACKAGE_NAME strut)
+set(CPACK_PACKAGE_VENDOR "The strut authors")
+set(CPACK_PACKAGE_CONTACT ${STRUT_MAINTAINER})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "identification of worn vehicle suspensions by simulation")
+set(CPACK_PACKAGE_DESCRIPTION_FILE ${PROJECT_SOURCE_DIR}/.ci/package/description)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS ${strut_of_programs})  # whatever the umask
+set(CPACK_GENERATOR DEB)
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # Depends: what the program's shared libraries are in
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+# For the libraries, which are static, and for examples/python.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, libeigen3-dev, libhdf5-dev, libsundials-dev, \
+libtomlplusplus-dev, libssl-dev, zlib1g-dev, python3-h5py, python3-numpy")
+include(CPack)
