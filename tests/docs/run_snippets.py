@@ -20,6 +20,8 @@ Marks are comments on the lines before a block:
   <!-- file: NAME -->            written to the folder under that name, not run or compiled
   <!-- layout: WHAT -->          text that shows a form or a formula, not an output
 
+  <!-- numbers within a factor of: F -->  text: in lines without `...`, as rounding differs between
+                                 processors and a training carries it on
   <!-- needs: slurm -->          sh: where no Slurm answers, not run
 
 --fill refreshes a document: every text block that is empty becomes what was printed (then write `...` for
@@ -31,6 +33,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -50,12 +53,28 @@ def make_clone(folder, strut, sources):
     (folder / "build/release/strut").symlink_to(strut)
 
 
-def match_line(expected, actual):
+NUMBER = re.compile(r"(?<![\w.])-?\d[\d,]*(?:\.\d+)?(?:e[-+]\d+)?(?![\w])")
+
+
+def are_near(expected, actual, factor):
+    a, b = (float(text.replace(",", "")) for text in (expected, actual))
+    return a == b or (a * b > 0 and 1 / factor <= a / b <= factor)
+
+
+def match_line(expected, actual, factor=1.0):
+    """Whether an expected line stands for the actual one, numbers within that factor."""
     pattern = ".*".join(re.escape(part) for part in expected.rstrip().split("..."))
-    return re.fullmatch(pattern, actual.rstrip()) is not None
+    if re.fullmatch(pattern, actual.rstrip()):
+        return True
+    if factor == 1.0 or "..." in expected:
+        return False
+    # More digits make fewer blanks.
+    words = [" ".join(NUMBER.sub(" # ", line).split()) for line in (expected, actual)]
+    numbers = [NUMBER.findall(line) for line in (expected, actual)]
+    return words[0] == words[1] and all(are_near(a, b, factor) for a, b in zip(*numbers))
 
 
-def find_difference(expected, actual):
+def find_difference(expected, actual, factor=1.0):
     """None where the lines match, else the first expected line (its number from 0) that cannot."""
     # reachable: how many lines of actual the expected lines so far may have taken.
     reachable = {0}
@@ -64,7 +83,9 @@ def find_difference(expected, actual):
             reachable = set(range(min(reachable), len(actual) + 1))
         else:
             reachable = {
-                i + 1 for i in reachable if i < len(actual) and match_line(line, actual[i])
+                i + 1
+                for i in reachable
+                if i < len(actual) and match_line(line, actual[i], factor)
             }
         if not reachable:
             return number
@@ -186,7 +207,9 @@ class Document:
         environment.pop("CDPATH", None)
         result = subprocess.run(
             command, cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS, check=False, **options
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS, check=False,
+            # A shell's background job ignores Ctrl-C, and so would what it starts.
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), **options
         )
         self.ran += 1
         return result.stdout.decode("utf-8", "replace"), result.returncode
@@ -209,7 +232,8 @@ class Document:
             return
         expected = following[0].text.splitlines()
         actual = out.splitlines()
-        at = find_difference(expected, actual)
+        factor = float(following[0].marks.get("numbers within a factor of", 1))
+        at = find_difference(expected, actual, factor)
         if at is not None:
             line = expected[at] if at < len(expected) else "(the end)"
             self.complain(
