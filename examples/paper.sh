@@ -33,3 +33,5 @@ run identify "$folder/model.h5" "$folder/worn.h5"
 
 printf '\n== The tables of the paper, and ours\n'
 run study examples/studies/paper_quick.toml -o "$folder/study"
+
+printf '\nThe report, one file for a browser:\n%s\n' "$folder/study/report.html"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs what a document shows, and compares what it prints with what the document says it prints.
 
-  run_snippets.py STRUT SOURCES DOCUMENT.md [--fill] [--keep DIR]
+  run_snippets.py STRUT SOURCES DOCUMENT.md [--only-check] [--fill] [--keep DIR]
 
 STRUT is the built program, SOURCES the root of the sources. The blocks run in order, in one new folder
 that looks like the root of a clone after the build.
@@ -24,6 +24,7 @@ Marks are comments on the lines before a block:
                                  processors and a training carries it on
   <!-- needs: slurm -->          sh: where no Slurm answers, not run
 
+--only-check runs nothing: links, paths, commands and options are checked, and what can be parsed is.
 --fill refreshes a document: every text block that is empty becomes what was printed (then write `...` for
 what depends on the machine). --keep leaves the folder in DIR.
 """
@@ -137,6 +138,7 @@ class Document:
         self.file = args.document
         self.sources = args.sources
         self.fill = args.fill
+        self.only_check = args.only_check
         self.strut = args.strut
         self.calls = CommandLines(args.strut)
         self.text = self.file.read_text(encoding="utf-8")
@@ -180,7 +182,9 @@ class Document:
         reason = block.marks.get("not run")
         if ".ci/run" in block.marks:
             reason = ".ci/run does"
-        if block.marks.get("needs") == "slurm" and not has_slurm():
+        if self.only_check and language in {"sh", "python", "c", "cpp"} and reason is None:
+            reason = "--only-check"
+        if block.marks.get("needs") == "slurm" and reason is None and not has_slurm():
             reason = "no Slurm answers"
         if language == "sh":
             for sentence in self.calls.find_wrong(block.text):
@@ -294,6 +298,7 @@ def parse_arguments():
     parser.add_argument("sources", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("document", type=lambda p: pathlib.Path(p).resolve())
     parser.add_argument("--fill", action="store_true")
+    parser.add_argument("--only-check", action="store_true")
     parser.add_argument("--keep", type=lambda p: pathlib.Path(p).resolve())
     return parser.parse_args()
 
