@@ -47,8 +47,18 @@ SECONDS = 1200  # for one block
 
 def make_clone(folder, strut, sources):
     """Fills folder with a copy of the sources, and build/release/strut."""
-    leave_out = shutil.ignore_patterns("build", ".git", ".cache", "__pycache__")
-    shutil.copytree(sources, folder, ignore=leave_out, dirs_exist_ok=True)
+    listing = subprocess.run(
+        ["git", "-C", sources, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        capture_output=True, text=True, check=False
+    )
+    if listing.returncode == 0 and listing.stdout:
+        for name in filter(None, listing.stdout.split("\0")):
+            if (sources / name).is_file():
+                (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(sources / name, folder / name)
+    else:
+        leave_out = shutil.ignore_patterns("build", ".git", "__pycache__")
+        shutil.copytree(sources, folder, ignore=leave_out, dirs_exist_ok=True)
     (folder / "build/release").mkdir(parents=True, exist_ok=True)
     (folder / "build/release/strut").symlink_to(strut)
 
