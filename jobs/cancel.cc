@@ -38,7 +38,7 @@ Arguments describe_cancel() {
       "tasks\n"
       "that run stop cleanly. What is written stays; `strut submit` or `strut run` goes on from\n"
       "there. Runners that somebody started by hand are left alone.",
-      "  strut cancel sweep");
+      "  strut cancel cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;
 }

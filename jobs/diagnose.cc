@@ -56,7 +56,7 @@ void tell_next_of(const Arguments& arguments, const DiagnoseFolder& folder,
     tell_next({"strut", "simulate", folder.extended_model().string(), "MANEUVER.toml", "-o",
                "extended.csv"});
   } else if (diagnosis.is_extended()) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", "sweep"},
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
               "with vehicle = \"" + folder.extended_model().string() + "\"");
   } else if (diagnosis.kind == VerdictKind::kAdequate || diagnosis.next_measurement.empty()) {
     tell_next_page(folder.report().string());

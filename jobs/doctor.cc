@@ -129,7 +129,7 @@ Arguments describe_doctor() {
       "second "
       "asks.\n"
       "Says which promises hold. Ends with code 1 where one does not.",
-      "  strut doctor sweep\n  strut doctor sweep --to slurm --partition short --nodes");
+      "  strut doctor cars\n  strut doctor cars --to slurm --partition short --nodes");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("to", ArgumentValue::one_of(list_dispatchers()),
                        "scheduler (default: slurm where it is there)");

@@ -64,7 +64,7 @@ Arguments describe_evaluate() {
       "shards of one sweep, or a merged file) and compares them with the true ones: largest error\n"
       "ME, mean absolute error MAE, mean absolute percentage error MAPE, root mean square error\n"
       "RMSE, coefficient of determination R2.",
-      "  strut evaluate model.h5 sweep\n  strut evaluate model.h5 other_sweep --part all --json");
+      "  strut evaluate model.h5 cars\n  strut evaluate model.h5 other_sweep --part all --json");
   arguments.add_operand(ArgumentValue::file("MODEL", {"h5"}));
   arguments.add_operands(ArgumentValue::path("DATA", {"h5", "hdf5"}));
   arguments.add_option("part", ArgumentValue::one_of({"test", "all"}),

@@ -15,6 +15,8 @@ using SteadyClock = std::chrono::steady_clock;
 
 /// How long work may take to stop after the first signal.
 constexpr std::chrono::milliseconds kPatience{1500};
+/// A signal to a process and one to its group, as timeout(1) sends them, are one.
+constexpr std::chrono::milliseconds kEcho{100};
 
 /// Set before a signal can come: a handler must neither allocate nor lock.
 std::array<char, 4000> last_words;
@@ -70,9 +72,9 @@ void InterruptWatcher::watch() {
       warned_ = true;
       continue;
     }
-    const bool again = signal > 0 && signal_ != 0;
+    const bool again = signal > 0 && signal_ != 0 && SteadyClock::now() - first > kEcho;
     if (again || (signal_ != 0 && SteadyClock::now() - first > kPatience)) _exit(128 + signal_);
-    if (signal > 0) {
+    if (signal > 0 && signal_ == 0) {
       first = SteadyClock::now();
       signal_ = signal;
       halt_ = true;

@@ -28,8 +28,8 @@ class InterruptGuard {
 };
 
 /// Turns the first of those signals into a flag, so that long work stops where it is whole. A
-/// second signal, or work that has not ended 1.5 s after the first, ends the program as SIGKILL
-/// would: for work that survives that. To be made before other threads are.
+/// second signal more than 0.1 s later, or work that has not ended 1.5 s after the first, ends the
+/// program as SIGKILL would: for work that survives that. To be made before other threads are.
 class InterruptWatcher {
  public:
   InterruptWatcher();

@@ -117,10 +117,10 @@ constexpr const char* kDescription =
     "file, messages to standard error.";
 
 constexpr const char* kWay =
-    "  strut plan examples/sweeps/paper.toml -o sweep\n"
-    "  strut run sweep\n"
-    "  strut verify sweep\n"
-    "  strut train sweep -o model.h5\n"
+    "  strut plan examples/sweeps/paper.toml -o cars\n"
+    "  strut run cars\n"
+    "  strut verify cars\n"
+    "  strut train cars -o model.h5\n"
     "  strut identify model.h5 measured.csv";
 
 }  // namespace

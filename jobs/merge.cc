@@ -79,8 +79,8 @@ Arguments describe_merge() {
       "is missing or damaged, the exit code is 2 and nothing is written; cases that failed are "
       "rows\n"
       "of NaN.",
-      "  strut merge sweep -o dataset.h5\n"
-      "  strut merge sweep -o view.h5 --virtual");
+      "  strut merge cars -o dataset.h5\n"
+      "  strut merge cars -o view.h5 --virtual");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"h5", "hdf5"}), "file to write");
   arguments.add_switch("virtual",

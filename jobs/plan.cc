@@ -120,7 +120,7 @@ Arguments describe_plan() {
       "Planning\n"
       "the same again changes nothing; another sweep in the same folder is refused.",
       "  strut plan examples/sweeps/paper.toml --dry-run\n"
-      "  strut plan examples/sweeps/paper.toml -o sweep");
+      "  strut plan examples/sweeps/paper.toml -o cars");
   arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
   arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder to make");
   arguments.add_switch("dry-run", "print layers, shards, estimated time and bytes; write nothing");

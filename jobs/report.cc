@@ -73,7 +73,7 @@ Arguments describe_report() {
       "trained; of a sweep only the few runs by which its sensitivities are told. Charts are also "
       "in\n"
       "DIR/figures as SVG, their numbers as CSV.",
-      "  strut report study\n  strut report sweep\n  strut report diagnosis");
+      "  strut report study\n  strut report cars\n  strut report diagnosis");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;
 }

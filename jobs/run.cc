@@ -34,8 +34,8 @@ Arguments describe(const std::string& name, bool retries) {
                      "three resumes may\ndo so one after the other.\n"
                    : "") +
           "Ends with code 1 where cases failed.",
-      "  strut plan examples/sweeps/paper.toml -o sweep\n  strut " + name +
-          " sweep --threads 2\n  strut status sweep");
+      "  strut plan examples/sweeps/paper.toml -o cars\n  strut " + name +
+          " cars --threads 2\n  strut status cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("threads", "N", "worker threads (default: one for each processor)");
   arguments.add_option("shards", "A:B", "only shards A to B - 1 (default: all)");

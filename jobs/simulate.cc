@@ -231,7 +231,7 @@ int run_case(const SimulateOptions& options) {
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
   print_summary(options, run.results, duration, seconds);
   if (options.report.empty()) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", "sweep"},
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
               "many such runs; or this one with --report DIR, to see it");
   }
   return kExitDone;

@@ -165,7 +165,7 @@ Arguments describe_status() {
       "How far the sweep in DIR has come, from its files, and what the scheduler says of what was\n"
       "submitted; `strut verify` checks every byte. Ends with code 1 where cases failed or files\n"
       "cannot be read.",
-      "  strut status sweep --watch\n  strut status sweep --json");
+      "  strut status cars --watch\n  strut status cars --json");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_switch("json", "print JSON");
   arguments.add_switch("watch", "print again every second until the sweep is complete");

@@ -352,9 +352,9 @@ Arguments describe_submit() {
       "limit finish the shard in hand and queue themselves again. `--to local` works through the "
       "tasks on\n"
       "this machine, in the background.",
-      "  strut submit sweep --to slurm --dry-run\n"
-      "  strut submit sweep --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
-      "  strut status sweep\n  strut cancel sweep");
+      "  strut submit cars --to slurm --dry-run\n"
+      "  strut submit cars --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
+      "  strut status cars\n  strut cancel cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("to", ArgumentValue::one_of(list_dispatchers()), "who works through it");
   arguments.add_option("partition", "P", "of the cluster (default: the site's)");

@@ -236,10 +236,10 @@ Arguments describe_train() {
       "DATA is a sweep folder, shards of one sweep, or a merged file. 70 % of the cases train,\n"
       "15 % validate, 15 % test. The result does not depend on --threads or --batch, nor on how\n"
       "the cases are stored.",
-      "  strut run sweep\n  strut train sweep -o model.h5\n"
-      "  strut train sweep -o noisy.h5 --noise default --noise pitch_angle=2e-4\n"
-      "  strut train sweep -o window.h5 --window 0.3:2.5 --targets front_stiffness,rear_stiffness\n"
-      "  strut train sweep -o small.h5 --samples 1000 --hidden 12,8 --seed 3");
+      "  strut run cars\n  strut train cars -o model.h5\n"
+      "  strut train cars -o noisy.h5 --noise default --noise pitch_angle=2e-4\n"
+      "  strut train cars -o window.h5 --window 0.3:2.5 --targets front_stiffness,rear_stiffness\n"
+      "  strut train cars -o small.h5 --samples 1000 --hidden 12,8 --seed 3");
   arguments.add_operands(ArgumentValue::path("DATA", {"h5", "hdf5"}));
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"h5"}), "model to write");
   arguments.add_option("hidden", "N,N,...", "neurons of the hidden layers; default 27,19,11");

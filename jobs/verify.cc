@@ -90,7 +90,7 @@ Arguments describe_verify() {
       "strut verify DIR [OPTIONS]",
       "Reads every byte of the sweep in DIR: checksums, columns, plan, no case missing, double or\n"
       "foreign. Prints the data digest: the same for the same plan, however it was run.",
-      "  strut verify sweep --sample 20\n  strut verify sweep --quarantine && strut run sweep");
+      "  strut verify cars --sample 20\n  strut verify cars --quarantine && strut run cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("sample", "N", "simulate N cases again and compare bit for bit (default 0)");
   arguments.add_option("seed", "S", "of the choice of those (default 1)");

@@ -326,39 +326,6 @@ TEST_CASE("SIGINT and SIGTERM end a run with 130 and 143 and leave nothing", "[i
   }
 }
 
-/// The lines of the README's shell blocks that start with `begin`, without their comments.
-std::vector<std::string> find_readme_commands(const std::string& begin) {
-  std::istringstream text(read_text(STRUT_SOURCE_DIR "/README.md"));
-  std::vector<std::string> commands;
-  bool in_block = false;
-  for (std::string line; std::getline(text, line);) {
-    if (line.rfind("```", 0) == 0) in_block = line == "```sh";
-    if (in_block && line.rfind(begin, 0) == 0) commands.push_back(line.substr(0, line.find('#')));
-  }
-  return commands;
-}
-
-TEST_CASE("The README's simulations run", "[io]") {
-  const std::vector<std::string> commands = find_readme_commands("strut simulate ");
-  REQUIRE(commands.size() >= 3);
-  for (std::string command : commands) {
-    const TemporaryFolder folder;
-    const auto replace = [&command](const std::string& from, const std::string& to) {
-      const auto at = command.find(from);
-      if (at != std::string::npos) command.replace(at, from.size(), to);
-    };
-    CAPTURE(command);
-    replace("strut ", kProgram + " ");
-    replace(" VEHICLE", " examples/vehicles/paper_sedan.toml");
-    replace(" MANEUVER", " examples/maneuvers/bump_20mps.toml");
-    replace(" -o ", " -o " + (folder / "").string());
-    const Outcome outcome = run_shell("cd " STRUT_SOURCE_DIR " && " + command);
-    CAPTURE(outcome.messages);
-    CHECK(outcome.code == 0);
-    CHECK(folder.file_count() == 1);
-  }
-}
-
 TEST_CASE("The benchmark's error is that of the worst lane", "[io]") {
   BenchCases bench = make_bench_cases({kSedan, kBump, {}}, 2);
   REQUIRE(bench.acceleration.size() == 2);
