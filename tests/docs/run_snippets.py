@@ -134,6 +134,10 @@ class CommandLines:
         text = re.sub(r"'[^'\n]*'|\"[^\"\n]*\"", "QUOTED", text)
         calls = r"(?:^|(?<=[\s`(/$]))strut +([a-z]\w*)([^\n|;&)>]*)"
         for command, rest in re.findall(calls, text):
+            if command == "help" and (not rest.strip() or rest.split()[0].isupper()):
+                continue
+            if command == "help":
+                command, rest = rest.split()[0], ""
             if command not in self.commands:
                 wrong.append(f"strut has no command {command}")
                 continue
@@ -205,7 +209,7 @@ class Document:
             path = self.folder / block.marks["file"]
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(block.text, encoding="utf-8")
-            if language == "sh":
+            if language in {"sh", "csv"}:
                 return
         check = getattr(self, "check_" + language, None)
         if check is not None:
@@ -216,7 +220,8 @@ class Document:
     def run(self, block, command, **options):
         """What the command printed, and its exit code."""
         environment = dict(os.environ)
-        environment["PATH"] = f"{self.folder}/build/release:{environment['PATH']}"
+        # The system's Python comes first: that one has Debian's h5py.
+        environment["PATH"] = f"{self.folder}/build/release:/usr/bin:{environment['PATH']}"
         environment.pop("CDPATH", None)
         result = subprocess.run(
             command, cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
