@@ -43,6 +43,8 @@ DOCUMENTS = {
         "<!-- not run: no -->\n" + fence("sh", "strut run DIR \\\n  --thread 2"), "no option --thread"),
     "an option in prose": ("Call `strut run DIR --fast`.\n", "no option --fast"),
     "an option that is there": ("Call `strut run DIR --threads 2` or `strut plan A -o B`.\n", ""),
+    "help": ("Call `strut help run`, `strut help COMMAND`.\n", ""),
+    "help on nothing": ("Call `strut help ran`.\n", "no command ran"),
     "no reason": ("<!-- not run: -->\n" + fence("sh", "true"), "needs a reason"),
     "a shell's grammar": ("<!-- not run: no -->\n" + fence("sh", "if true"), "bash does not understand"),
     "a text of nobody": (fence("text", "one"), "belongs to no sh block"),
