@@ -74,7 +74,7 @@ void tell_next_of(const std::string& sweep, const DesignReport& report) {
   const Instant& best = report.sensitivity.instants[design.best[0].instants[0]];
   char offset[32];
   std::snprintf(offset, sizeof offset, "%.3f", best.offset);
-  tell_next({"strut", "plan", sweep, "-o", "sweep"},
+  tell_next({"strut", "plan", sweep, "-o", "cars"},
             design.best[0].bounds.rms < design.snapshot.rms
                 ? std::string("with offset = ") + offset + " in its [record]"
                 : "its instant is the best one");

@@ -64,7 +64,7 @@ int show_beginning() {
   strut::tell_next({"strut", "simulate", name_example("vehicles/paper_sedan.toml"),
                     name_example("maneuvers/bump_20mps.toml"), "-o", "run.csv"},
                    "one car over one bump");
-  strut::tell_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "sweep"},
+  strut::tell_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "cars"},
                    "many cars, to train a network on");
   strut::tell_next(
       {"strut", "compare", name_example("extended_loop/campaign.toml"), "-o", "comparison"},

@@ -149,7 +149,7 @@ int run_plan(const Arguments& arguments) {
     tell_next({"strut", "run", folder->root.string()});
   } else {
     tell_next({"strut", "plan", arguments.positional().front(), "-o",
-               arguments.text_or("output", "sweep")});
+               arguments.text_or("output", "cars")});
   }
   return kExitDone;
 }

@@ -254,7 +254,7 @@ TEST_CASE("Every command of a sweep names the next one, to the network in use", 
   const std::string merged = folder / "all.h5", model = folder / "model.h5";
   const std::string inputs = " --inputs body_position_z,pitch_rate --hidden 2 --allow-few --seed 1";
   const HintCase cases[] = {
-      {"plan " + file + " --dry-run", 0, "strut plan " + file + " -o sweep"},
+      {"plan " + file + " --dry-run", 0, "strut plan " + file + " -o cars"},
       {"plan " + file + " -o " + sweep, 0, "strut run " + raw},
       {"status " + sweep, 0, "strut run " + raw},
       {"submit " + sweep + " --to local --dry-run", 0, "strut submit " + raw + " --to local"},
