@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <set>
 #include <utility>
 
 #include "io/nearest_name.h"
@@ -34,6 +35,9 @@ void add_to(po::options_description& all, const ArgumentOption& option) {
     all.add_options()(name.c_str(), po::value<std::string>()->value_name(option.value.name), help);
   }
 }
+
+/// NAME of "NAME=VALUE".
+std::string cut_name(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 
 std::string join_words(const std::vector<std::string>& words) {
   std::string joined;
@@ -162,6 +166,7 @@ bool Arguments::parse(const std::vector<std::string>& words) {
   if (is_on("quiet") && is_on("verbose")) {
     throw InputError("--quiet, --verbose: must not both be given");
   }
+  refuse_doubled_names();
   return true;
 }
 
@@ -184,6 +189,37 @@ std::vector<std::string> Arguments::known_options() const {
   for (const ArgumentOption& option : options_) names.push_back(option.name);
   for (const ArgumentOption& option : common_options()) names.push_back(option.name);
   return names;
+}
+
+std::vector<std::string> Arguments::words_with_setting(const std::string& setting) const {
+  const std::string option = "--set";
+  const auto replaces = [&](const std::string& word) {
+    return cut_name(word) == cut_name(setting);
+  };
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    const std::string& word = words_[i];
+    if (word == option && i + 1 < words_.size() && replaces(words_[i + 1])) {
+      ++i;
+    } else if (!word.starts_with(option + "=") || !replaces(word.substr(option.size() + 1))) {
+      words.push_back(word);
+    }
+  }
+  words.insert(words.end(), {option, setting});
+  return words;
+}
+
+void Arguments::refuse_doubled_names() const {
+  for (const ArgumentOption& option : options_) {
+    if (!option.repeats || option.value.name.find('=') == std::string::npos) continue;
+    std::set<std::string> names;
+    for (const std::string& setting : list(option.name)) {
+      const std::string name = cut_name(setting);
+      if (!names.insert(name).second) {
+        throw InputError("--" + option.name + ": '" + name + "' twice; allowed: once");
+      }
+    }
+  }
 }
 
 std::string Arguments::text(const std::string& name) const {

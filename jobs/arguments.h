@@ -52,7 +52,7 @@ class Arguments {
   /// A switch, or an option with a value; `name`: "output,o" with its letter.
   void add_switch(const std::string& name, const std::string& help);
   void add_option(const std::string& name, ArgumentValue value, const std::string& help);
-  /// As add_option; may be given more than once.
+  /// As add_option; may be given more than once, of NAME=VALUE once for each NAME.
   void add_list(const std::string& name, ArgumentValue value, const std::string& help);
 
   const std::string& synopsis() const { return synopsis_; }
@@ -72,6 +72,8 @@ class Arguments {
 
   /// What was parsed.
   const std::vector<std::string>& words() const { return words_; }
+  /// The same with `NAME=VALUE` of --set in place of what they set NAME to, if anything.
+  std::vector<std::string> words_with_setting(const std::string& setting) const;
   const std::vector<std::string>& positional() const { return positional_; }
   /// InputError that shows how to call the command.
   InputError usage_error(const std::string& what) const;
@@ -92,6 +94,8 @@ class Arguments {
   void add(const std::string& name, ArgumentOption option);
   boost::program_options::options_description describe_options() const;
   std::vector<std::string> known_options() const;
+  /// In each list of NAME=VALUE. Throws InputError.
+  void refuse_doubled_names() const;
   void print_help() const;
 
   std::string synopsis_, description_, examples_;

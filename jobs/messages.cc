@@ -44,10 +44,12 @@ std::string join_quoted(const std::vector<std::string>& words) {
   return line;
 }
 
-std::vector<std::string> list_words(const Arguments& arguments) {
-  std::vector<std::string> words = {"strut", arguments.command()};
-  words.insert(words.end(), arguments.words().begin(), arguments.words().end());
-  return words;
+/// A command line of the command under way.
+std::vector<std::string> name_command(const Arguments& arguments,
+                                      const std::vector<std::string>& words) {
+  std::vector<std::string> line = {"strut", arguments.command()};
+  line.insert(line.end(), words.begin(), words.end());
+  return line;
 }
 
 void say(const std::string& line) {
@@ -99,18 +101,30 @@ void tell_next(const std::vector<std::string>& words, const std::string& why) {
 
 void tell_next_again(const Arguments& arguments, const std::string& why,
                      const std::vector<std::string>& added) {
-  std::vector<std::string> words = list_words(arguments);
+  std::vector<std::string> words = arguments.words();
   words.insert(words.end(), added.begin(), added.end());
-  tell_next(words, why);
+  tell_next(name_command(arguments, words), why);
+}
+
+void tell_next_with_setting(const Arguments& arguments, const std::string& setting,
+                            const std::string& why) {
+  tell_next(name_command(arguments, arguments.words_with_setting(setting)), why);
+}
+
+void tell_next_of_failed(const std::string& root, std::int64_t failed) {
+  tell_next({"strut", "verify", root},
+            format_count(failed) + (failed == 1 ? " case stays failed" : " cases stay failed") +
+                "; strut train leaves out what failed");
 }
 
 void tell_next_page(const std::string& file) { tell_next({"xdg-open", file}); }
 
-void prepare_interrupt(const Arguments& arguments) {
+void prepare_interrupt(const Arguments& arguments, const std::string& what) {
   std::string text = is_live_terminal(STDERR_FILENO) ? kEraseLine : "";
   text += make_error("interrupted") + "\n";
   if (loudness != Loudness::kQuiet) {
-    text += make_next_line(join_quoted(list_words(arguments)), "begins anew") + "\n";
+    const std::vector<std::string> line = name_command(arguments, arguments.words());
+    text += make_next_line(join_quoted(line), what) + "\n";
   }
   set_last_words(text);
 }

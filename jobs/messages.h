@@ -2,6 +2,7 @@
 // printed to standard output before comes before it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,17 @@ void tell_next_line(const std::string& line, const std::string& why = "");
 /// The command under way once more, with `added` words.
 void tell_next_again(const Arguments& arguments, const std::string& why,
                      const std::vector<std::string>& added = {});
+/// The same with `setting`, NAME=VALUE, in place of what --set said of that name.
+void tell_next_with_setting(const Arguments& arguments, const std::string& setting,
+                            const std::string& why);
+/// The sweep in `root` is whole, some cases `failed` and no resume is to mend them: on to the rest.
+void tell_next_of_failed(const std::string& root, std::int64_t failed);
 /// How to look at a page.
 void tell_next_page(const std::string& file);
 void say_next();
-/// Lets a signal that ends the program say that it did, and the command once more.
-void prepare_interrupt(const Arguments& arguments);
+/// Lets a signal that ends the program say that it did, and the command once more, which then does
+/// `what`.
+void prepare_interrupt(const Arguments& arguments, const std::string& what = "begins anew");
 
 /// Tells, with --verbose, how long it lived: "NAME: 1.2 s".
 class Stage {

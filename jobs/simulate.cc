@@ -95,8 +95,8 @@ LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
 }
 
 /// Why a run failed: its step, if a shorter one gets through; else exit code 1 is the answer.
-int explain_failure(const PreparedCase& c, const SimulateOptions& options,
-                    const LaneResults& results) {
+int explain_failure(const Arguments& arguments, const PreparedCase& c,
+                    const SimulateOptions& options, const LaneResults& results) {
   const std::string at = format_number(results.failure_time[0]) + " s";
   const bool out = results.status[0] == static_cast<int>(RunStatus::kOutOfTravel);
   if (options.integrator != kIntegratorCvode) {
@@ -116,9 +116,8 @@ int explain_failure(const PreparedCase& c, const SimulateOptions& options,
                     "a lower speed or a stiffer spring keeps it inside"
                   : "the motion is no longer finite; a shorter --step does not help") +
              "; nothing was written");
-  tell_next(
-      {"strut", "simulate", options.source.vehicle.string(), options.source.maneuver.string(), "-o",
-       options.output.string(), "--set", out ? "bump_height=VALUE" : "NAME=VALUE"},
+  tell_next_with_setting(
+      arguments, out ? "bump_height=VALUE" : "NAME=VALUE",
       out ? "with less of a bump, or --set speed=VALUE" : "with a parameter nearer to a car's");
   return kExitNo;
 }
@@ -202,7 +201,7 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
   tell_note(options.output.string() + line);
 }
 
-int run_case(const SimulateOptions& options) {
+int run_case(const Arguments& arguments, const SimulateOptions& options) {
   const RunFormat format = find_run_format(options.output);
   const Case input = load_case(options.source);
   const double duration = input.maneuver.duration;
@@ -219,7 +218,9 @@ int run_case(const SimulateOptions& options) {
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (run.results.status[0] != 0) return explain_failure(prepared, options, run.results);
+  if (run.results.status[0] != 0) {
+    return explain_failure(arguments, prepared, options, run.results);
+  }
 
   run.parameters = list_case_parameters(input);
   run.provenance = describe_run(options, run.results);
@@ -296,9 +297,9 @@ int run_simulate(const Arguments& arguments) {
   if (const auto rig = find_rig_kind(options.source.vehicle)) {
     refuse_options(arguments, {"coarse-step", "closure", "spin", "report"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");
-    return run_rig(options, *rig);
+    return run_rig(arguments, options, *rig);
   }
-  return run_case(options);
+  return run_case(arguments, options);
 }
 
 }  // namespace strut

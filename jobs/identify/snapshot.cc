@@ -68,8 +68,6 @@ std::vector<double> read_settings(const Arguments& arguments, const Model& model
     double& place = values[find_input(model, option, name)];
     if (!std::isfinite(value))
       throw InputError("--" + option + ": " + setting + ": not finite; must be a number");
-    if (!std::isnan(place))
-      throw InputError("--" + option + ": '" + name + "' twice; allowed: once");
     place = value;
   }
   return values;

@@ -25,8 +25,8 @@ RigSpec load_rig(const CaseSource& source) {
 }
 
 /// Its step, if a shorter one gets through; else exit code 1 is the answer.
-int explain_failure(const SimulateOptions& options, const RigSpec& rig, const RigManeuver& maneuver,
-                    const SamplePlan& plan, double failure_time) {
+int explain_failure(const Arguments& arguments, const SimulateOptions& options, const RigSpec& rig,
+                    const RigManeuver& maneuver, const SamplePlan& plan, double failure_time) {
   const std::string at = format_number(failure_time) + " s";
   StepOptions shorter = options.integrate.step;
   shorter.step *= kRetryFraction;
@@ -39,9 +39,7 @@ int explain_failure(const SimulateOptions& options, const RigSpec& rig, const Ri
   tell_error("the run failed at t = " + at +
              ": the motion is no longer finite, nor with a step of " + format_number(shorter.step) +
              " s; nothing was written");
-  tell_next({"strut", "simulate", options.source.vehicle.string(), options.source.maneuver.string(),
-             "-o", options.output.string(), "--set", "NAME=VALUE"},
-            "with a parameter nearer to a rig's");
+  tell_next_with_setting(arguments, "NAME=VALUE", "with a parameter nearer to a rig's");
   return kExitNo;
 }
 
@@ -64,7 +62,7 @@ void describe_run(const SimulateOptions& options, const RigSpec& rig, RigKind ki
 
 }  // namespace
 
-int run_rig(const SimulateOptions& options, RigKind kind) {
+int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind kind) {
   if (options.integrator == kIntegratorCvode) {
     throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
   }
@@ -90,7 +88,7 @@ int run_rig(const SimulateOptions& options, RigKind kind) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (run.results.status[0] != 0) {
-    return explain_failure(options, rig, maneuver, plan, run.results.failure_time[0]);
+    return explain_failure(arguments, options, rig, maneuver, plan, run.results.failure_time[0]);
   }
   describe_run(options, rig, kind, run);
   write_run(options.output, format, run);
