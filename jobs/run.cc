@@ -19,6 +19,7 @@
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
 #include "sweep/run.h"
+#include "sweep/status.h"
 
 namespace strut {
 namespace {
@@ -201,15 +202,19 @@ RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& opt
 /// What is said, and done, where a scheduler's warning ended the run.
 void leave_drained(const OpenSweep& sweep, const std::optional<TaskRun>& task) {
   const std::string root = sweep.folder.root.string();
-  tell_error("warned of a time limit (SIGUSR1); what is written is whole, `strut run " + root +
-             "` goes on from here");
+  tell_error("warned of a time limit (SIGUSR1); what is written is whole");
   const std::string why = task ? task->requeue() : "";
   if (task) tell_note(why.empty() ? "queued again" : "not queued again: " + why);
   if (task && why.empty()) {
     tell_next({"strut", "status", root, "--watch"});
   } else {
-    tell_next({"strut", "run", root});
+    tell_next({"strut", "run", root}, "goes on from here");
   }
+}
+
+/// Whether a resume may mend some of what failed.
+bool has_untried(const OpenSweep& sweep) {
+  return read_status(sweep.folder, sweep.plan).untried > 0;
 }
 
 /// What is to be done with the sweep as it is now.
@@ -218,10 +223,12 @@ void tell_next_of(const OpenSweep& sweep, const RunProgress& progress, const Run
   const std::string root = sweep.folder.root.string();
   if (!summary.damaged.empty()) {
     tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside, then run");
-  } else if (summary.failed > 0 && !retries) {
+  } else if (summary.failed > 0 && !retries && has_untried(sweep)) {
     tell_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
-  } else if (summary.failed > 0 || !is_complete_sweep(sweep, progress)) {
+  } else if (!is_complete_sweep(sweep, progress)) {
     tell_next({"strut", "status", root});
+  } else if (summary.failed > 0) {
+    tell_next_of_failed(root, summary.failed);
   } else {
     tell_next({"strut", "verify", root});
   }
@@ -239,6 +246,7 @@ int run(bool retries, const Arguments& arguments) {
   tell_detail(std::to_string(options.threads) + " threads, instruction set " + options.kernel->isa +
               ", shards " + std::to_string(options.first_shard) + " to " +
               std::to_string(options.end_shard - 1));
+  prepare_interrupt(arguments, "goes on from here");
   InterruptWatcher watcher;
   options.drain = &watcher.warned();
   RunProgress progress;
@@ -257,9 +265,8 @@ int run(bool retries, const Arguments& arguments) {
     print_summary(sweep, progress, summary, seconds);
   }
   if (watcher.signal() != 0) {
-    tell_error("interrupted; what is written is whole, `strut run " + sweep.folder.root.string() +
-               "` goes on from here");
-    tell_next_again(arguments, "goes on");
+    tell_error("interrupted; what is written is whole");
+    tell_next_again(arguments, "goes on from here");
     return 128 + watcher.signal();
   }
   if (watcher.warned() && !is_complete(progress)) {

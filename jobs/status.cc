@@ -25,16 +25,22 @@ struct Followed {
   SubmissionState state;
 };
 
-std::vector<Followed> follow_all(const SweepFolder& folder, std::vector<std::string>& faults) {
-  std::vector<Followed> all;
-  for (Submission& s : list_submissions(folder, &faults)) {
+struct Submissions {
+  std::vector<Followed> followed;
+  std::vector<std::string> faults;  // records that cannot be read
+};
+
+Submissions follow_all(const SweepFolder& folder) {
+  Submissions all;
+  for (Submission& s : list_submissions(folder, &all.faults)) {
     try {
       SubmissionState state = follow(s);
-      all.push_back({std::move(s), std::move(state)});
+      all.followed.push_back({std::move(s), std::move(state)});
     } catch (const InputError& e) {  // of a task's record
-      faults.emplace_back(e.what());
+      all.faults.emplace_back(e.what());
     }
   }
+  for (std::string& fault : all.faults) fault += "; move this file away";
   return all;
 }
 
@@ -77,14 +83,15 @@ std::string describe(const Followed& followed) {
   return text + ended;
 }
 
-Json make_json(const SweepStatus& status, const std::vector<Followed>& submissions) {
+Json make_json(const SweepStatus& status, const Submissions& submissions) {
   Json jobs = Json::array();
-  for (const Followed& followed : submissions) jobs.push(make_json(followed));
+  for (const Followed& followed : submissions.followed) jobs.push(make_json(followed));
   Json failures = Json::object(), faults = Json::array(), runners = Json::array();
   for (const auto& [reason, cases] : status.failures) {
     failures.set(reason, static_cast<long>(cases));
   }
   for (const std::string& fault : status.faults) faults.push(fault);
+  for (const std::string& fault : submissions.faults) faults.push(fault);
   for (const ClaimInfo& claim : status.claims) {
     runners.push(Json::object().set("unit", claim.unit).set("runner", claim.runner));
   }
@@ -109,7 +116,7 @@ Json make_json(const SweepStatus& status, const std::vector<Followed>& submissio
   return json;
 }
 
-void print_text(const SweepStatus& status, const std::vector<Followed>& submissions) {
+void print_text(const SweepStatus& status, const Submissions& submissions) {
   const auto line = [](const char* name, const std::string& value) {
     std::cout << name << std::string(10 - std::string(name).size(), ' ') << value << "\n";
   };
@@ -129,29 +136,34 @@ void print_text(const SweepStatus& status, const std::vector<Followed>& submissi
   line("shards", format_count(status.shards_present) + " of " + format_count(status.shards) + ", " +
                      format_bytes(static_cast<double>(status.bytes)));
   if (status.duplicates > 0) line("made twice", format_count(status.duplicates) + " shards");
-  for (const Followed& followed : submissions) line("submitted", describe(followed));
+  for (const Followed& followed : submissions.followed) line("submitted", describe(followed));
   for (const std::string& fault : status.faults) tell_error(fault);
+  for (const std::string& fault : submissions.faults) tell_error(fault);
 }
 
 /// Whether somebody works on it, or is about to.
-bool is_under_way(const SweepStatus& status, const std::vector<Followed>& submissions) {
+bool is_under_way(const SweepStatus& status, const Submissions& submissions) {
   if (!status.claims.empty()) return true;
-  for (const Followed& followed : submissions) {
+  for (const Followed& followed : submissions.followed) {
     if (followed.state.running + followed.state.pending > 0) return true;
   }
   return false;
 }
 
-void tell_next_of(const std::string& root, const SweepStatus& status,
-                  const std::vector<Followed>& submissions) {
+void tell_next_of(const Arguments& arguments, const std::string& root, const SweepStatus& status,
+                  const Submissions& submissions) {
   if (!status.faults.empty()) {
     tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside");
+  } else if (!submissions.faults.empty()) {
+    tell_next_again(arguments, "once what is named above is moved away");
   } else if (!status.complete() && is_under_way(status, submissions)) {
     tell_next({"strut", "status", root, "--watch"});
   } else if (!status.complete()) {
     tell_next({"strut", "run", root});
-  } else if (status.failed > 0) {
+  } else if (status.untried > 0) {
     tell_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
+  } else if (status.failed > 0) {
+    tell_next_of_failed(root, status.failed);
   } else {
     tell_next({"strut", "verify", root});
   }
@@ -177,15 +189,10 @@ int run_status(const Arguments& arguments) {
   const bool on_terminal = is_live_terminal(STDOUT_FILENO);
   // A scheduler is not to be asked every second.
   constexpr int kAskEvery = 10;
-  std::vector<Followed> submissions;
-  std::vector<std::string> faults;
+  Submissions submissions;
   for (int look = 0;; ++look) {
-    SweepStatus status = read_status(sweep.folder, sweep.plan);
-    if (look % kAskEvery == 0) {
-      faults.clear();
-      submissions = follow_all(sweep.folder, faults);
-    }
-    status.faults.insert(status.faults.end(), faults.begin(), faults.end());
+    const SweepStatus status = read_status(sweep.folder, sweep.plan);
+    if (look % kAskEvery == 0) submissions = follow_all(sweep.folder);
     if (arguments.is_on("watch") && on_terminal) std::cout << "\033[H\033[J";
     if (arguments.is_on("json")) {
       std::cout << make_json(status, submissions).dump() << std::endl;
@@ -194,8 +201,9 @@ int run_status(const Arguments& arguments) {
       std::cout << std::flush;
     }
     if (!arguments.is_on("watch") || status.complete()) {
-      tell_next_of(sweep.folder.root.string(), status, submissions);
-      return status.faults.empty() && status.failed == 0 ? kExitDone : kExitNo;
+      tell_next_of(arguments, sweep.folder.root.string(), status, submissions);
+      const bool is_readable = status.faults.empty() && submissions.faults.empty();
+      return is_readable && status.failed == 0 ? kExitDone : kExitNo;
     }
     std::this_thread::sleep_for(std::chrono::seconds(1));
   }

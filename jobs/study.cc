@@ -168,6 +168,7 @@ int run_study(const Arguments& arguments) {
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
   const StudyRequest asked = read_study(names.front());
   const int threads = find_threads(arguments);
+  prepare_interrupt(arguments, "goes on");
   InterruptWatcher watcher;
   const StudyFolder folder = make_study_folder(arguments.text("output"), asked);
   const StudyRequest request = open_study_folder(folder);

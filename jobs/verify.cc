@@ -75,9 +75,13 @@ void tell_next_of(const Arguments& arguments, const std::string& root, const Ver
     tell_next({"strut", "train", root, "-o", "model.h5"},
               "or strut merge, for one file for other tools");
   } else if (!report.damaged.empty() && !is_moved) {
-    tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside, then run");
-  } else if (report.missing > 0 || !report.damaged.empty()) {
+    tell_next({"strut", "verify", root, "--quarantine"},
+              report.missing > 0 ? "moves damaged files aside, then run"
+                                 : "moves what is not the plan's aside");
+  } else if (report.missing > 0) {
     tell_next({"strut", "run", root}, "simulates what is missing");
+  } else if (!report.damaged.empty()) {
+    tell_next({"strut", "verify", root}, "nothing is missing: looks at what is left");
   } else {
     tell_next({"strut", "doctor", root}, "what of this machine cannot be relied upon");
   }

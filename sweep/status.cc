@@ -6,6 +6,7 @@
 
 #include "io/input_error.h"
 #include "sweep/shard_store.h"
+#include "sweep/simulate_cases.h"
 
 namespace strut {
 namespace {
@@ -28,12 +29,24 @@ double calc_rate(const Journal& journal) {
   return now > first ? static_cast<double>(cases) / static_cast<double>(now - first) : 0.0;
 }
 
-void add_shard(ShardRecords& records, const Plan& plan, std::int64_t shard, SweepStatus& status) {
+/// Cases of an entry that failed in a way that a smaller step may mend.
+std::int64_t count_mendable(const JournalEntry& entry) {
+  std::int64_t count = 0;
+  for (std::int32_t status = 0; status < kCaseStatusCount; ++status) {
+    const auto failures = entry.failures.find(get_case_status_name(status));
+    if (may_retry(status) && failures != entry.failures.end()) count += failures->second;
+  }
+  return count;
+}
+
+void add_shard(const SweepFolder& folder, ShardRecords& records, const Plan& plan,
+               std::int64_t shard, SweepStatus& status) {
   try {
     const JournalEntry entry = records.get(shard);
     for (const auto& [reason, cases] : entry.failures) status.failures[reason] += cases;
     const std::int64_t failed = count_failures(entry);
     status.failed += failed;
+    if (failed > 0 && count_retries(folder, shard) == 0) status.untried += count_mendable(entry);
     status.done += entry.cases - failed;
     status.bytes += entry.bytes;
     status.simulation_seconds += entry.seconds;
@@ -59,7 +72,7 @@ SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
   shards.erase(std::lower_bound(shards.begin(), shards.end(), status.shards), shards.end());
   for (const std::int64_t shard : shards) {
     present += plan.shard_size(shard);
-    add_shard(records, plan, shard, status);
+    add_shard(folder, records, plan, shard, status);
   }
   status.left += status.cases - present;
   for (const ClaimInfo& claim : status.claims) {

@@ -16,6 +16,7 @@ struct SweepStatus {
   std::int64_t cases = 0;    // of the plan
   std::int64_t done = 0;     // with a result
   std::int64_t failed = 0;   // simulated, without one
+  std::int64_t untried = 0;  // of `failed`: what a smaller step may mend, and no resume has tried
   std::int64_t running = 0;  // in shards that a living runner claims
   std::int64_t left = 0;     // not simulated yet, `running` included
   std::int64_t shards = 0, shards_present = 0;
