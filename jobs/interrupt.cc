@@ -23,22 +23,34 @@ std::array<char, 4000> last_words;
 std::atomic<std::size_t> last_words_size{0};
 
 /// Nothing is half done outside of an InterruptGuard, so there is nothing to clean up.
-extern "C" void end_now(int signal) {
+extern "C" [[noreturn]] void end_now(int signal) {
   if (write(STDERR_FILENO, last_words.data(), last_words_size) < 0) _exit(128 + signal);
   _exit(128 + signal);
+}
+
+/// As nohup and `trap '' INT` ask for. A signal that is blocked would come to sigtimedwait all the
+/// same.
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
 sigset_t make_interrupts() {
   sigset_t all;
   sigemptyset(&all);
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&all, signal);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (!is_ignored(signal)) sigaddset(&all, signal);
+  }
+  sigaddset(&all, SIGUSR1);
   return all;
 }
 
 }  // namespace
 
 void end_on_interrupt() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, &end_now);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    if (!is_ignored(signal)) std::signal(signal, &end_now);
+  }
 }
 
 void set_last_words(const std::string& text) {
@@ -73,7 +85,7 @@ void InterruptWatcher::watch() {
       continue;
     }
     const bool again = signal > 0 && signal_ != 0 && SteadyClock::now() - first > kEcho;
-    if (again || (signal_ != 0 && SteadyClock::now() - first > kPatience)) _exit(128 + signal_);
+    if (again || (signal_ != 0 && SteadyClock::now() - first > kPatience)) end_now(signal_);
     if (signal > 0 && signal_ == 0) {
       first = SteadyClock::now();
       signal_ = signal;

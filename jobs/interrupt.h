@@ -8,7 +8,8 @@
 
 namespace strut {
 
-/// From now on SIGINT and SIGTERM end the program with code 128 + signal.
+/// From now on SIGINT and SIGTERM end the program with code 128 + signal. One that was ignored
+/// before stays so, here and below.
 void end_on_interrupt();
 
 /// What is then said to standard error, as far as 4000 bytes go.
@@ -29,7 +30,8 @@ class InterruptGuard {
 
 /// Turns the first of those signals into a flag, so that long work stops where it is whole. A
 /// second signal more than 0.1 s later, or work that has not ended 1.5 s after the first, ends the
-/// program as SIGKILL would: for work that survives that. To be made before other threads are.
+/// program at once, with the last words: for work that survives SIGKILL. To be made before other
+/// threads are.
 class InterruptWatcher {
  public:
   InterruptWatcher();

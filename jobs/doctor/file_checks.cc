@@ -16,6 +16,7 @@
 #include "io/config.h"
 #include "io/input_error.h"
 #include "jobs/dispatch/file_system.h"
+#include "jobs/interrupt.h"
 #include "jobs/progress.h"
 
 namespace strut {
@@ -28,7 +29,7 @@ double seconds_since(SteadyClock::time_point start) {
   return std::chrono::duration<double>(SteadyClock::now() - start).count();
 }
 
-/// A folder that vanishes with this object.
+/// A folder that vanishes with this object, which signals wait for.
 class TrialFolder {
  public:
   explicit TrialFolder(const fs::path& parent)
@@ -47,7 +48,8 @@ class TrialFolder {
   fs::path operator/(const char* name) const { return path_ / name; }
 
  private:
-  fs::path path_;
+  const InterruptGuard guard_;
+  const fs::path path_;
 };
 
 /// errno; 0: it worked.
