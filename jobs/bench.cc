@@ -1,8 +1,13 @@
 #include "jobs/bench.h"
 
 #include <omp.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <mutex>
 #include <optional>
@@ -11,6 +16,7 @@
 #include "jobs/bench/find_example.h"
 #include "jobs/bench/report.h"
 #include "jobs/command.h"
+#include "jobs/interrupt.h"
 #include "jobs/machine.h"
 #include "jobs/messages.h"
 #include "jobs/open_sweep.h"
@@ -25,6 +31,15 @@ constexpr double kAllowedError = 1e-3;
 struct Effort {
   double seconds = 0.25;  // a repeat
   int repeats = 6;
+};
+
+/// What is to be measured.
+struct BenchRequest {
+  CaseSource source;
+  const Kernel* kernel = nullptr;
+  bool quick = false;
+  std::filesystem::path sweep;  // the request of one; empty: none is run
+  std::filesystem::path scratch;
 };
 
 /// Best of several repeats, each of whole runs for about effort.seconds.
@@ -110,15 +125,18 @@ class BenchProgress {
   ProgressLine line_;  // last: it asks for the others from a thread of its own
 };
 
-BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool quick,
-                          const std::filesystem::path& scratch) {
+/// Once `halt` is true it ends soon, its figures no figures.
+BenchResult run_benchmark(const BenchRequest& request, std::atomic<bool>& halt) {
+  const Kernel& kernel = *request.kernel;
+  const bool quick = request.quick;
   const Effort effort = quick ? Effort{0.05, 2} : Effort{};
   BenchResult result;
   result.machine = read_machine(kernel);
   BenchProgress progress(list_standard_settings().size() +
-                         static_cast<std::size_t>(result.machine.cores) + 3);
+                         static_cast<std::size_t>(result.machine.cores) +
+                         (request.sweep.empty() ? 2 : 3));
   progress.begin("preparing " + std::to_string(kernel.lanes) + " cases and their references");
-  const BenchCases bench = make_bench_cases(source, kernel.lanes);
+  const BenchCases bench = make_bench_cases(request.source, kernel.lanes);
   result.seconds_to_prepare = bench.seconds_to_prepare;
   const double spin = calibrate_spin();
   result.peak = measure_peak(kernel);
@@ -126,10 +144,12 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
   result.table = count_flops(bench.cases[0], Closure::kTable);
 
   for (const BenchSetting& setting : list_standard_settings()) {
+    if (halt) return result;
     progress.begin("measuring " + std::string(setting.label));
     result.single_core.push_back(measure(bench, kernel, setting, effort, spin));
     result.single_core.back().error = measure_error(bench, kernel, setting);
   }
+  if (halt) return result;
   progress.begin("searching the fastest setting");
   BenchSetting fastest = find_fastest(bench, kernel, quick);
   fastest.label = "fastest";
@@ -138,6 +158,7 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
   result.single_core.push_back(figure);
 
   for (int threads = 1; threads <= result.machine.cores; ++threads) {
+    if (halt) return result;
     progress.begin("measuring " + std::to_string(threads) + " threads");
     ThreadFigure best;
     for (int repeat = 0; repeat < std::max(2, effort.repeats / 2); ++repeat) {
@@ -146,9 +167,56 @@ BenchResult run_benchmark(const CaseSource& source, const Kernel& kernel, bool q
     }
     result.threads.push_back(best);
   }
+  if (halt || request.sweep.empty()) return result;
   progress.begin("measuring a sweep");
-  result.pipeline = measure_pipeline(quick ? 320 : 2000, result.machine.cores, spin, scratch);
+  result.pipeline = measure_pipeline(request.sweep, quick ? 320 : 2000, result.machine.cores, spin,
+                                     request.scratch, halt);
   return result;
+}
+
+/// The example that is swept; none, and told, where a car was named and there are no examples.
+std::filesystem::path find_sweep(bool must) {
+  const char* const name = "sweeps/paper_fast.toml";
+  try {
+    return find_example(name);
+  } catch (const InputError&) {
+    if (must) throw;
+  }
+  tell_note("examples/" + std::string(name) +
+            ": not found above the program or the working directory; no sweep is measured");
+  return {};
+}
+
+std::filesystem::path find_scratch(const Arguments& arguments) {
+  if (!arguments.has("scratch")) return std::filesystem::temp_directory_path();
+  std::filesystem::path scratch = arguments.text("scratch");
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(scratch, ignored)) {
+    throw InputError("--scratch = " + scratch.string() + ": must be a folder");
+  }
+  if (::access(scratch.c_str(), W_OK) != 0) {
+    throw EnvironmentError("--scratch = " + scratch.string() + ": " + std::strerror(errno));
+  }
+  return scratch;
+}
+
+BenchRequest read_request(const Arguments& arguments) {
+  const auto& files = arguments.positional();
+  if (!files.empty() && files.size() != 2) {
+    throw arguments.usage_error(std::to_string(files.size()) +
+                                " files; expected VEHICLE and MANEUVER, or none");
+  }
+  BenchRequest request;
+  const bool is_named = !files.empty();
+  request.source.vehicle =
+      is_named ? std::filesystem::path(files[0]) : find_example("vehicles/paper_sedan.toml");
+  request.source.maneuver =
+      is_named ? std::filesystem::path(files[1]) : find_example("maneuvers/bump_20mps.toml");
+  request.kernel = &find_kernel(arguments);
+  request.quick = arguments.is_on("quick");
+  request.sweep = find_sweep(!is_named);
+  request.scratch = find_scratch(arguments);
+  return request;
 }
 
 void tell_next_of(const Arguments& arguments) {
@@ -170,7 +238,7 @@ Arguments describe_bench() {
       "exactly. Without files: examples/vehicles/paper_sedan.toml over\n"
       "examples/maneuvers/bump_20mps.toml, springs and dampers spread over the paper's ranges. "
       "Then\n"
-      "runs a sweep of examples/sweeps/paper_fast.toml from plan to shards.",
+      "runs a sweep of examples/sweeps/paper_fast.toml, where it is found, from plan to shards.",
       "  strut bench --json > old.json\n  strut bench --baseline old.json");
   arguments.add_operand(ArgumentValue::file("VEHICLE", {"toml"}));
   arguments.add_operand(ArgumentValue::file("MANEUVER", {"toml"}));
@@ -187,23 +255,18 @@ Arguments describe_bench() {
 }
 
 int run_bench(const Arguments& arguments) {
-  const auto& files = arguments.positional();
-  if (!files.empty() && files.size() != 2) {
-    throw arguments.usage_error(std::to_string(files.size()) +
-                                " files; expected VEHICLE and MANEUVER, or none");
-  }
-  CaseSource source;
-  source.vehicle =
-      files.empty() ? find_example("vehicles/paper_sedan.toml") : std::filesystem::path(files[0]);
-  source.maneuver =
-      files.empty() ? find_example("maneuvers/bump_20mps.toml") : std::filesystem::path(files[1]);
+  const BenchRequest request = read_request(arguments);
   std::optional<Baseline> baseline;
   if (arguments.has("baseline")) baseline = read_baseline(arguments.text("baseline"));
 
-  const BenchResult result =
-      run_benchmark(source, find_kernel(arguments), arguments.is_on("quick"),
-                    arguments.has("scratch") ? std::filesystem::path(arguments.text("scratch"))
-                                             : std::filesystem::temp_directory_path());
+  // Before the threads of OpenMP are there: one of them would end the program amid a sweep.
+  InterruptWatcher watcher;
+  const BenchResult result = run_benchmark(request, watcher.halt());
+  if (watcher.signal() != 0) {
+    tell_error("interrupted");
+    tell_next_again(arguments, "begins anew");
+    return 128 + watcher.signal();
+  }
   const std::vector<FigureRatio> ratios =
       baseline ? compare(result, *baseline) : std::vector<FigureRatio>{};
   arguments.is_on("json") ? print_json(std::cout, result, ratios)

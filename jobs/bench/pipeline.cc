@@ -4,14 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <ostream>
 
-#include "jobs/bench/find_example.h"
 #include "jobs/machine.h"
 #include "sweep/run.h"
 
@@ -48,9 +46,9 @@ struct SweepTime {
   double seconds = 0.0;
 };
 
-SweepTime time_sweep(const SweepFolder& folder, const Plan& plan, const RunOptions& options) {
+SweepTime time_sweep(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
+                     std::atomic<bool>& halt) {
   RunProgress progress;
-  std::atomic<bool> halt{false};
   const double start = now();
   SweepTime time{run_sweep(folder, plan, options, progress, halt)};
   time.seconds = now() - start;
@@ -65,7 +63,7 @@ double read_peak_memory() {
 
 /// The first `result.cases` cases of the plan in a fresh folder, the spin control beside it.
 PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, double best_spin,
-                       const fs::path& scratch, PipelineResult& result) {
+                       const fs::path& scratch, std::atomic<bool>& halt, PipelineResult& result) {
   RunOptions options;
   options.kernel = &kernel;
   options.threads = threads;
@@ -75,7 +73,7 @@ PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, doub
   const SweepFolder folder = make_sweep_folder(place.path() / "sweep", plan);
   result.plan_seconds = now() - start;
   const double before = measure_spins(threads);
-  const SweepTime time = time_sweep(folder, plan, options);
+  const SweepTime time = time_sweep(folder, plan, options, halt);
   const double spin = 0.5 * (before + measure_spins(threads)) / best_spin;
   const RunSummary& summary = time.summary;
   result.prepare = summary.simulation.prepare;
@@ -84,26 +82,26 @@ PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, doub
   result.write = summary.write;
   const auto cases = static_cast<double>(result.cases);
   result.bytes_per_case = std::round(static_cast<double>(summary.bytes) / cases);
-  result.resume_seconds = time_sweep(folder, plan, options).seconds;
+  result.resume_seconds = time_sweep(folder, plan, options, halt).seconds;
   return {kernel.isa, kernel.lanes, threads, cases / time.seconds, spin};
 }
 
 }  // namespace
 
-PipelineResult measure_pipeline(std::int64_t cases, int cores, double best_spin,
-                                const fs::path& scratch) {
-  const fs::path file = find_example("sweeps/paper_fast.toml");
+PipelineResult measure_pipeline(const fs::path& file, std::int64_t cases, int cores,
+                                double best_spin, const fs::path& scratch,
+                                std::atomic<bool>& halt) {
   const Plan plan(read_request(file));
   PipelineResult result;
   result.sweep = file.filename().string();
   const std::int64_t shard = plan.request().shard_cases;
   result.cases = std::min((cases + shard - 1) / shard * shard, plan.case_count());
-  for (std::size_t k = list_kernels().size(); k-- > 1;) {
-    result.figures.push_back(measure(plan, list_kernels()[k], 1, best_spin, scratch, result));
+  for (std::size_t k = list_kernels().size(); k-- > 1 && !halt;) {
+    result.figures.push_back(measure(plan, list_kernels()[k], 1, best_spin, scratch, halt, result));
   }
-  for (int threads = 1; threads <= cores; ++threads) {
+  for (int threads = 1; threads <= cores && !halt; ++threads) {
     result.figures.push_back(
-        measure(plan, list_kernels().front(), threads, best_spin, scratch, result));
+        measure(plan, list_kernels().front(), threads, best_spin, scratch, halt, result));
   }
   result.peak_memory = read_peak_memory();
   return result;

@@ -1,6 +1,7 @@
 // `strut bench` over the whole factory: a real sweep from plan to shards in a scratch folder.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
@@ -36,11 +37,13 @@ struct PipelineResult {
   }
 };
 
-/// Sweeps the first `cases` cases, rounded up to whole shards, of examples/sweeps/paper_fast.toml,
-/// a random sample of its grid, with every kernel on one thread and the widest on 1 to `cores`,
-/// below `scratch`. `best_spin`: as calibrate_spin. Throws EnvironmentError.
-PipelineResult measure_pipeline(std::int64_t cases, int cores, double best_spin,
-                                const std::filesystem::path& scratch);
+/// Sweeps the first `cases` cases, rounded up to whole shards, of the request in `file`, a random
+/// sample of its grid, with every kernel on one thread and the widest on 1 to `cores`, below
+/// `scratch`. `best_spin`: as calibrate_spin. Once `halt` is true it ends soon, its figures no
+/// figures. Throws InputError, EnvironmentError.
+PipelineResult measure_pipeline(const std::filesystem::path& file, std::int64_t cases, int cores,
+                                double best_spin, const std::filesystem::path& scratch,
+                                std::atomic<bool>& halt);
 
 Json make_json(const PipelineResult& result);
 void print_pipeline(std::ostream& stream, const PipelineResult& result);

@@ -41,9 +41,9 @@ Json make_json(const BenchResult& result) {
       .set("transcendentals_per_rhs", result.newton.transcendental)
       .set("share_of_peak", result.share_of_peak(result.figure("lanes")))
       .set("peak_flops_per_s", result.peak)
-      .set("bytes_per_case", result.pipeline.bytes_per_case)
+      .set("bytes_per_case", result.pipeline ? Json(result.pipeline->bytes_per_case) : Json())
       .set("seconds_to_prepare_case", result.seconds_to_prepare)
-      .set("pipeline", make_json(result.pipeline))
+      .set("pipeline", result.pipeline ? make_json(*result.pipeline) : Json())
       .set("machine", make_json(result.machine));
 }
 
@@ -87,7 +87,7 @@ void print_table(std::ostream& stream, const BenchResult& result,
   print_line(stream,
              "peak of one core: %.1f Gflop/s; preparing a case (trim): %.3f ms, not in the above",
              1e-9 * result.peak, 1e3 * result.seconds_to_prepare);
-  print_pipeline(stream, result.pipeline);
+  if (result.pipeline) print_pipeline(stream, *result.pipeline);
   if (ratios.empty()) return;
   print_line(stream, "\n%-16s %10s", "new / old", "ratio");
   for (const FigureRatio& r : ratios) print_line(stream, "%-16s %10.3f", r.name.c_str(), r.ratio);
@@ -139,7 +139,8 @@ std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& base
     }
   }
   const auto runs = baseline.get_child_optional("pipeline.runs");
-  for (const PipelineFigure& f : result.pipeline.figures) {
+  const auto sweeps = result.pipeline ? result.pipeline->figures : std::vector<PipelineFigure>();
+  for (const PipelineFigure& f : sweeps) {
     if (!runs) break;
     for (const auto& [key, old] : *runs) {
       if (old.get("isa", "") != f.isa || old.get("threads", 0) != f.threads) continue;

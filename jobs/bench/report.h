@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/property_tree/ptree.hpp>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct BenchResult {
   FlopCount newton, table;
   double peak = 0.0;  // flop/s of one core
   double seconds_to_prepare = 0.0;
-  PipelineResult pipeline;
+  std::optional<PipelineResult> pipeline;  // none where there is no sweep to run
   Machine machine;
 
   const Figure& figure(const std::string& name) const {
