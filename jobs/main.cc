@@ -3,11 +3,13 @@
 
 #include <sundials/sundials_version.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 
 #include "io/hdf5.h"
+#include "io/nearest_name.h"
 #include "jobs/bench/find_example.h"
 #include "jobs/build_info.h"
 #include "jobs/commands.h"
@@ -85,20 +87,47 @@ int run_command(const Command& command, const std::vector<std::string>& words) {
   return command.run(arguments);
 }
 
+/// Of what `strut help` and `strut --version` take.
+void refuse_words_after(const std::vector<std::string>& words, std::size_t most) {
+  if (words.size() <= most) return;
+  throw strut::InputError("'" + words[most] + "' after '" + words[most - 1] +
+                          "': one word too many; see strut --help");
+}
+
+int show_help(const std::vector<std::string>& words) {
+  refuse_words_after(words, 2);
+  if (words.size() > 1 && words[1] != "help") {
+    return run_command(strut::find_command(words[1]), {"--help"});
+  }
+  print_help();
+  return strut::kExitDone;
+}
+
+[[noreturn]] void refuse_option(const std::string& word) {
+  std::vector<std::string> common;
+  for (const strut::ArgumentOption& option : strut::Arguments::common_options()) {
+    for (const std::string& name : {"--" + option.name, "-" + option.letter}) {
+      common.push_back(name);
+    }
+  }
+  const bool is_common = std::find(common.begin(), common.end(), word) != common.end();
+  std::vector<std::string> all = {"--version"};
+  all.insert(all.end(), common.begin(), common.end());
+  throw strut::InputError(
+      "option '" + word + "' before the command: options follow it, as in strut COMMAND " +
+      (is_common ? word : "--quiet" + strut::suggest_name(word, all)) + "; see strut --help");
+}
+
 int run(const std::vector<std::string>& words) {
   if (words.empty()) return show_beginning();
   const std::string& first = words.front();
-  if (first == "help" && words.size() > 1) {
-    return run_command(strut::find_command(words[1]), {"--help"});
-  }
-  if (first == "--help" || first == "-h" || first == "help") {
-    print_help();
-    return strut::kExitDone;
-  }
+  if (first == "--help" || first == "-h" || first == "help") return show_help(words);
   if (first == "--version") {
+    refuse_words_after(words, 1);
     print_version();
     return strut::kExitDone;
   }
+  if (first.starts_with("-")) refuse_option(first);
   return run_command(strut::find_command(first), {words.begin() + 1, words.end()});
 }
 

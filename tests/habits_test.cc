@@ -235,15 +235,42 @@ struct HintCase {
   std::string hint;  // its first words
 };
 
+std::string join(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
 void check_case(const HintCase& c) {
   INFO(c.command);
   const Outcome outcome = run_program(c.command);
   CHECK(outcome.code == c.code);
-  std::string line;
-  for (const std::string& word : check_hint(outcome.messages)) {
-    line += (line.empty() ? "" : " ") + word;
-  }
-  CHECK_THAT(line, Catch::Matchers::StartsWith(c.hint));
+  CHECK_THAT(join(check_hint(outcome.messages)), Catch::Matchers::StartsWith(c.hint));
+}
+
+/// The hint is these words and no more. Returns the messages.
+std::string check_whole_hint(const HintCase& c) {
+  INFO(c.command);
+  const Outcome outcome = run_program(c.command);
+  CHECK(outcome.code == c.code);
+  CHECK(join(check_hint(outcome.messages)) == c.hint);
+  return outcome.messages;
+}
+
+/// Planned in `folder`, as "sweep".
+std::string plan_sweep(const TemporaryFolder& folder, const std::string& text) {
+  const std::string sweep = folder / "sweep";
+  REQUIRE(run_program("plan " + folder.write("sweep.toml", text).string() + " -o " + sweep).code ==
+          0);
+  return sweep;
+}
+
+/// Half of its 32 cases leave the travel of their suspension, with any step.
+std::string make_rough_sweep() {
+  std::string text = test::make_coarse_sweep(16);
+  const std::string axis = "rear_damping    = { from = 1980,  to = 1800,  step = -90 }";
+  text.replace(text.find(axis), axis.size(), "bump_height = { from = 0.05, to = 0.19, count = 2 }");
+  return text;
 }
 
 TEST_CASE("Every command of a sweep names the next one, to the network in use", "[io]") {
@@ -281,15 +308,118 @@ TEST_CASE("Every command of a sweep names the next one, to the network in use", 
 
 TEST_CASE("Cases that fail, and damage, are followed by what mends them", "[io]") {
   const TemporaryFolder folder;
-  const std::string file = folder.write("sweep.toml", test::make_failing_sweep());
-  const std::string sweep = folder / "sweep";
-  REQUIRE(run_program("plan " + file + " -o " + sweep).code == 0);
-  check_case({"run " + sweep, 1, "strut resume " + sweep});
-  check_case({"status " + sweep, 1, "strut resume " + sweep});
-  check_case({"resume " + sweep, 1, "strut status " + sweep});
+  const std::string sweep = plan_sweep(folder, make_rough_sweep());
+  const std::string verify = "strut verify " + sweep;
+  check_whole_hint({"run " + sweep, 1, "strut resume " + sweep});
+  check_whole_hint({"status " + sweep, 1, "strut resume " + sweep});
+  CHECK_THAT(check_whole_hint({"resume " + sweep, 1, verify}), Contains("16 cases stay failed"));
+  check_whole_hint({"status " + sweep, 1, verify});
+  check_whole_hint({"run " + sweep, 1, verify});
+  check_case({"verify " + sweep, 0, "strut train " + sweep});
   fs::resize_file(folder / "sweep/shards/000001.h5", 1000);
   check_case({"verify " + sweep, 1, "strut verify " + sweep + " --quarantine"});
   check_case({"verify " + sweep + " --quarantine", 1, "strut run " + sweep});
+}
+
+TEST_CASE("Where a smaller step mends nothing no resume is named", "[io]") {
+  const TemporaryFolder folder;
+  const std::string sweep = plan_sweep(folder, test::make_failing_sweep());
+  CHECK_THAT(check_whole_hint({"run " + sweep, 1, "strut verify " + sweep}),
+             Contains("stay failed; strut train leaves out what failed"));
+  check_whole_hint({"status " + sweep, 1, "strut verify " + sweep});
+}
+
+TEST_CASE("Files that are no shards of a sweep are followed by what removes them", "[io]") {
+  const TemporaryFolder folder;
+  const std::string sweep = plan_sweep(folder, test::make_coarse_sweep(24));
+  const std::string verify = "strut verify " + sweep;
+  REQUIRE(run_program("run " + sweep).code == 0);
+  fs::copy_file(folder / "sweep/shards/000001.h5", folder / "sweep/shards/000009.h5");
+  check_whole_hint({"verify " + sweep, 1, verify + " --quarantine"});
+  check_whole_hint({"verify " + sweep + " --quarantine", 1, verify});
+  check_case({"verify " + sweep, 0, "strut train"});
+
+  const fs::path record = folder / "sweep/jobs/001/submission.toml";
+  fs::create_directories(record.parent_path());
+  folder.write("sweep/jobs/001/submission.toml", "dispatcher = \n");
+  const std::string messages = check_whole_hint({"status " + sweep, 1, "strut status " + sweep});
+  CHECK_THAT(messages, Contains(record.string()) && Contains("move this file away"));
+  fs::remove(record);
+  check_whole_hint({"status " + sweep, 0, verify});
+}
+
+TEST_CASE("An interrupted sweep says once how it goes on", "[io]") {
+  const TemporaryFolder folder;
+  const std::string sweep = plan_sweep(folder, test::make_coarse_sweep(8, "", "1e-4"));
+  const Outcome outcome = run_shell(
+      "timeout --preserve-status -s INT 0.4 " STRUT_PROGRAM " resume --threads 1 " + sweep);
+  CHECK(outcome.code == 130);
+  CHECK_THAT(outcome.messages, Contains("what is written is whole\n") && !Contains("strut run"));
+  CHECK(join(check_hint(outcome.messages)) == "strut resume --threads 1 " + sweep);
+}
+
+TEST_CASE("A run that failed is named again with all of its words but the value to change",
+          "[io]") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "run.csv", report = folder / "report";
+  const std::string rest = "simulate " + kSedan + " " + kBump + " -o " + file +
+                           " --set speed=19 --integrator abm4 --report " + report;
+  for (const char* set : {" --set bump_height=0.19", " --set=bump_height=0.19"}) {
+    check_whole_hint({rest + set, 1, "strut " + rest + " --set bump_height=VALUE"});
+  }
+  const std::string rig = "simulate " + kExamples + "rigs/quarter_car.toml " + kExamples +
+                          "rigs/maneuvers/bump.toml -o " + file +
+                          " --step 0.02 --set tire_stiffness=1e7";
+  check_whole_hint({rig, 1, "strut " + rig + " --set NAME=VALUE"});
+}
+
+TEST_CASE("A setting takes the place of what was set before", "[unit]") {
+  Arguments arguments = find_command("simulate").describe();
+  REQUIRE(arguments.parse({"a.toml", "--set", "mass=1", "--set=speed=3", "--set", "speeds=4"}));
+  CHECK(join(arguments.words_with_setting("speed=5")) ==
+        "a.toml --set mass=1 --set speeds=4 --set speed=5");
+  CHECK(join(arguments.words_with_setting("mass=2")) ==
+        "a.toml --set=speed=3 --set speeds=4 --set mass=2");
+}
+
+TEST_CASE("A name is set once by any option of names and values", "[unit]") {
+  int lists = 0;
+  for (const Command& command : list_commands()) {
+    const Arguments table = command.describe();
+    for (const ArgumentOption& option : table.options()) {
+      if (!option.repeats || option.value.name.find('=') == std::string::npos) continue;
+      INFO(command.name << " --" << option.name);
+      const std::string word = "--" + option.name;
+      Arguments doubled = command.describe(), different = command.describe();
+      CHECK_THROWS_WITH(doubled.parse({word, "a=1", word, "b=1", word + "=a=2"}),
+                        "--" + option.name + ": 'a' twice; allowed: once");
+      CHECK(different.parse({word, "a=1", word, "b=1"}));
+      ++lists;
+    }
+  }
+  CHECK(lists >= 7);
+}
+
+TEST_CASE("Words before a command and after help and version are told", "[unit][io]") {
+  const std::string overview = run_program("--help").out;
+  CHECK(run_program("help help").out == overview);
+  CHECK(run_program("help help").code == 0);
+  CHECK(run_program("--help simulate").out == run_program("simulate --help").out);
+  const std::pair<const char*, const char*> wrong[] = {
+      {"--quiet simulate", "options follow it, as in strut COMMAND --quiet; see"},
+      {"-v simulate", "options follow it, as in strut COMMAND -v; see"},
+      {"--verson", "did you mean '--version'?"},
+      {"--json status", "option '--json' before the command"},
+      {"help simulate junk", "'junk' after 'simulate'"},
+      {"--version junk", "'junk' after '--version'"},
+  };
+  for (const auto& [command, text] : wrong) {
+    INFO(command);
+    const Outcome outcome = run_program(command);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.messages, Contains(text));
+  }
 }
 
 TEST_CASE("Single runs name the next command", "[io]") {
@@ -327,6 +457,40 @@ TEST_CASE("Quiet says nothing but errors, verbose says more, data stays", "[io]"
   CHECK(wrong.code == 2);
   CHECK_THAT(wrong.messages, Contains("bump_height"));
   CHECK(run_program(run + " -q -v").code == 2);
+}
+
+TEST_CASE("Quiet keeps every command of a sweep from saying more than its errors", "[io]") {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("sweep.toml", test::make_coarse_sweep(12));
+  const std::string sweep = folder / "sweep", model = folder / "model.h5";
+  const std::string commands[] = {
+      "plan " + file + " -o " + sweep,
+      "run " + sweep + " --shards 0:1",
+      "resume " + sweep,
+      "status " + sweep,
+      "verify " + sweep,
+      "doctor " + sweep + " --to local",
+      "merge " + sweep + " -o " + (folder / "all.h5").string(),
+      "report " + sweep,
+      "train " + sweep + " -o " + model +
+          " --inputs body_position_z,pitch_rate --hidden 2 --allow-few --seed 1",
+      "evaluate " + model + " " + sweep,
+      "export " + model + " -o " + (folder / "model.c").string(),
+      "design " + file + " --rate 100"};
+  for (const std::string& command : commands) {
+    INFO(command);
+    const Outcome outcome = run_program(command + " --quiet");
+    CHECK(outcome.code == 0);
+    CHECK(outcome.messages.empty());
+  }
+  fs::resize_file(folder / "sweep/shards/000001.h5", 1000);
+  const Outcome damaged = run_program("verify " + sweep + " -q");
+  CHECK(damaged.code == 1);
+  CHECK_THAT(damaged.out, Contains("damaged: shards/000001.h5"));
+  CHECK(damaged.messages.empty());
+  const Outcome wrong = run_program("run -q " + sweep + " --shards 9:9");
+  CHECK(wrong.code == 2);
+  CHECK(split_lines(wrong.messages).size() == 1);
 }
 
 TEST_CASE("A command that a signal ended is named again", "[io]") {
