@@ -16,6 +16,7 @@
 #include "jobs/bench/find_example.h"
 #include "jobs/bench/report.h"
 #include "jobs/command.h"
+#include "jobs/dispatch/quote_word.h"
 #include "jobs/interrupt.h"
 #include "jobs/machine.h"
 #include "jobs/messages.h"
@@ -219,13 +220,23 @@ BenchRequest read_request(const Arguments& arguments) {
   return request;
 }
 
+/// The same measurement, as words of a shell.
+std::string name_again(const Arguments& arguments) {
+  std::string line = "strut bench";
+  for (const std::string& file : arguments.positional()) line += " " + quote_if_needed(file);
+  if (arguments.has("isa")) line += " --isa " + quote_if_needed(arguments.text("isa"));
+  if (arguments.is_on("quick")) line += " --quick";
+  return line;
+}
+
 void tell_next_of(const Arguments& arguments) {
+  const std::string again = name_again(arguments);
   if (arguments.has("baseline")) {
-    tell_next_line("strut bench --json > new.json", "a baseline for later; docs/performance.md");
+    tell_next_line(again + " --json > new.json", "a baseline for later; docs/performance.md");
   } else if (arguments.is_on("json")) {
-    tell_next({"strut", "bench", "--baseline", "OLD.json"}, "this output, in a file");
+    tell_next_line(again + " --baseline OLD.json", "this output, in a file");
   } else {
-    tell_next_line("strut bench --json > old.json", "then strut bench --baseline old.json");
+    tell_next_line(again + " --json > old.json", "then the same with --baseline old.json");
   }
 }
 

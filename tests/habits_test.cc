@@ -259,7 +259,7 @@ std::string check_whole_hint(const HintCase& c) {
 
 /// Planned in `folder`, as "sweep".
 std::string plan_sweep(const TemporaryFolder& folder, const std::string& text) {
-  const std::string sweep = folder / "sweep";
+  std::string sweep = folder / "sweep";
   REQUIRE(run_program("plan " + folder.write("sweep.toml", text).string() + " -o " + sweep).code ==
           0);
   return sweep;
@@ -319,6 +319,33 @@ TEST_CASE("Cases that fail, and damage, are followed by what mends them", "[io]"
   fs::resize_file(folder / "sweep/shards/000001.h5", 1000);
   check_case({"verify " + sweep, 1, "strut verify " + sweep + " --quarantine"});
   check_case({"verify " + sweep + " --quarantine", 1, "strut run " + sweep});
+}
+
+/// The commands that hints name one after the other, from `command` to the network.
+std::vector<std::string> follow_hints(std::string command) {
+  std::vector<std::string> names;
+  while (names.size() < 8) {
+    const std::vector<std::string> words = check_hint(run_program(command).messages);
+    names.push_back(words[1]);
+    if (words[1] == "train") break;
+    command.clear();
+    for (std::size_t i = 1; i < words.size(); ++i) command += quote_word(words[i]) + " ";
+  }
+  return names;
+}
+
+TEST_CASE("Hints lead from a sweep to the network, whatever fails or is damaged", "[io]") {
+  using Names = std::vector<std::string>;
+  const TemporaryFolder folder;
+  const std::string sweep = plan_sweep(folder, make_rough_sweep());
+  CHECK(follow_hints("status " + sweep) == Names{"run", "resume", "verify", "train"});
+  CHECK(follow_hints("status " + sweep) == Names{"verify", "train"});
+  fs::resize_file(folder / "sweep/shards/000001.h5", 1000);
+  CHECK(follow_hints("verify " + sweep) == Names{"verify", "run", "verify", "train"});
+  fs::copy_file(folder / "sweep/shards/000001.h5", folder / "sweep/shards/000009.h5");
+  CHECK(follow_hints("verify " + sweep) == Names{"verify", "verify", "train"});
+  fs::resize_file(folder / "sweep/retries/000001.0.h5", 1000);
+  CHECK(follow_hints("status " + sweep) == Names{"verify", "run", "resume", "verify", "train"});
 }
 
 TEST_CASE("Where a smaller step mends nothing no resume is named", "[io]") {

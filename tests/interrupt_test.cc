@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "jobs/dispatch/quote_word.h"
+#include "tests/check_hint.h"
 #include "tests/run_program.h"
 
 namespace strut {
@@ -114,6 +115,9 @@ TEST_CASE("A benchmark of a named car needs no examples", "[io][slow]") {
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.messages, Catch::Matchers::Contains("no sweep is measured"));
   CHECK_THAT(outcome.out, Catch::Matchers::Contains("\"pipeline\": null"));
+  const std::vector<std::string> words = test::check_hint(outcome.messages);
+  CHECK(words[1] == "bench");
+  CHECK(words[2] == kSedan);
 }
 
 TEST_CASE("A benchmark refuses before it measures", "[io]") {
