@@ -152,13 +152,13 @@ TEST_CASE("A study that is done does nothing twice and repeats its bytes", "[io]
 
 TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow]") {
   const StudyFiles& files = get_study();
-  // SIGINT as soon as three models are there.
+  // SIGTERM as soon as three models are there.
   const std::string folder = (files / "stopped").string();
   const Outcome stopped = run_shell(
       "bash -c '" STRUT_PROGRAM " study " + (files / "study.toml").string() + " -o " + folder +
       " --threads 1 & while [ $(ls " + folder +
-      "/models 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.002; done; kill -INT $!; wait $!'");
-  CHECK(stopped.code == 130);
+      "/models 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.002; done; kill -TERM $!; wait $!'");
+  CHECK(stopped.code == 143);
   CHECK_THAT(stopped.messages, Contains("the same command goes on"));
   CHECK(test::check_hint(stopped.messages)[1] == "study");
   CHECK_FALSE(fs::exists(files / "stopped/results.json"));

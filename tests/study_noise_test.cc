@@ -286,8 +286,8 @@ TEST_CASE("A study that is stopped among its fits goes on to the same numbers", 
   const Outcome stopped = test::run_shell(
       "bash -c '" STRUT_PROGRAM " study " + (get_study() / "study.toml").string() + " -o " +
       root.string() + " --threads 1 & while [ ! -f " + (root / "noise/fits_0.1.csv").string() +
-      " ]; do sleep 0.01; done; kill -INT $!; wait $!'");
-  CHECK(stopped.code == 130);
+      " ]; do sleep 0.01; done; kill -TERM $!; wait $!'");
+  CHECK(stopped.code == 143);
   CHECK_FALSE(fs::exists(root / "results.json"));
   CHECK_FALSE(fs::exists(root / "noise/fits_1.csv"));
   CHECK(get_study().run("--threads 1", "stopped").code == 0);
