@@ -18,7 +18,7 @@ struct SimulateOptions {
   CaseSource source;
   std::filesystem::path output;
   std::filesystem::path report;  // folder; empty: none
-  int integrator = 0;  // of kIntegrators
+  int integrator = 0;            // of kIntegrators
   IntegrateOptions integrate;
   double rate = 1000.0;  // Hz
   bool kinematics = false, json = false;
