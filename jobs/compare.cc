@@ -64,8 +64,8 @@ int run_compare(const Arguments& arguments) {
     throw arguments.usage_error(std::to_string(arguments.positional().size()) +
                                 " files; expected CAMPAIGN.toml");
   }
-  const CompareFolder folder = find_compare_folder(arguments);
   const CampaignData data = read_campaign_data(arguments.positional().front());
+  const CompareFolder folder = find_compare_folder(arguments);
   tell_notes(data.notes);
   const int threads = find_threads(arguments);
   tell_detail(std::to_string(data.run_count()) + " runs, " + std::to_string(threads) + " threads");

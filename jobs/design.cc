@@ -10,6 +10,7 @@
 #include "jobs/interrupt.h"
 #include "jobs/lists.h"
 #include "jobs/messages.h"
+#include "jobs/output_file.h"
 #include "jobs/progress.h"
 #include "sweep/find_channel.h"
 
@@ -114,6 +115,9 @@ int run_design(const Arguments& arguments) {
                                 " files; expected SWEEP.toml");
   }
   const SweepRequest request = read_request(arguments.positional().front());
+  if (arguments.has("csv"))
+    check_output_file("csv", arguments.text("csv"),
+                      list_files_read({request.path, request.vehicle, request.maneuver}));
   DesignReport report;
   report.noise = read_noise(arguments);
   report.channels = read_channels(arguments, request);

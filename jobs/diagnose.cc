@@ -92,8 +92,8 @@ int run_diagnose(const Arguments& arguments) {
     throw arguments.usage_error(std::to_string(arguments.positional().size()) +
                                 " files; expected CAMPAIGN.toml");
   }
-  const DiagnoseFolder folder = find_diagnose_folder(arguments);
   const CampaignData data = read_campaign_data(arguments.positional().front());
+  const DiagnoseFolder folder = find_diagnose_folder(arguments);
   tell_notes(data.notes);
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
   tell_notes(diagnosis.notes);

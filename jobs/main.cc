@@ -4,6 +4,7 @@
 #include <sundials/sundials_version.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -133,12 +134,13 @@ int run(const std::vector<std::string>& words) {
 
 int run_and_flush(const std::vector<std::string>& words) {
   const int code = run(words);
-  strut::say_next();
   std::cout.flush();
-  if (!std::cout) {
+  const bool is_flushed = std::fflush(stdout) == 0;
+  if (!std::cout || !is_flushed || std::ferror(stdout) != 0) {
     throw strut::EnvironmentError(
         "standard output: cannot be written; is its disk full, or what reads it gone?");
   }
+  strut::say_next();
   return code;
 }
 

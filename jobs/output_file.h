@@ -9,9 +9,18 @@
 
 namespace strut {
 
-/// The value of --output, which --force lets replace a file. Throws InputError where it is missing,
-/// a folder, a file that is there (without --force), or one of `inputs`, what the command reads;
-/// EnvironmentError where its folder is not there.
+/// Refuses a file that could not be written, or must not be, before the work is done: throws
+/// InputError, which names the option, where `output` is a folder or one of `inputs`, what the
+/// command reads; EnvironmentError where its folder is not there.
+void check_output_file(const std::string& option, const std::filesystem::path& output,
+                       const std::vector<std::filesystem::path>& inputs);
+
+/// TOML files and the files that they name: what a command that reads them must not write.
+std::vector<std::filesystem::path> list_files_read(
+    const std::vector<std::filesystem::path>& toml_files);
+
+/// The value of --output, which --force lets replace a file. Throws InputError where it is missing
+/// or a file that is there (without --force), and as check_output_file does.
 std::filesystem::path find_output_file(const Arguments& arguments,
                                        const std::vector<std::string>& inputs);
 

@@ -13,6 +13,7 @@
 #include "jobs/command.h"
 #include "jobs/json.h"
 #include "jobs/messages.h"
+#include "jobs/output_file.h"
 #include "jobs/progress.h"
 #include "jobs/run_file.h"
 #include "jobs/simulate/kinematics.h"
@@ -202,8 +203,8 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
 }
 
 int run_case(const Arguments& arguments, const SimulateOptions& options) {
-  const RunFormat format = find_run_format(options.output);
   const Case input = load_case(options.source);
+  const RunFormat format = check_output(options);
   const double duration = input.maneuver.duration;
   check_rate(options.rate, duration);
   const PreparedCase prepared = prepare_case(options.source, input);
@@ -242,6 +243,7 @@ int run_kinematics(const SimulateOptions& options) {
   if (options.output.extension() != ".csv") {
     throw InputError("--output = " + options.output.string() + ": the name must end in .csv");
   }
+  check_output_file("output", options.output, {});
   write_kinematics(options.source, options.output);
   tell_note(options.output.string() + ": front and rear left corner, -100 to +100 mm");
   tell_next(

@@ -1,4 +1,4 @@
-// The files that a vehicle or maneuver file names in turn: a tire, a road profile.
+// The files that a vehicle, rig or maneuver file names in turn: a tire, a road profile, an input.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ struct NamedFile {
   std::filesystem::path path;  // where it is
 };
 
-/// Throws InputError where `file` is missing or not TOML.
+/// Every key `file` in a table of it. Throws InputError where `file` is missing or not TOML.
 std::vector<NamedFile> list_named_files(const std::filesystem::path& file);
 
 }  // namespace strut

@@ -143,7 +143,7 @@ TEST_CASE("A page shows charts of all kinds, flat and deep, and fetches nothing"
   const std::string text = make_html(page);
   write_text_file(folder / "page.html", text);
   test::check_page(folder / "page.html", 2);
-  CHECK_THAT(text, Contains("Every &lt;kind&gt;") && Contains("Title <\\/script>"));
+  CHECK_THAT(text, Contains("Every &lt;kind&gt;") && Contains("Title \\u003c/script>"));
   CHECK_THAT(text,
              Contains("href=\"figures/plain.csv\"") && Contains("Permission is hereby granted"));
   for (const char* name : {"plain.csv", "deep.csv", "plain.json", "deep.gp"}) {

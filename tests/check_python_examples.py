@@ -30,11 +30,11 @@ import read_dataset
 
 def make_sweep(strut, folder):
     """The folder of a small sweep, beside it the same as a merged file and as a view."""
-    run(strut, "plan", EXAMPLES / "api/small_sweep.toml", "-o", folder / "sweep")
-    run(strut, "run", folder / "sweep")
-    run(strut, "merge", folder / "sweep", "-o", folder / "merged.h5")
-    run(strut, "merge", folder / "sweep", "-o", folder / "virtual.h5", "--virtual")
-    return folder / "sweep"
+    run(strut, "plan", EXAMPLES / "api/small_sweep.toml", "-o", folder / "cars")
+    run(strut, "run", folder / "cars")
+    run(strut, "merge", folder / "cars", "-o", folder / "merged.h5")
+    run(strut, "merge", folder / "cars", "-o", folder / "virtual.h5", "--virtual")
+    return folder / "cars"
 
 
 def check_same(tables, others, what):

@@ -296,10 +296,64 @@ TEST_CASE("A folder that is not there is the environment's failure", "[io]") {
     CHECK(outcome.code == 3);
     CHECK_THAT(outcome.messages, Contains(file));
   }
+}
+
+TEST_CASE("Output that cannot be written is told, and no next command", "[io]") {
   const TemporaryFolder folder;
-  CHECK(
-      run("simulate " + kSedan + " " + kBump + " -o " + (folder / "a.csv").string() + " >/dev/full")
-          .code == 3);
+  const std::string file = folder / "a.h5";
+  const std::string shard = folder / "cars/shards/000000.h5", model = folder / "m.h5";
+  REQUIRE(
+      run("plan " + kExamples + "/api/small_sweep.toml -q -o " + (folder / "cars").string()).code ==
+      0);
+  REQUIRE(run("run -q " + (folder / "cars").string()).code == 0);
+  REQUIRE(run("train -q --allow-few --hidden 3 --epochs 5 " + shard + " -o " + model).code == 0);
+  for (const std::string& command :
+       {"simulate " + kSedan + " " + kBump + " -o " + file, "identify " + model + " " + file,
+        "evaluate " + model + " " + shard, "status " + (folder / "cars").string()}) {
+    INFO(command);
+    // Closed, a pipe or disk that is full: what was asked for is lost.
+    for (const char* out : {" >/dev/full", " >&-"}) {
+      const Outcome outcome = run(command + out);
+      CHECK(outcome.code == 3);
+      CHECK_THAT(outcome.messages, Contains("standard output") && !Contains("next:"));
+    }
+  }
+}
+
+TEST_CASE("A file that is read is not written", "[io]") {
+  const TemporaryFolder folder;
+  const std::string profile = folder / "profile.csv", road = folder / "road.toml";
+  std::filesystem::copy_file(kExamples + "/maneuvers/measured_profile.csv", profile);
+  std::string text = read_text(kExamples + "/maneuvers/measured_profile.toml");
+  text.replace(text.find("measured_profile.csv"), 20, "profile.csv");
+  folder.write("road.toml", text);
+  const std::string input = folder.write("input.csv", "t_s,road_m\n0,0\n1,0.001\n2,0\n");
+  const std::string plate =
+      folder.write("plate.toml",
+                   "duration = 2.0\n[input.road_position]\nshape = \"file\"\nfile = \"input.csv\"\n"
+                   "time = \"t_s\"\ncolumn = \"road_m\"\n");
+  const std::string sweep = folder / "sweep.toml";
+  text = read_text(kExamples + "/api/small_sweep.toml");
+  for (auto at = text.find("\"../"); at != std::string::npos; at = text.find("\"../")) {
+    text.replace(at, 4, "\"" + kExamples + "/");
+  }
+  folder.write("sweep.toml", text);
+
+  const std::pair<std::string, std::string> cases[] = {
+      {"simulate " + kSedan + " " + road + " -o ", profile},
+      {"simulate " + kRig + " " + plate + " -o ", input},
+      {"design " + sweep + " --rate 100 --csv ", sweep}};
+  for (const auto& [command, file] : cases) {
+    INFO(command);
+    const std::string before = read_text(file);
+    const Outcome refused = run(command + file);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.messages, Contains(file + ": is what is read"));
+    CHECK(read_text(file) == before);
+    const Outcome allowed = run(command + (folder / "other.csv").string());
+    INFO(allowed.messages);
+    CHECK(allowed.code == 0);
+  }
 }
 
 TEST_CASE("A run that leaves the modeled travel says when, writes nothing, and answers no",

@@ -1,6 +1,7 @@
 # What `cmake --install` puts where, for whoever uses strut from elsewhere: docs/api.md, docs/install.md.
 #
 #   bin/strut                        the program
+#   share/man, share/bash-completion the manual page, and what completes commands (jobs/)
 #   share/strut/examples             what the documentation names examples/
 #   share/doc/strut                  the documentation
 #   include/strut, lib, lib/cmake    the rooms as libraries: find_package(strut)
@@ -14,9 +15,14 @@ install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/strut/examples
   PATTERN __pycache__ EXCLUDE
   PATTERN *.py PERMISSIONS ${strut_of_programs}
   PATTERN run_loop PERMISSIONS ${strut_of_programs})
-install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES .ci/package/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Where the documentation's links look for the examples.
+file(RELATIVE_PATH strut_examples_link ${CMAKE_INSTALL_FULL_DOCDIR}
+  ${CMAKE_INSTALL_FULL_DATADIR}/strut/examples)
+install(CODE "file(CREATE_LINK ${strut_examples_link}
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/examples\" SYMBOLIC)")
 
 # Headers that need libraries which only our sources are given stay here.
 set(strut_inner_headers

@@ -11,8 +11,8 @@
 namespace strut {
 
 struct ModelCurves {
-  std::string name;   // "calibrated"
-  int color = 1;  // of charts
+  std::string name;  // "calibrated"
+  int color = 1;     // of charts
   const RunEvaluation* evaluation = nullptr;
 
   bool is_simulated() const {

@@ -226,7 +226,7 @@ int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>
     print_identified(rows);
   }
   if (!are_in_range(rows)) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", "sweep"},
+    tell_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
               "a sweep whose grid reaches to what was measured, for a network that knows it");
     return kExitNo;
   }

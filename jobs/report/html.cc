@@ -18,11 +18,9 @@ std::string replace_all(std::string text, const std::string& from, const std::st
   return text;
 }
 
-/// Text inside a script element, which nothing but its end tag may end.
-std::string make_script_text(const std::string& text) { return replace_all(text, "</", "<\\/"); }
-
+/// JSON has "<" in strings only, where it may be written otherwise: so nothing of them is a tag.
 std::string make_json_element(const std::string& json) {
-  return "<script type=\"application/json\">" + make_script_text(json) + "</script>";
+  return "<script type=\"application/json\">" + replace_all(json, "<", "\\u003c") + "</script>";
 }
 
 /// Longer texts of a cell may be broken.

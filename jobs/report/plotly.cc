@@ -168,7 +168,10 @@ Json make_range(const ChartAxis& axis) {
 
 Json make_axis(const ChartAxis& axis) {
   Json json = Json::object().set("title", Json::object().set("text", axis.label));
-  if (axis.is_logarithmic) json.set("type", "log").set("exponentformat", "power");
+  // "D2": digits 2 and 5 between the powers of ten.
+  if (axis.is_logarithmic) {
+    json.set("type", "log").set("exponentformat", "power").set("dtick", "D2");
+  }
   if (!axis.range.empty()) json.set("range", make_range(axis));
   if (!axis.categories.empty()) {
     std::vector<double> places;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "io/config.h"
+#include "jobs/output_file.h"
 
 namespace strut {
 namespace {
@@ -16,6 +17,13 @@ void check_rate(double rate, double duration) {
   throw InputError("--rate = " + format_number(rate) + " Hz: must be at most " +
                    format_number(std::floor(kMaxSamples / duration)) + " Hz for " +
                    format_number(duration) + " s");
+}
+
+RunFormat check_output(const SimulateOptions& options) {
+  const RunFormat format = find_run_format(options.output);
+  check_output_file("output", options.output,
+                    list_files_read({options.source.vehicle, options.source.maneuver}));
+  return format;
 }
 
 }  // namespace strut

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "jobs/load_case.h"
+#include "jobs/run_file.h"
 #include "sweep/choices.h"
 
 namespace strut {
@@ -18,7 +19,7 @@ struct SimulateOptions {
   CaseSource source;
   std::filesystem::path output;
   std::filesystem::path report;  // folder; empty: none
-  int integrator = 0;  // of kIntegrators
+  int integrator = 0;            // of kIntegrators
   IntegrateOptions integrate;
   double rate = 1000.0;  // Hz
   bool kinematics = false, json = false;
@@ -35,5 +36,9 @@ struct SimulateOptions {
 /// Refuses a rate [Hz] at which the history of `duration` [s] would not fit into memory. Throws
 /// InputError.
 void check_rate(double rate, double duration);
+
+/// The format of the output. Refuses one that cannot be written, or that is a file of the run.
+/// Throws InputError, EnvironmentError.
+RunFormat check_output(const SimulateOptions& options);
 
 }  // namespace strut

@@ -66,9 +66,9 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind 
   if (options.integrator == kIntegratorCvode) {
     throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
   }
-  const RunFormat format = find_run_format(options.output);
   const RigSpec rig = load_rig(options.source);
   const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, kind);
+  const RunFormat format = check_output(options);
   check_rate(options.rate, maneuver.duration);
   SamplePlan plan;
   plan.duration = maneuver.duration;

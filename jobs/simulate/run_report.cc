@@ -40,8 +40,9 @@ std::vector<std::string> write_run_report(const std::filesystem::path& folder,
   ReportSection motion{"Motion"};
   motion.motions = {drawer.draw_motion(
       make_motion(c, run.results), "motion",
-      "From the left, wheels of the right side dashed. Springs are as long as they were simulated; "
-      "their mounts stand where they are at nominal trim.")};
+      "The car drives to the right; wheels of its left side solid, of its right side dashed. "
+      "Springs are as long as they were simulated; their mounts stand where they are at nominal "
+      "trim.")};
   drawer.draw_all({make_motion_curves(run.results)}, motion);
   ReportPage page{
       "Run of " + source.vehicle.filename().string(),

@@ -4,6 +4,7 @@ import pathlib
 import re
 
 FENCE = re.compile(r"^```(\S*)\s*$")
+OTHER_FENCE = re.compile(r"^(\s+```|\s*~~~)")
 MARK = re.compile(r"^<!--\s*(?P<name>[^:>]+?)\s*(?::\s*(?P<value>.*?))?\s*-->$")
 
 
@@ -18,12 +19,14 @@ class Block:
 
 
 def read_blocks(text):
-    """All fenced blocks in order; ValueError where a fence stays open."""
+    """All fenced blocks in order; ValueError where a fence stays open, is indented or of tildes."""
     blocks = []
     marks = {}
     opened = None
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
+        if opened is None and OTHER_FENCE.match(line):
+            raise ValueError(f"line {number}: a block begins with ``` at the margin")
         if opened is None:
             mark = MARK.match(line)
             if fence:
@@ -69,7 +72,7 @@ def list_anchors(text):
 # A path of the sources, in prose or in backticks.
 PATH = re.compile(
     r"(?<![\w/.-])((?:model|io|sweep|train|diagnose|jobs|tests|docs|examples|benchmarks|\.ci)"
-    r"/[\w./-]*\w)(?![\w*/-]|\.\w)"
+    r"/[\w./-]*\w)/?(?![\w*/-]|\.\w)"
 )
 
 
@@ -79,7 +82,7 @@ def find_broken_references(file, root):
     text = file.read_text(encoding="utf-8")
     prose = drop_blocks(text)
     wrong = []
-    for target in re.findall(r"\]\(([^()\s]+)\)", prose):
+    for target in re.findall(r"\]\(([^()\s]+)(?: +\"[^\"]*\")?\)", prose):
         if re.match(r"[a-z]+:", target):
             continue
         path, _, anchor = target.partition("#")

@@ -43,6 +43,7 @@ import tomllib
 import markdown
 
 SECONDS = 1200  # for one block
+MARKS = {"not run", ".ci/run", "exit code", "file", "layout", "numbers within a factor of", "needs"}
 
 
 def make_clone(folder, strut, sources):
@@ -129,10 +130,11 @@ class CommandLines:
         """What is wrong with the calls of strut in the lines of a shell."""
         text = re.sub(r"\\\n\s*", " ", text)
         wrong = []
-        # A call ends at what a shell ends it with; quoted text and comments are no part of it.
+        # A call ends at what a shell ends it with; quoted text, comments and redirections are no part.
         text = re.sub(r"(?m)(^|\s)#.*$", "", text)
         text = re.sub(r"'[^'\n]*'|\"[^\"\n]*\"", "QUOTED", text)
-        calls = r"(?:^|(?<=[\s`(/$]))strut +([a-z]\w*)([^\n|;&)>]*)"
+        text = re.sub(r"\d?>>?\s*&?[^\s|;&)]+|<\s*[^\s|;&)(]+", "", text)
+        calls = r"(?:^|(?<=[\s`(/$]))strut +([a-z]\w*)([^\n|;&)]*)"
         for command, rest in re.findall(calls, text):
             if command == "help" and (not rest.strip() or rest.split()[0].isupper()):
                 continue
@@ -177,6 +179,10 @@ class Document:
         self.folder = folder
         before = None
         for block in self.blocks:
+            for mark in block.marks.keys() - MARKS:
+                self.complain(block, f"there is no mark '{mark}'; known: {', '.join(sorted(MARKS))}")
+            if block.marks.get("needs", "slurm") != "slurm":
+                self.complain(block, "'needs' knows slurm only")
             if "not run" in block.marks and not block.marks["not run"]:
                 self.complain(block, "'not run' needs a reason")
             if block.language == "text":
@@ -190,6 +196,8 @@ class Document:
             return
         if before is None or before.language != "sh":
             self.complain(block, "text belongs to no sh block before it; mark it '<!-- layout: ... -->'")
+        elif before.marks.keys() & {"not run", ".ci/run", "file"}:
+            self.complain(block, "the block before it does not run; mark it '<!-- layout: ... -->'")
 
     def check_block(self, block):
         language = block.language

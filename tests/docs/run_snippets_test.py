@@ -45,6 +45,20 @@ DOCUMENTS = {
     "an option that is there": ("Call `strut run DIR --threads 2` or `strut plan A -o B`.\n", ""),
     "help": ("Call `strut help run`, `strut help COMMAND`.\n", ""),
     "help on nothing": ("Call `strut help ran`.\n", "no command ran"),
+    "an option behind a redirection": (
+        "<!-- not run: no -->\n" + fence("sh", "strut run cars > log 2>&1 --thread 2"),
+        "no option --thread"),
+    "a redirection": ("<!-- not run: no -->\n" + fence("sh", "strut run cars 2>/dev/null >-x"), ""),
+    "a mark": ("<!-- notrun: no -->\n" + fence("sh", "true"), "no mark 'notrun'"),
+    "needs": ("<!-- needs: moon -->\n" + fence("sh", "true"), "knows slurm only"),
+    "a text of what does not run": (
+        "<!-- not run: no -->\n" + fence("sh", "echo 1") + "\n" + fence("text", "2"), "does not run"),
+    "a layout": ("<!-- layout: a form -->\n" + fence("text", "2"), ""),
+    "tildes": ("~~~sh\ntrue\n~~~\n", "at the margin"),
+    "an indented fence": ("- a\n  ```sh\n  true\n  ```\n", "at the margin"),
+    "a link with a title": ('[x](nowhere.md "t")\n', "leads to no file"),
+    "a folder": ("See examples/nosuch/ for more.\n", "there is no examples/nosuch"),
+    "a folder that is there": ("See examples/sweeps/ and `examples/sweeps/*.toml`.\n", ""),
     "no reason": ("<!-- not run: -->\n" + fence("sh", "true"), "needs a reason"),
     "a shell's grammar": ("<!-- not run: no -->\n" + fence("sh", "if true"), "bash does not understand"),
     "a text of nobody": (fence("text", "one"), "belongs to no sh block"),
@@ -70,7 +84,7 @@ def main():
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
         sources = pathlib.Path(folder) / "sources"
-        sources.mkdir()
+        (sources / "examples/sweeps").mkdir(parents=True)
         for name, (text, expected) in DOCUMENTS.items():
             document = sources / "document.md"
             document.write_text(text, encoding="utf-8")

@@ -42,7 +42,9 @@ def check_control(control, version):
 
 
 def check_files(package, root, build):
-    for name in ("bin/strut", "share/doc/strut/copyright", "share/doc/strut/README.md",
+    for name in ("bin/strut", "share/man/man1/strut.1", "share/bash-completion/completions/strut",
+                 "share/doc/strut/LICENSE", "share/doc/strut/examples/vehicles/paper_sedan.toml",
+                 "share/doc/strut/copyright", "share/doc/strut/README.md",
                  "share/doc/strut/docs/theory.md", "share/strut/examples/sweeps/paper.toml",
                  "share/strut/examples/api/identify.cc", "include/strut/sweep/run.h",
                  "lib/libstrut_kernel.a", "lib/cmake/strut/strutConfig.cmake"):
@@ -53,7 +55,7 @@ def check_files(package, root, build):
         check(str(build) not in path.read_text(), f"{path.name} names the build folder")
     check("not stripped" not in run("file", root / "usr/bin/strut"), "the program is not stripped")
     for line in run("dpkg-deb", "-c", package).splitlines():
-        check(re.match(r"[d-]rw[x-]r-[x-]r-[x-] root/root ", line), f"owner or mode: {line}")
+        check(re.match(r"([d-]rw[x-]r-[x-]r-[x-]|lrwxrwxrwx) root/root ", line), f"owner or mode: {line}")
 
 
 def check_program(root, folder, version):

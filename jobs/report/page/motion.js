@@ -58,7 +58,8 @@ class MotionView {
     this.makePicture(root);
     this.makeControls(root);
     const at = this.scene.snapshot_time;
-    this.show(at === null ? 0 : this.scene.time.findIndex((t) => t >= at));
+    const frame = at === null ? 0 : this.scene.time.findIndex((t) => t >= at);
+    this.show(frame < 0 ? this.last : frame);
     root.dataset.motion = "drawn";
   }
 
@@ -74,7 +75,7 @@ class MotionView {
     this.marks = addShape(this.svg, "path", {...line, stroke: "var(--soft)"});
     this.body = addShape(this.svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
     this.reference = addShape(this.svg, "circle", {r: 0.03, fill: "var(--ink)"});
-    // Front left, front right, rear left, rear right: those of the right side behind.
+    // Front left, front right, rear left, rear right; solid and dashed as in the curves.
     this.wheels = [0, 1, 2, 3].map((corner) => {
       const dashes = corner % 2 === 1 ? {"stroke-dasharray": "0.04 0.03", opacity: 0.5} : {};
       return {rim: addShape(this.svg, "circle", {...line, "stroke-width": 0.03, ...dashes}),

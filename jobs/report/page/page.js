@@ -8,7 +8,7 @@ const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 
 // What is printed stands on white, also where the screen is dark; while "beforeprint" runs the
 // styles are still those of the screen.
-const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a"};
+const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a", "--paper": "#ffffff"};
 const paperWidth = 980;  // px
 let isForPaper = false;
 
@@ -28,7 +28,7 @@ function makeTemplate() {
   return {layout: {
     font: {color: ink, size: 13, family: "system-ui, 'DejaVu Sans', Arial, sans-serif"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", xaxis: axis, yaxis: axis,
-    modebar: {bgcolor: "rgba(0,0,0,0)", color: readColor("--soft"), activecolor: ink},
+    modebar: {bgcolor: readColor("--paper"), color: readColor("--soft"), activecolor: ink},
     scene: {xaxis: solid, yaxis: solid, zaxis: solid},
     hoverlabel: {namelength: -1}}};
 }
