@@ -22,14 +22,15 @@
 
 namespace strut::test {
 
-/// Whether it came true in time.
-inline bool wait_until(const std::function<bool()>& happened, double seconds = 30.0) {
+/// Whether it came true in time; asked every so many milliseconds.
+inline bool wait_until(const std::function<bool()>& happened, double seconds = 30.0,
+                       int milliseconds = 50) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                                    std::chrono::duration<double>(seconds));
   while (!happened()) {
     if (Clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
   }
   return true;
 }
