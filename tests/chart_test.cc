@@ -39,7 +39,8 @@ Chart make_plain_chart() {
       {{"", false, {"one"}},
        {"boxes", true},
        {{"", SeriesKind::kBoxes, 1, {1.0, 1.0, 1.0, 1.0}, {1.0, 2.0, 3.0, 400.0}}}},
-      {{"nothing"}, {""}, {{"empty", SeriesKind::kLinePoints, 2}}}};
+      {{"nothing"}, {""}, {{"empty", SeriesKind::kLinePoints, 2}}},
+      {{"x"}, {"no logarithm", true}, {{"zero", SeriesKind::kBars, 4, {1.0, 2.0}, {0.0, 0.0}}}}};
   return chart;
 }
 
@@ -53,7 +54,7 @@ Chart make_deep_chart() {
 TEST_CASE("Every series of a chart becomes a trace with its numbers", "[unit]") {
   const auto json = test::parse_json(make_plotly(make_plain_chart()).dump());
   const auto& data = json.get_child("data");
-  REQUIRE(data.size() == 7);
+  REQUIRE(data.size() == 8);
   auto trace = data.begin();
   CHECK(trace->second.get<std::string>("yaxis") == "y");
   auto y = trace->second.get_child("y").begin();
@@ -97,7 +98,7 @@ TEST_CASE("A chart's numbers read back from its table", "[unit]") {
   CHECK(line == "panel,series,x,y,low,high");
   std::vector<std::string> lines;
   while (std::getline(table, line)) lines.push_back(line);
-  REQUIRE(lines.size() == 3 + 2 + 2 + 2 + 2 + 4);
+  REQUIRE(lines.size() == 3 + 2 + 2 + 2 + 2 + 4 + 2);
   const std::string panel = "\"Title </script>: y's \"\"label\"\" [N] over x [m]\"";
   CHECK(lines[0] == panel + ",\"line\",0,0.1,,");
   CHECK(lines[1] == panel + ",\"line\",1,,,");
@@ -149,6 +150,30 @@ TEST_CASE("A page shows charts of all kinds, flat and deep, and fetches nothing"
   for (const char* name : {"plain.csv", "deep.csv", "plain.json", "deep.gp"}) {
     CHECK(fs::exists(folder / ("figures/" + std::string(name))));
   }
+}
+
+TEST_CASE("The button of a chart saves its numbers", "[io]") {
+  const TemporaryFolder folder;
+  const FigureDrawer drawer(folder / "figures");
+  ReportSection section{"Charts"};
+  Chart chart = make_plain_chart();
+  chart.panels.resize(2);
+  chart.panels[0].title = "";  // its tag is no end of the script below
+  drawer.draw_all({chart}, section);
+  std::string text = make_html({"Charts", {}, {section}, ""});
+  // A page that complains where its function says anything else.
+  text.insert(text.rfind("</body>"), R"(<script>
+const wanted = ["panel,series,x,y,z,below,above", '"y\'s ""label"" [N] over x [m]","line",0,0.1,,,',
+                '"y\'s ""label"" [N] over x [m]","line",1,,,,'];
+const last = ['"log over ","bars",2,20,,5,10', '"log over ","line",1,12,,,', '"log over ","line",2,2,,,', ""];
+const lines = makeCsv()" + make_plotly(chart).dump() +
+                                         R"().split("\n");
+if (JSON.stringify(lines.slice(0, 3)) !== JSON.stringify(wanted)) console.error(lines.slice(0, 3));
+if (JSON.stringify(lines.slice(-4)) !== JSON.stringify(last)) console.error(lines.slice(-4));
+</script>
+)");
+  write_text_file(folder / "page.html", text);
+  test::check_page(folder / "page.html", 1);
 }
 
 TEST_CASE("A page without charts carries no library", "[unit]") {

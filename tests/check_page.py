@@ -3,12 +3,14 @@
 
     check_page.py PAGE [CHARTS]     CHARTS: how many must be drawn; default: as many as there are
 
-In the text: tags that close, names that are there once, nothing fetched from elsewhere. In headless
-Chromium: every chart drawn, the car in motion where there is one, nothing said on the console, no
-button that would send the numbers away. Exit 77: Chromium is not there; the text was checked.
+In the text: tags that close, names that are there once, nothing fetched from elsewhere, numbers that
+are JSON. In headless Chromium: every chart drawn and every series with a number in it, the car in
+motion where there is one, nothing said on the console, no button that would send the numbers away. Exit 77: Chromium is not there; the text was checked.
 """
 
 import html.parser
+import json
+import math
 import pathlib
 import re
 import shutil
@@ -28,7 +30,9 @@ class Page(html.parser.HTMLParser):
         super().__init__()
         self.open = []
         self.names = set()
-        self.charts = self.motions = 0
+        self.motions = 0
+        self.charts = []
+        self.is_chart = self.is_json = False
 
     def handle_starttag(self, tag, attributes):
         about = dict(attributes)
@@ -39,14 +43,39 @@ class Page(html.parser.HTMLParser):
         if "id" in about:
             assert about["id"] not in self.names, f"id {about['id']} is there twice"
             self.names.add(about["id"])
-        self.charts += about.get("class") == "chart"
-        self.motions += about.get("class") == "motion"
+        if tag == "script":
+            self.is_json = about.get("type") == "application/json"
+        else:
+            self.is_chart = about.get("class") == "chart"
+            self.motions += about.get("class") == "motion"
         if tag not in VOID:
             self.open.append(tag)
 
     def handle_endtag(self, tag):
         assert self.open and self.open[-1] == tag, (tag, self.open)
         self.open.pop()
+        self.is_json = False
+
+    def handle_data(self, text):
+        if not self.is_json:
+            return
+        content = json.loads(text, parse_constant=refuse)
+        if self.is_chart:
+            self.charts.append(content)
+
+
+def refuse(constant):
+    raise AssertionError(f"{constant} is no JSON")
+
+
+def count_series(chart):
+    """Those of a flat chart that plotly.js must draw: bars at least in name where they have no height."""
+    def is_seen(trace):
+        y_axis = chart["layout"][trace["yaxis"].replace("y", "yaxis")]
+        lowest = 0.0 if y_axis.get("type") == "log" and trace["type"] != "bar" else -math.inf
+        return any(x is not None and y is not None and y > lowest for x, y in zip(trace["x"], trace["y"]))
+
+    return 0 if chart["three_d"] else sum(map(is_seen, chart["data"]))
 
 
 def read_text(path):
@@ -80,8 +109,8 @@ def draw(browser, path):
 def main():
     path = pathlib.Path(sys.argv[1])
     page = read_text(path)
-    wanted = int(sys.argv[2]) if len(sys.argv) > 2 else page.charts
-    assert page.charts == wanted, f"{page.charts} charts instead of {wanted}"
+    wanted = int(sys.argv[2]) if len(sys.argv) > 2 else len(page.charts)
+    assert len(page.charts) == wanted, f"{len(page.charts)} charts instead of {wanted}"
     browser = find_browser()
     if browser is None:
         print("no Chromium: only the text was checked")
@@ -90,11 +119,13 @@ def main():
     assert not said, said
     if wanted or page.motions:
         assert f'data-charts="{wanted}/{wanted}"' in dom, re.findall(r'data-charts="[^"]*"', dom)
+    series, shown = sum(map(count_series, page.charts)), len(re.findall('<g class="trace ', dom))
+    assert shown == series, f"{shown} of {series} series drawn"
     drawn = dom.count('data-motion="drawn"')
     assert drawn == page.motions, f"{drawn} of {page.motions} motions drawn"
     assert dom.count('data-title="Numbers as CSV"') == wanted
     assert 'data-title="Share' not in dom, "a button sends the chart away"
-    print(f"{wanted} charts, {page.motions} motions")
+    print(f"{wanted} charts with {series} flat series, {page.motions} motions")
     return 0
 
 

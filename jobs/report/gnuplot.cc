@@ -189,12 +189,16 @@ std::string make_depth(const ChartPanel& panel) {
          "set ticslevel 0.05\n";
 }
 
+bool has_place(const ChartAxis& axis, double value) {
+  return std::isfinite(value) && (!axis.is_logarithmic || value > 0.0);
+}
+
 /// Whether a panel shows anything: gnuplot finds no range for nothing.
 bool has_points(const ChartPanel& panel) {
-  return std::any_of(panel.series.begin(), panel.series.end(), [](const ChartSeries& s) {
+  return std::any_of(panel.series.begin(), panel.series.end(), [&](const ChartSeries& s) {
     const std::vector<double>& values = s.kind == SeriesKind::kBand ? s.low : s.y;
     for (std::size_t i = 0; i < s.x.size(); ++i) {
-      if (std::isfinite(s.x[i]) && std::isfinite(values[i])) return true;
+      if (has_place(panel.x, s.x[i]) && has_place(panel.y, values[i])) return true;
     }
     return false;
   });

@@ -47,13 +47,19 @@ function quoteCsv(text) {
   return '"' + String(text).replaceAll('"', '""') + '"';
 }
 
-// The numbers of a chart as drawn, a line a point.
+function namePanel({scene, xaxis, yaxis}, layout) {
+  const {xaxis: x, yaxis: y} = scene ? layout[scene] : {
+    xaxis: layout[xaxis.replace("x", "xaxis")], yaxis: layout[yaxis.replace("y", "yaxis")]};
+  return `${y.title.text} over ${x.title.text}`;
+}
+
+// The numbers of a chart as drawn, a line a point; whiskers as what stands below and above y.
 function makeCsv(chart) {
-  const lines = ["panel,series,x,y,z"];
+  const lines = ["panel,series,x,y,z,below,above"];
   for (const trace of chart.data) {
-    const panel = trace.scene ?? trace.yaxis ?? "y";
-    trace.x.forEach((x, i) => lines.push(
-        [quoteCsv(panel), quoteCsv(trace.name), x, trace.y[i] ?? "", trace.z?.[i] ?? ""].join(",")));
+    const begin = [namePanel(trace, chart.layout), trace.name].map(quoteCsv);
+    const columns = [trace.x, trace.y, trace.z, trace.error_y?.arrayminus, trace.error_y?.array];
+    trace.x.forEach((_, i) => lines.push([...begin, ...columns.map((column) => column?.[i])].join(",")));
   }
   return lines.join("\n") + "\n";
 }
