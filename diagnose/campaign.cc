@@ -199,6 +199,15 @@ std::size_t Campaign::count(RunUse use) const {
       runs.begin(), runs.end(), [use](const CampaignRun& run) { return run.use == use; }));
 }
 
+std::vector<std::filesystem::path> Campaign::list_files() const {
+  std::vector<std::filesystem::path> files = {path, model};
+  for (const CampaignRun& run : runs) {
+    files.push_back(run.file);
+    if (!rig) files.push_back(run.maneuver);
+  }
+  return files;
+}
+
 const std::vector<ChannelInfo>& list_channels(const std::optional<RigKind>& rig) {
   return rig ? list_rig_channels(*rig) : list_car_channels();
 }

@@ -63,6 +63,8 @@ struct Campaign {
   std::vector<CampaignRun> runs;
 
   std::size_t count(RunUse use) const;
+  /// The campaign's own, and what it names: model, runs, maneuvers.
+  std::vector<std::filesystem::path> list_files() const;
 };
 
 /// Channels that a campaign's columns may hold.

@@ -63,6 +63,12 @@ void AtomicFile::commit() {
   flush_folder_of(target_);
 }
 
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
+}
+
 void remove_file(const fs::path& path) {
   std::error_code error;
   fs::remove(path, error);

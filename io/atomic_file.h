@@ -30,6 +30,9 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// With those above it, where they are not there. Throws EnvironmentError.
+void make_folder(const std::filesystem::path& path);
+
 /// Where it is there. Throws EnvironmentError.
 void remove_file(const std::filesystem::path& path);
 

@@ -15,6 +15,11 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
+std::string SweepFolder::name() const {
+  const fs::path whole = fs::absolute(root).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 std::string SweepFolder::shard_name(std::int64_t shard) {
   char name[32];
   std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(shard));

@@ -24,6 +24,9 @@ struct SweepFolder {
   std::filesystem::path quarantine() const { return root / "quarantine"; }
   std::filesystem::path logs() const { return root / "logs"; }
 
+  /// The folder's own: "cars" of "cars/", of "../cars" and, within it, of ".".
+  std::string name() const;
+
   /// "000042": of the file, and of the claim on it.
   static std::string shard_name(std::int64_t shard);
   /// The number of such a name; -1 for any other text.

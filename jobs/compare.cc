@@ -65,7 +65,7 @@ int run_compare(const Arguments& arguments) {
                                 " files; expected CAMPAIGN.toml");
   }
   const CampaignData data = read_campaign_data(arguments.positional().front());
-  const CompareFolder folder = find_compare_folder(arguments);
+  const CompareFolder folder = find_compare_folder(arguments, data);
   tell_notes(data.notes);
   const int threads = find_threads(arguments);
   tell_detail(std::to_string(data.run_count()) + " runs, " + std::to_string(threads) + " threads");
@@ -80,8 +80,8 @@ int run_compare(const Arguments& arguments) {
   {
     const InterruptGuard guard;
     clear_page_folder(folder, folder.json());
-    write_compare_tables(folder, data, comparison);
-    tell_notes(write_compare_report(folder, data, comparison));
+    const std::vector<std::string> tables = write_compare_tables(folder, data, comparison);
+    tell_notes(write_compare_report(folder, data, comparison, tables));
     write_text_file(folder.json(), json);
     tell_detail("written: " + folder.json().string() + ", " + folder.report().string());
   }

@@ -93,7 +93,7 @@ int run_diagnose(const Arguments& arguments) {
                                 " files; expected CAMPAIGN.toml");
   }
   const CampaignData data = read_campaign_data(arguments.positional().front());
-  const DiagnoseFolder folder = find_diagnose_folder(arguments);
+  const DiagnoseFolder folder = find_diagnose_folder(arguments, data);
   tell_notes(data.notes);
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
   tell_notes(diagnosis.notes);
@@ -102,8 +102,8 @@ int run_diagnose(const Arguments& arguments) {
     const InterruptGuard guard;
     clear_page_folder(folder, folder.verdict());
     write_extended_model(folder, data, diagnosis);
-    write_diagnose_tables(folder, data, diagnosis);
-    tell_notes(write_diagnose_report(folder, data, diagnosis));
+    const std::vector<std::string> tables = write_diagnose_tables(folder, data, diagnosis);
+    tell_notes(write_diagnose_report(folder, data, diagnosis, tables));
     write_text_file(folder.verdict(), json);
     tell_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
   }

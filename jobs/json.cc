@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/config.h"
+#include "jobs/utf8.h"
 
 namespace strut {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 std::string quote(const std::string& text) {
   static constexpr char kHex[] = "0123456789abcdef";
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : make_valid_utf8(text)) {
     const auto code = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') {
       quoted += '\\';

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "jobs/arguments.h"
+#include "jobs/report/content.h"
 
 namespace strut {
 
@@ -24,10 +25,12 @@ std::vector<std::filesystem::path> list_files_read(
 std::filesystem::path find_output_file(const Arguments& arguments,
                                        const std::vector<std::string>& inputs);
 
-/// The folder of --output, made where it is missing. Throws InputError where it is missing, a file,
-/// or holds `file`, a `content` of before, and --force is not given; EnvironmentError where it
-/// cannot be made.
-std::filesystem::path find_output_folder(const Arguments& arguments, const std::string& file,
-                                         const std::string& content);
+/// The folder of --output, made where it is missing, into which a page goes, `files` beside it.
+/// Throws InputError where it is missing, a file, or holds `content` of before and --force is not
+/// given; where one of the files is one of `inputs`, what the command reads, or not of an earlier
+/// page of that content; EnvironmentError where it cannot be made.
+std::filesystem::path find_output_folder(const Arguments& arguments, const FolderContent& content,
+                                         const std::vector<std::string>& files,
+                                         const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace strut

@@ -9,6 +9,7 @@
 #include "jobs/interrupt.h"
 #include "jobs/messages.h"
 #include "jobs/progress.h"
+#include "jobs/report/content.h"
 #include "jobs/report/page_file.h"
 #include "jobs/report/sweep.h"
 #include "jobs/study/report.h"
@@ -40,27 +41,20 @@ Written report_page(const fs::path& root) {
   return {folder.report(), write_page_again(folder)};
 }
 
-/// A kind of folder, told by a file that only it has.
-struct ReportKind {
-  const char* name;
-  const char* file;
-  Written (*write)(const fs::path& root);
-};
-
-constexpr ReportKind kKinds[] = {{"study", "study.toml", &report_study},
-                                 {"sweep", "plan.h5", &report_sweep},
-                                 {"diagnosis", "verdict.json", &report_page},
-                                 {"comparison", "compare.json", &report_page},
-                                 {"simulated run", "report.json", &report_page}};
-
-const ReportKind& find_kind(const fs::path& root) {
-  std::vector<std::string> kinds;
-  for (const ReportKind& kind : kKinds) {
-    if (fs::exists(root / kind.file)) return kind;
-    kinds.push_back(std::string("a ") + kind.name + " (" + kind.file + ")");
+const FolderContent& require_content(const fs::path& root) {
+  if (const FolderContent* found = find_content(root)) return *found;
+  std::vector<std::string> names;
+  for (const FolderContent* content : kFolderContents) {
+    names.push_back(std::string("a ") + content->name + " (" + content->file + ")");
   }
   throw InputError(root.string() + ": nothing to report on; must be the folder of " +
-                   join_names(kinds));
+                   join_names(names));
+}
+
+Written report(const FolderContent& content, const fs::path& root) {
+  if (&content == &kStudyContent) return report_study(root);
+  if (&content == &kSweepContent) return report_sweep(root);
+  return report_page(root);
 }
 
 }  // namespace
@@ -84,10 +78,10 @@ int run_report(const Arguments& arguments) {
     throw arguments.usage_error(std::to_string(names.size()) + " folders; expected DIR");
   }
   const fs::path root = names.front();
-  const ReportKind& kind = find_kind(root);
+  const FolderContent& content = require_content(root);
   const Written written = [&] {
-    const ProgressLine line(std::string("writing the report of a ") + kind.name);
-    return kind.write(root);
+    const ProgressLine line(std::string("writing the report of a ") + content.name);
+    return report(content, root);
   }();
   tell_notes(written.notes);
   std::cout << written.file.string() << "\n";

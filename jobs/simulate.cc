@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <initializer_list>
 #include <iostream>
+#include <system_error>
 
 #include "jobs/arguments.h"
 #include "jobs/bench/step_check.h"
@@ -15,6 +16,7 @@
 #include "jobs/messages.h"
 #include "jobs/output_file.h"
 #include "jobs/progress.h"
+#include "jobs/report/page_file.h"
 #include "jobs/run_file.h"
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
@@ -58,6 +60,17 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   options.rate = arguments.number_or("rate", options.rate, between(1.0, 1e6, "Hz"));
 }
 
+void check_report(const SimulateOptions& options) {
+  const PageFolder folder{options.report.lexically_normal()};
+  check_page_folder("report", folder, kRunContent, {});
+  std::error_code ignored;
+  if (std::filesystem::equivalent(std::filesystem::absolute(options.output).parent_path(),
+                                  folder.figures(), ignored)) {
+    throw InputError("--output = " + options.output.string() +
+                     ": would be among the figures of --report; must be another folder");
+  }
+}
+
 SimulateOptions read_options(const Arguments& arguments) {
   SimulateOptions options;
   const auto& files = arguments.positional();
@@ -75,6 +88,7 @@ SimulateOptions read_options(const Arguments& arguments) {
     throw arguments.usage_error("--output: missing; name the file to write with -o");
   options.output = arguments.text("output");
   if (arguments.has("report")) options.report = arguments.text("report");
+  if (!options.report.empty()) check_report(options);
   if (options.kinematics) {
     refuse_options(
         arguments,

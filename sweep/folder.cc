@@ -1,8 +1,8 @@
 #include "sweep/folder.h"
 
 #include <algorithm>
-#include <system_error>
 
+#include "io/atomic_file.h"
 #include "io/input_error.h"
 #include "sweep/freeze_inputs.h"
 #include "sweep/plan_file.h"
@@ -21,12 +21,6 @@ std::string list_changes(const Facts& was, const Facts& is) {
   std::string text;
   for (const std::string& line : compare_facts(was, is)) text += "\n  " + line;
   return text;
-}
-
-void make_folder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
 }
 
 /// The rest of a planning that was stopped: nothing else.

@@ -4,13 +4,13 @@
     check_page.py PAGE [CHARTS]     CHARTS: how many must be drawn; default: as many as there are
 
 In the text: tags that close, names that are there once, nothing fetched from elsewhere, numbers that
-are JSON. In headless Chromium: every chart drawn and every series with a number in it, the car in
-motion where there is one, nothing said on the console, no button that would send the numbers away. Exit 77: Chromium is not there; the text was checked.
+are JSON. In headless Chromium: every chart drawn and every series of it, the car in
+motion where there is one, nothing said on the console, no button that would send the numbers away.
+Exit 77: Chromium is not there; the text was checked.
 """
 
 import html.parser
 import json
-import math
 import pathlib
 import re
 import shutil
@@ -69,13 +69,8 @@ def refuse(constant):
 
 
 def count_series(chart):
-    """Those of a flat chart that plotly.js must draw: bars at least in name where they have no height."""
-    def is_seen(trace):
-        y_axis = chart["layout"][trace["yaxis"].replace("y", "yaxis")]
-        lowest = 0.0 if y_axis.get("type") == "log" and trace["type"] != "bar" else -math.inf
-        return any(x is not None and y is not None and y > lowest for x, y in zip(trace["x"], trace["y"]))
-
-    return 0 if chart["three_d"] else sum(map(is_seen, chart["data"]))
+    """Those of a flat chart that plotly.js must draw: with any place, be it a gap."""
+    return 0 if chart["three_d"] else sum(bool(trace["x"]) for trace in chart["data"])
 
 
 def read_text(path):

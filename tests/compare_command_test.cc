@@ -84,6 +84,76 @@ TEST_CASE("compare does not replace a comparison without being told to", "[io]")
   CHECK(run_program(compare(campaign, folder / "out", "--force")).code == 0);
 }
 
+TEST_CASE("compare replaces the files of the comparison before and touches no other", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder);
+  test::CampaignText text;
+  text.fit = "";
+  const auto campaign = test::write_campaign(folder, text);
+  const std::filesystem::path out = folder / "out";
+  REQUIRE(run_program(compare(campaign, out)).code == 0);
+  CHECK(std::filesystem::exists(out / "run_2_b.csv"));
+  CHECK(std::filesystem::exists(out / "figures/run_2_b_time.json"));
+  folder.write("out/mine.csv", "1,2\n");
+  folder.write("out/figures/mine.svg", "<svg/>\n");
+
+  std::filesystem::rename(folder / "b.csv", folder / "c.csv");
+  std::string renamed = test::read_text(campaign);
+  renamed.replace(renamed.find("b.csv"), 5, "c.csv");
+  folder.write("campaign.toml", renamed);
+  REQUIRE(run_program(compare(campaign, out, "--force")).code == 0);
+  CHECK(test::read_text(out / "mine.csv") == "1,2\n");
+  CHECK(test::read_text(out / "figures/mine.svg") == "<svg/>\n");
+  CHECK(std::filesystem::exists(out / "run_2_c.csv"));
+  CHECK_FALSE(std::filesystem::exists(out / "run_2_b.csv"));
+  for (const auto& entry : std::filesystem::directory_iterator(out / "figures")) {
+    CHECK_THAT(entry.path().filename().string(), !Contains("run_2_b"));
+  }
+}
+
+TEST_CASE("compare into the campaign's own folder harms nothing that it reads", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder);
+  test::CampaignText text;
+  text.fit = "";
+  const auto campaign = test::write_campaign(folder, text);
+  const std::string written = test::read_text(campaign),
+                    measured = test::read_text(folder / "a.csv");
+  CHECK(run_program(compare(campaign, folder / "")).code == 0);
+  CHECK(run_program(compare(campaign, folder / "", "--force")).code == 0);
+  CHECK(test::read_text(campaign) == written);
+  CHECK(test::read_text(folder / "a.csv") == measured);
+}
+
+TEST_CASE("compare replaces no file but an earlier comparison's", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder);
+  const auto campaign = test::write_campaign(folder);
+  std::filesystem::create_directory(folder / "mine");
+  folder.write("mine/channels.csv", "1,2\n");
+  const test::Outcome mine = run_program(compare(campaign, folder / "mine", "--force"));
+  CHECK(mine.code == 2);
+  CHECK_THAT(mine.messages, Contains("holds channels.csv") && Contains("another folder"));
+  CHECK(test::read_text(folder / "mine/channels.csv") == "1,2\n");
+
+  std::filesystem::create_directory(folder / "diagnosis");
+  folder.write("diagnosis/verdict.json", "{}\n");
+  const test::Outcome other = run_program(compare(campaign, folder / "diagnosis", "--force"));
+  CHECK(other.code == 2);
+  CHECK_THAT(other.messages, Contains("holds a diagnosis (verdict.json)"));
+
+  const std::string simulate =
+      "simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml -o " +
+      std::string(folder / "run.csv") + " --report ";
+  const test::Outcome run = run_program(simulate + std::string(folder / "diagnosis"));
+  CHECK(run.code == 2);
+  CHECK_THAT(run.messages, Contains("--report") && Contains("holds a diagnosis (verdict.json)"));
+  REQUIRE(run_program(simulate + std::string(folder / "crossing")).code == 0);
+  const test::Outcome crossing = run_program(compare(campaign, folder / "crossing", "--force"));
+  CHECK(crossing.code == 2);
+  CHECK_THAT(crossing.messages, Contains("holds the report of a simulated run"));
+}
+
 TEST_CASE("compare ends with code 2 and a plain message on bad data", "[io]") {
   const test::TemporaryFolder folder;
   test::write_two_runs(folder, {}, [](std::size_t row, std::array<std::string, 4>& cells) {

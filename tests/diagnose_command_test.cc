@@ -133,7 +133,7 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
   const CampaignData data = make_data(folder);
   const Diagnosis diagnosis = make_named(data);
   const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
-  const auto notes = write_diagnose_report(out, data, diagnosis);
+  const auto notes = write_diagnose_report(out, data, diagnosis, {});
   const std::string report = test::read_text(out.report());
   const std::size_t verdict = report.find("The model lacks &lt;friction&gt; in the strut.");
   REQUIRE(verdict != std::string::npos);
@@ -155,7 +155,7 @@ TEST_CASE("strut report makes a diagnosis' page again from what its folder holds
   const test::TemporaryFolder folder;
   const CampaignData data = make_data(folder);
   const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
-  const bool has_figures = write_diagnose_report(out, data, make_named(data)).empty();
+  const bool has_figures = write_diagnose_report(out, data, make_named(data), {}).empty();
   write_text_file(out.verdict(), "{}\n");
   const std::string report = test::read_text(out.report());
   const std::string make_again = " " STRUT_PROGRAM " report " + out.root.string();
@@ -174,7 +174,7 @@ TEST_CASE("strut report makes a diagnosis' page again from what its folder holds
   write_text_file(out.root / "report.json", "{ \"title\": \"cut off\" }\n");
   const test::Outcome broken = test::run_shell(make_again);
   CHECK(broken.code == 2);
-  CHECK_THAT(broken.messages, Contains("report.json") && Contains("lead"));
+  CHECK_THAT(broken.messages, Contains("report.json") && Contains("No such node (of)"));
 }
 
 TEST_CASE("The curves of every run are written beside each other", "[io]") {
@@ -330,6 +330,20 @@ TEST_CASE("diagnose ends with code 2 and a plain message on bad data", "[io]") {
   CHECK_THAT(outcome.messages, Contains("a.csv:32") && Contains("runs backwards"));
   CHECK(run_program("diagnose").code == 2);
   CHECK_THAT(run_program("diagnose --help").out, Contains("-o diagnosis"));
+}
+
+TEST_CASE("diagnose does not write over the model that it reads", "[io]") {
+  const test::TemporaryFolder folder;
+  test::write_two_runs(folder);
+  test::CampaignText text;
+  std::filesystem::copy_file(text.model, folder / "extended.toml");
+  const std::string model = test::read_text(text.model);
+  text.model = "extended.toml";
+  const auto campaign = test::write_campaign(folder, text);
+  const test::Outcome outcome = run_program(diagnose(campaign, folder / ""));
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains("holds extended.toml, which is read"));
+  CHECK(test::read_text(folder / "extended.toml") == model);
 }
 
 TEST_CASE("diagnose ends with code 3 where its folder cannot be made", "[io]") {

@@ -83,11 +83,12 @@ inline Verdict verify_by_program(const std::filesystem::path& sweep,
 /// A planned sweep to copy from, and the digest of its data.
 class ProgramSweep {
  public:
-  explicit ProgramSweep(const std::string& text) {
+  /// `code`: that of running it, 1 where cases fail.
+  explicit ProgramSweep(const std::string& text, int code = 0) {
     const std::string file = files_.write("small.toml", text).string();
     REQUIRE(run_program("plan " + file + " -o " + planned_.string()).code == 0);
     const std::filesystem::path whole = copy("whole");
-    REQUIRE(run_sweep_command("run", whole, "--threads 2").code == 0);
+    REQUIRE(run_sweep_command("run", whole, "--threads 2").code == code);
     const Verdict verdict = verify_by_program(whole);
     REQUIRE(verdict.ok);
     digest_ = verdict.digest;

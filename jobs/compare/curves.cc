@@ -7,7 +7,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMostPoints = 2500;
+constexpr std::size_t kMostPoints = 2500;  // of a cloud
 
 std::vector<ModelCurves> keep_simulated(const std::vector<ModelCurves>& models) {
   std::vector<ModelCurves> kept;
@@ -18,15 +18,6 @@ std::vector<ModelCurves> keep_simulated(const std::vector<ModelCurves>& models) 
 
 const std::vector<double>& get_curve(const ModelCurves& model, int channel) {
   return model.evaluation->curves.channel[static_cast<std::size_t>(channel)];
-}
-
-/// Every so many of the values, as a report needs them.
-std::vector<double> thin(const std::vector<double>& values) {
-  const std::size_t stride = choose_stride(values.size());
-  std::vector<double> kept;
-  kept.reserve(values.size() / stride + 1);
-  for (std::size_t t = 0; t < values.size(); t += stride) kept.push_back(values[t]);
-  return kept;
 }
 
 std::vector<double> calc_residual(const MeasuredChannel& c, const std::vector<double>& simulated) {
@@ -40,15 +31,18 @@ std::vector<double> calc_residual(const MeasuredChannel& c, const std::vector<do
 void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
                  const ChannelInfo& info, const std::vector<ModelCurves>& models,
                  std::vector<ChartPanel>& panels) {
-  const std::vector<double> x = thin(times);
-  ChartPanel curves{{""}, {make_label(info.name, info.unit)}, {}};
+  const std::string label = make_label(info.name, info.unit);
+  ChartPanel curves{{""}, {label}, {}};
   ChartPanel residuals{{"time [s]"}, {make_label("residual", info.unit)}, {}};
-  curves.series.push_back({"measured", SeriesKind::kLine, 1, x, thin(c.values)});
+  curves.about = label + " over time [s]";
+  residuals.about = "residual of " + curves.about;
+  curves.series.push_back(make_curve("measured", SeriesKind::kLine, 1, times, c.values));
   for (const ModelCurves& model : models) {
     const std::vector<double>& simulated = get_curve(model, c.channel);
-    curves.series.push_back({model.name, SeriesKind::kLine, model.color, x, thin(simulated)});
+    curves.series.push_back(
+        make_curve(model.name, SeriesKind::kLine, model.color, times, simulated));
     residuals.series.push_back(
-        {model.name, SeriesKind::kLine, model.color, x, thin(calc_residual(c, simulated))});
+        make_curve(model.name, SeriesKind::kLine, model.color, times, calc_residual(c, simulated)));
   }
   panels.push_back(std::move(curves));
   panels.push_back(std::move(residuals));
@@ -64,6 +58,14 @@ std::string make_run_name(const CampaignData& data, std::size_t run) {
     if (!plain && c != '-') c = '_';
   }
   return name;
+}
+
+std::vector<std::string> list_run_tables(const CampaignData& data) {
+  std::vector<std::string> names;
+  for (std::size_t run = 0; run < data.campaign.runs.size(); ++run) {
+    names.push_back(make_run_name(data, run) + ".csv");
+  }
+  return names;
 }
 
 std::size_t choose_stride(std::size_t count) { return 1 + count / kMostPoints; }

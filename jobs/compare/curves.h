@@ -23,6 +23,9 @@ struct ModelCurves {
 /// "run_2_chirp_A2": of a run's files.
 std::string make_run_name(const CampaignData& data, std::size_t run);
 
+/// "run_2_chirp_A2.csv": the tables of all runs.
+std::vector<std::string> list_run_tables(const CampaignData& data);
+
 /// More points are not seen, and make a report too large to mail: every so many of `count` will do.
 std::size_t choose_stride(std::size_t count);
 

@@ -1,12 +1,14 @@
 #include "jobs/compare/figures.h"
 
+#include <algorithm>
+
 #include "jobs/compare/curves.h"
 #include "jobs/compare/tables.h"
 
 namespace strut {
 namespace {
 
-ChartPanel make_state_panel(const StateResidual& state, const std::string& y_label) {
+ChartPanel make_state_panel(const StateResidual& state, const ChannelInfo& info) {
   ChartSeries mean{"mean", SeriesKind::kLinePoints, 2}, rms{"rms", SeriesKind::kLine, 5};
   for (const StateBin& bin : state.bins) {
     if (bin.count == 0) continue;
@@ -15,19 +17,17 @@ ChartPanel make_state_panel(const StateResidual& state, const std::string& y_lab
     rms.x.push_back(bin.center);
     rms.y.push_back(bin.rms);
   }
-  return {{make_label(state.state, state.unit)}, {y_label}, {rms, mean}};
+  return {{make_label(state.state, state.unit)}, {make_residual_label(info)}, {rms, mean}};
 }
 
 Chart make_state_chart(const CampaignData& data, const RunComparison& run) {
   Chart chart{make_run_name(data, run.run) + "_states", {}};
-  chart.columns = run.calibrated.channels.front().states.size();
+  chart.columns = choose_columns(run.calibrated.channels.front().states.size());
   chart.caption = "What the calibrated model leaves, by its states: mean and rms.";
   for (const ChannelComparison& channel : run.calibrated.channels) {
     const ChannelInfo& info = data.info(channel.channel);
-    std::string y_label = make_label(info.name, info.unit);
     for (const StateResidual& state : channel.states) {
-      chart.panels.push_back(make_state_panel(state, y_label));
-      y_label.clear();
+      chart.panels.push_back(make_state_panel(state, info));
     }
   }
   return chart;
@@ -35,10 +35,19 @@ Chart make_state_chart(const CampaignData& data, const RunComparison& run) {
 
 }  // namespace
 
+std::string make_residual_label(const ChannelInfo& info) {
+  return make_label("residual of " + info.name, info.unit);
+}
+
+std::size_t choose_columns(std::size_t states) {
+  constexpr std::size_t kMost = 3;
+  return states % kMost == 0 ? kMost : std::min<std::size_t>(states, 2);
+}
+
 Chart make_balance_chart(const std::string& name, const std::vector<BalancePoints>& balances) {
   Chart chart{name,
               {{{"suspension deflection [m]"}, {"force left [N]"}, {}},
-               {{"suspension velocity [m/s]"}, {""}, {}}},
+               {{"suspension velocity [m/s]"}, {"force left [N]"}, {}}},
               2};
   chart.panel_height = 400;
   for (const BalancePoints& points : balances) {

@@ -20,6 +20,12 @@ struct BalancePoints {
   const BodyBalance* balance = nullptr;
 };
 
+/// "residual of pitch rate [rad/s]"
+std::string make_residual_label(const ChannelInfo& info);
+
+/// Columns of a chart with a row, or two, of so many states for each channel.
+std::size_t choose_columns(std::size_t states);
+
 /// The force left over deflection, and over velocity.
 Chart make_balance_chart(const std::string& name, const std::vector<BalancePoints>& balances);
 

@@ -1,11 +1,14 @@
 #include "jobs/compare/folder.h"
 
+#include "jobs/compare/curves.h"
 #include "jobs/output_file.h"
 
 namespace strut {
 
-CompareFolder find_compare_folder(const Arguments& arguments) {
-  return {{find_output_folder(arguments, "compare.json", "comparison")}};
+CompareFolder find_compare_folder(const Arguments& arguments, const CampaignData& data) {
+  std::vector<std::string> files = list_run_tables(data);
+  files.emplace_back("channels.csv");
+  return {{find_output_folder(arguments, kComparisonContent, files, data.campaign.list_files())}};
 }
 
 }  // namespace strut

@@ -3,17 +3,18 @@
 
 #include <filesystem>
 
+#include "diagnose/campaign_data.h"
 #include "jobs/arguments.h"
+#include "jobs/report/content.h"
 #include "jobs/report/page_file.h"
 
 namespace strut {
 
 struct CompareFolder : PageFolder {
-  std::filesystem::path json() const { return root / "compare.json"; }
+  std::filesystem::path json() const { return root / kComparisonContent.file; }
 };
 
-/// The folder of --output, made where it is missing. Throws InputError where it is missing, a file,
-/// or holds a comparison and --force is not given; EnvironmentError where it cannot be made.
-CompareFolder find_compare_folder(const Arguments& arguments);
+/// The folder of --output, as find_output_folder() (jobs/output_file.h) gives it.
+CompareFolder find_compare_folder(const Arguments& arguments, const CampaignData& data);
 
 }  // namespace strut

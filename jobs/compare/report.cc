@@ -27,7 +27,8 @@ ReportSection make_run_section(const CampaignData& data, const RunComparison& ru
 }  // namespace
 
 std::vector<std::string> write_compare_report(const CompareFolder& folder, const CampaignData& data,
-                                              const Comparison& comparison) {
+                                              const Comparison& comparison,
+                                              const std::vector<std::string>& tables) {
   const FigureDrawer drawer(folder.figures());
   ReportPage page;
   page.title = "Measured against simulated: " + data.campaign.path.filename().string();
@@ -37,6 +38,8 @@ std::vector<std::string> write_compare_report(const CompareFolder& folder, const
     page.sections.push_back(make_run_section(data, run, drawer));
   }
   page.footer = make_report_footer();
+  page.of = kComparisonContent.name;
+  page.tables = tables;
   write_page(folder, page);
   return drawer.list_notes();
 }

@@ -9,8 +9,10 @@
 
 namespace strut {
 
-/// Returns what could not be made, for the user. Throws EnvironmentError.
+/// `tables`: names of those beside the page. Returns what could not be made, for the user. Throws
+/// EnvironmentError.
 std::vector<std::string> write_compare_report(const CompareFolder& folder, const CampaignData& data,
-                                              const Comparison& comparison);
+                                              const Comparison& comparison,
+                                              const std::vector<std::string>& tables);
 
 }  // namespace strut

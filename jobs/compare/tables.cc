@@ -209,12 +209,15 @@ std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComp
   return tables;
 }
 
-void write_compare_tables(const CompareFolder& folder, const CampaignData& data,
-                          const Comparison& comparison) {
-  write_csv(folder.table("channels"), make_channel_columns(comparison));
+std::vector<std::string> write_compare_tables(const CompareFolder& folder, const CampaignData& data,
+                                              const Comparison& comparison) {
+  std::vector<std::string> names = {"channels"};
+  write_csv(folder.table(names.front()), make_channel_columns(comparison));
   for (const RunComparison& run : comparison.runs) {
-    write_csv(folder.table(make_run_name(data, run.run)), make_run_columns(data, run));
+    names.push_back(make_run_name(data, run.run));
+    write_csv(folder.table(names.back()), make_run_columns(data, run));
   }
+  return names;
 }
 
 }  // namespace strut

@@ -22,9 +22,9 @@ std::vector<ReportTable> make_compare_tables(const CampaignData& data,
 std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComparison& run);
 
 /// Writes channels.csv, and for every run NAME.csv: time, and of every channel measured, nominal,
-/// calibrated; with a body balance its curves. Throws EnvironmentError.
-void write_compare_tables(const CompareFolder& folder, const CampaignData& data,
-                          const Comparison& comparison);
+/// calibrated; with a body balance its curves. Returns their names. Throws EnvironmentError.
+std::vector<std::string> write_compare_tables(const CompareFolder& folder, const CampaignData& data,
+                                              const Comparison& comparison);
 
 /// Nominal and calibrated.
 std::vector<ModelCurves> list_model_curves(const RunComparison& run);

@@ -78,9 +78,8 @@ void add_state_lines(const CampaignData& data, const PooledChannels& pooled,
     const ChannelInfo& info = data.info(channel);
     for (std::size_t s = 0; s < states.size(); ++s, ++panel) {
       if (is_first) {
-        panels.push_back({{make_label(states[s].name, states[s].unit)},
-                          {s == 0 ? make_label(info.name, info.unit) : ""},
-                          {}});
+        panels.push_back(
+            {{make_label(states[s].name, states[s].unit)}, {make_residual_label(info)}, {}});
       }
       panels[panel].series.push_back(make_mean_line(states[s], model));
     }
@@ -291,7 +290,7 @@ std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis&
       pool(data, run->run, *list_model_curves(diagnosis, *run)[m].evaluation, pooled);
     }
     add_state_lines(data, pooled, list_model_curves(diagnosis, *runs.front())[m], states.panels);
-    states.columns = pooled.begin()->second.size();
+    states.columns = choose_columns(pooled.begin()->second.size());
   }
   return {states, make_law_chart(data, diagnosis, *runs.front())};
 }

@@ -1,11 +1,14 @@
 #include "jobs/diagnose/folder.h"
 
+#include "jobs/compare/curves.h"
 #include "jobs/output_file.h"
 
 namespace strut {
 
-DiagnoseFolder find_diagnose_folder(const Arguments& arguments) {
-  return {{find_output_folder(arguments, "verdict.json", "diagnosis")}};
+DiagnoseFolder find_diagnose_folder(const Arguments& arguments, const CampaignData& data) {
+  std::vector<std::string> files = list_run_tables(data);
+  files.insert(files.end(), {"force_map.csv", "extended.toml"});
+  return {{find_output_folder(arguments, kDiagnosisContent, files, data.campaign.list_files())}};
 }
 
 }  // namespace strut

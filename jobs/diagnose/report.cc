@@ -76,10 +76,13 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
 }  // namespace
 
 std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
-                                               const CampaignData& data,
-                                               const Diagnosis& diagnosis) {
+                                               const CampaignData& data, const Diagnosis& diagnosis,
+                                               const std::vector<std::string>& tables) {
   const FigureDrawer drawer(folder.figures());
-  write_page(folder, make_page(data, diagnosis, drawer));
+  ReportPage page = make_page(data, diagnosis, drawer);
+  page.of = kDiagnosisContent.name;
+  page.tables = tables;
+  write_page(folder, page);
   return drawer.list_notes();
 }
 

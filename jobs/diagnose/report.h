@@ -9,9 +9,10 @@
 
 namespace strut {
 
-/// Returns what could not be made, for the user. Throws EnvironmentError.
+/// `tables`: names of those beside the page. Returns what could not be made, for the user. Throws
+/// EnvironmentError.
 std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
-                                               const CampaignData& data,
-                                               const Diagnosis& diagnosis);
+                                               const CampaignData& data, const Diagnosis& diagnosis,
+                                               const std::vector<std::string>& tables);
 
 }  // namespace strut

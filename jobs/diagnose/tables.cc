@@ -141,15 +141,20 @@ std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const Dia
   return models;
 }
 
-void write_diagnose_tables(const DiagnoseFolder& folder, const CampaignData& data,
-                           const Diagnosis& diagnosis) {
+std::vector<std::string> write_diagnose_tables(const DiagnoseFolder& folder,
+                                               const CampaignData& data,
+                                               const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
   for (const DiagnosedRun& run : diagnosis.runs) {
-    write_csv(folder.table(make_run_name(data, run.run)),
+    names.push_back(make_run_name(data, run.run));
+    write_csv(folder.table(names.back()),
               make_curve_columns(data, run.run, list_model_curves(diagnosis, run)));
   }
-  if (!diagnosis.force) return;
-  write_csv(folder.table("force_map"),
+  if (!diagnosis.force) return names;
+  names.emplace_back("force_map");
+  write_csv(folder.table(names.back()),
             make_force_map_columns(*diagnosis.force, diagnosis.selection.extended));
+  return names;
 }
 
 }  // namespace strut

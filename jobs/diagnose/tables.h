@@ -30,8 +30,9 @@ std::string make_diagnose_text(const Diagnosis& diagnosis);
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run);
 
 /// For every run NAME.csv: time, and of every channel measured, baseline, extended; of a force map
-/// force_map.csv. Throws EnvironmentError.
-void write_diagnose_tables(const DiagnoseFolder& folder, const CampaignData& data,
-                           const Diagnosis& diagnosis);
+/// force_map.csv. Returns their names. Throws EnvironmentError.
+std::vector<std::string> write_diagnose_tables(const DiagnoseFolder& folder,
+                                               const CampaignData& data,
+                                               const Diagnosis& diagnosis);
 
 }  // namespace strut

@@ -54,7 +54,8 @@ struct ChartPanel {
   ChartAxis x, y;
   std::vector<ChartSeries> series;
   std::string title = {};
-  ChartAxis z = {""};  // of kPoints3d
+  ChartAxis z = {""};      // of kPoints3d
+  std::string about = {};  // for name_panel(), where title and labels are those of other panels too
 };
 
 /// Panels row by row, `columns` a row, with one legend above them.
@@ -82,6 +83,15 @@ struct PanelPlace {
 /// without labels.
 int calc_height(const Chart& chart);
 PanelPlace calc_place(const Chart& chart, std::size_t panel);
+
+/// What a panel's numbers are called in tables: "states: pitch [rad] over time [s]".
+std::string name_panel(const ChartPanel& panel);
+
+/// A curve of about `most` points at most: of each stretch its lowest and its highest, so that no
+/// peak is lost, and a gap where it holds one.
+ChartSeries make_curve(const std::string& name, SeriesKind kind, int color,
+                       const std::vector<double>& x, const std::vector<double>& y,
+                       std::size_t most = 2500);
 
 /// A name as people write it: "body_position_z" -> "body position z"
 std::string make_words(std::string name);

@@ -1,7 +1,5 @@
 #include "jobs/report/figures.h"
 
-#include <system_error>
-
 #include "io/atomic_file.h"
 #include "io/config.h"
 #include "jobs/build_info.h"
@@ -12,9 +10,7 @@
 namespace strut {
 
 FigureDrawer::FigureDrawer(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw EnvironmentError(folder_.string() + ": cannot be made: " + error.message());
+  make_folder(folder_);
   if (!has_gnuplot()) {
     note_ =
         "gnuplot cannot be started, so there are no pictures of the charts as files (Debian: apt "
@@ -26,6 +22,7 @@ ReportFigure FigureDrawer::draw(const Chart& chart) const {
   write_text_file(folder_ / (chart.name + ".json"), make_plotly(chart).dump() + "\n");
   write_text_file(folder_ / (chart.name + ".csv"), make_chart_csv(chart));
   write_text_file(folder_ / (chart.name + ".gp"), make_gnuplot(chart));
+  remove_file(folder_ / (chart.name + ".svg"));  // of other numbers, where gnuplot is not there now
   return draw_again(chart.name, chart.caption);
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "embedded/texts.h"
+#include "jobs/utf8.h"
 
 namespace strut {
 namespace {
@@ -75,13 +76,16 @@ std::string make_links(const std::vector<std::string>& files) {
 
 std::string make_figure(const ReportFigure& figure) {
   return "<figure id=\"figure-" + escape_html(figure.name) + "\">\n<div class=\"chart\">" +
-         make_json_element(figure.chart) + "</div><figcaption>" + escape_html(figure.caption) +
+         make_json_element(figure.chart) +
+         "<noscript>The chart needs JavaScript; its numbers, and where gnuplot was there its " +
+         "picture, are linked below.</noscript></div><figcaption>" + escape_html(figure.caption) +
          make_links(figure.files) + "</figcaption>\n</figure>\n";
 }
 
 std::string make_motion_figure(const ReportMotion& motion) {
   return "<figure>\n<div class=\"motion\">" + make_json_element(motion.scene) +
-         "</div><figcaption>" + escape_html(motion.caption) + "</figcaption>\n</figure>\n";
+         "<noscript>The moving picture needs JavaScript.</noscript></div><figcaption>" +
+         escape_html(motion.caption) + "</figcaption>\n</figure>\n";
 }
 
 std::string make_contents(const std::vector<ReportSection>& sections) {
@@ -142,10 +146,8 @@ std::string make_scripts(const ReportPage& page) {
 std::string make_footer(const ReportPage& page) {
   std::string text = "<footer>" + escape_html(page.footer);
   if (find_moving(page).charts) {
-    text +=
-        "<noscript><p>The charts need JavaScript.</p></noscript><details><summary>Charts by "
-        "plotly.js, whose license is</summary><pre>" +
-        escape_html(std::string(embedded::LICENSE)) + "</pre></details>";
+    text += "<details><summary>Charts by plotly.js, whose license is</summary><pre>" +
+            escape_html(std::string(embedded::LICENSE)) + "</pre></details>";
   }
   return text + "</footer>\n";
 }
@@ -168,7 +170,7 @@ std::string format_percent(double share) { return print_number("%.2f %%", 100.0 
 std::string escape_html(const std::string& text) {
   std::string escaped;
   escaped.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : make_valid_utf8(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";

@@ -56,6 +56,8 @@ struct ReportPage {
   std::vector<std::string> lead;  // paragraphs below it
   std::vector<ReportSection> sections;
   std::string footer;
+  std::vector<std::string> tables = {};  // files beside it: "channels" of channels.csv
+  std::string of = {};                   // what its folder holds, as FolderContent names it
 };
 
 /// The page, readable in light and dark and on paper; the library that draws its charts is part of

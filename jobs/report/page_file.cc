@@ -1,9 +1,9 @@
 #include "jobs/report/page_file.h"
 
+#include <algorithm>
 #include <boost/property_tree/json_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
-#include <set>
-#include <system_error>
+#include <cctype>
 
 #include "io/atomic_file.h"
 #include "io/input_error.h"
@@ -51,9 +51,11 @@ Json make_section_json(const ReportSection& section) {
 
 Json make_page_json(const ReportPage& page) {
   return Json::object()
+      .set("of", page.of)
       .set("title", page.title)
       .set("lead", Json::texts(page.lead))
       .set("sections", make_list(page.sections, &make_section_json))
+      .set("tables", Json::texts(page.tables))
       .set("footer", page.footer);
 }
 
@@ -79,21 +81,57 @@ ReportTable read_table(const Tree& tree) {
           tree.get<std::size_t>("text_columns")};
 }
 
-/// Of the folder, if there is one, those with such ends.
-void remove_files(const fs::path& folder, const std::set<std::string>& ends) {
-  std::vector<fs::path> old;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (ends.count(entry.path().extension().string()) > 0) old.push_back(entry.path());
+/// Whether a name that a page gives can be a file's in its folder, and nothing else.
+bool is_plain(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+}
+
+/// The files that the folder's page names.
+std::vector<fs::path> list_files(const PageFolder& folder, const Tree& page) {
+  std::vector<fs::path> files;
+  for (const std::string& name : read_list(page, "tables", &read_text)) {
+    if (is_plain(name)) files.push_back(folder.table(name));
   }
-  for (const fs::path& file : old) remove_file(file);
+  const auto add_figures = [&](const Tree& list, const std::vector<const char*>& ends) {
+    for (const auto& [key, figure] : list) {
+      const auto name = figure.get<std::string>("name");
+      for (const char* end : ends) {
+        if (is_plain(name)) files.push_back(folder.figures() / (name + end));
+      }
+    }
+  };
+  for (const auto& [key, section] : page.get_child("sections")) {
+    add_figures(section.get_child("figures"), {".csv", ".gp", ".json", ".svg"});
+    add_figures(section.get_child("motions"), {".json"});
+  }
+  return files;
+}
+
+/// What an earlier command left in a folder.
+struct EarlierPage {
+  std::string of;               // "": there is no page of ours
+  std::vector<fs::path> files;  // beside it
+};
+
+EarlierPage read_earlier_page(const PageFolder& folder) {
+  try {
+    Tree page;
+    boost::property_tree::read_json(folder.page().string(), page);
+    return {page.get<std::string>("of"), list_files(folder, page)};
+  } catch (const boost::property_tree::ptree_error&) {
+    return {};
+  }
 }
 
 ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
   ReportPage page;
+  page.of = tree.get<std::string>("of");
   page.title = tree.get<std::string>("title");
   page.lead = read_list(tree, "lead", &read_text);
   page.footer = tree.get<std::string>("footer");
+  page.tables = read_list(tree, "tables", &read_text);
   page.sections = read_list(tree, "sections", [&](const Tree& section) {
     return ReportSection{section.get<std::string>("heading"),
                          read_list(section, "paragraphs", &read_text),
@@ -113,12 +151,34 @@ ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
 
 }  // namespace
 
+void check_page_folder(const std::string& option, const PageFolder& folder,
+                       const FolderContent& content, const std::vector<fs::path>& files) {
+  const std::string start = "--" + option + " = " + folder.root.string() + ": holds ";
+  const FolderContent* other = find_content(folder.root);
+  if (other != nullptr && other != &content && other != &kRunContent) {
+    throw InputError(start + "a " + other->name + " (" + other->file + "); must be another folder");
+  }
+  const EarlierPage earlier = read_earlier_page(folder);
+  if (!earlier.of.empty() && earlier.of != content.name) {
+    throw InputError(start + "the report of a " + earlier.of + "; must be another folder");
+  }
+  if (earlier.of == content.name) return;  // all such files are its own
+  std::vector<fs::path> written = files;
+  written.insert(written.end(), {folder.report(), folder.page()});
+  for (const fs::path& file : written) {
+    if (fs::exists(file)) {
+      throw InputError(start + file.filename().string() + ", which is not of an earlier " +
+                       content.name + "; must be another folder");
+    }
+  }
+}
+
 void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker) {
+  const EarlierPage earlier = read_earlier_page(folder);
   remove_file(marker);
-  remove_file(folder.page());
+  for (const fs::path& file : earlier.files) remove_file(file);
   remove_file(folder.report());
-  remove_files(folder.root, {".csv"});
-  remove_files(folder.figures(), {".csv", ".gp", ".json", ".svg"});
+  remove_file(folder.page());
 }
 
 void write_page(const PageFolder& folder, const ReportPage& page) {
@@ -134,7 +194,7 @@ std::vector<std::string> write_page_again(const PageFolder& folder) {
     write_text_file(folder.report(), make_html(read_page(tree, drawer)));
   } catch (const boost::property_tree::ptree_error& e) {
     throw InputError(folder.page().string() + ": " + e.what() +
-                     "; must be as strut compare or strut diagnose wrote it");
+                     "; must be as strut compare, diagnose or simulate wrote it");
   }
   return drawer.list_notes();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "jobs/report/content.h"
 #include "jobs/report/html.h"
 
 namespace strut {
@@ -20,9 +21,15 @@ struct PageFolder {
   std::filesystem::path table(const std::string& name) const { return root / (name + ".csv"); }
 };
 
+/// Refuses a folder in which a page, and `files` beside it, would replace anything but an earlier
+/// page of that content and its files: throws InputError, which names the option.
+void check_page_folder(const std::string& option, const PageFolder& folder,
+                       const FolderContent& content,
+                       const std::vector<std::filesystem::path>& files);
+
 /// Removes what an earlier command left: `marker` first, by which the folder is told to hold it, so
-/// that what is half replaced is not taken for whole; then tables, figures and pages of such names.
-/// Throws EnvironmentError.
+/// that what is half replaced is not taken for whole; then the page with the tables and figures
+/// that its report.json names. Whatever else is in the folder stays. Throws EnvironmentError.
 void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker);
 
 /// Writes report.json and report.html.

@@ -140,10 +140,12 @@ void set_values(const ChartSeries& s, Json& trace) {
 /// "" for the first panel, then "2", "3", ...: how plotly.js numbers axes and scenes.
 std::string get_number(std::size_t panel) { return panel == 0 ? "" : std::to_string(panel + 1); }
 
-Json make_trace(const ChartSeries& s, std::size_t panel, bool is_3d, bool has_entry) {
+Json make_trace(const ChartSeries& s, const std::string& panel_name, std::size_t panel, bool is_3d,
+                bool has_entry) {
   Json trace = Json::object().set("name", s.name).set("legendgroup", s.name);
   trace.set("showlegend", has_entry);
   set_values(s, trace);
+  trace.set("meta", panel_name);
   if (is_3d) return trace.set("scene", "scene" + get_number(panel));
   return trace.set("xaxis", "x" + get_number(panel)).set("yaxis", "y" + get_number(panel));
 }
@@ -154,7 +156,8 @@ Json make_traces(const Chart& chart) {
   const bool is_3d = chart.is_3d();
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
     for (const ChartSeries& s : chart.panels[p].series) {
-      traces.push(make_trace(s, p, is_3d, names.insert(s.name).second));
+      traces.push(
+          make_trace(s, name_panel(chart.panels[p]), p, is_3d, names.insert(s.name).second));
     }
   }
   return traces;
@@ -249,6 +252,7 @@ Json make_plotly(const Chart& chart) {
   return Json::object()
       .set("name", chart.name)
       .set("height", calc_height(chart))
+      .set("width", chart.width)
       .set("three_d", chart.is_3d())
       .set("data", make_traces(chart))
       .set("layout", make_layout(chart));

@@ -26,15 +26,14 @@ int get_color(std::size_t series) { return 1 + static_cast<int>(series % std::si
 
 /// A curve over the way: get(i) at the i-th instant.
 template <class Get>
-ChartSeries make_curve(const Sensitivity& s, std::size_t parameter, const Get& get) {
-  ChartSeries series{make_words(s.parameters[parameter].name), SeriesKind::kLine,
-                     get_color(parameter)};
-  const std::size_t stride = 1 + s.instants.size() / kMostPoints;
-  for (std::size_t i = 0; i < s.instants.size(); i += stride) {
-    series.x.push_back(s.instants[i].offset);
-    series.y.push_back(get(i));
+ChartSeries make_way_curve(const Sensitivity& s, std::size_t parameter, const Get& get) {
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < s.instants.size(); ++i) {
+    x.push_back(s.instants[i].offset);
+    y.push_back(get(i));
   }
-  return series;
+  return make_curve(make_words(s.parameters[parameter].name), SeriesKind::kLine,
+                    get_color(parameter), x, y, kMostPoints);
 }
 
 const char kWay[] = "rear wheels beyond the bump's center [m]";
@@ -44,7 +43,7 @@ Chart make_bound_chart(const DesignReport& report) {
   ChartPanel panel{{kWay}, {"bound, 1 sigma [%]", true}, {}};
   double least = INFINITY;
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
-    panel.series.push_back(make_curve(s, p, [&](std::size_t i) {
+    panel.series.push_back(make_way_curve(s, p, [&](std::size_t i) {
       const double bound = report.design.scan[i].bound[p];
       least = std::min(least, bound);
       return bound <= kIdentifiable ? bound : NAN;
@@ -77,7 +76,7 @@ Chart make_sensitivity_chart(const DesignReport& report) {
     const ChannelInfo& info = get_channel(channel);
     ChartPanel panel{{kWay}, {make_label(info.name, info.unit + " per %")}, {}};
     for (std::size_t p = 0; p < s.parameters.size(); ++p) {
-      panel.series.push_back(make_curve(s, p, [&](std::size_t i) {
+      panel.series.push_back(make_way_curve(s, p, [&](std::size_t i) {
         return to_unit(s.parameters[p], s.get(s.instants[i], channel, p));
       }));
     }

@@ -10,6 +10,7 @@
 #include "jobs/report/figures.h"
 #include "jobs/report/html.h"
 #include "jobs/report/sensitivities.h"
+#include "model/math/random.h"
 #include "sweep/folder.h"
 #include "sweep/status.h"
 
@@ -17,26 +18,32 @@ namespace strut {
 namespace {
 
 constexpr std::size_t kBins = 10;
-/// Values that a figure is made of; beyond, every n-th case.
+/// Values that a figure is made of; beyond, one case of so many.
 constexpr std::size_t kMostCases = 200000;
 
 /// Finished cases with a snapshot, by rows: parameters, then snapshot.
 struct Cases {
   std::vector<ColumnInfo> parameters, channels;
   std::vector<std::vector<double>> rows;
-  std::size_t step = 1;  // every so many-th
+  std::size_t step = 1;  // one of so many
 };
+
+/// One number of so many, at random but always the same: every n-th one of a Sobol sequence, or of
+/// a grid's order, would leave out parts of the space.
+bool is_picked(std::size_t number, std::size_t step) {
+  return calc_uniform(0, 0, number) * static_cast<double>(step) < 1.0;
+}
 
 Cases read_cases(Dataset& dataset) {
   const ShardSchema& schema = dataset.schema();
   Cases cases{schema.parameters, schema.snapshot, {}, 1};
-  cases.step = 1 + dataset.row_count() / kMostCases;
+  cases.step = (dataset.row_count() + kMostCases - 1) / kMostCases;
   const std::size_t p = schema.parameters.size(), s = schema.snapshot.size();
   std::size_t number = 0;
   for (std::size_t piece = 0; piece < dataset.piece_count(); ++piece) {
     const ShardRows& rows = dataset.read_piece(piece);
     for (std::size_t i = 0; i < rows.size(); ++i, ++number) {
-      if (rows.status[i] != 0 || number % cases.step != 0) continue;
+      if (rows.status[i] != 0 || !is_picked(number, cases.step)) continue;
       const double* parameters = rows.parameters.data() + i * p;
       const double* snapshot = rows.snapshot.data() + i * s;
       std::vector<double> row(parameters, parameters + p);
@@ -79,21 +86,25 @@ ReportTable make_channel_table(const Cases& cases) {
   return table;
 }
 
-/// A channel against one parameter: median, and the band of 5 to 95 %, per bin of the parameter.
+/// A channel against one parameter: median, and the band of 5 to 95 %, per bin of the parameter. A
+/// bin stands at its middle value, which is the level where it holds a single one.
 ChartPanel make_band_panel(const Cases& cases, std::size_t parameter, std::size_t channel) {
   const std::size_t column = cases.parameters.size() + channel;
   const auto range = sort_column(cases, parameter);
   const double low = range.front(), width = (range.back() - low) / static_cast<double>(kBins);
-  std::vector<std::vector<double>> bins(kBins);
+  std::vector<std::vector<double>> places(kBins), bins(kBins);
   for (const auto& row : cases.rows) {
     const double place = width > 0.0 ? (row[parameter] - low) / width : 0.0;
-    bins[std::min(kBins - 1, static_cast<std::size_t>(place))].push_back(row[column]);
+    const std::size_t bin = std::min(kBins - 1, static_cast<std::size_t>(place));
+    places[bin].push_back(row[parameter]);
+    bins[bin].push_back(row[column]);
   }
   ChartSeries band{"5 to 95 %", SeriesKind::kBand, 6}, median{"median", SeriesKind::kLinePoints, 1};
   for (std::size_t b = 0; b < kBins; ++b) {
     if (bins[b].empty()) continue;
+    std::sort(places[b].begin(), places[b].end());
     std::sort(bins[b].begin(), bins[b].end());
-    median.x.push_back(low + width * (static_cast<double>(b) + 0.5));
+    median.x.push_back(find_quantile(places[b], 0.5));
     median.y.push_back(find_quantile(bins[b], 0.5));
     band.low.push_back(find_quantile(bins[b], 0.05));
     band.high.push_back(find_quantile(bins[b], 0.95));
@@ -200,7 +211,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
     return section;
   }
   if (cases.step > 1) {
-    section.paragraphs = {"From every " + std::to_string(cases.step) + "th case."};
+    section.paragraphs = {"From one case of " + std::to_string(cases.step) + "."};
   }
   section.tables.push_back(make_channel_table(cases));
   for (std::size_t c = 0; c < cases.channels.size(); ++c) {
@@ -216,7 +227,7 @@ std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   const SweepStatus status = read_status(folder, plan);
   const FigureDrawer drawer(folder.root / "figures");
   ReportPage page;
-  page.title = "Sweep " + folder.root.filename().string();
+  page.title = "Sweep " + folder.name();
   page.lead = {format_count(status.done) + " of " + format_count(status.cases) + " cases of " +
                plan.request().base.vehicle.name + " are simulated, " + format_count(status.failed) +
                " failed."};

@@ -6,23 +6,47 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "model/scenario/profile.h"
 #include "sweep/simulate_case.h"
 
 namespace strut {
 namespace {
 
 constexpr std::size_t kMostFrames = 1200;
-constexpr std::size_t kRoadPoints = 201;
+constexpr std::size_t kRoadPoints = 200;
 
-std::size_t calc_stride(const LaneResults& results) {
-  return 1 + static_cast<std::size_t>(results.sample_count) / kMostFrames;
+std::vector<double> get_channel(const LaneResults& results, std::size_t channel) {
+  return get_history(results, CarChannel::kCount, channel);
 }
 
-std::vector<double> thin_channel(const LaneResults& results, std::size_t channel) {
-  const std::vector<double> all = get_history(results, CarChannel::kCount, channel);
-  std::vector<double> kept;
-  for (std::size_t i = 0; i < all.size(); i += calc_stride(results)) kept.push_back(all[i]);
-  return kept;
+double calc_bump_center(const Case& c) {
+  return c.vehicle.whole.centroid_to_front + c.maneuver.bump_distance;
+}
+
+/// Samples to be shown: about the bump, where all happens in a tenth of a second, up to kMostFrames
+/// of them, and as many elsewhere.
+std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) {
+  constexpr double kBefore = 1.0, kAfter = 4.0;  // m between an axle and the bump's ends
+  const WholeCarSpec& whole = c.vehicle.whole;
+  const auto road = list_profile(c.maneuver.road);
+  const double bump_begin = road.empty() ? 0.0 : road.front()[0];
+  const double bump_end = road.empty() ? 0.0 : road.back()[0];
+  const double first = calc_bump_center(c) + bump_begin - whole.centroid_to_front - kBefore;
+  const double last = calc_bump_center(c) + bump_end + whole.centroid_to_rear + kAfter;
+
+  const std::vector<double> forward = get_channel(results, CarChannel::kForwardPosition);
+  const auto get_part = [&](std::size_t i) {
+    return first < forward[i] && forward[i] < last ? std::size_t{1} : std::size_t{0};
+  };
+  std::array<std::size_t, 2> count = {0, 0}, seen = {0, 0};
+  for (std::size_t i = 0; i < forward.size(); ++i) ++count[get_part(i)];
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    const std::size_t part = get_part(i);
+    const std::size_t stride = (count[part] + kMostFrames - 1) / kMostFrames;
+    if (seen[part]++ % stride == 0 || i + 1 == forward.size()) frames.push_back(i);
+  }
+  return frames;
 }
 
 std::size_t get_corner_channel(int corner, int channel) {
@@ -41,10 +65,18 @@ Json make_numbers(const std::vector<double>& values) {
   return list;
 }
 
-Json make_corners(const LaneResults& results, int channel) {
+/// The values of some samples.
+Json make_values(const std::vector<double>& all, const std::vector<std::size_t>& frames) {
+  std::vector<double> values;
+  values.reserve(frames.size());
+  for (const std::size_t frame : frames) values.push_back(all[frame]);
+  return make_numbers(values);
+}
+
+Json make_corners(const LaneResults& results, int channel, const std::vector<std::size_t>& frames) {
   Json list = Json::array();
   for (int corner = 0; corner < kCorners; ++corner) {
-    list.push(make_numbers(thin_channel(results, get_corner_channel(corner, channel))));
+    list.push(make_values(get_channel(results, get_corner_channel(corner, channel)), frames));
   }
   return list;
 }
@@ -78,23 +110,24 @@ Json make_axle(const Case& c, int axle) {
       .set("lower", place(suspension.spring_lower.position));
 }
 
-double calc_bump_center(const Case& c) {
-  return c.vehicle.whole.centroid_to_front + c.maneuver.bump_distance;
-}
-
 Json make_road(const Case& c) {
-  const RoadSpec& road = c.maneuver.road;
-  if (road.shape == BumpShape::kNone) return Json::array();
-  const double reach = road.shape == BumpShape::kTable
-                           ? std::max(std::abs(road.table_x.front()), std::abs(road.table_x.back()))
-                           : 0.5 * road.length;
   Json points = Json::array();
-  for (std::size_t i = 0; i < kRoadPoints; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(kRoadPoints - 1);
-    const double x = reach * (2.0 * share - 1.0);
-    points.push(make_point(calc_bump_center(c) + x, calc_profile_height(road, x)));
+  for (const auto& [x, z] : list_profile(c.maneuver.road)) {
+    points.push(make_point(calc_bump_center(c) + x, z));
   }
   return points;
+}
+
+const char* get_name(BumpSide side) {
+  switch (side) {
+    case BumpSide::kLeft:
+      return "left";
+    case BumpSide::kRight:
+      return "right";
+    case BumpSide::kBoth:
+      break;
+  }
+  return "both";
 }
 
 struct CurvePanel {
@@ -105,23 +138,43 @@ struct CurvePanel {
 
 }  // namespace
 
+std::vector<std::array<double, 2>> list_profile(const RoadSpec& road) {
+  const Profile profile = make_profile(road);
+  const std::size_t pieces = profile.get_piece_count();
+  if (pieces == 0) return {};
+  const std::size_t count = std::max<std::size_t>(4, kRoadPoints / pieces);  // of each piece
+  std::vector<std::array<double, 2>> points;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const double begin = profile.ends[i], end = profile.ends[i + 1];
+    for (std::size_t k = 0; k < count; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(count);
+      const double x = begin + share * (end - begin);
+      points.push_back({x, profile.calc(i, x).value});
+    }
+  }
+  points.push_back({profile.ends.back(), profile.calc(pieces - 1, profile.ends.back()).value});
+  return points;
+}
+
 Json make_motion(const Case& c, const LaneResults& results) {
+  const std::vector<std::size_t> frames = list_frames(c, results);
   const auto add = [&](Json& json, const char* name, std::size_t channel) {
-    json.set(name, make_numbers(thin_channel(results, channel)));
+    json.set(name, make_values(get_channel(results, channel), frames));
   };
   Json json = Json::object();
   add(json, "time", CarChannel::kTime);
   add(json, "forward", CarChannel::kForwardPosition);
   add(json, "height", CarChannel::kBodyPositionZ);
   add(json, "pitch", CarChannel::kPitchAngle);
-  json.set("wheel_height", make_corners(results, CarChannel::kWheelPositionZ))
-      .set("deflection", make_corners(results, CarChannel::kSuspensionDeflection))
-      .set("wheel_speed", make_corners(results, CarChannel::kWheelSpeed))
+  json.set("wheel_height", make_corners(results, CarChannel::kWheelPositionZ, frames))
+      .set("deflection", make_corners(results, CarChannel::kSuspensionDeflection, frames))
+      .set("wheel_speed", make_corners(results, CarChannel::kWheelSpeed, frames))
       .set("front", make_axle(c, kFront))
       .set("rear", make_axle(c, kRear))
       .set("radius", c.vehicle.tire.unloaded_radius)
       .set("nominal_height", c.vehicle.whole.centroid_height)
       .set("road", make_road(c))
+      .set("road_side", get_name(c.maneuver.road.side))
       .set("snapshot_time", has_snapshot(results) ? Json(results.event_time[0]) : Json());
   return json;
 }
@@ -129,9 +182,9 @@ Json make_motion(const Case& c, const LaneResults& results) {
 Chart make_motion_curves(const LaneResults& results) {
   static constexpr std::array<CurvePanel, 6> kPanels = {
       {{"height [m]", CarChannel::kBodyPositionZ},
-       {"pitch [rad]", CarChannel::kPitchAngle},
+       {"pitch, nose down [rad]", CarChannel::kPitchAngle},
        {"acceleration [m/s^2]", CarChannel::kBodyAccelerationZ},
-       {"deflection [m]", -1, CarChannel::kSuspensionDeflection},
+       {"compression [m]", -1, CarChannel::kSuspensionDeflection},
        {"damper force [N]", -1, CarChannel::kDamperForce},
        {"tire load [N]", -1, CarChannel::kTireForceZ}}};
   static constexpr std::array<const char*, kCorners> kNames = {"front left", "front right",
@@ -140,20 +193,25 @@ Chart make_motion_curves(const LaneResults& results) {
   chart.panel_height = 165;
   chart.width = 620;
   chart.shares_x = true;
-  chart.caption = "Body, suspension and tires over time; the line stands at the slider's instant.";
-  const std::vector<double> time = thin_channel(results, CarChannel::kTime);
-  for (const CurvePanel& about : kPanels) {
-    ChartPanel panel{{&about == &kPanels.back() ? "time [s]" : ""}, {about.label}, {}};
-    if (about.channel >= 0) {
-      panel.series.push_back({"body", SeriesKind::kLine, kInk, time,
-                              thin_channel(results, static_cast<std::size_t>(about.channel))});
+  chart.caption =
+      "Body, suspension and tires over time; right wheels solid, left dashed. Compression counts "
+      "from nominal trim; damper forces are positive in compression. The line stands at the "
+      "slider's instant.";
+  const std::vector<double> time = get_channel(results, CarChannel::kTime);
+  for (const CurvePanel& curves : kPanels) {
+    ChartPanel panel{{&curves == &kPanels.back() ? "time [s]" : ""}, {curves.label}, {}};
+    const auto add = [&](const char* name, SeriesKind kind, int color, std::size_t channel) {
+      panel.series.push_back(make_curve(name, kind, color, time, get_channel(results, channel)));
+    };
+    if (curves.channel >= 0) {
+      add("body", SeriesKind::kLine, kInk, static_cast<std::size_t>(curves.channel));
     }
-    for (int corner = 0; about.channel < 0 && corner < kCorners; ++corner) {
-      panel.series.push_back({kNames[static_cast<std::size_t>(corner)],
-                              is_right(corner) ? SeriesKind::kDashedLine : SeriesKind::kLine,
-                              1 + axle_of(corner), time,
-                              thin_channel(results, get_corner_channel(corner, about.corner))});
+    for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
+      add(kNames[static_cast<std::size_t>(corner)],
+          is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine, 1 + axle_of(corner),
+          get_corner_channel(corner, curves.corner));
     }
+    panel.about = std::string(curves.label) + " over time [s]";
     chart.panels.push_back(std::move(panel));
   }
   return chart;

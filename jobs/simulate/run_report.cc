@@ -1,5 +1,7 @@
 #include "jobs/simulate/run_report.h"
 
+#include <algorithm>
+
 #include "io/config.h"
 #include "jobs/report/figures.h"
 #include "jobs/report/page_file.h"
@@ -22,11 +24,30 @@ ReportTable make_source_table(const RunRecord& run) {
   return table;
 }
 
+/// "a bump of 50 mm under the left wheels"
+std::string describe_road(const RoadSpec& road) {
+  double low = 0.0, high = 0.0;
+  for (const auto& [x, z] : list_profile(road)) {
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  std::string text;
+  constexpr double kHole = 5e-5;  // m; less is how a table's spline swings about its points
+  if (high > 0.0 || low > -kHole) text = "a bump of " + format_short(1e3 * high) + " mm";
+  if (low <= -kHole) {
+    text += (text.empty() ? "" : " and ") + std::string("a hole of ") + format_short(-1e3 * low) +
+            " mm";
+  }
+  if (road.side == BumpSide::kLeft) text += " under the left wheels";
+  if (road.side == BumpSide::kRight) text += " under the right wheels";
+  return text;
+}
+
 std::string describe(const Case& c) {
   const RoadSpec& road = c.maneuver.road;
-  std::string text = c.vehicle.name + " at " + format_short(c.maneuver.speed) + " m/s";
-  if (road.shape == BumpShape::kNone) return text + " on a flat road.";
-  return text + " over a bump of " + format_short(1e3 * road.height) + " mm.";
+  const std::string text = c.vehicle.name + " at " + format_short(c.maneuver.speed) + " m/s ";
+  if (road.shape == BumpShape::kNone) return text + "on a flat road.";
+  return text + "over " + describe_road(road) + ".";
 }
 
 }  // namespace
@@ -40,15 +61,16 @@ std::vector<std::string> write_run_report(const std::filesystem::path& folder,
   ReportSection motion{"Motion"};
   motion.motions = {drawer.draw_motion(
       make_motion(c, run.results), "motion",
-      "The car drives to the right; wheels of its left side solid, of its right side dashed. "
-      "Springs are as long as they were simulated; their mounts stand where they are at nominal "
-      "trim.")};
+      "The car drives to the right; wheels of its right side solid, of its left side, beyond, "
+      "dashed. Springs are as long as they were simulated; their mounts stand where they are at "
+      "nominal trim.")};
   drawer.draw_all({make_motion_curves(run.results)}, motion);
   ReportPage page{
       "Run of " + source.vehicle.filename().string(),
       {describe(c)},
       {std::move(motion), {"Parameters", {}, {make_parameter_table(run), make_source_table(run)}}},
       make_report_footer()};
+  page.of = kRunContent.name;
   write_page(out, page);
   return drawer.list_notes();
 }

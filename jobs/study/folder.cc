@@ -1,7 +1,6 @@
 #include "jobs/study/folder.h"
 
 #include <algorithm>
-#include <system_error>
 
 #include "io/atomic_file.h"
 #include "io/config.h"
@@ -18,12 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr char kSweepKey[] = "sweep", kPublishedKey[] = "published",
                kWindowKey[] = "noise.window_sweep";
-
-void make_folder(const fs::path& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
-}
 
 void add_sweep_facts(const std::string& key, const fs::path& sweep, Facts& facts) {
   for (const auto& [name, value] : list_facts(read_request(sweep))) {

@@ -71,13 +71,18 @@ class MotionView {
     this.svg = addShape(root, "svg", {viewBox: `0 ${-viewHeight + 0.35} ${width} ${viewHeight}`,
                                       role: "img", "aria-label": "side view of the car"});
     const line = {fill: "none", stroke: "var(--ink)", "stroke-width": 0.012, "stroke-linejoin": "round"};
-    this.road = addShape(this.svg, "polyline", {...line, "stroke-width": 0.02, stroke: "var(--soft)"});
+    const ground = {...line, "stroke-width": 0.02, stroke: "var(--soft)"};
+    const side = this.scene.road_side;
+    this.road = addShape(this.svg, "polyline", side === "left" ? {...ground, "stroke-dasharray": "0.04 0.03"} : ground);
+    if (side !== "both") addShape(this.svg, "line", {...ground, x1: -1, y1: 0, x2: width + 1, y2: 0});
     this.marks = addShape(this.svg, "path", {...line, stroke: "var(--soft)"});
     this.body = addShape(this.svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
     this.reference = addShape(this.svg, "circle", {r: 0.03, fill: "var(--ink)"});
-    // Front left, front right, rear left, rear right; solid and dashed as in the curves.
+    // Front left, front right, rear left, rear right. Who sees the car drive to the right stands on its
+    // right; wheels of its left are beyond it.
+    const beyond = {"stroke-dasharray": "0.04 0.03", opacity: 0.5};
     this.wheels = [0, 1, 2, 3].map((corner) => {
-      const dashes = corner % 2 === 1 ? {"stroke-dasharray": "0.04 0.03", opacity: 0.5} : {};
+      const dashes = corner % 2 === 0 ? beyond : {};
       return {rim: addShape(this.svg, "circle", {...line, "stroke-width": 0.03, ...dashes}),
               spoke: addShape(this.svg, "line", {...line, ...dashes}),
               spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...dashes})};
@@ -136,7 +141,8 @@ class MotionView {
     const [dx, dy] = [0.8 * scene.radius * Math.cos(angle), 0.8 * scene.radius * Math.sin(angle)];
     setAll(spoke, {x1: cx - dx, y1: cy - dy, x2: cx + dx, y2: cy + dy});
     const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
-    const share = 1 - this.enlarged * scene.deflection[corner][frame] / length;
+    // Enlarged it may be shorter than a spring can be.
+    const share = Math.max(0.15, 1 - this.enlarge(scene.deflection[corner], frame) / length);
     const end = [axle.upper[0] + share * (axle.lower[0] - axle.upper[0]),
                  axle.upper[1] + share * (axle.lower[1] - axle.upper[1])];
     spring.setAttribute("points", toPoints(makeSpring(place(axle.upper), place(end))));

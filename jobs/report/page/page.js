@@ -10,6 +10,8 @@ const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 // styles are still those of the screen.
 const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a", "--paper": "#ffffff"};
 const paperWidth = 980;  // px
+const buttonHeight = 30;  // px above the legend
+const leastShare = 0.8;  // of the width that a chart is made for; a narrower page is scrolled
 let isForPaper = false;
 
 function readColor(name) {
@@ -47,19 +49,19 @@ function quoteCsv(text) {
   return '"' + String(text).replaceAll('"', '""') + '"';
 }
 
-function namePanel({scene, xaxis, yaxis}, layout) {
-  const {xaxis: x, yaxis: y} = scene ? layout[scene] : {
-    xaxis: layout[xaxis.replace("x", "xaxis")], yaxis: layout[yaxis.replace("y", "yaxis")]};
-  return `${y.title.text} over ${x.title.text}`;
-}
-
 // The numbers of a chart as drawn, a line a point; whiskers as what stands below and above y.
 function makeCsv(chart) {
-  const lines = ["panel,series,x,y,z,below,above"];
+  const lines = ["panel,series,category,x,y,z,below,above"];
   for (const trace of chart.data) {
-    const begin = [namePanel(trace, chart.layout), trace.name].map(quoteCsv);
+    const names = (trace.scene ? chart.layout[trace.scene].xaxis :
+      chart.layout[trace.xaxis.replace("x", "xaxis")]).ticktext;
+    const stands = trace.type !== "scatter" || trace.mode === "markers";  // at a place, or beside it
     const columns = [trace.x, trace.y, trace.z, trace.error_y?.arrayminus, trace.error_y?.array];
-    trace.x.forEach((_, i) => lines.push([...begin, ...columns.map((column) => column?.[i])].join(",")));
+    trace.x.forEach((x, i) => {
+      const place = stands && names?.[Math.round(x) - 1];
+      const words = [trace.meta, trace.name, place || ""].map(quoteCsv);
+      lines.push([...words, ...columns.map((column) => column?.[i])].join(","));
+    });
   }
   return lines.join("\n") + "\n";
 }
@@ -69,7 +71,7 @@ function saveText(name, text) {
   link.href = URL.createObjectURL(new Blob([text], {type: "text/csv"}));
   link.download = name;
   link.click();
-  URL.revokeObjectURL(link.href);
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);  // some browsers begin to save later
 }
 
 function makeConfig(chart) {
@@ -97,13 +99,18 @@ function explain(div, text) {
 
 async function drawChart(div) {
   const chart = JSON.parse(div.querySelector("script").textContent);
-  div.style.height = chart.height + "px";
+  div.style.height = chart.height + buttonHeight + "px";
+  div.style.minWidth = leastShare * chart.width + "px";
   if (chart.three_d && !hasWebGl()) {
-    explain(div, "This chart needs WebGL, which this browser does not give; the picture beside the report shows it.");
+    explain(div, "This chart needs WebGL, which this browser does not give; its numbers, and where " +
+                 "gnuplot was there its picture, are linked below.");
     return false;
   }
   const plotly = chart.three_d ? window.PlotlyThreeD : window.Plotly;
-  const layout = {...chart.layout, template: makeTemplate()};
+  const margin = {...chart.layout.margin, t: buttonHeight};
+  // A finger that moves a page must not zoom a chart.
+  const isTouched = !chart.three_d && window.matchMedia("(pointer: coarse)").matches;
+  const layout = {...chart.layout, margin, ...(isTouched && {dragmode: false}), template: makeTemplate()};
   await plotly.newPlot(div, paint(chart.data, readColor("--ink")), layout, makeConfig(chart));
   strutCharts.push({div, chart, plotly});
   return true;
@@ -113,7 +120,7 @@ async function drawChart(div) {
 function repaintAll(forPaper) {
   isForPaper = forPaper;
   for (const {div, chart, plotly} of strutCharts) {
-    const size = forPaper ? {autosize: false, width: paperWidth, height: chart.height} : {autosize: true};
+    const size = forPaper ? {autosize: false, width: paperWidth, height: chart.height + buttonHeight} : {autosize: true};
     plotly.react(div, paint(chart.data, readColor("--ink")),
                  {...div.layout, width: undefined, height: undefined, ...size, template: makeTemplate()},
                  makeConfig(chart));

@@ -1,0 +1,27 @@
+// What a folder with a report holds.
+#pragma once
+
+#include <filesystem>
+
+namespace strut {
+
+/// A command's work, told by a file that only its folder has.
+struct FolderContent {
+  const char* name;
+  const char* file;
+};
+
+inline constexpr FolderContent kStudyContent{"study", "study.toml"};
+inline constexpr FolderContent kSweepContent{"sweep", "plan.h5"};
+inline constexpr FolderContent kDiagnosisContent{"diagnosis", "verdict.json"};
+inline constexpr FolderContent kComparisonContent{"comparison", "compare.json"};
+/// Its file is the page that others have, too.
+inline constexpr FolderContent kRunContent{"simulated run", "report.json"};
+
+inline constexpr const FolderContent* kFolderContents[] = {
+    &kStudyContent, &kSweepContent, &kDiagnosisContent, &kComparisonContent, &kRunContent};
+
+/// What `strut report` reports on; nullptr: nothing.
+const FolderContent* find_content(const std::filesystem::path& folder);
+
+}  // namespace strut
