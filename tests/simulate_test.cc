@@ -178,6 +178,49 @@ TEST_CASE("Events are located to a nanosecond", "[unit]") {
   }
 }
 
+/// Both wheels of an axle as they leave a bump, equal but for rounding: the load of each, which the
+/// damper had drawn below zero, is above it once more for 50 us, from s = 10 m on.
+struct LeavingAxle {
+  static constexpr int kCapacity = 1;
+  static constexpr double kSpeed = 20.0, kPlace = 10.0;                    // m/s, m
+  static constexpr double kSlope = 1.35e5, kLength = 1e-3;                 // N/m, m
+  static constexpr std::array<double, 2> kRounding = {-1.5e-11, 8.7e-12};  // N
+  double s_now = 0.0;
+
+  int size() const { return kCapacity; }
+  int stiff_at(int /*i*/) const { return 0; }
+  int stiff_count() const { return 0; }
+  void calc_derivative(double /*t*/, const double* x, double* dx, double* /*decay*/) {
+    s_now = x[0];
+    dx[0] = kSpeed;
+  }
+  int guard_count() const { return 2; }
+  void get_guards(double* g) const {
+    const double u = s_now - kPlace;
+    for (std::size_t i = 0; i < 2; ++i) g[i] = kSlope * u * (1.0 - u / kLength) + kRounding[i];
+  }
+  void calc_guards(double /*t*/, const double* x, double* g) {
+    s_now = x[0];
+    get_guards(g);
+  }
+  bool cross(int /*guard*/, bool /*lanes*/) { return false; }
+  double get_trigger() const { return 1.0; }
+  bool has_failed() const { return false; }
+  RunStatus get_failure(int /*lane*/) const { return RunStatus::kDiverged; }
+  void observe(double /*t*/, const double* /*x*/, double* /*out*/) const {}
+};
+
+TEST_CASE("Two wheels that cross within rounding do not stop time", "[unit][regression]") {
+  LeavingAxle axle;
+  SamplePlan plan;
+  plan.duration = 0.01;
+  const LaneResults results =
+      Simulation<double, LeavingAxle>(axle, {Stepper::kRk4, 1e-3}, plan).run({LeavingAxle::kPlace});
+  CHECK(results.status[0] == static_cast<int>(RunStatus::kDone));
+  CHECK(std::abs(results.final_state[0] - 10.2) < tolerance(1e-12));
+  CHECK(results.event_count < 10);
+}
+
 TEST_CASE("The trigger is located to a nanosecond, with the state there", "[unit]") {
   for (const Stepper stepper : {Stepper::kRk4, Stepper::kAbm4}) {
     const auto run = simulate<double>(kSpeed, 0.0, {stepper, 2e-3, true}, kEnd);

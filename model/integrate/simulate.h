@@ -35,6 +35,9 @@ class Simulation {
   /// Steps, in those that a run without contact events takes, that no run needs which gets
   /// anywhere.
   static constexpr double kMostSteps = 20.0;
+  /// Of a step, what one that ends at a guard has at least: two wheels that cross within rounding
+  /// could else shorten each other's steps until time stands still.
+  static constexpr double kShortestStep = 1e-9;
   using Vector = std::array<T, N>;
   using Mask = MaskOf<T>;
 
@@ -155,6 +158,7 @@ class Simulation {
   /// the guard at which each lane's step now ends, -1 where none.
   T locate_events() {
     const int guards = system_.guard_count();
+    const T shortest = T(kShortestStep) * h_;
     T landed = T(-1.0);
     for (int attempt = 0; attempt < kMaxGuards; ++attempt) {
       T theta = T(2.0), chosen = T(-1.0);
@@ -172,7 +176,7 @@ class Simulation {
       }
       const Mask crossing = chosen > T(-0.5);
       if (!any(crossing)) break;
-      shorten_step(crossing, refine_crossing(crossing, chosen));
+      shorten_step(crossing, max(refine_crossing(crossing, chosen) * h_, shortest));
       landed = select(crossing, chosen, landed);
     }
     return landed;
@@ -209,8 +213,8 @@ class Simulation {
     return theta;
   }
 
-  void shorten_step(Mask lanes, const T& theta) {
-    h_ = select(lanes, max(theta, T(1e-9)) * h_, h_);
+  void shorten_step(Mask lanes, const T& h) {
+    h_ = select(lanes, h, h_);
     update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
     step_rk4<T>(system_, time_, x(), f(), weights_, h_, other_.data(), scratch_);
     results_.derivative_count += 3;
