@@ -158,11 +158,9 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
   if (other != nullptr && other != &content && other != &kRunContent) {
     throw InputError(start + "a " + other->name + " (" + other->file + "); must be another folder");
   }
-  const EarlierPage earlier = read_earlier_page(folder);
-  if (!earlier.of.empty() && earlier.of != content.name) {
-    throw InputError(start + "the report of a " + earlier.of + "; must be another folder");
-  }
-  if (earlier.of == content.name) return;  // all such files are its own
+  const std::string of = read_earlier_page(folder).of;
+  if (of == content.name) return;  // all such files are its own
+  if (!of.empty()) throw InputError(start + "the report of a " + of + "; must be another folder");
   std::vector<fs::path> written = files;
   written.insert(written.end(), {folder.report(), folder.page()});
   for (const fs::path& file : written) {
