@@ -295,12 +295,17 @@ TEST_CASE("A page without charts carries no library", "[unit]") {
   CHECK(text.size() < 10000);
 }
 
+std::string make_simulate_command(const std::string& maneuver, const fs::path& run,
+                                  const fs::path& report) {
+  return "simulate examples/vehicles/paper_sedan.toml examples/maneuvers/" + maneuver +
+         ".toml -o " + run.string() + " --report " + report.string();
+}
+
 TEST_CASE("A simulated run's report shows the car in motion beside its curves", "[io]") {
   const TemporaryFolder folder;
   const std::string out = folder / "report";
-  const test::Outcome run = test::run_program(
-      "simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml -o " +
-      std::string(folder / "run.csv") + " --report " + out);
+  const test::Outcome run =
+      test::run_program(make_simulate_command("bump_20mps", folder / "run.csv", out));
   REQUIRE(run.code == 0);
 
   const auto scene = test::parse_json(test::read_text(out + "/figures/motion.json"));
@@ -331,9 +336,7 @@ TEST_CASE("A simulated run's report shows the car in motion beside its curves", 
 
 TEST_CASE("A run beside its report is no part of it", "[io]") {
   const TemporaryFolder folder;
-  const std::string simulate =
-      "simulate examples/vehicles/paper_sedan.toml examples/maneuvers/one_sided.toml -o " +
-      std::string(folder / "run.csv") + " --report " + std::string(folder / "");
+  const std::string simulate = make_simulate_command("one_sided", folder / "run.csv", folder / "");
   REQUIRE(test::run_program(simulate).code == 0);
   CHECK_THAT(test::read_text(folder / "report.html"),
              Contains("over a bump of 50 mm under the left wheels."));
@@ -355,18 +358,14 @@ TEST_CASE("A run beside its report is no part of it", "[io]") {
   CHECK(fs::exists(folder / "figures/motion.json"));
 
   const test::Outcome among = test::run_program(
-      "simulate examples/vehicles/paper_sedan.toml "
-      "examples/maneuvers/one_sided.toml -o " +
-      std::string(folder / "figures/curves.csv") + " --report " + std::string(folder / ""));
+      make_simulate_command("one_sided", folder / "figures/curves.csv", folder / ""));
   CHECK(among.code == 2);
   CHECK_THAT(among.messages, Contains("among the figures of --report"));
 }
 
 TEST_CASE("A run's report replaces no page but an earlier run's", "[io]") {
   const TemporaryFolder folder;
-  const std::string simulate =
-      "simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml -o " +
-      std::string(folder / "run.csv") + " --report " + std::string(folder / "");
+  const std::string simulate = make_simulate_command("bump_20mps", folder / "run.csv", folder / "");
   for (const char* name : {"report.html", "report.json"}) {
     folder.write(name, "[1, 2]\n");
     const test::Outcome outcome = test::run_program(simulate);

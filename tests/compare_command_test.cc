@@ -25,6 +25,14 @@ std::string compare(const std::filesystem::path& campaign, const std::filesystem
   return "compare " + campaign.string() + " -o " + folder.string() + " " + options;
 }
 
+/// Of two runs, with nothing free.
+std::filesystem::path write_quick_campaign(const test::TemporaryFolder& folder) {
+  test::write_two_runs(folder);
+  test::CampaignText text;
+  text.fit = "";
+  return test::write_campaign(folder, text);
+}
+
 TEST_CASE("compare writes numbers, tables, figures and a report of every run", "[io][threads]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
@@ -71,10 +79,7 @@ TEST_CASE("compare writes numbers, tables, figures and a report of every run", "
 
 TEST_CASE("compare does not replace a comparison without being told to", "[io]") {
   const test::TemporaryFolder folder;
-  test::write_two_runs(folder);
-  test::CampaignText text;
-  text.fit = "";  // nothing is free: quick
-  const auto campaign = test::write_campaign(folder, text);
+  const auto campaign = write_quick_campaign(folder);
   const test::Outcome first = run_program(compare(campaign, folder / "out"));
   CHECK(first.code == 0);
   CHECK(test::check_hint(first.messages)[1] == "diagnose");
@@ -86,10 +91,7 @@ TEST_CASE("compare does not replace a comparison without being told to", "[io]")
 
 TEST_CASE("compare replaces the files of the comparison before and touches no other", "[io]") {
   const test::TemporaryFolder folder;
-  test::write_two_runs(folder);
-  test::CampaignText text;
-  text.fit = "";
-  const auto campaign = test::write_campaign(folder, text);
+  const auto campaign = write_quick_campaign(folder);
   const std::filesystem::path out = folder / "out";
   REQUIRE(run_program(compare(campaign, out)).code == 0);
   CHECK(std::filesystem::exists(out / "run_2_b.csv"));
@@ -113,10 +115,7 @@ TEST_CASE("compare replaces the files of the comparison before and touches no ot
 
 TEST_CASE("compare into the campaign's own folder harms nothing that it reads", "[io]") {
   const test::TemporaryFolder folder;
-  test::write_two_runs(folder);
-  test::CampaignText text;
-  text.fit = "";
-  const auto campaign = test::write_campaign(folder, text);
+  const auto campaign = write_quick_campaign(folder);
   const std::string written = test::read_text(campaign),
                     measured = test::read_text(folder / "a.csv");
   CHECK(run_program(compare(campaign, folder / "")).code == 0);

@@ -6,6 +6,7 @@ const svgSpace = "http://www.w3.org/2000/svg";
 const viewHeight = 2.4;      // m
 const margin = 1.6;          // m ahead of the front and behind the rear wheels
 const coils = 7;
+const dashes = "0.04 0.03";  // of what is on the left, beyond
 
 function addShape(parent, name, attributes) {
   const shape = document.createElementNS(svgSpace, name);
@@ -73,19 +74,19 @@ class MotionView {
     const line = {fill: "none", stroke: "var(--ink)", "stroke-width": 0.012, "stroke-linejoin": "round"};
     const ground = {...line, "stroke-width": 0.02, stroke: "var(--soft)"};
     const side = this.scene.road_side;
-    this.road = addShape(this.svg, "polyline", side === "left" ? {...ground, "stroke-dasharray": "0.04 0.03"} : ground);
+    this.road = addShape(this.svg, "polyline", side === "left" ? {...ground, "stroke-dasharray": dashes} : ground);
     if (side !== "both") addShape(this.svg, "line", {...ground, x1: -1, y1: 0, x2: width + 1, y2: 0});
     this.marks = addShape(this.svg, "path", {...line, stroke: "var(--soft)"});
     this.body = addShape(this.svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
     this.reference = addShape(this.svg, "circle", {r: 0.03, fill: "var(--ink)"});
     // Front left, front right, rear left, rear right. Who sees the car drive to the right stands on its
     // right; wheels of its left are beyond it.
-    const beyond = {"stroke-dasharray": "0.04 0.03", opacity: 0.5};
+    const beyond = {"stroke-dasharray": dashes, opacity: 0.5};
     this.wheels = [0, 1, 2, 3].map((corner) => {
-      const dashes = corner % 2 === 0 ? beyond : {};
-      return {rim: addShape(this.svg, "circle", {...line, "stroke-width": 0.03, ...dashes}),
-              spoke: addShape(this.svg, "line", {...line, ...dashes}),
-              spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...dashes})};
+      const look = corner % 2 === 0 ? beyond : {};
+      return {rim: addShape(this.svg, "circle", {...line, "stroke-width": 0.03, ...look}),
+              spoke: addShape(this.svg, "line", {...line, ...look}),
+              spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...look})};
     });
   }
 
