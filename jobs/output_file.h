@@ -10,11 +10,18 @@
 
 namespace strut {
 
-/// Refuses a file that could not be written, or must not be, before the work is done: throws
-/// InputError, which names the option, where `output` is a folder or one of `inputs`, what the
-/// command reads; EnvironmentError where its folder is not there.
+/// The rule for every file that a command writes: refuses one that could not be written, or must
+/// not be, before the work is done. Throws InputError, which names the option, where `output` is a
+/// folder or device, part of a sweep, one of `inputs`, which the command reads, or exists and
+/// `may_replace` is false: then `remedy` says what to do. EnvironmentError where its folder is
+/// missing.
 void check_output_file(const std::string& option, const std::filesystem::path& output,
-                       const std::vector<std::filesystem::path>& inputs);
+                       const std::vector<std::filesystem::path>& inputs, bool may_replace,
+                       const std::string& remedy = "--force replaces it");
+
+/// Throws InputError where `output` is a file that any sweep is made of, or lies in a subfolder of
+/// one: what no option lets a command replace.
+void refuse_sweep_files(const std::string& option, const std::filesystem::path& output);
 
 /// TOML files and the files that they name: what a command that reads them must not write.
 std::vector<std::filesystem::path> list_files_read(
@@ -26,9 +33,9 @@ std::filesystem::path find_output_file(const Arguments& arguments,
                                        const std::vector<std::string>& inputs);
 
 /// The folder of --output, made where it is missing, into which a page goes, `files` beside it.
-/// Throws InputError where it is missing, a file, or holds `content` of before and --force is not
-/// given; where one of the files is one of `inputs`, what the command reads, or not of an earlier
-/// page of that content; EnvironmentError where it cannot be made.
+/// Throws InputError where it is missing, a file, part of a sweep, or holds `content` of before and
+/// --force is not given; where one of the files is one of `inputs`, what the command reads, or not
+/// of an earlier page of that content; EnvironmentError where it cannot be made.
 std::filesystem::path find_output_folder(const Arguments& arguments, const FolderContent& content,
                                          const std::vector<std::string>& files,
                                          const std::vector<std::filesystem::path>& inputs);

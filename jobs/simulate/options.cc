@@ -22,7 +22,8 @@ void check_rate(double rate, double duration) {
 RunFormat check_output(const SimulateOptions& options) {
   const RunFormat format = find_run_format(options.output);
   check_output_file("output", options.output,
-                    list_files_read({options.source.vehicle, options.source.maneuver}));
+                    list_files_read({options.source.vehicle, options.source.maneuver}),
+                    options.force);
   return format;
 }
 
