@@ -362,8 +362,13 @@ int Table::choice_or(const std::string& key, int fallback,
 fs::path Table::file(const std::string& key) const {
   const fs::path named = text(key);
   fs::path path = (source_->path.parent_path() / named).lexically_normal();
-  if (fs::is_regular_file(path)) return path;
-  throw error(key, "file not found: " + shorten(path.string(), 4 * kMaxQuoted));
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (fs::is_regular_file(status)) return path;
+  const std::string what = fs::exists(status)                          ? "not a file"
+                           : status.type() == fs::file_type::not_found ? "file not found"
+                                                                       : code.message();
+  throw error(key, what + ": " + shorten(path.string(), 4 * kMaxQuoted));
 }
 
 Table Table::table(const std::string& key) const {

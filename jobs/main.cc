@@ -172,11 +172,9 @@ int fail_on_file(const std::filesystem::filesystem_error& error) {
 
 int fail_on_system(const std::system_error& error) {
   const bool no_threads = error.code().value() == EAGAIN;
-  return fail(strut::kExitEnvironment,
-              error.what() + std::string(no_threads ? "; no more threads or processes can be "
-                                                      "started: fewer --threads, or a higher limit "
-                                                      "(ulimit -u)"
-                                                    : ""));
+  const std::string remedy =
+      "; fewer --threads or a higher limit of processes (ulimit -u) may help";
+  return fail(strut::kExitEnvironment, error.what() + (no_threads ? remedy : ""));
 }
 
 int fail_on_bug(const std::string& what) {

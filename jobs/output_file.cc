@@ -40,13 +40,20 @@ fs::path find_sweep_of(const fs::path& path) {
   return {};
 }
 
-}  // namespace
-
 void refuse_sweep_files(const std::string& option, const fs::path& output) {
   const fs::path sweep = find_sweep_of(output);
   if (sweep.empty()) return;
   throw InputError("--" + option + " = " + output.string() + ": belongs to the sweep in " +
                    sweep.string() + "; must be another file or folder");
+}
+
+}  // namespace
+
+void check_output_folder(const std::string& option, const fs::path& folder) {
+  refuse_sweep_files(option, folder / "file");
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw InputError("--" + option + " = " + folder.string() + ": is a file; must be a folder");
+  }
 }
 
 void check_output_file(const std::string& option, const fs::path& output,
@@ -80,7 +87,13 @@ fs::path find_output_file(const Arguments& arguments, const std::vector<std::str
   if (!arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the file to write with -o");
   fs::path output = arguments.text("output");
-  check_output_file("output", output, {inputs.begin(), inputs.end()}, arguments.is_on("force"));
+  std::vector<fs::path> read(inputs.begin(), inputs.end());
+  const auto toml = std::partition(
+      read.begin(), read.end(), [](const fs::path& file) { return file.extension() != ".toml"; });
+  const std::vector<fs::path> named = list_files_read({toml, read.end()});
+  read.erase(toml, read.end());
+  read.insert(read.end(), named.begin(), named.end());
+  check_output_file("output", output, read, arguments.is_on("force"));
   return output;
 }
 
@@ -91,13 +104,10 @@ fs::path find_output_folder(const Arguments& arguments, const FolderContent& con
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
   fs::path folder = fs::path(arguments.text("output")).lexically_normal();
   const std::string start = "--output = " + folder.string() + ": ";
-  if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw InputError(start + "is a file; must be a folder");
-  }
+  check_output_folder("output", folder);
   if (fs::exists(folder / content.file) && !arguments.is_on("force")) {
     throw InputError(start + "holds a " + content.name + "; --force replaces it");
   }
-  refuse_sweep_files("output", folder / content.file);
   std::vector<fs::path> written;
   for (const std::string& file : files) {
     written.push_back(folder / file);

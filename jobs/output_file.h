@@ -19,16 +19,17 @@ void check_output_file(const std::string& option, const std::filesystem::path& o
                        const std::vector<std::filesystem::path>& inputs, bool may_replace,
                        const std::string& remedy = "--force replaces it");
 
-/// Throws InputError where `output` is a file that any sweep is made of, or lies in a subfolder of
-/// one: what no option lets a command replace.
-void refuse_sweep_files(const std::string& option, const std::filesystem::path& output);
+/// The rule for a folder into which a command writes, which may be missing. Throws InputError, which
+/// names the option, where it is a file, or lies in a subfolder of a sweep.
+void check_output_folder(const std::string& option, const std::filesystem::path& folder);
 
 /// TOML files and the files that they name: what a command that reads them must not write.
 std::vector<std::filesystem::path> list_files_read(
     const std::vector<std::filesystem::path>& toml_files);
 
-/// The value of --output, which --force lets replace a file. Throws InputError where it is missing
-/// or a file that is there (without --force), and as check_output_file does.
+/// The value of --output, which --force lets replace a file; `inputs`: what the command reads,
+/// besides the files that those of them in TOML name. Throws InputError where it is missing, and as
+/// check_output_file does.
 std::filesystem::path find_output_file(const Arguments& arguments,
                                        const std::vector<std::string>& inputs);
 

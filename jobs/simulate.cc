@@ -62,7 +62,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
 
 void check_report(const SimulateOptions& options) {
   const PageFolder folder{options.report.lexically_normal()};
-  refuse_sweep_files("report", folder.page());
+  check_output_folder("report", folder.root);
   check_page_folder("report", folder, kRunContent, {});
   std::error_code ignored;
   if (std::filesystem::equivalent(std::filesystem::absolute(options.output).parent_path(),
@@ -223,6 +223,7 @@ int run_case(const Arguments& arguments, const SimulateOptions& options) {
   const RunFormat format = check_output(options);
   const double duration = input.maneuver.duration;
   check_rate(options.rate, duration);
+  check_step_count(options, duration);
   const PreparedCase prepared = prepare_case(options.source, input);
   check_steps(prepared, options);
 

@@ -4,6 +4,7 @@
 
 #include "io/config.h"
 #include "jobs/output_file.h"
+#include "sweep/step_count.h"
 
 namespace strut {
 namespace {
@@ -17,6 +18,13 @@ void check_rate(double rate, double duration) {
   throw InputError("--rate = " + format_number(rate) + " Hz: must be at most " +
                    format_number(std::floor(kMaxSamples / duration)) + " Hz for " +
                    format_number(duration) + " s");
+}
+
+void check_step_count(const SimulateOptions& options, double duration) {
+  if (options.integrator == kIntegratorCvode) return;
+  const double step = options.integrate.step.step;
+  const std::string fault = find_step_count_fault(duration, step);
+  if (!fault.empty()) throw InputError("--step = " + format_number(step) + " s: " + fault);
 }
 
 RunFormat check_output(const SimulateOptions& options) {

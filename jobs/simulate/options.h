@@ -38,6 +38,9 @@ struct SimulateOptions {
 /// InputError.
 void check_rate(double rate, double duration);
 
+/// Refuses a step so short that a run of `duration` [s] would not end. Throws InputError.
+void check_step_count(const SimulateOptions& options, double duration);
+
 /// The format of the output, which check_output_file() has let pass. Throws InputError,
 /// EnvironmentError.
 RunFormat check_output(const SimulateOptions& options);
