@@ -102,9 +102,9 @@ TEST_CASE("Files larger than any real one are refused", "[io]") {
 
 TEST_CASE("The longest line of a CSV file that is allowed is read", "[io]") {
   const TemporaryFolder folder;
-  const std::string cell = "0." + std::string((1 << 20) - 5, '0') + "1";
+  const std::string cell = "0.5" + std::string((1 << 20) - 5, '0');
   const CsvTable table = read_csv(folder.write("long.csv", "a\n" + cell + "\r\n" + cell + "\n2"));
-  CHECK(table.columns.front().values == std::vector<double>{0.0, 0.0, 2.0});
+  CHECK(table.columns.front().values == std::vector<double>{0.5, 0.5, 2.0});
 }
 
 TEST_CASE("Many keys take time in proportion", "[io]") {
