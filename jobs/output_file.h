@@ -19,8 +19,8 @@ void check_output_file(const std::string& option, const std::filesystem::path& o
                        const std::vector<std::filesystem::path>& inputs, bool may_replace,
                        const std::string& remedy = "--force replaces it");
 
-/// The rule for a folder into which a command writes, which may be missing. Throws InputError, which
-/// names the option, where it is a file, or lies in a subfolder of a sweep.
+/// The rule for a folder into which a command writes, which may be missing. Throws InputError,
+/// which names the option, where it is a file, or lies in a subfolder of a sweep.
 void check_output_folder(const std::string& option, const std::filesystem::path& folder);
 
 /// TOML files and the files that they name: what a command that reads them must not write.
