@@ -35,6 +35,15 @@ Folder open_parent(const fs::path& target) {
   }
 }
 
+/// The folder of `file`, which lies in `root`; nullopt where it is missing.
+std::optional<Folder> find_folder_inside(const fs::path& root, const fs::path& file) {
+  std::optional<Folder> folder(root);
+  for (const fs::path& part : file.lexically_relative(root).parent_path()) {
+    if (folder) folder = folder->find_folder(part.string());
+  }
+  return folder;
+}
+
 // Where a process number and a start time mean something: this host, since its boot, in this
 // namespace of process numbers.
 std::string calc_machine(const ProcessIdentity& own) {
@@ -135,12 +144,6 @@ void make_folder(const fs::path& path) {
   if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
 }
 
-void remove_file(const fs::path& path) {
-  std::error_code error;
-  fs::remove(path, error);
-  if (error) throw EnvironmentError(path.string() + ": cannot be removed: " + error.message());
-}
-
 void write_text_file(const fs::path& path, const std::string& text) {
   AtomicFile file(path);
   file.write(std::as_bytes(std::span(text)));
@@ -151,6 +154,16 @@ void write_text_file(const Folder& folder, const std::string& name, const std::s
   AtomicFile file(folder, name);
   file.write(std::as_bytes(std::span(text)));
   file.commit();
+}
+
+void write_text_file_inside(const fs::path& root, const fs::path& file, const std::string& text) {
+  const std::optional<Folder> folder = find_folder_inside(root, file);
+  if (!folder) throw file_failure(file, kNotWritten, ENOENT);
+  write_text_file(*folder, file.filename().string(), text);
+}
+
+void remove_file_inside(const fs::path& root, const fs::path& file) {
+  if (const auto folder = find_folder_inside(root, file)) folder->remove(file.filename().string());
 }
 
 }  // namespace strut

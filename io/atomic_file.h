@@ -52,11 +52,16 @@ void remove_abandoned_files(const Folder& folder, const std::string& prefix = ""
 /// With those above it, where they are not there. Throws EnvironmentError.
 void make_folder(const std::filesystem::path& path);
 
-/// Where it is there. Throws EnvironmentError.
-void remove_file(const std::filesystem::path& path);
-
 /// Writes a text file, whole or not at all. Throws as AtomicFile does.
 void write_text_file(const std::filesystem::path& path, const std::string& text);
 void write_text_file(const Folder& folder, const std::string& name, const std::string& text);
+
+/// Writes a text file that lies in `root`, a folder that strut makes, or below it. Throws
+/// InputError where the file or a folder between is a link, otherwise as AtomicFile does.
+void write_text_file_inside(const std::filesystem::path& root, const std::filesystem::path& file,
+                            const std::string& text);
+
+/// Removes such a file where it exists; of a link the link itself. Throws likewise.
+void remove_file_inside(const std::filesystem::path& root, const std::filesystem::path& file);
 
 }  // namespace strut

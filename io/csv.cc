@@ -194,14 +194,11 @@ const CsvColumn& CsvTable::column(const std::string& name) const {
                    join_names(names) + suggest_name(name, names));
 }
 
-void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
+namespace {
+
+void write_columns(AtomicFile& file, const std::vector<CsvColumn>& columns) {
   check_columns(columns);
-  AtomicFile file(path);
-  const FileDescriptor descriptor = open_file(file.temporary(), O_WRONLY | O_TRUNC);
-  if (!descriptor.is_open()) throw file_failure(path, "cannot be written", errno);
-  const auto write = [&](const std::string& text) {
-    write_all(descriptor.get(), std::as_bytes(std::span(text)), path);
-  };
+  const auto write = [&](const std::string& text) { file.write(std::as_bytes(std::span(text))); };
   const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
   std::string text = make_heading(columns);
   for (std::size_t r = 0; r < rows; ++r) {
@@ -216,6 +213,19 @@ void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
   }
   write(text);
   file.commit();
+}
+
+}  // namespace
+
+void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
+  AtomicFile file(path);
+  write_columns(file, columns);
+}
+
+void write_csv(const Folder& folder, const std::string& name,
+               const std::vector<CsvColumn>& columns) {
+  AtomicFile file(folder, name);
+  write_columns(file, columns);
 }
 
 CsvTable read_csv(const fs::path& path, MissingCells missing) {

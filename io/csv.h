@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "io/folder.h"
 #include "io/input_error.h"
 
 namespace strut {
@@ -38,6 +39,9 @@ struct CsvTable {
 /// Writes columns of equal length; every number reads back as the same double. The file appears
 /// whole or not at all. Throws EnvironmentError.
 void write_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
+/// The same inside a folder that strut makes. Throws as AtomicFile does.
+void write_csv(const Folder& folder, const std::string& name,
+               const std::vector<CsvColumn>& columns);
 
 /// What an empty cell, or one that says nan, is.
 enum class MissingCells {

@@ -120,10 +120,17 @@ FileDescriptor Folder::create_file(const std::string& name, int flags,
   return file;
 }
 
-std::optional<std::string> Folder::read_if_present(const std::string& name) const {
+std::optional<std::string> Folder::read_if_present(const std::string& name,
+                                                   std::size_t max_bytes) const {
   for (;;) {
     const FileDescriptor file = open_file(name, O_RDONLY);
     if (!file.is_open()) return std::nullopt;
+    struct stat status {};
+    ::fstat(file.get(), &status);
+    if (static_cast<std::size_t>(status.st_size) > max_bytes) {
+      throw InputError(path_of(name).string() + ": " + std::to_string(status.st_size) +
+                       " bytes; at most " + std::to_string(max_bytes) + " are read");
+    }
     if (auto text = read_rest(file.get(), path_of(name))) return text;
   }
 }

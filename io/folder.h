@@ -18,6 +18,8 @@ namespace strut {
 
 class Folder {
  public:
+  static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
+
   /// Opens a directory that the user named, following links. Throws InputError where it is missing
   /// or not a directory, EnvironmentError where it cannot be opened.
   explicit Folder(const std::filesystem::path& path);
@@ -45,8 +47,10 @@ class Folder {
   /// the file is for.
   FileDescriptor create_file(const std::string& name, int flags,
                              const std::filesystem::path& target) const;
-  /// The content of a regular file; nullopt where it is missing. Throws as open_file.
-  std::optional<std::string> read_if_present(const std::string& name) const;
+  /// The content of a regular file; nullopt where it is missing.
+  /// Throws as open_file, and InputError where it is larger than `max_bytes`.
+  std::optional<std::string> read_if_present(const std::string& name,
+                                             std::size_t max_bytes = kNoLimit) const;
 
   /// Names in the directory, sorted. Throws EnvironmentError.
   std::vector<std::string> list() const;

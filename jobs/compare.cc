@@ -82,7 +82,7 @@ int run_compare(const Arguments& arguments) {
     clear_page_folder(folder, folder.json());
     const std::vector<std::string> tables = write_compare_tables(folder, data, comparison);
     tell_notes(write_compare_report(folder, data, comparison, tables));
-    write_text_file(folder.json(), json);
+    write_text_file_inside(folder.root, folder.json(), json);
     tell_detail("written: " + folder.json().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {

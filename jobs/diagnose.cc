@@ -43,9 +43,10 @@ Diagnosis diagnose(const CampaignData& data, int threads) {
 void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data,
                           const Diagnosis& diagnosis) {
   if (diagnosis.is_extended()) {
-    write_text_file(folder.extended_model(), make_extended_model(data, diagnosis, folder.root));
+    write_text_file_inside(folder.root, folder.extended_model(),
+                           make_extended_model(data, diagnosis, folder.root));
   } else {
-    remove_file(folder.extended_model());
+    remove_file_inside(folder.root, folder.extended_model());
   }
 }
 
@@ -104,7 +105,7 @@ int run_diagnose(const Arguments& arguments) {
     write_extended_model(folder, data, diagnosis);
     const std::vector<std::string> tables = write_diagnose_tables(folder, data, diagnosis);
     tell_notes(write_diagnose_report(folder, data, diagnosis, tables));
-    write_text_file(folder.verdict(), json);
+    write_text_file_inside(folder.root, folder.verdict(), json);
     tell_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {

@@ -35,10 +35,11 @@ Written report_sweep(const fs::path& root) {
   return {folder.root / "report.html", write_sweep_report(folder)};
 }
 
-/// What keeps its page: drawn and written anew.
+/// What keeps its page: written anew.
 Written report_page(const fs::path& root) {
   const PageFolder folder{root.lexically_normal()};
-  return {folder.report(), write_page_again(folder)};
+  write_page_again(folder);
+  return {folder.report(), {}};
 }
 
 const FolderContent& require_content(const fs::path& root) {

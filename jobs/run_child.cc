@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +11,9 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <span>
+
+#include "io/file_sync.h"
 
 namespace strut {
 namespace {
@@ -27,23 +31,14 @@ class FileActions {
   FileActions(const FileActions&) = delete;
   FileActions& operator=(const FileActions&) = delete;
 
-  void write_to(int descriptor, const std::filesystem::path& file) {
-    constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
-    posix_spawn_file_actions_addopen(&actions_, descriptor, file.c_str(), kFlags, 0600);
-  }
-  void write_to(int descriptor, int open) {
+  /// What the child knows as `descriptor`.
+  void set(int descriptor, int open) {
     posix_spawn_file_actions_adddup2(&actions_, open, descriptor);
   }
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 
  private:
   posix_spawn_file_actions_t actions_;
-};
-
-/// How a child is started.
-struct Start {
-  std::vector<char*> environment;
-  bool own_group = false;
 };
 
 std::vector<char*> list_environment(const std::vector<std::string>& hidden) {
@@ -60,15 +55,15 @@ std::vector<char*> list_environment(const std::vector<std::string>& hidden) {
 }
 
 /// -1 where it cannot be started.
-pid_t start(const std::vector<std::string>& words, const FileActions& actions, Start how) {
+pid_t start(const std::vector<std::string>& words, const FileActions& actions,
+            const std::vector<char*>& environment) {
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(
-      &attributes,
-      static_cast<short>(POSIX_SPAWN_SETSIGMASK | (how.own_group ? POSIX_SPAWN_SETPGROUP : 0)));
+  posix_spawnattr_setflags(&attributes,
+                           static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP));
   std::vector<std::string> copies = words;
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -76,7 +71,7 @@ pid_t start(const std::vector<std::string>& words, const FileActions& actions, S
   pointers.push_back(nullptr);
   pid_t child = 0;
   const int failure = posix_spawnp(&child, pointers[0], actions.get(), &attributes, pointers.data(),
-                                   how.environment.data());
+                                   environment.data());
   posix_spawnattr_destroy(&attributes);
   return failure == 0 ? child : -1;
 }
@@ -139,14 +134,6 @@ bool read_all(Pipe& out, Pipe& messages, ChildOutput& output, std::chrono::milli
 
 }  // namespace
 
-int run_child(const std::vector<std::string>& words, const ChildFiles& files) {
-  FileActions actions;
-  actions.write_to(STDOUT_FILENO, files.output);
-  actions.write_to(STDERR_FILENO, files.messages);
-  const pid_t child = start(words, actions, {list_environment({}), false});
-  return child < 0 ? -1 : wait_for(child);
-}
-
 std::string ChildOutput::explain() const {
   if (code == kNotStarted) return "it cannot be started";
   const std::string& said = messages.empty() ? out : messages;
@@ -164,9 +151,15 @@ ChildOutput read_child(const std::vector<std::string>& words, const ChildOptions
   ChildOutput output;
   Pipe out, messages;
   FileActions actions;
-  actions.write_to(STDOUT_FILENO, out.to);
-  actions.write_to(STDERR_FILENO, messages.to);
-  const pid_t child = start(words, actions, {list_environment(options.hidden_variables), true});
+  actions.set(STDOUT_FILENO, out.to);
+  actions.set(STDERR_FILENO, messages.to);
+  const FileDescriptor input(::memfd_create("input", MFD_CLOEXEC));
+  if (!options.input.empty()) {
+    write_all(input.get(), std::as_bytes(std::span(options.input)), words.front());
+    ::lseek(input.get(), 0, SEEK_SET);
+    actions.set(STDIN_FILENO, input.get());
+  }
+  const pid_t child = start(words, actions, list_environment(options.hidden_variables));
   if (child < 0) return output;
   Pipe::close_end(out.to);
   Pipe::close_end(messages.to);

@@ -225,11 +225,8 @@ TEST_CASE("gnuplot draws every kind of series", "[io]") {
     WARN("gnuplot is not there; not checked");
     return;
   }
-  const TemporaryFolder folder;
   for (const Chart& chart : {make_plain_chart(), make_deep_chart()}) {
-    write_text_file(folder / (chart.name + ".gp"), make_gnuplot(chart));
-    draw_picture(folder / "", chart.name);
-    const std::string picture = test::read_text(folder / (chart.name + ".svg"));
+    const std::string picture = draw_picture(chart.name, make_gnuplot(chart));
     CHECK_THAT(picture, Contains("</svg>"));
     for (const ChartSeries* entry : chart.list_legend()) {
       CHECK_THAT(picture, Contains(">" + entry->name + "<"));
@@ -242,16 +239,37 @@ TEST_CASE("A picture that gnuplot cannot draw is told with gnuplot's words", "[i
     WARN("gnuplot is not there; not checked");
     return;
   }
+  CHECK_THROWS_WITH(draw_picture("broken", "set terminal svg\nplot nonsense(\n"),
+                    Contains("picture broken: gnuplot failed"));
+}
+
+TEST_CASE("gnuplot runs nothing that a name says", "[io]") {
+  if (!has_gnuplot()) {
+    WARN("gnuplot is not there; not checked");
+    return;
+  }
   const TemporaryFolder folder;
-  write_text_file(folder / "broken.gp", "set terminal svg\nplot nonsense(\n");
-  CHECK_THROWS_WITH(draw_picture(folder / "", "broken"), Contains("broken.gp"));
-  CHECK_FALSE(fs::exists(folder / "broken.svg"));
-  CHECK(folder.file_count() == 1);
+  const std::string touch = "touch " + (folder / "PWNED").string();
+  for (const std::string& name :
+       {"`" + touch + "`", "'.system(\"" + touch + "\").'", "\nsystem(\"" + touch + "\")\n",
+        "' noenhanced\n!" + touch + "\nset title '", "@touch \\\n" + touch, "END\n!" + touch,
+        "\"`" + touch + "`\"", "\r\v!" + touch}) {
+    CAPTURE(name);
+    Chart chart = make_plain_chart();
+    chart.caption = name;
+    for (ChartPanel& panel : chart.panels) {
+      panel.title = panel.about = panel.x.label = panel.y.label = name;
+      for (std::string& category : panel.x.categories) category = name;
+      for (ChartSeries& series : panel.series) series.name = name;
+    }
+    CHECK_THAT(draw_picture(chart.name, make_gnuplot(chart)), Contains("</svg>"));
+    CHECK(folder.file_count() == 0);
+  }
 }
 
 TEST_CASE("A page shows charts of all kinds, flat and deep, and fetches nothing", "[io]") {
   const TemporaryFolder folder;
-  const FigureDrawer drawer(folder / "figures");
+  const FigureDrawer drawer(Folder(folder / ""));
   ReportSection section{"Charts </section>"};
   drawer.draw_all({make_plain_chart(), make_deep_chart()}, section);
   const ReportPage page{"Charts", {"Two of them."}, {section}, make_report_footer()};
@@ -268,7 +286,7 @@ TEST_CASE("A page shows charts of all kinds, flat and deep, and fetches nothing"
 
 TEST_CASE("The button of a chart saves its numbers", "[io]") {
   const TemporaryFolder folder;
-  const FigureDrawer drawer(folder / "figures");
+  const FigureDrawer drawer(Folder(folder / ""));
   ReportSection section{"Charts"};
   Chart chart = make_plain_chart();
   chart.panels.resize(2);

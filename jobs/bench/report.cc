@@ -1,9 +1,9 @@
 #include "jobs/bench/report.h"
 
-#include <boost/property_tree/json_parser.hpp>
 #include <cstdio>
 #include <ostream>
 
+#include "io/config.h"
 #include "io/input_error.h"
 
 namespace strut {
@@ -107,9 +107,9 @@ void print_json(std::ostream& stream, const BenchResult& result,
 Baseline read_baseline(const std::string& path) {
   Baseline baseline;
   try {
-    boost::property_tree::read_json(path, baseline);
-  } catch (const boost::property_tree::json_parser_error& e) {
-    throw InputError("--baseline = " + path + ": " + e.message() +
+    baseline = parse_json(read_text_file(path), path);
+  } catch (const InputError& e) {
+    throw InputError("--baseline: " + std::string(e.what()) +
                      "; must be a file written by strut bench --json");
   }
   if (!baseline.get_child_optional("single_core")) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <boost/property_tree/ptree.hpp>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "jobs/bench/count_flops.h"
 #include "jobs/bench/pipeline.h"
 #include "jobs/machine.h"
+#include "jobs/read_json.h"
 
 namespace strut {
 
@@ -53,7 +53,7 @@ struct BenchResult {
 };
 
 /// The output of an earlier `strut bench --json`.
-using Baseline = boost::property_tree::ptree;
+using Baseline = JsonTree;
 
 /// Throws InputError where the file is none.
 Baseline read_baseline(const std::string& path);

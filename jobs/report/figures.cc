@@ -1,7 +1,9 @@
 #include "jobs/report/figures.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include "io/atomic_file.h"
-#include "io/config.h"
 #include "jobs/build_info.h"
 #include "jobs/report/chart_csv.h"
 #include "jobs/report/gnuplot.h"
@@ -9,47 +11,75 @@
 
 namespace strut {
 
-FigureDrawer::FigureDrawer(std::filesystem::path folder) : folder_(std::move(folder)) {
-  make_folder(folder_);
+namespace {
+
+constexpr std::size_t kMaxChartBytes = std::size_t{256} << 20;
+
+void check_figure_name(const Folder& folder, const std::string& name) {
+  if (is_figure_name(name)) return;
+  throw InputError(folder.path().string() + ": figure '" + name +
+                   "': the name must be letters, digits, '_' and '-', as strut writes it");
+}
+
+}  // namespace
+
+bool is_figure_name(const std::string& name) {
+  constexpr std::size_t kMaxLength = 200;
+  return !name.empty() && name.size() <= kMaxLength &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+}
+
+FigureDrawer::FigureDrawer(const Folder& root) : folder_(root.make_folder("figures")) {
   if (!has_gnuplot()) {
     note_ =
         "gnuplot cannot be started, so there are no pictures of the charts as files (Debian: apt "
-        "install gnuplot-nox); `strut report` adds them later";
+        "install gnuplot-nox)";
   }
 }
 
 ReportFigure FigureDrawer::draw(const Chart& chart) const {
-  write_text_file(folder_ / (chart.name + ".json"), make_plotly(chart).dump() + "\n");
-  write_text_file(folder_ / (chart.name + ".csv"), make_chart_csv(chart));
-  write_text_file(folder_ / (chart.name + ".gp"), make_gnuplot(chart));
-  remove_file(folder_ / (chart.name + ".svg"));  // of other numbers, where gnuplot is not there now
-  return draw_again(chart.name, chart.caption);
+  check_figure_name(folder_, chart.name);
+  const std::string script = make_gnuplot(chart);
+  write_text_file(folder_, chart.name + ".json", make_plotly(chart).dump() + "\n");
+  write_text_file(folder_, chart.name + ".csv", make_chart_csv(chart));
+  write_text_file(folder_, chart.name + ".gp", script);
+  // One of other numbers must not stay where there is no gnuplot now.
+  folder_.remove(chart.name + ".svg");
+  if (note_.empty())
+    write_text_file(folder_, chart.name + ".svg", draw_picture(chart.name, script));
+  return read_again(chart.name, chart.caption);
 }
 
 void FigureDrawer::draw_all(const std::vector<Chart>& charts, ReportSection& section) const {
   for (const Chart& chart : charts) section.figures.push_back(draw(chart));
 }
 
-ReportFigure FigureDrawer::draw_again(const std::string& name, const std::string& caption) const {
-  const std::string link = (folder_.filename() / name).generic_string();
-  ReportFigure figure{name, caption, read_text_file(folder_ / (name + ".json")), {}};
-  if (note_.empty()) {
-    draw_picture(folder_, name);
-    figure.files.push_back(link + ".svg");
+std::string FigureDrawer::read_json_of(const std::string& name) const {
+  check_figure_name(folder_, name);
+  auto json = folder_.read_if_present(name + ".json", kMaxChartBytes);
+  if (!json) throw InputError(folder_.path_of(name + ".json").string() + ": file not found");
+  return *std::move(json);
+}
+
+ReportFigure FigureDrawer::read_again(const std::string& name, const std::string& caption) const {
+  ReportFigure figure{name, caption, read_json_of(name), {}};
+  const std::string link = folder_.path().filename().string() + "/" + name;
+  for (const char* end : {".svg", ".csv"}) {
+    if (folder_.has(name + end)) figure.files.push_back(link + end);
   }
-  figure.files.push_back(link + ".csv");
   return figure;
 }
 
 ReportMotion FigureDrawer::draw_motion(const Json& scene, const std::string& name,
                                        const std::string& caption) const {
-  write_text_file(folder_ / (name + ".json"), scene.dump() + "\n");
-  return draw_motion_again(name, caption);
+  write_text_file(folder_, name + ".json", scene.dump() + "\n");
+  return read_motion_again(name, caption);
 }
 
-ReportMotion FigureDrawer::draw_motion_again(const std::string& name,
+ReportMotion FigureDrawer::read_motion_again(const std::string& name,
                                              const std::string& caption) const {
-  return {name, caption, read_text_file(folder_ / (name + ".json"))};
+  return {name, caption, read_json_of(name)};
 }
 
 std::vector<std::string> FigureDrawer::list_notes() const {

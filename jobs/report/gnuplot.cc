@@ -4,21 +4,24 @@
 #include <cmath>
 #include <limits>
 
-#include "io/atomic_file.h"
 #include "io/config.h"
+#include "io/input_error.h"
 #include "jobs/run_child.h"
 
 namespace strut {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* kMissing =
     "gnuplot: cannot be started; pictures need it (Debian: apt install gnuplot-nox)";
 
+/// In single quotes gnuplot replaces nothing: no backticks, no macros. A line's end would end the
+/// text, and what follows would be a command.
 std::string quote(const std::string& text) {
   std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  for (const char c : text) {
+    const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    quoted += c == '\'' ? std::string("''") : std::string(1, is_control ? ' ' : c);
+  }
   return quoted + "' noenhanced";
 }
 
@@ -219,22 +222,6 @@ std::string make_panel(const Chart& chart, std::size_t p, bool is_3d) {
   return text + (is_3d ? "splot " : "plot ") + (plot.empty() ? "NaN notitle" : plot) + "\n";
 }
 
-/// A file that vanishes with this object.
-class ScratchFile {
- public:
-  explicit ScratchFile(fs::path path) : path_(std::move(path)) {}
-  ~ScratchFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 }  // namespace
 
 std::string make_gnuplot(const Chart& chart) {
@@ -245,19 +232,19 @@ std::string make_gnuplot(const Chart& chart) {
   return text + "unset multiplot\n";
 }
 
-bool has_gnuplot() { return run_child({"gnuplot", "--version"}, {"/dev/null", "/dev/null"}) == 0; }
+bool has_gnuplot() { return read_child({"gnuplot", "--version"}).code == 0; }
 
-void draw_picture(const fs::path& folder, const std::string& name) {
-  const fs::path script = folder / (name + ".gp");
-  AtomicFile svg(folder / (name + ".svg"));
-  const ScratchFile messages(svg.temporary().string() + ".messages");
-  const int code = run_child({"gnuplot", script.string()}, {svg.temporary(), messages.path()});
-  if (code < 0) throw EnvironmentError(kMissing);
-  const std::string said = fs::exists(messages.path()) ? read_text_file(messages.path()) : "";
-  if (code != 0 || fs::file_size(svg.temporary()) == 0) {
-    throw EnvironmentError(script.string() + ": gnuplot failed: " + said);
+std::string draw_picture(const std::string& name, const std::string& script) {
+  ChildOptions options;
+  options.input = script;
+  options.hidden_variables = {"GNUPLOT"};
+  // Not by the user's own settings.
+  const ChildOutput output = read_child({"gnuplot", "-d", "-"}, options);
+  if (output.code == ChildOutput::kNotStarted) throw EnvironmentError(kMissing);
+  if (output.code != 0 || output.out.empty()) {
+    throw EnvironmentError("picture " + name + ": gnuplot failed: " + output.explain());
   }
-  svg.commit();
+  return output.out;
 }
 
 }  // namespace strut

@@ -1,7 +1,6 @@
 // Charts as pictures: scripts for gnuplot that carry their own data.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "jobs/report/chart.h"
@@ -14,8 +13,9 @@ std::string make_gnuplot(const Chart& chart);
 /// Whether a program gnuplot can be started.
 bool has_gnuplot();
 
-/// Draws FOLDER/NAME.svg by FOLDER/NAME.gp. Throws EnvironmentError where gnuplot is missing or
-/// fails; it says what gnuplot said.
-void draw_picture(const std::filesystem::path& folder, const std::string& name);
+/// The picture NAME, an SVG file's text, by a script of make_gnuplot; never by one that lies in a
+/// folder, since gnuplot's language can run programs. Throws EnvironmentError with gnuplot's
+/// message where it is missing or fails.
+std::string draw_picture(const std::string& name, const std::string& script);
 
 }  // namespace strut

@@ -1,13 +1,11 @@
 #include "jobs/report/page_file.h"
 
 #include <algorithm>
-#include <boost/property_tree/json_parser.hpp>
-#include <boost/property_tree/ptree.hpp>
-#include <cctype>
 
 #include "io/atomic_file.h"
 #include "io/input_error.h"
 #include "jobs/json.h"
+#include "jobs/read_json.h"
 #include "jobs/report/figures.h"
 
 namespace strut {
@@ -15,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Tree = boost::property_tree::ptree;
+using Tree = JsonTree;
 
 /// Of each element what `make` makes of it.
 template <class T, class Make>
@@ -81,24 +79,17 @@ ReportTable read_table(const Tree& tree) {
           tree.get<std::size_t>("text_columns")};
 }
 
-/// Whether a name that a page gives can be a file's in its folder, and nothing else.
-bool is_plain(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-';
-  });
-}
-
 /// The files that the folder's page names.
 std::vector<fs::path> list_files(const PageFolder& folder, const Tree& page) {
   std::vector<fs::path> files;
   for (const std::string& name : read_list(page, "tables", &read_text)) {
-    if (is_plain(name)) files.push_back(folder.table(name));
+    if (is_figure_name(name)) files.push_back(folder.table(name));
   }
   const auto add_figures = [&](const Tree& list, const std::vector<const char*>& ends) {
     for (const auto& [key, figure] : list) {
       const auto name = figure.get<std::string>("name");
       for (const char* end : ends) {
-        if (is_plain(name)) files.push_back(folder.figures() / (name + end));
+        if (is_figure_name(name)) files.push_back(folder.figures() / (name + end));
       }
     }
   };
@@ -117,8 +108,8 @@ struct EarlierPage {
 
 EarlierPage read_earlier_page(const PageFolder& folder) {
   try {
-    Tree page;
-    boost::property_tree::read_json(folder.page().string(), page);
+    if (!fs::exists(folder.page())) return {};
+    const Tree page = read_json(folder.page());
     return {page.get<std::string>("of"), list_files(folder, page)};
   } catch (const boost::property_tree::ptree_error&) {
     return {};
@@ -138,11 +129,11 @@ ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
                          read_list(section, "tables", &read_table),
                          read_list(section, "figures",
                                    [&](const Tree& figure) {
-                                     return drawer.draw_again(figure.get<std::string>("name"),
+                                     return drawer.read_again(figure.get<std::string>("name"),
                                                               figure.get<std::string>("caption"));
                                    }),
                          read_list(section, "motions", [&](const Tree& motion) {
-                           return drawer.draw_motion_again(motion.get<std::string>("name"),
+                           return drawer.read_motion_again(motion.get<std::string>("name"),
                                                            motion.get<std::string>("caption"));
                          })};
   });
@@ -173,28 +164,26 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
 
 void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker) {
   const EarlierPage earlier = read_earlier_page(folder);
-  remove_file(marker);
-  for (const fs::path& file : earlier.files) remove_file(file);
-  remove_file(folder.report());
-  remove_file(folder.page());
+  remove_file_inside(folder.root, marker);
+  for (const fs::path& file : earlier.files) remove_file_inside(folder.root, file);
+  remove_file_inside(folder.root, folder.report());
+  remove_file_inside(folder.root, folder.page());
 }
 
 void write_page(const PageFolder& folder, const ReportPage& page) {
-  write_text_file(folder.page(), make_page_json(page).dump() + "\n");
-  write_text_file(folder.report(), make_html(page));
+  write_text_file_inside(folder.root, folder.page(), make_page_json(page).dump() + "\n");
+  write_text_file_inside(folder.root, folder.report(), make_html(page));
 }
 
-std::vector<std::string> write_page_again(const PageFolder& folder) {
-  const FigureDrawer drawer(folder.figures());
+void write_page_again(const PageFolder& folder) {
+  const FigureDrawer drawer(folder.open());
   try {
-    Tree tree;
-    boost::property_tree::read_json(folder.page().string(), tree);
-    write_text_file(folder.report(), make_html(read_page(tree, drawer)));
+    const Tree tree = read_json(folder.page());
+    write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));
   } catch (const boost::property_tree::ptree_error& e) {
     throw InputError(folder.page().string() + ": " + e.what() +
                      "; must be as strut compare, diagnose or simulate wrote it");
   }
-  return drawer.list_notes();
 }
 
 }  // namespace strut

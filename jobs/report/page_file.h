@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/folder.h"
 #include "jobs/report/content.h"
 #include "jobs/report/html.h"
 
@@ -15,6 +16,7 @@ namespace strut {
 struct PageFolder {
   std::filesystem::path root;
 
+  Folder open() const { return Folder(root); }
   std::filesystem::path report() const { return root / "report.html"; }
   std::filesystem::path page() const { return root / "report.json"; }
   std::filesystem::path figures() const { return root / "figures"; }
@@ -35,8 +37,9 @@ void clear_page_folder(const PageFolder& folder, const std::filesystem::path& ma
 /// Writes report.json and report.html.
 void write_page(const PageFolder& folder, const ReportPage& page);
 
-/// Draws the figures of report.json by their scripts and writes report.html. Returns what could not
-/// be made, for the user. Throws InputError where report.json is missing or none of ours.
-std::vector<std::string> write_page_again(const PageFolder& folder);
+/// Writes report.html from report.json and the figures beside it, which are data from anywhere:
+/// nothing in the folder is executed, and no name leads out of it. Throws InputError where a file
+/// is missing, too large, nested too deeply, a link, or not as strut writes it.
+void write_page_again(const PageFolder& folder);
 
 }  // namespace strut

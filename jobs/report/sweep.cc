@@ -225,7 +225,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
 std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   const Plan plan = open_sweep_folder(folder);
   const SweepStatus status = read_status(folder, plan);
-  const FigureDrawer drawer(folder.root / "figures");
+  const FigureDrawer drawer(Folder(folder.root));
   ReportPage page;
   page.title = "Sweep " + folder.name();
   page.lead = {format_count(status.done) + " of " + format_count(status.cases) + " cases of " +
@@ -245,7 +245,7 @@ std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   }
   page.sections.push_back({"Plan", {}, {make_fact_table(plan)}});
   page.footer = make_report_footer();
-  write_text_file(folder.root / "report.html", make_html(page));
+  write_text_file_inside(folder.root, folder.root / "report.html", make_html(page));
   return drawer.list_notes();
 }
 

@@ -41,6 +41,13 @@ Facts list_study_facts(const StudyRequest& request) {
   return facts;
 }
 
+/// Trainings replace models and bounds by their paths: none may be a link.
+void check_files(const Folder& folder) {
+  for (const std::string& name : folder.list()) {
+    check_regular(folder.descriptor(), name, folder.path_of(name));
+  }
+}
+
 void check_free(const StudyFolder& folder) {
   if (!fs::exists(folder.root)) return;
   if (!fs::is_directory(folder.root)) {
@@ -70,7 +77,9 @@ void check_same(const StudyFolder& folder, const StudyRequest& request) {
 
 /// Copies a sweep and every file it names; a new start takes the place of one that was stopped.
 std::string freeze_sweep(const StudyFolder& folder, const fs::path& sweep, const SweepFolder& to) {
-  make_folder(to.inputs());
+  Folder(folder.root)
+      .make_folder(to.root.filename().string())
+      .make_folder(to.inputs().filename().string());
   freeze_inputs(read_request(sweep), to);
   return to.request().lexically_relative(folder.root).generic_string();
 }
@@ -83,10 +92,10 @@ void freeze(const StudyFolder& folder, const StudyRequest& request) {
                        freeze_sweep(folder, request.noise->sweep, folder.window_base()));
   }
   if (!request.published_path.empty()) {
-    write_text_file(folder.published(), read_text_file(request.published_path));
+    write_text_file_inside(folder.root, folder.published(), read_text_file(request.published_path));
     files.emplace_back(kPublishedKey, folder.published().filename().string());
   }
-  write_text_file(folder.study(), replace_toml_texts(request.path, files));
+  write_text_file_inside(folder.root, folder.study(), replace_toml_texts(request.path, files));
 }
 
 std::string quote(const std::string& text) { return "\"" + text + "\""; }
@@ -95,7 +104,8 @@ std::string quote(const std::string& text) { return "\"" + text + "\""; }
 std::string make_vehicle(const SweepFolder& base, const std::string& preload) {
   const fs::path vehicle = read_request(base.request()).vehicle;
   const fs::path made = vehicle.parent_path() / (vehicle.stem().string() + "_" + preload + ".toml");
-  write_text_file(made, set_toml_values(vehicle, {{"spring.preload", quote(preload)}}));
+  write_text_file_inside(base.root, made,
+                         set_toml_values(vehicle, {{"spring.preload", quote(preload)}}));
   return made.lexically_relative(base.root).generic_string();
 }
 
@@ -117,12 +127,12 @@ fs::path make_request(const StudyFolder& folder, const StudyRequest& request,
   fs::path made = base.parent_path() / (make_sweep_name(request, cell) + ".toml");
   TomlValues values = {{"vehicle", quote(make_vehicle(folder.base(), preload.name))},
                        {"sample.count", std::to_string(request.samples[cell.samples])}};
-  write_text_file(made, set_toml_values(base, values));
+  write_text_file_inside(folder.base().root, made, set_toml_values(base, values));
   if (!cell.best_instant) return made;
   const double offset =
       preload.best_offset ? *preload.best_offset : find_best_offset(read_request(made));
   values.emplace_back("record.snapshot.offset", format_number(offset));
-  write_text_file(made, set_toml_values(base, values));
+  write_text_file_inside(folder.base().root, made, set_toml_values(base, values));
   return made;
 }
 
@@ -131,7 +141,7 @@ fs::path make_window_request(const StudyFolder& folder, const StudyRequest& requ
   const std::string vehicle = quote(make_vehicle(base, request.preloads.back().name));
   fs::path made =
       base.root / (get_window_sweep(folder, request).root.filename().string() + ".toml");
-  write_text_file(made, set_toml_values(base.request(), {{"vehicle", vehicle}}));
+  write_text_file_inside(base.root, made, set_toml_values(base.request(), {{"vehicle", vehicle}}));
   return made;
 }
 
@@ -150,12 +160,14 @@ StudyFolder make_study_folder(const fs::path& root, const StudyRequest& request)
     check_same(folder, request);
   } else {
     check_free(folder);
+    make_folder(folder.root);
     freeze(folder, request);
   }
-  make_folder(folder.root / "sweeps");
-  make_folder(folder.models());
-  make_folder(folder.figures());
-  if (request.noise) make_folder(folder.noise());
+  const Folder root(folder.root);
+  root.make_folder("sweeps");
+  root.make_folder(folder.figures().filename().string());
+  check_files(root.make_folder(folder.models().filename().string()));
+  if (request.noise) check_files(root.make_folder(folder.noise().filename().string()));
   return folder;
 }
 

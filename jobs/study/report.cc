@@ -181,9 +181,10 @@ ReportSection make_limits() {
 
 StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& request) {
   StudyOutput output{read_results(folder, request), {}};
-  write_text_file(folder.results(), make_json(request, output.results).dump() + "\n");
-  write_text_file(folder.tables(), make_csv(request, output.results));
-  const FigureDrawer drawer(folder.figures());
+  write_text_file_inside(folder.root, folder.results(),
+                         make_json(request, output.results).dump() + "\n");
+  write_text_file_inside(folder.root, folder.tables(), make_csv(request, output.results));
+  const FigureDrawer drawer(Folder(folder.root));
   for (std::string& note : drawer.list_notes()) output.notes.push_back(std::move(note));
   ReportPage page;
   page.title = request.title;
@@ -196,13 +197,13 @@ StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& re
   if (const auto& noise = output.results.noise) {
     page.lead.push_back(make_noise_line(*noise));
     page.sections.push_back(make_noise_section(*noise, drawer));
-    write_text_file(folder.noise_table(), make_csv(*noise));
+    write_text_file_inside(folder.root, folder.noise_table(), make_csv(*noise));
   }
   if (!request.published.source.empty()) page.sections.push_back(make_published(request));
   page.sections.push_back(make_settings(request, output.results));
   page.sections.push_back(make_limits());
   page.footer = make_report_footer();
-  write_text_file(folder.report(), make_html(page));
+  write_text_file_inside(folder.root, folder.report(), make_html(page));
   return output;
 }
 
