@@ -22,6 +22,7 @@ constexpr std::int64_t kMost = std::int64_t{1} << 53;
 
 constexpr const char* kJobs = "jobs";
 constexpr const char* kSubmission = "submission.toml";
+constexpr const char* kDigits = "0123456789";
 
 /// "001", as make_next() names them.
 std::string format_number(int number) {
@@ -56,7 +57,7 @@ void write_submission(const Submission& s, const Folder& folder) {
   write_text_file(folder, kSubmission, text);
 }
 
-/// A text of which every character is one of `allowed`. Throws InputError.
+/// A text that begins so and of which every character is one of `allowed`. Throws InputError.
 std::string read_word(const Table& root, const std::string& key, const std::string& begin,
                       const std::string& allowed) {
   const std::string word = root.text(key);
@@ -65,13 +66,8 @@ std::string read_word(const Table& root, const std::string& key, const std::stri
       word.find_first_not_of(allowed) == std::string::npos) {
     return word;
   }
-  throw InputError(key + ": must be " + (begin.empty() ? "" : begin + " and ") + "at most 255 of " +
-                   allowed);
-}
-
-const std::string& get_digits() {
-  static const std::string digits = "0123456789";
-  return digits;
+  throw InputError(key + ": must " + (begin.empty() ? "" : "begin with " + begin + " and ") +
+                   "hold at most " + std::to_string(kMostBytes) + " of " + allowed);
 }
 
 std::string read_dispatcher(const Table& root) {
@@ -86,12 +82,12 @@ Submission read_submission(const Folder& folder) {
   read_record_file(folder, kSubmission);  // is a regular file, and no large one
   Document document(file);
   const Table root = document.root();
-  const std::string name = get_digits() + "abcdefghijklmnopqrstuvwxyz-";
+  const std::string name = std::string(kDigits) + "abcdefghijklmnopqrstuvwxyz-";
   Submission s;
   s.folder = folder.path();
   s.dispatcher = read_dispatcher(root);
   s.place = read_word(root, "place", "", name + "ABCDEFGHIJKLMNOPQRSTUVWXYZ_.");
-  s.user = read_word(root, "user", "", get_digits());
+  s.user = read_word(root, "user", "", kDigits);
   s.job_prefix = read_word(root, "job_prefix", "strut-", name);
   s.retries = root.boolean_or("retries", false);
   s.collects = root.boolean_or("collects", false);
