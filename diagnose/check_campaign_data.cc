@@ -63,6 +63,15 @@ RateNeed find_need(const CampaignData& data, std::size_t r) {
           "the strut is driven at " + format_rounded(f) + " Hz"};
 }
 
+void check_duration(const CampaignData& data, std::size_t r) {
+  constexpr double kMaxDuration = 1e5;  // s, as of a rig's maneuver
+  const MeasuredTable& table = data.tables[r];
+  const double duration = table.times.back() - table.times.front();
+  if (duration <= kMaxDuration) return;
+  throw InputError(table.name + ": lasts " + format_rounded(duration) + " s; must be at most " +
+                   format_rounded(kMaxDuration) + " s");
+}
+
 void check_rate(CampaignData& data, std::size_t r) {
   const MeasuredTable& table = data.tables[r];
   const double rate = table.rate();
@@ -152,6 +161,7 @@ void check_units(const CampaignData& data, std::size_t r) {
 void check_campaign_data(CampaignData& data) {
   for (std::size_t r = 0; r < data.run_count(); ++r) {
     check_rate(data, r);
+    check_duration(data, r);
     check_driven(data, r);
     check_plausible(data, r);
     check_units(data, r);

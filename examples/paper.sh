@@ -28,7 +28,7 @@ run evaluate "$folder/model.h5" "$folder/sweep"
 printf '\n== A worn car that is not on the grid, and what the network says of it\n'
 run simulate examples/vehicles/paper_sedan.toml examples/maneuvers/bump_20mps.toml \
   --set front_stiffness=38240 --set front_damping=1913 --set rear_stiffness=33310 \
-  --set rear_damping=1867 -o "$folder/worn.h5"
+  --set rear_damping=1867 -o "$folder/worn.h5" --force
 run identify "$folder/model.h5" "$folder/worn.h5"
 
 printf '\n== The tables of the paper, and ours\n'

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "io/input_error.h"
+
 namespace strut {
 
 std::vector<std::byte> shuffle_bytes(std::span<const std::byte> bytes, std::size_t element_size) {
@@ -31,7 +33,7 @@ std::vector<std::byte> compress_chunk(std::span<const std::byte> bytes, std::siz
   const int status = ::compress2(reinterpret_cast<Bytef*>(deflated.data()), &size,
                                  reinterpret_cast<const Bytef*>(shuffled.data()),
                                  static_cast<uLong>(shuffled.size()), kDeflateLevel);
-  if (status != Z_OK) throw std::runtime_error("zlib: out of memory");
+  if (status != Z_OK) throw EnvironmentError("zlib: out of memory");
   deflated.resize(size);
   return deflated;
 }

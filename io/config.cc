@@ -9,12 +9,16 @@
 #include "io/file_sync.h"
 #include "io/nearest_name.h"
 #include "io/parse_toml.h"
+#include "io/shorten.h"
 
 namespace strut {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+// Unknown keys that one message lists.
+constexpr std::size_t kMaxUnread = 20;
 
 const toml::node& as_node(const void* node) { return *static_cast<const toml::node*>(node); }
 
@@ -41,7 +45,7 @@ std::string describe_value(const toml::node& node) {
   if (const auto* value = node.as_floating_point()) return format_number(value->get());
   if (const auto* value = node.as_integer()) return std::to_string(value->get());
   if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
-  if (const auto* value = node.as_string()) return "\"" + value->get() + "\"";
+  if (const auto* value = node.as_string()) return "\"" + shorten(value->get()) + "\"";
   const auto* array = node.as_array();
   if (array == nullptr || array->size() > 6 || array->is_array_of_tables()) {
     return "(" + describe_type(node) + ")";
@@ -53,7 +57,12 @@ std::string describe_value(const toml::node& node) {
 
 }  // namespace
 
-std::string read_text_file(const fs::path& path) {
+std::string read_text_file(const fs::path& path, std::size_t max_bytes) {
+  std::error_code error;  // reading tells it
+  if (const auto size = fs::file_size(path, error); !error && size > max_bytes) {
+    throw InputError(path.string() + ": " + std::to_string(size) + " bytes; at most " +
+                     std::to_string(max_bytes) + " are allowed");
+  }
   auto text = read_if_present(path);
   if (!text) throw InputError(path.string() + ": file not found");
   return *std::move(text);
@@ -125,34 +134,39 @@ struct Table::Source {
     return unread;
   }
 
+  /// A line for each key that nobody asked for; beyond kMaxUnread, empty ones.
   void add_unread(const toml::table& table, const std::string& name,
-                  std::vector<std::string>& lines) const;
+                  std::vector<std::string>& unread) const;
   void add_unread_inside(const toml::node& node, const std::string& name,
-                         std::vector<std::string>& lines) const;
+                         std::vector<std::string>& unread) const;
 };
 
 void Table::Source::add_unread(const toml::table& table, const std::string& name,
-                               std::vector<std::string>& lines) const {
+                               std::vector<std::string>& unread) const {
   const std::string prefix = name.empty() ? "" : name + ".";
   for (const std::string& key : unread_keys(table, name)) {
-    lines.push_back(at(*table.get(key)) + "unknown key '" + prefix + key + "'" +
-                    suggest_name(key, known_keys(name)));
+    if (unread.size() >= kMaxUnread) {
+      unread.emplace_back();  // counts
+      continue;
+    }
+    unread.push_back(at(*table.get(key)) + "unknown key '" + shorten(prefix + key) + "'" +
+                     suggest_name(key, known_keys(name)));
   }
   for (const auto& [key, value] : table) {
     const auto found = asked.find(name);
     if (found == asked.end() || found->second.count(std::string(key.str())) == 0) continue;
-    add_unread_inside(value, prefix + std::string(key.str()), lines);
+    add_unread_inside(value, prefix + std::string(key.str()), unread);
   }
 }
 
 void Table::Source::add_unread_inside(const toml::node& node, const std::string& name,
-                                      std::vector<std::string>& lines) const {
-  if (const toml::table* table = node.as_table()) return add_unread(*table, name, lines);
+                                      std::vector<std::string>& unread) const {
+  if (const toml::table* table = node.as_table()) return add_unread(*table, name, unread);
   const toml::array* array = node.as_array();
   if (array == nullptr) return;
   for (std::size_t i = 0; i < array->size(); ++i) {
     const toml::table* item = array->get(i)->as_table();
-    if (item != nullptr) add_unread(*item, name + "[" + std::to_string(i + 1) + "]", lines);
+    if (item != nullptr) add_unread(*item, name + "[" + std::to_string(i + 1) + "]", unread);
   }
 }
 
@@ -348,8 +362,13 @@ int Table::choice_or(const std::string& key, int fallback,
 fs::path Table::file(const std::string& key) const {
   const fs::path named = text(key);
   fs::path path = (source_->path.parent_path() / named).lexically_normal();
-  if (fs::is_regular_file(path)) return path;
-  throw error(key, "file not found: " + path.string());
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (fs::is_regular_file(status)) return path;
+  const std::string what = fs::exists(status)                          ? "not a file"
+                           : status.type() == fs::file_type::not_found ? "file not found"
+                                                                       : code.message();
+  throw error(key, what + ": " + shorten(path.string(), 4 * kMaxQuoted));
 }
 
 Table Table::table(const std::string& key) const {
@@ -378,7 +397,7 @@ std::vector<Table> Table::tables(const std::string& key) const {
 
 Document::Document(const fs::path& path) : source_(std::make_shared<Table::Source>()) {
   source_->path = path;
-  source_->root = parse_toml(path, read_text_file(path));
+  source_->root = parse_toml(path, read_toml_text(path));
 }
 
 Table Document::root() const {
@@ -388,11 +407,15 @@ Table Document::root() const {
 const fs::path& Document::path() const { return source_->path; }
 
 void Document::check_all_read() const {
-  std::vector<std::string> lines;
-  source_->add_unread(source_->root, "", lines);
-  if (lines.empty()) return;
-  std::string message;
-  for (const std::string& line : lines) message += (message.empty() ? "" : "\n") + line;
+  std::vector<std::string> unread;
+  source_->add_unread(source_->root, "", unread);
+  if (unread.empty()) return;
+  std::string message = unread.front();
+  const std::size_t shown = std::min(unread.size(), kMaxUnread);
+  for (std::size_t i = 1; i < shown; ++i) message += "\n" + unread[i];
+  if (shown < unread.size()) {
+    message += "\nand " + std::to_string(unread.size() - shown) + " more unknown keys";
+  }
   throw InputError(message);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -38,8 +39,9 @@ std::string format_number(double value);
 /// Six significant digits, for numbers in messages that were computed.
 std::string format_rounded(double value);
 
-/// The whole file. Throws InputError where it is missing, EnvironmentError where it cannot be read.
-std::string read_text_file(const std::filesystem::path& path);
+/// The whole file. Throws InputError where it is missing or has more than `max_bytes`,
+/// EnvironmentError where it cannot be read.
+std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes = SIZE_MAX);
 
 /// One table of a document. All getters throw InputError on a missing key (unless a fallback is
 /// given), a wrong type, a value that is not finite, or one outside the allowed range.

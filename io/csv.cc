@@ -1,19 +1,23 @@
 #include "io/csv.h"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <ostream>
 #include <set>
 #include <stdexcept>
 #include <string_view>
 
 #include "io/atomic_file.h"
+#include "io/file_sync.h"
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
+#include "io/shorten.h"
 
 namespace strut {
 
@@ -23,6 +27,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kUnitsMark = "# units:";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+/// Bounds of what is read: no table has more, and something else given by mistake may.
+constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20U;
+constexpr std::size_t kMaxColumns = 16384;
+/// Bytes of text that are written at once.
+constexpr std::size_t kWriteBytes = std::size_t{1} << 20U;
 
 std::string_view trim(std::string_view text) {
   const auto begin = text.find_first_not_of(" \t\r");
@@ -59,7 +68,7 @@ void check_columns(const std::vector<CsvColumn>& columns) {
   }
 }
 
-void write_heading(std::ostream& stream, const std::vector<CsvColumn>& columns) {
+std::string make_heading(const std::vector<CsvColumn>& columns) {
   std::string names, units;
   bool any_unit = false;
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -67,8 +76,9 @@ void write_heading(std::ostream& stream, const std::vector<CsvColumn>& columns) 
     units += (c == 0 ? " " : ",") + columns[c].unit;
     any_unit = any_unit || !columns[c].unit.empty();
   }
-  stream << names << '\n';
-  if (any_unit) stream << kUnitsMark << units << '\n';
+  names += '\n';
+  if (any_unit) names.append(kUnitsMark).append(units) += '\n';
+  return names;
 }
 
 class CsvReader {
@@ -76,10 +86,14 @@ class CsvReader {
   CsvReader(const fs::path& path, MissingCells missing) : missing_(missing) { table_.path = path; }
 
   CsvTable read(std::istream& stream) {
-    std::string line;
-    while (std::getline(stream, line)) {
+    std::vector<char> line(kMaxLineBytes + 1);
+    while (stream.getline(line.data(), std::ssize(line)) || stream.gcount() > 0) {
       ++line_;
-      take_line(line);
+      if (stream.fail()) {
+        throw error("more than " + std::to_string(kMaxLineBytes) + " bytes in one line");
+      }
+      const std::streamsize length = stream.gcount() - (stream.eof() ? 0 : 1);  // of its end
+      take_line({line.data(), static_cast<std::size_t>(length)});
     }
     if (table_.columns.empty()) throw error("no line of column names");
     return std::move(table_);
@@ -100,13 +114,20 @@ class CsvReader {
   }
 
   void take_names(std::string_view line) {
+    const auto cells = split_cells(line);
+    if (cells.size() > kMaxColumns) {
+      throw error(std::to_string(cells.size()) + " columns; at most " +
+                  std::to_string(kMaxColumns) + " are allowed");
+    }
     std::set<std::string> seen;
-    for (const std::string_view cell : split_cells(line)) {
+    for (const std::string_view cell : cells) {
       const std::string name(strip_quotes(cell));
       if (name.empty()) throw error("a column has no name");
-      if (!seen.insert(name).second) throw error("column '" + name + "' stands there twice");
+      if (!seen.insert(name).second) {
+        throw error("column '" + shorten(name) + "' stands there twice");
+      }
       if (parse_number<double>(name)) {
-        throw error("column name expected, number " + name + " found");
+        throw error("column name expected, number " + shorten(name) + " found");
       }
       table_.columns.push_back({name, "", {}});
     }
@@ -148,7 +169,7 @@ class CsvReader {
     const std::string_view digits = cell.starts_with('+') ? cell.substr(1) : cell;
     const auto value = parse_number<double>(digits);
     if (value && std::isfinite(*value)) return *value;
-    throw error(column + " = '" + std::string(cell) + "': must be a finite number");
+    throw error(shorten(column) + " = '" + shorten(cell) + "': must be a finite number");
   }
 
   MissingCells missing_;
@@ -169,31 +190,31 @@ const CsvColumn& CsvTable::column(const std::string& name) const {
     if (column.name == name) return column;
     names.push_back(column.name);
   }
-  throw InputError(path.string() + ": no column '" + name + "' among " + join_names(names) +
-                   suggest_name(name, names));
-}
-
-void write_csv(std::ostream& stream, const std::vector<CsvColumn>& columns) {
-  check_columns(columns);
-  write_heading(stream, columns);
-  const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
-  std::string line;
-  for (std::size_t r = 0; r < rows; ++r) {
-    line.clear();
-    for (const CsvColumn& column : columns) {
-      if (!line.empty()) line += ',';
-      append_number(line, column.values[r]);
-    }
-    stream << line << '\n';
-  }
+  throw InputError(path.string() + ": no column '" + shorten(name) + "' among " +
+                   join_names(names) + suggest_name(name, names));
 }
 
 void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
+  check_columns(columns);
   AtomicFile file(path);
-  std::ofstream stream(file.temporary(), std::ios::binary);
-  write_csv(stream, columns);
-  stream.close();
-  if (!stream) throw EnvironmentError(path.string() + ": cannot be written: disk full?");
+  const FileDescriptor descriptor = open_file(file.temporary(), O_WRONLY | O_TRUNC);
+  if (!descriptor.is_open()) throw file_failure(path, "cannot be written", errno);
+  const auto write = [&](const std::string& text) {
+    write_all(descriptor.get(), std::as_bytes(std::span(text)), path);
+  };
+  const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
+  std::string text = make_heading(columns);
+  for (std::size_t r = 0; r < rows; ++r) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c > 0) text += ',';
+      append_number(text, columns[c].values[r]);
+    }
+    text += '\n';
+    if (text.size() < kWriteBytes) continue;
+    write(text);
+    text.clear();
+  }
+  write(text);
   file.commit();
 }
 

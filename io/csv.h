@@ -11,7 +11,6 @@
 #pragma once
 
 #include <filesystem>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -36,10 +35,8 @@ struct CsvTable {
   const CsvColumn& column(const std::string& name) const;
 };
 
-/// Writes columns of equal length; every number reads back as the same double.
-void write_csv(std::ostream& stream, const std::vector<CsvColumn>& columns);
-
-/// The same into a file that appears whole or not at all. Throws EnvironmentError.
+/// Writes columns of equal length; every number reads back as the same double. The file appears
+/// whole or not at all. Throws EnvironmentError.
 void write_csv(const std::filesystem::path& path, const std::vector<CsvColumn>& columns);
 
 /// What an empty cell, or one that says nan, is.
@@ -50,7 +47,8 @@ enum class MissingCells {
 
 /// Reads a file as `write_csv` writes it; also with CR LF line ends, blanks around cells, names in
 /// quotes, comment and empty lines anywhere. Throws InputError with file and line for a missing
-/// file, a row of the wrong length, a cell that is not a finite number, an empty or repeated name.
+/// file, a row of the wrong length, a cell that is not a finite number, an empty or repeated name,
+/// a line of more than 1 MiB, more than 16384 columns.
 CsvTable read_csv(const std::filesystem::path& path, MissingCells missing = MissingCells::kRefused);
 
 }  // namespace strut

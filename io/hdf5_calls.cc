@@ -1,7 +1,11 @@
 #include "io/hdf5_calls.h"
 
 #include <atomic>
+#include <charconv>
 #include <limits>
+#include <string_view>
+
+#include "io/file_sync.h"
 
 namespace strut::hdf5 {
 namespace {
@@ -68,6 +72,24 @@ std::string take_library_error() {
   H5Eclear2(H5E_DEFAULT);
   std::erase(text, '\n');  // of the time in some of them
   return text.empty() ? "" : " (" + text + ")";
+}
+
+void fail_to_write(const fs::path& path, const std::string& object, const std::string& what) {
+  int error_number = 0;
+  const auto keep_first = [](unsigned, const H5E_error2_t* entry, void* out) -> herr_t {
+    constexpr std::string_view kMark = "errno = ";
+    const std::string_view text = entry->desc == nullptr ? "" : entry->desc;
+    const std::size_t mark = text.find(kMark);
+    auto& number = *static_cast<int*>(out);
+    if (number == 0 && mark != std::string_view::npos) {
+      std::from_chars(text.data() + mark + kMark.size(), text.data() + text.size(), number);
+    }
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &error_number);
+  H5Eclear2(H5E_DEFAULT);
+  if (error_number != 0) throw file_failure(path, "cannot be written", error_number);
+  throw EnvironmentError(path.string() + (object.empty() ? "" : ": " + object) + ": " + what);
 }
 
 Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_length) {

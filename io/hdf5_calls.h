@@ -19,10 +19,16 @@ void prepare_library();
 /// What the library says went wrong last, " (...)"; empty where it says nothing.
 std::string take_library_error();
 
+/// Throws the EnvironmentError of a call that should have written: for the user the system's reason
+/// where the library names one, as for a full disk, else `what` failed.
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& object,
+                                const std::string& what);
+
 template <class Error>
 void check(bool good, const std::filesystem::path& path, const std::string& object,
            const std::string& what) {
   if (good) return;
+  if constexpr (std::is_same_v<Error, EnvironmentError>) fail_to_write(path, object, what);
   throw Error(path.string() + (object.empty() ? "" : ": " + object) + ": " + what +
               take_library_error());
 }

@@ -116,8 +116,8 @@ void Hdf5StreamWriter::commit() {
     hdf5::close_dataset(sink_, name, stream.dataset);
   }
   const bool flushed = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0;
-  check<EnvironmentError>(flushed, sink_.shown, "", "cannot be written; disk full?");
-  check<EnvironmentError>(sink_.file.reset(), sink_.shown, "", "cannot be written; disk full?");
+  check<EnvironmentError>(flushed, sink_.shown, "", "cannot be written");
+  check<EnvironmentError>(sink_.file.reset(), sink_.shown, "", "cannot be written");
   target_.commit();
 }
 

@@ -1,6 +1,9 @@
 #include "io/nearest_name.h"
 
 #include <algorithm>
+#include <cstdlib>
+
+#include "io/shorten.h"
 
 namespace strut {
 
@@ -22,9 +25,13 @@ int edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
+  if (name.size() > kMaxQuoted) return "";
   int best = std::max(2, static_cast<int>(name.size() / 3)) + 1;
   std::string nearest;
   for (const std::string& candidate : known) {
+    // No distance is below the difference of the lengths.
+    const auto longer = std::abs(std::ssize(name) - std::ssize(candidate));
+    if (longer >= best) continue;
     const int distance = edit_distance(name, candidate);
     if (distance < best) {
       best = distance;
@@ -41,7 +48,10 @@ std::string suggest_name(std::string_view name, const std::vector<std::string>& 
 
 std::string join_names(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  constexpr std::size_t kMaxNames = 200;
+  const std::size_t count = std::min(names.size(), kMaxNames);
+  for (std::size_t i = 0; i < count; ++i) text += (i == 0 ? "" : ", ") + shorten(names[i]);
+  if (count < names.size()) text += " and " + std::to_string(names.size() - count) + " more";
   return text;
 }
 

@@ -2,7 +2,7 @@
 
 #include <openssl/evp.h>
 
-#include <stdexcept>
+#include "io/input_error.h"
 
 namespace strut {
 
@@ -15,7 +15,7 @@ namespace {
 
 // EVP fails only where memory or the algorithm itself is missing.
 void require(int good) {
-  if (good != 1) throw std::runtime_error("SHA-256 of OpenSSL is not available");
+  if (good != 1) throw EnvironmentError("SHA-256 of OpenSSL is not available");
 }
 
 }  // namespace

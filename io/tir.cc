@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 
 #include "io/config.h"
 #include "io/parse_number.h"
+#include "io/shorten.h"
 
 namespace strut {
 namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20U;  // real files have some 20 kB
+
+std::string quote(std::string_view text) { return "'" + shorten(text) + "'"; }
 
 std::string_view trim(std::string_view text) {
   const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
@@ -39,6 +45,11 @@ std::optional<double> to_number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+/// KEY = value
+std::string describe(const TirEntry& entry) {
+  return shorten(entry.key) + " = " + (entry.quoted ? quote(entry.text) : shorten(entry.text));
+}
+
 class Parser {
  public:
   explicit Parser(const std::filesystem::path& path) { file_.path = path; }
@@ -67,14 +78,14 @@ class Parser {
 
   void parse_section(std::string_view text) {
     if (text.back() != ']' || text.size() < 3) {
-      throw error("'" + std::string(text) + "': a section must read [NAME]");
+      throw error(quote(text) + ": a section must read [NAME]");
     }
     section_ = to_upper(trim(text.substr(1, text.size() - 2)));
     in_table_ = false;
   }
 
   void parse_header(std::string_view text) {
-    if (text.back() != '}') throw error("'" + std::string(text) + "': must read {column names}");
+    if (text.back() != '}') throw error(quote(text) + ": must read {column names}");
     file_.tables.push_back(
         {section_, std::string(trim(text.substr(1, text.size() - 2))), {}, line_});
     in_table_ = true;
@@ -84,37 +95,34 @@ class Parser {
     const std::size_t equals = text.find('=');
     TirEntry entry{section_, to_upper(trim(text.substr(0, equals))),
                    std::string(trim(text.substr(equals + 1))), false, line_};
-    if (entry.key.empty()) throw error("'" + std::string(text) + "': a name must precede '='");
+    if (entry.key.empty()) throw error(quote(text) + ": a name must precede '='");
     if (entry.text.starts_with('\'')) {
       if (entry.text.size() < 2 || entry.text.back() != '\'') {
-        throw error(entry.key + " = " + entry.text + ": the closing quote is missing");
+        throw error(describe(entry) + ": the closing quote is missing");
       }
       entry.text = std::string(trim(std::string_view(entry.text).substr(1, entry.text.size() - 2)));
       entry.quoted = true;
     } else if (entry.text.empty()) {
-      throw error(entry.key + ": a value must follow '='");
+      throw error(shorten(entry.key) + ": a value must follow '='");
     }
     check_new(entry);
     file_.entries.push_back(std::move(entry));
     in_table_ = false;
   }
 
-  void check_new(const TirEntry& entry) const {
-    for (const TirEntry& other : file_.entries) {
-      if (other.key == entry.key && other.section == entry.section) {
-        throw error(entry.key + " = " + entry.text + ": already given in line " +
-                    std::to_string(other.line));
-      }
-    }
+  void check_new(const TirEntry& entry) {
+    const auto [first, is_new] = lines_.try_emplace({entry.section, entry.key}, entry.line);
+    if (is_new) return;
+    throw error(describe(entry) + ": already given in line " + std::to_string(first->second));
   }
 
   void parse_row(std::string_view text) {
-    if (!in_table_) throw error("'" + std::string(text) + "': must be KEY = value or [SECTION]");
+    if (!in_table_) throw error(quote(text) + ": must be KEY = value or [SECTION]");
     std::vector<double> row;
     for (std::string_view rest = text; !rest.empty();) {
       const std::size_t end = std::min(rest.find_first_of(" \t,"), rest.size());
       const std::optional<double> value = to_number(rest.substr(0, end));
-      if (!value) throw error("'" + std::string(rest.substr(0, end)) + "': must be a number");
+      if (!value) throw error(quote(rest.substr(0, end)) + ": must be a number");
       row.push_back(*value);
       rest = trim(rest.substr(std::min(end + 1, rest.size())));
     }
@@ -122,6 +130,7 @@ class Parser {
   }
 
   TirFile file_;
+  std::map<std::pair<std::string, std::string>, int> lines_;  // by section and key
   std::string section_;
   bool in_table_ = false;
   int line_ = 0;
@@ -146,7 +155,7 @@ TirFile parse_tir(std::string_view content, const std::filesystem::path& path) {
 }
 
 TirFile read_tir(const std::filesystem::path& path) {
-  return parse_tir(read_text_file(path), path);
+  return parse_tir(read_text_file(path, kMaxBytes), path);
 }
 
 double get_number(const TirFile& file, const TirEntry& entry) {
@@ -156,9 +165,8 @@ double get_number(const TirFile& file, const TirEntry& entry) {
 }
 
 InputError tir_error(const TirFile& file, const TirEntry& entry, const std::string& what) {
-  const std::string value = entry.quoted ? "'" + entry.text + "'" : entry.text;
-  return InputError(file.path.string() + ":" + std::to_string(entry.line) + ": " + entry.key +
-                    " = " + value + ": " + what);
+  return InputError(file.path.string() + ":" + std::to_string(entry.line) + ": " + describe(entry) +
+                    ": " + what);
 }
 
 }  // namespace strut

@@ -44,8 +44,8 @@ struct TirFile {
   const TirEntry* find(std::string_view key) const;
 };
 
-/// Reads the file at `path`. Throws InputError "file:line: ..." where it is missing or a line is
-/// none of the above, EnvironmentError where it cannot be read.
+/// Reads the file at `path`. Throws InputError "file:line: ..." where it is missing, larger than
+/// 4 MiB, or a line is none of the above, EnvironmentError where it cannot be read.
 TirFile read_tir(const std::filesystem::path& path);
 
 /// Parses the content of a file; `path` only names it in messages.

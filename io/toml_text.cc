@@ -124,11 +124,11 @@ std::string quote_toml(const std::string& text) {
 }
 
 TomlValues flatten_toml(const std::filesystem::path& path) {
-  return flatten(path, read_text_file(path));
+  return flatten(path, read_toml_text(path));
 }
 
 std::string set_toml_values(const std::filesystem::path& path, const TomlValues& literals) {
-  const std::string before = read_text_file(path);
+  const std::string before = read_toml_text(path);
   std::string text = before;
   for (const auto& [key, literal] : literals) text = set_value(path, text, key, literal);
   if (!literals.empty()) check_set(path, before, text, literals);
@@ -136,7 +136,7 @@ std::string set_toml_values(const std::filesystem::path& path, const TomlValues&
 }
 
 std::string replace_toml_texts(const std::filesystem::path& path, const TomlValues& values) {
-  const std::string text = read_text_file(path);
+  const std::string text = read_toml_text(path);
   const toml::table root = parse_toml(path, text);
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, std::string>> changes;
   changes.reserve(values.size());

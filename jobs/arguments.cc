@@ -1,7 +1,5 @@
 #include "jobs/arguments.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <iostream>
 #include <set>
@@ -9,7 +7,7 @@
 
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
-#include "jobs/terminal.h"
+#include "jobs/standard_output.h"
 
 namespace strut {
 namespace {
@@ -43,10 +41,6 @@ std::string join_words(const std::vector<std::string>& words) {
   std::string joined;
   for (const std::string& word : words) joined += (joined.empty() ? "" : "|") + word;
   return joined;
-}
-
-std::string make_heading(const std::string& text) {
-  return paint(text, Style::kBold, STDOUT_FILENO);
 }
 
 }  // namespace
@@ -171,12 +165,12 @@ bool Arguments::parse(const std::vector<std::string>& words) {
 }
 
 void Arguments::print_help() const {
-  std::cout << make_heading("Usage:") << " " << synopsis_ << "\n\n"
-            << description_ << "\n\n"
-            << make_heading("Options:") << "\n"
-            << describe_options() << "\n"
-            << make_heading("Examples:") << "\n"
-            << examples_ << "\n";
+  print_styled("Usage:", Style::kBold);
+  std::cout << " " << synopsis_ << "\n\n" << description_ << "\n\n";
+  print_styled("Options:", Style::kBold);
+  std::cout << "\n" << describe_options() << "\n";
+  print_styled("Examples:", Style::kBold);
+  std::cout << "\n" << examples_ << "\n";
 }
 
 InputError Arguments::usage_error(const std::string& what) const {

@@ -22,6 +22,7 @@
 #include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
+#include "model/parallel/team.h"
 
 namespace strut {
 namespace {
@@ -84,6 +85,7 @@ ThreadFigure measure_threads(const BenchCases& bench, const Kernel& kernel,
                              double best_spin) {
   const double before = measure_spins(threads);
   double rate = 0.0;
+  check_team(threads);
 #pragma omp parallel num_threads(threads) reduction(+ : rate)
   {
     run_cases(bench, kernel, setting, {});  // wakes the thread and its memory

@@ -11,6 +11,7 @@ enum ExitCode : int {
   kExitNo = 1,           // it ran, and the answer is no
   kExitInput = 2,        // the user's input is wrong
   kExitEnvironment = 3,  // disk full, file unreadable, ...
+  kExitBug = 70,         // an invariant of the program is broken (EX_SOFTWARE of sysexits.h)
 };
 
 struct Command {

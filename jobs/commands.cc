@@ -82,6 +82,7 @@ const std::vector<ExitMeaning>& list_exit_meanings() {
       {"1", "ran, and the answer is no"},
       {"2", "the input is wrong"},
       {"3", "the environment failed; what was written is whole"},
+      {"70", "a bug in strut; the message says what to report"},
       {"130, 143", "interrupted; what was written is whole"},
   };
   return meanings;

@@ -105,6 +105,7 @@ Arguments describe_design() {
   arguments.add_switch("as-requested",
                        "integrate as the sweep does, not by RK4 1 ms with Newton closure");
   arguments.add_option("csv", ArgumentValue::file("FILE", {"csv"}), "write the sensitivity curves");
+  arguments.add_switch("force", "replace the file of --csv where it exists");
   arguments.add_switch("json", "print JSON");
   return arguments;
 }
@@ -115,9 +116,11 @@ int run_design(const Arguments& arguments) {
                                 " files; expected SWEEP.toml");
   }
   const SweepRequest request = read_request(arguments.positional().front());
-  if (arguments.has("csv"))
+  if (arguments.has("csv")) {
     check_output_file("csv", arguments.text("csv"),
-                      list_files_read({request.path, request.vehicle, request.maneuver}));
+                      list_files_read({request.path, request.vehicle, request.maneuver}),
+                      arguments.is_on("force"));
+  }
   DesignReport report;
   report.noise = read_noise(arguments);
   report.channels = read_channels(arguments, request);

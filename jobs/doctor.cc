@@ -1,7 +1,5 @@
 #include "jobs/doctor.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -17,7 +15,7 @@
 #include "jobs/open_sweep.h"
 #include "jobs/plan_estimate.h"
 #include "jobs/progress.h"
-#include "jobs/terminal.h"
+#include "jobs/standard_output.h"
 
 namespace strut {
 namespace {
@@ -99,8 +97,8 @@ Json make_json(const Findings& findings) {
 void print_text(const Findings& findings) {
   for (const Finding& f : findings) {
     const std::string health = get_name(f.health);
-    std::cout << (f.health == Health::kBad ? paint(health, Style::kRed, STDOUT_FILENO) : health)
-              << std::string(9 - health.size(), ' ') << f.check << ": " << f.found
+    f.health == Health::kBad ? print_styled(health, Style::kRed) : void(std::cout << health);
+    std::cout << std::string(9 - health.size(), ' ') << f.check << ": " << f.found
               << (f.meaning.empty() ? "" : "; " + f.meaning) << "\n";
   }
 }

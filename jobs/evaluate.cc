@@ -10,6 +10,7 @@
 #include "jobs/command.h"
 #include "jobs/messages.h"
 #include "jobs/progress.h"
+#include "jobs/standard_output.h"
 
 namespace strut {
 Json make_json(const Model& model, const ModelEvaluation& evaluation) {
@@ -32,15 +33,14 @@ Json make_json(const Model& model, const ModelEvaluation& evaluation) {
 }
 
 void print_table(const Model& model, const ModelEvaluation& evaluation) {
-  std::printf("%-24s%-8s%12s%12s%12s%12s%12s\n", "parameter", "unit", "ME", "MAE", "MAPE %", "RMSE",
-              "1 - R2");
+  print_format("%-24s%-8s%12s%12s%12s%12s%12s\n", "parameter", "unit", "ME", "MAE", "MAPE %",
+               "RMSE", "1 - R2");
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const Metrics& m = evaluation.metrics[i];
-    std::printf("%-24s%-8s%12.4g%12.4g%12.4g%12.4g%12.4g\n", model.targets[i].name.c_str(),
-                model.targets[i].unit.c_str(), m.largest_error, m.mean_absolute_error,
-                m.mean_absolute_percentage, m.rms_error, 1.0 - m.r2);
+    print_format("%-24s%-8s%12.4g%12.4g%12.4g%12.4g%12.4g\n", model.targets[i].name.c_str(),
+                 model.targets[i].unit.c_str(), m.largest_error, m.mean_absolute_error,
+                 m.mean_absolute_percentage, m.rms_error, 1.0 - m.r2);
   }
-  std::fflush(stdout);
   if (evaluation.out_of_range > 0) {
     tell_note(format_count(evaluation.out_of_range) + " of " + format_count(evaluation.samples) +
               " cases have inputs outside of the range trained on");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "io/config.h"
 #include "jobs/utf8.h"
@@ -11,19 +12,19 @@ namespace {
 
 std::string quote(const std::string& text) {
   static constexpr char kHex[] = "0123456789abcdef";
+  const std::string valid = make_valid_utf8(text);
   std::string quoted = "\"";
-  for (const char c : make_valid_utf8(text)) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (code < 0x20) {
-      quoted += "\\u00";
-      quoted += kHex[code / 16];
-      quoted += kHex[code % 16];
+  for (std::string_view left = valid; !left.empty();) {
+    std::string_view rest = left;
+    const char32_t code = take_character(rest);
+    if (is_control(code)) {
+      quoted += "\\u";
+      for (const unsigned shift : {12U, 8U, 4U, 0U}) quoted += kHex[code >> shift & 0xfU];
     } else {
-      quoted += c;
+      if (code == '"' || code == '\\') quoted += '\\';
+      quoted += left.substr(0, left.size() - rest.size());
     }
+    left = rest;
   }
   return quoted + "\"";
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "jobs/build_info.h"
+#include "model/parallel/team.h"
 
 namespace strut {
 namespace {
@@ -56,6 +57,7 @@ double measure_spin() {
 double measure_spins(int threads) {
   constexpr int kSpins = 8;
   double sum = 0.0;
+  check_team(threads);
 #pragma omp parallel num_threads(threads) reduction(+ : sum)
   {
     measure_spin();  // wakes the thread

@@ -4,10 +4,13 @@
 #include <sundials/sundials_version.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cerrno>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
+#include <system_error>
 
 #include "io/hdf5.h"
 #include "io/nearest_name.h"
@@ -16,7 +19,9 @@
 #include "jobs/commands.h"
 #include "jobs/interrupt.h"
 #include "jobs/messages.h"
+#include "jobs/standard_output.h"
 #include "model/kernel/simulation.h"
+#include "model/vehicle/model_error.h"
 
 namespace {
 
@@ -134,9 +139,7 @@ int run(const std::vector<std::string>& words) {
 
 int run_and_flush(const std::vector<std::string>& words) {
   const int code = run(words);
-  std::cout.flush();
-  const bool is_flushed = std::fflush(stdout) == 0;
-  if (!std::cout || !is_flushed || std::ferror(stdout) != 0) {
+  if (!std::cout.flush()) {
     throw strut::EnvironmentError(
         "standard output: cannot be written; is its disk full, or what reads it gone?");
   }
@@ -144,18 +147,67 @@ int run_and_flush(const std::vector<std::string>& words) {
   return code;
 }
 
+int fail(strut::ExitCode code, const std::string& text) {
+  strut::tell_error(text);
+  return code;
+}
+
+/// What the file system refuses where a command has no message of its own.
+int fail_on_file(const std::filesystem::filesystem_error& error) {
+  const std::string what = error.path1().string() + ": " + error.code().message();
+  switch (error.code().value()) {
+    case ENAMETOOLONG:
+      return fail(strut::kExitInput, what + "; name another file or folder");
+    case ELOOP:
+      return fail(strut::kExitInput, what + "; its symbolic links lead in a circle");
+    case ENOTDIR:
+      return fail(strut::kExitInput, what + "; a file stands where a folder must be");
+    case EACCES:
+      return fail(strut::kExitEnvironment,
+                  what + "; check the permissions of it and of the folders above it");
+    default:
+      return fail(strut::kExitEnvironment, what);
+  }
+}
+
+int fail_on_system(const std::system_error& error) {
+  const bool no_threads = error.code().value() == EAGAIN;
+  const std::string remedy =
+      "; fewer --threads or a higher limit of processes (ulimit -u) may help";
+  return fail(strut::kExitEnvironment, error.what() + (no_threads ? remedy : ""));
+}
+
+int fail_on_bug(const std::string& what) {
+  return fail(strut::kExitBug, "a bug in strut: " + what +
+                                   "; please report this message, the command line and what "
+                                   "`strut --version` prints");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   strut::end_on_interrupt();
+  // A write beyond a limit of file size fails, as on a full disk, and does not end the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const strut::StandardOutput output;
   const std::vector<std::string> words(argv + 1, argv + argc);
   try {
     return run_and_flush(words);
   } catch (const strut::InputError& e) {
-    strut::tell_error(e.what());
-    return strut::kExitInput;
+    return fail(strut::kExitInput, e.what());
+  } catch (const strut::ModelError& e) {
+    return fail(strut::kExitInput, e.what());
+  } catch (const strut::EnvironmentError& e) {
+    return fail(strut::kExitEnvironment, e.what());
+  } catch (const std::filesystem::filesystem_error& e) {
+    return fail_on_file(e);
+  } catch (const std::system_error& e) {
+    return fail_on_system(e);
+  } catch (const std::bad_alloc&) {
+    return fail(strut::kExitEnvironment, "out of memory");
   } catch (const std::exception& e) {
-    strut::tell_error(e.what());
-    return strut::kExitEnvironment;
+    return fail_on_bug(e.what());
+  } catch (...) {
+    return fail_on_bug("an unknown exception");
   }
 }

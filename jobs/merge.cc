@@ -1,7 +1,6 @@
 #include "jobs/merge.h"
 
 #include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 
@@ -20,26 +19,6 @@ namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file that the sweep is made of, or a place in one of its subfolders.
-bool is_own(const SweepFolder& folder, const fs::path& output) {
-  const fs::path root = fs::weakly_canonical(fs::absolute(folder.root));
-  const fs::path inside = fs::weakly_canonical(fs::absolute(output)).lexically_relative(root);
-  if (inside.empty() || *inside.begin() == "..") return false;
-  const SweepFolder here;
-  return std::next(inside.begin()) != inside.end() || inside == here.plan() ||
-         inside == here.request() || inside == here.journal();
-}
-
-/// `folder`: the sweep, of which nothing may be replaced.
-fs::path find_output(const Arguments& arguments, const SweepFolder& folder) {
-  fs::path output = find_output_file(arguments, {});
-  if (is_own(folder, output)) {
-    throw InputError("--output = " + output.string() +
-                     ": the sweep's own; must be another file or folder");
-  }
-  return output;
-}
 
 MergeInput make_input(const Plan& plan) {
   MergeInput input{plan.hash(), plan.shard_count(), plan.make_schema()};
@@ -94,14 +73,12 @@ Arguments describe_merge() {
 
 int run_merge(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
-  const fs::path output = find_output(arguments, sweep.folder);
+  const fs::path output = find_output_file(arguments, {});
   MergeOptions options;
   options.is_view = arguments.is_on("virtual");
   options.partial = arguments.is_on("partial");
   const BuildInfo& build = get_build_info();
   options.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
-  // A limit of file size is a full disk, told as one, not the end of the program.
-  std::signal(SIGXFSZ, SIG_IGN);
   InterruptWatcher interrupt;
   std::atomic<std::int64_t> done{0};
   MergeReport report;

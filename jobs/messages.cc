@@ -2,17 +2,20 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <iostream>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
+#include "io/shorten.h"
 #include "jobs/dispatch/quote_word.h"
 #include "jobs/interrupt.h"
 #include "jobs/machine.h"
 #include "jobs/progress.h"
 #include "jobs/terminal.h"
+#include "jobs/utf8.h"
 
 namespace strut {
 namespace {
@@ -25,17 +28,37 @@ std::mutex mutex;
 std::string live_line;
 std::vector<std::string> next_lines;
 
-std::string paint_error(const std::string& text, Style style) {
-  return paint(text, style, STDERR_FILENO);
+/// Most of a message: a file whose content it quotes may hold anything.
+constexpr std::size_t kMaxBytes = 8000, kMaxLineBytes = 4000, kMaxLines = 24;
+
+/// `text`, which may quote files and names that others made, as a terminal may show it: bounded,
+/// without control characters.
+std::string make_shown(const std::string& text) {
+  std::string shown;
+  const std::string escaped = escape_controls(shorten(text, kMaxBytes));
+  std::size_t begin = 0, lines = 0;
+  for (; begin <= escaped.size() && lines < kMaxLines; ++lines) {
+    const std::size_t end = std::min(escaped.find('\n', begin), escaped.size());
+    const std::string_view line = std::string_view(escaped).substr(begin, end - begin);
+    shown += (lines == 0 ? "" : "\n") + shorten(line, kMaxLineBytes);
+    begin = end + 1;
+  }
+  if (begin <= escaped.size()) shown += "\n...";
+  return shorten(shown, kMaxBytes);
+}
+
+std::string paint(const std::string& text, Style style) {
+  const std::string shown = make_shown(text);
+  return shows_colors(STDERR_FILENO) ? get_sequence(style) + shown + kPlainSequence : shown;
 }
 
 std::string make_next_line(const std::string& line, const std::string& why) {
-  return paint_error("next:", Style::kBold) + " " + line +
-         (why.empty() ? "" : paint_error("  # " + why, Style::kDim));
+  return paint("next:", Style::kBold) + " " + make_shown(line) +
+         (why.empty() ? "" : paint("  # " + why, Style::kDim));
 }
 
 std::string make_error(const std::string& text) {
-  return paint_error("strut:", Style::kRed) + " " + text;
+  return paint("strut:", Style::kRed) + " " + make_shown(text);
 }
 
 std::string join_quoted(const std::vector<std::string>& words) {
@@ -52,10 +75,10 @@ std::vector<std::string> name_command(const Arguments& arguments,
   return line;
 }
 
+/// `line`: made of texts that may be shown.
 void say(const std::string& line) {
   // Data before the message, though one stream is buffered and the other is not.
   std::cout.flush();
-  std::fflush(stdout);
   const std::lock_guard lock(mutex);
   std::cerr << (live_line.empty() ? "" : kEraseLine) << line << "\n" << live_line << std::flush;
 }
@@ -69,7 +92,7 @@ Loudness get_loudness() { return loudness; }
 void tell_error(const std::string& text) { say(make_error(text)); }
 
 void tell_note(const std::string& text) {
-  if (loudness != Loudness::kQuiet) say("strut: " + text);
+  if (loudness != Loudness::kQuiet) say("strut: " + make_shown(text));
 }
 
 void tell_notes(const std::vector<std::string>& texts) {
@@ -77,7 +100,7 @@ void tell_notes(const std::vector<std::string>& texts) {
 }
 
 void tell_detail(const std::string& text) {
-  if (loudness == Loudness::kVerbose) say(paint_error("strut: " + text, Style::kDim));
+  if (loudness == Loudness::kVerbose) say(paint("strut: " + text, Style::kDim));
 }
 
 void tell_next_line(const std::string& line, const std::string& why) {
@@ -133,12 +156,12 @@ Stage::Stage(std::string name) : name_(std::move(name)), start_(now()) {}
 
 Stage::~Stage() { tell_detail(name_ + ": " + format_duration(now() - start_)); }
 
-void show_line(const std::string& text) { say(text); }
+void show_line(const std::string& text) { say(make_shown(text)); }
 
 void show_live_line(const std::string& text) {
   const std::lock_guard lock(mutex);
-  live_line = text;
-  std::cerr << kEraseLine << text << std::flush;
+  live_line = make_shown(text);
+  std::cerr << kEraseLine << live_line << std::flush;
 }
 
 void erase_live_line() {

@@ -62,6 +62,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
 
 void check_report(const SimulateOptions& options) {
   const PageFolder folder{options.report.lexically_normal()};
+  check_output_folder("report", folder.root);
   check_page_folder("report", folder, kRunContent, {});
   std::error_code ignored;
   if (std::filesystem::equivalent(std::filesystem::absolute(options.output).parent_path(),
@@ -76,6 +77,7 @@ SimulateOptions read_options(const Arguments& arguments) {
   const auto& files = arguments.positional();
   options.kinematics = arguments.is_on("kinematics");
   options.json = arguments.is_on("json");
+  options.force = arguments.is_on("force");
   const std::size_t expected = options.kinematics ? 1 : 2;
   if (files.size() != expected) {
     throw arguments.usage_error(std::to_string(files.size()) + " files; expected " +
@@ -221,6 +223,7 @@ int run_case(const Arguments& arguments, const SimulateOptions& options) {
   const RunFormat format = check_output(options);
   const double duration = input.maneuver.duration;
   check_rate(options.rate, duration);
+  check_step_count(options, duration);
   const PreparedCase prepared = prepare_case(options.source, input);
   check_steps(prepared, options);
 
@@ -257,7 +260,8 @@ int run_kinematics(const SimulateOptions& options) {
   if (options.output.extension() != ".csv") {
     throw InputError("--output = " + options.output.string() + ": the name must end in .csv");
   }
-  check_output_file("output", options.output, {});
+  check_output_file("output", options.output, list_files_read({options.source.vehicle}),
+                    options.force);
   write_kinematics(options.source, options.output);
   tell_note(options.output.string() + ": front and rear left corner, -100 to +100 mm");
   tell_next(
@@ -301,6 +305,7 @@ Arguments describe_simulate() {
                      "repeated");
   arguments.add_option("report", ArgumentValue::folder("DIR"),
                        "also write DIR/report.html: the car crossing the bump, and its curves");
+  arguments.add_switch("force", "replace FILE where it exists");
   arguments.add_switch("json", "print the snapshot as JSON");
   arguments.add_switch("kinematics", "write the suspension's kinematics instead of a run");
   return arguments;

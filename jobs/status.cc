@@ -13,6 +13,7 @@
 #include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
+#include "jobs/standard_output.h"
 #include "jobs/terminal.h"
 #include "sweep/status.h"
 
@@ -192,7 +193,7 @@ int run_status(const Arguments& arguments) {
   for (int look = 0;; ++look) {
     const SweepStatus status = read_status(sweep.folder, sweep.plan);
     if (look % kAskEvery == 0) submissions = follow_all(sweep.folder);
-    if (arguments.is_on("watch") && on_terminal) std::cout << "\033[H\033[J";
+    if (arguments.is_on("watch") && on_terminal) print_control("\033[H\033[J");
     if (arguments.is_on("json")) {
       std::cout << make_json(status, submissions).dump() << std::endl;
     } else {

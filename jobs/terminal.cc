@@ -24,10 +24,9 @@ bool shows_colors(int descriptor) {
   return read_variable("NO_COLOR").empty() && is_live_terminal(descriptor);
 }
 
-std::string paint(const std::string& text, Style style, int descriptor) {
-  constexpr std::array<const char*, 3> kBegin = {"\033[31m", "\033[1m", "\033[2m"};  // Style
-  if (!shows_colors(descriptor)) return text;
-  return kBegin[static_cast<std::size_t>(style)] + text + "\033[0m";
+const char* get_sequence(Style style) {
+  constexpr std::array<const char*, 3> kSequences = {"\033[31m", "\033[1m", "\033[2m"};  // Style
+  return kSequences[static_cast<std::size_t>(style)];
 }
 
 }  // namespace strut

@@ -14,7 +14,8 @@ bool shows_colors(int descriptor);
 
 enum class Style { kRed, kBold, kDim };
 
-/// `text` in that style where `descriptor` shows colors, as it is elsewhere.
-std::string paint(const std::string& text, Style style, int descriptor);
+/// The sequence with which a style begins, and the one that ends any.
+const char* get_sequence(Style style);
+inline constexpr const char* kPlainSequence = "\033[0m";
 
 }  // namespace strut

@@ -84,25 +84,22 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
   return request;
 }
 
-/// Where the training's state is kept; empty: nowhere. A checkpoint that is there is replaced only
-/// by the training that goes on from it, and never is it a file of `others`.
-fs::path find_checkpoint(const Arguments& arguments, const std::vector<std::string>& others) {
+/// Where the training's state is kept; empty: nowhere. A file that is there is replaced only by the
+/// training that goes on from it, or with --force; never is it one of `data`, or the model.
+fs::path find_checkpoint(const Arguments& arguments, const std::vector<fs::path>& data,
+                         const fs::path& output) {
   if (!arguments.has("checkpoint")) {
     if (arguments.is_on("resume")) throw arguments.usage_error("--resume needs --checkpoint FILE");
     return {};
   }
   fs::path checkpoint = arguments.text("checkpoint");
-  for (const std::string& other : others) {
-    std::error_code ignored;
-    if (checkpoint != other && !fs::equivalent(checkpoint, other, ignored)) continue;
+  if (fs::weakly_canonical(checkpoint) == fs::weakly_canonical(output)) {
     throw InputError("--checkpoint = " + checkpoint.string() +
-                     ": must be another file than the model and the data");
+                     ": is the model of --output; must be another file");
   }
-  const bool may_replace = arguments.is_on("resume") || arguments.is_on("force");
-  if (fs::exists(checkpoint) && !may_replace) {
-    throw InputError("--checkpoint = " + checkpoint.string() +
-                     ": exists; --resume goes on from it, --force replaces it");
-  }
+  check_output_file("checkpoint", checkpoint, data,
+                    arguments.is_on("resume") || arguments.is_on("force"),
+                    "--resume goes on from it, --force replaces it");
   return checkpoint;
 }
 
@@ -283,9 +280,7 @@ int run_train(const Arguments& arguments) {
   if (names.empty())
     throw arguments.usage_error("DATA: missing; name a sweep folder, shards or a merged file");
   const fs::path output = find_output_file(arguments, names);
-  std::vector<std::string> others = names;
-  others.push_back(output.string());
-  const fs::path checkpoint = find_checkpoint(arguments, others);
+  const fs::path checkpoint = find_checkpoint(arguments, {names.begin(), names.end()}, output);
   TrainingRequest request = read_request(arguments, output);
   DatasetOptions options;
   options.partial = arguments.is_on("partial");

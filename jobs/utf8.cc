@@ -38,15 +38,60 @@ std::size_t measure_character(std::string_view text) {
   return lead->length;
 }
 
+char32_t decode(std::string_view character) {
+  constexpr unsigned char kLeadBits[] = {0x00, 0x7f, 0x1f, 0x0f, 0x07};  // by length
+  char32_t code = static_cast<unsigned char>(character[0]) & kLeadBits[character.size()];
+  for (const char c : character.substr(1)) code = code << 6U | (static_cast<unsigned>(c) & 0x3fU);
+  return code;
+}
+
+void append_escaped(std::string& text, std::string_view bytes) {
+  static constexpr char kHex[] = "0123456789abcdef";
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    text.append("\\x").append({kHex[byte / 16], kHex[byte % 16]});
+  }
+}
+
 }  // namespace
+
+char32_t take_character(std::string_view& text) {
+  const std::size_t length = measure_character(text);
+  const char32_t code = length > 0 ? decode(text.substr(0, length)) : kNoCharacter;
+  text.remove_prefix(std::max<std::size_t>(length, 1));
+  return code;
+}
+
+bool is_control(char32_t code) {
+  const auto lies_in = [code](char32_t first, char32_t last) {
+    return first <= code && code <= last;
+  };
+  return code < 0x20 || lies_in(0x7f, 0x9f) || lies_in(0x2028, 0x202e) || lies_in(0x2066, 0x2069);
+}
+
+std::string escape_controls(std::string_view text) {
+  std::string shown;
+  shown.reserve(text.size());
+  while (!text.empty()) {
+    std::string_view rest = text;
+    const char32_t code = take_character(rest);
+    const std::string_view bytes = text.substr(0, text.size() - rest.size());
+    const bool is_shown =
+        code == '\n' || code == '\t' || (code != kNoCharacter && !is_control(code));
+    is_shown ? void(shown += bytes) : append_escaped(shown, bytes);
+    text = rest;
+  }
+  return shown;
+}
 
 std::string make_valid_utf8(std::string_view text) {
   std::string valid;
   valid.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t length = measure_character(text);
-    valid += length > 0 ? text.substr(0, length) : std::string_view("\xef\xbf\xbd");
-    text.remove_prefix(std::max<std::size_t>(length, 1));
+    std::string_view rest = text;
+    const bool is_valid = take_character(rest) != kNoCharacter;
+    valid += is_valid ? text.substr(0, text.size() - rest.size()) : "\xef\xbf\xbd";
+    text = rest;
   }
   return valid;
 }

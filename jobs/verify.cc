@@ -1,7 +1,5 @@
 #include "jobs/verify.h"
 
-#include <unistd.h>
-
 #include <atomic>
 #include <iostream>
 #include <limits>
@@ -12,7 +10,7 @@
 #include "jobs/messages.h"
 #include "jobs/open_sweep.h"
 #include "jobs/progress.h"
-#include "jobs/terminal.h"
+#include "jobs/standard_output.h"
 #include "sweep/shard_store.h"
 #include "sweep/verify.h"
 
@@ -53,10 +51,13 @@ void print_text(const VerifyReport& report) {
     }
     std::cout << "\n";
   }
-  std::cout << "data digest " << report.data_digest << "\n"
-            << (report.ok() ? "sound and complete"
-                            : paint("NOT sound and complete", Style::kRed, STDOUT_FILENO))
-            << "\n";
+  std::cout << "data digest " << report.data_digest << "\n";
+  if (report.ok()) {
+    std::cout << "sound and complete";
+  } else {
+    print_styled("NOT sound and complete", Style::kRed);
+  }
+  std::cout << "\n";
 }
 
 /// Moves files that are not the plan's out of the way of `strut run`.

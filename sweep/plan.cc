@@ -15,6 +15,9 @@ namespace {
 
 /// Numbers of drawn cases are kept in memory and in the plan's file.
 constexpr std::int64_t kMostDrawn = 10'000'000;
+/// Each is a file in one folder, a claim and a line of the journal; a list of them is kept in
+/// memory.
+constexpr std::int64_t kMaxShards = 10'000'000;
 
 InputError count_error(const SweepRequest& request, const std::string& what) {
   return InputError(request.path.string() +
@@ -33,6 +36,16 @@ void check_count(const SweepRequest& request) {
     throw count_error(request, "must lie in [1, " + std::to_string(kMostDrawn) + "]" +
                                    (levels ? " or be \"all\"" : ""));
   }
+}
+
+void check_shards(const SweepRequest& request, std::int64_t cases) {
+  const std::int64_t shards = (cases - 1) / request.shard_cases + 1;
+  if (shards <= kMaxShards) return;
+  throw InputError(request.path.string() + ": " + std::to_string(cases) + " cases in shards of " +
+                   std::to_string(request.shard_cases) + " make " + std::to_string(shards) +
+                   " shards; at most " + std::to_string(kMaxShards) +
+                   " can be run, each a file in one folder: allow fewer by sample.count, fewer "
+                   "levels in [grid] or more cases a shard in [shards]");
 }
 
 std::vector<std::int64_t> allocate(const SweepRequest& request, const std::vector<Layer>& layers) {
@@ -68,6 +81,7 @@ struct Plan::State {
   explicit State(const SweepRequest& asked)
       : request(asked), points(request), rule(request, points), layers(rule.layers()) {
     order.emplace(request, points, draw());
+    check_shards(request, order->size());
     facts = list_facts(request);
     hash = calc_hash(facts);
     for (const Axis& axis : request.grid.axes()) parameters.push_back(&find_parameter(axis.name));

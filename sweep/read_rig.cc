@@ -207,6 +207,10 @@ RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {
   }
   document.check_all_read();
   if (maneuver.duration <= 0.0) maneuver.duration = root.number("duration", kDuration);
+  if (!kDuration.contains(maneuver.duration)) {
+    throw root.error("a recording of " + format_number(maneuver.duration) +
+                     " s: " + kDuration.describe());
+  }
   try {
     assign_rig_inputs(kind, maneuver.inputs);
   } catch (const std::invalid_argument& e) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/config.h"
@@ -266,11 +268,11 @@ void read_entry(const TirFile& file, const TirEntry& entry, Pac2002<double>& tir
 
 /// A key counts once in the whole file, whatever its section.
 void check_once(const TirFile& file) {
+  std::map<std::string_view, int> lines;
   for (const TirEntry& entry : file.entries) {
-    const TirEntry* first = file.find(entry.key);
-    if (first != &entry && !kReadOver.contains(entry.key)) {
-      throw tir_error(file, entry, "already given in line " + std::to_string(first->line));
-    }
+    const auto [first, is_new] = lines.try_emplace(entry.key, entry.line);
+    if (is_new || kReadOver.contains(entry.key)) continue;
+    throw tir_error(file, entry, "already given in line " + std::to_string(first->second));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "sweep/parameters.h"
 #include "sweep/read_maneuver.h"
 #include "sweep/read_vehicle.h"
+#include "sweep/step_count.h"
 
 namespace strut {
 namespace {
@@ -175,7 +176,16 @@ void limit_default_strata(const std::optional<Table>& table, const Grid& grid,
   sample.strata = static_cast<int>(std::min<std::int64_t>(sample.strata, most));
 }
 
-IntegrateRequest read_integrate(const std::optional<Table>& table) {
+/// Of all cases.
+double find_longest_duration(const SweepRequest& request) {
+  double longest = request.base.maneuver.duration;
+  for (const Axis& axis : request.grid.axes()) {
+    if (axis.name == "duration") longest = std::max(axis.from, axis.last());
+  }
+  return longest;
+}
+
+IntegrateRequest read_integrate(const std::optional<Table>& table, double longest_duration) {
   IntegrateRequest request;
   if (!table) return request;
   const int method = table->choice_or("method", 0, kIntegrators);
@@ -192,6 +202,8 @@ IntegrateRequest read_integrate(const std::optional<Table>& table) {
   step.stepper = method == kIntegratorAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.step = table->number_or("step", step.step,
                                {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
+  const std::string fault = find_step_count_fault(longest_duration, step.step);
+  if (!fault.empty()) throw table->error("step", fault);
   step.coarse_step = table->number_or("coarse_step", 0.0, between(step.step, kMaxStep, "s"));
   step.locate_events = table->boolean_or("locate_events", step.locate_events);
   return request;
@@ -273,7 +285,7 @@ SweepRequest read_request(const std::filesystem::path& path) {
   request.grid = read_grid(root, request);
   read_by(sample, request.grid, request.sample);
   limit_default_strata(sample, request.grid, request.sample);
-  request.integrate = read_integrate(root.find_table("integrate"));
+  request.integrate = read_integrate(root.find_table("integrate"), find_longest_duration(request));
   read_record(root.table("record"), request);
   read_shards(root.find_table("shards"), request);
   request.shuffle = request.sample.method == SampleMethod::kGrid && find_slow_axes(request).empty();

@@ -348,8 +348,8 @@ TEST_CASE("A run beside its report is no part of it", "[io]") {
   folder.write("figures/motion.svg", "<svg/>\n");
   folder.write("figures/curves.svg", "of other numbers\n");
 
-  const test::Outcome again =
-      test::run_shell("PATH=" + std::string(folder / "nothing") + " " STRUT_PROGRAM " " + simulate);
+  const test::Outcome again = test::run_shell("PATH=" + std::string(folder / "nothing") +
+                                              " " STRUT_PROGRAM " " + simulate + " --force");
   REQUIRE(again.code == 0);
   CHECK_THAT(again.messages, Contains("gnuplot cannot be started"));
   CHECK(test::read_text(folder / "run.csv") == run);

@@ -138,7 +138,7 @@ TEST_CASE("Integrators and closures agree on the snapshot", "[io]") {
   const TemporaryFolder folder;
   const auto snapshot = [&](const std::string& options) {
     const Outcome outcome = run("simulate " + kSedan + " " + kBump + " -o " +
-                                (folder / "run.csv").string() + " --json " + options);
+                                (folder / "run.csv").string() + " --force --json " + options);
     REQUIRE(outcome.code == 0);
     const test::JsonTree json = test::parse_json(outcome.out);
     return json.get<double>("snapshot.body_acceleration_z");
@@ -308,8 +308,9 @@ TEST_CASE("Output that cannot be written is told, and no next command", "[io]") 
   REQUIRE(run("run -q " + (folder / "cars").string()).code == 0);
   REQUIRE(run("train -q --allow-few --hidden 3 --epochs 5 " + shard + " -o " + model).code == 0);
   for (const std::string& command :
-       {"simulate " + kSedan + " " + kBump + " -o " + file, "identify " + model + " " + file,
-        "evaluate " + model + " " + shard, "status " + (folder / "cars").string()}) {
+       {"simulate " + kSedan + " " + kBump + " --force -o " + file,
+        "identify " + model + " " + file, "evaluate " + model + " " + shard,
+        "status " + (folder / "cars").string()}) {
     INFO(command);
     // Closed, a pipe or disk that is full: what was asked for is lost.
     for (const char* out : {" >/dev/full", " >&-"}) {
@@ -340,9 +341,9 @@ TEST_CASE("A file that is read is not written", "[io]") {
   folder.write("sweep.toml", text);
 
   const std::pair<std::string, std::string> cases[] = {
-      {"simulate " + kSedan + " " + road + " -o ", profile},
-      {"simulate " + kRig + " " + plate + " -o ", input},
-      {"design " + sweep + " --rate 100 --csv ", sweep}};
+      {"simulate " + kSedan + " " + road + " --force -o ", profile},
+      {"simulate " + kRig + " " + plate + " --force -o ", input},
+      {"design " + sweep + " --rate 100 --force --csv ", sweep}};
   for (const auto& [command, file] : cases) {
     INFO(command);
     const std::string before = read_text(file);

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <sstream>
 
 #include "tests/limited_file_size.h"
 #include "tests/temporary_folder.h"
@@ -20,15 +19,15 @@ std::vector<CsvColumn> make_columns() {
 }
 
 TEST_CASE("Names stand on the first line, units in a comment below", "[io]") {
-  std::ostringstream text;
-  write_csv(text, {{"time", "s", {0.0, 0.5}}, {"z", "m", {1.0, -2.0}}});
-  CHECK(text.str() == "time,z\n# units: s,m\n0,1\n0.5,-2\n");
+  const TemporaryFolder folder;
+  write_csv(folder / "run.csv", {{"time", "s", {0.0, 0.5}}, {"z", "m", {1.0, -2.0}}});
+  CHECK(read_text(folder / "run.csv") == "time,z\n# units: s,m\n0,1\n0.5,-2\n");
 }
 
 TEST_CASE("Columns without units have no line of units", "[io]") {
-  std::ostringstream text;
-  write_csv(text, {{"camber_rad", "", {0.5}}});
-  CHECK(text.str() == "camber_rad\n0.5\n");
+  const TemporaryFolder folder;
+  write_csv(folder / "curves.csv", {{"camber_rad", "", {0.5}}});
+  CHECK(read_text(folder / "curves.csv") == "camber_rad\n0.5\n");
 }
 
 TEST_CASE("A CSV file reads back bit for bit", "[io][property]") {

@@ -33,7 +33,7 @@ TEST_CASE("A car's effect from its file and by a setting give one run", "[io][ef
   const auto simulate = [&](const std::string& vehicle, const std::string& more) {
     const std::string file = folder / "run.csv";
     const test::Outcome outcome = test::run_program("simulate " + vehicle + " " + maneuver +
-                                                    " -o " + file + " --rate 50 " + more);
+                                                    " --force -o " + file + " --rate 50 " + more);
     INFO(outcome.messages);
     REQUIRE(outcome.code == 0);
     return test::read_text(file);
@@ -54,8 +54,8 @@ TEST_CASE("A rig's effect from its file and by a setting give one run", "[io][ef
   const std::string maneuver = kExamples / "rigs/maneuvers/bump.toml";
   const auto simulate = [&](const std::string& rig, const std::string& more) {
     const std::string file = folder / "run.csv";
-    const test::Outcome outcome = test::run_program("simulate " + rig + " " + maneuver + " -o " +
-                                                    file + " --rate 100 " + more);
+    const test::Outcome outcome = test::run_program("simulate " + rig + " " + maneuver +
+                                                    " --force -o " + file + " --rate 100 " + more);
     INFO(outcome.messages);
     REQUIRE(outcome.code == 0);
     return test::read_text(file);
@@ -95,8 +95,8 @@ TEST_CASE("What sensors read is what simulate writes, of cars and rigs", "[io][e
   const std::string late = car ? "body_velocity_z" : "sprung_velocity";
   const auto simulate = [&](const std::string& more) {
     const std::string file = folder / "run.csv";
-    const test::Outcome outcome =
-        test::run_program("simulate " + model + " " + maneuver + " -o " + file + " " + more);
+    const test::Outcome outcome = test::run_program("simulate " + model + " " + maneuver +
+                                                    " --force -o " + file + " " + more);
     INFO(outcome.messages);
     REQUIRE(outcome.code == 0);
     return read_columns(file);

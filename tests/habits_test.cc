@@ -457,9 +457,9 @@ TEST_CASE("Single runs name the next command", "[io]") {
   check_case({"simulate --kinematics " + kSedan + " -o " + curves, 0,
               "strut simulate " + kSedan + " MANEUVER.toml"});
   check_case({"simulate " + kExamples + "rigs/quarter_car.toml " + kExamples +
-                  "rigs/maneuvers/bump.toml -o " + file,
+                  "rigs/maneuvers/bump.toml --force -o " + file,
               0, "strut compare CAMPAIGN.toml"});
-  check_case({"simulate " + kSedan + " " + kBump + " --set bump_height=0.19 -o " + file, 1,
+  check_case({"simulate " + kSedan + " " + kBump + " --set bump_height=0.19 --force -o " + file, 1,
               "strut simulate " + kSedan});
   check_case({"design " + design + " --rate 100", 0, "strut plan " + design});
 }
@@ -467,7 +467,7 @@ TEST_CASE("Single runs name the next command", "[io]") {
 TEST_CASE("Quiet says nothing but errors, verbose says more, data stays", "[io]") {
   const TemporaryFolder folder;
   const std::string run =
-      "simulate " + kSedan + " " + kBump + " -o " + (folder / "run.csv").string();
+      "simulate " + kSedan + " " + kBump + " --force -o " + (folder / "run.csv").string();
   const Outcome plain = run_program(run), quiet = run_program(run + " --quiet"),
                 verbose = run_program(run + " -v");
   CHECK(quiet.messages.empty());

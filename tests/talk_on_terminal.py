@@ -59,7 +59,7 @@ def main():
     terminal = {"TERM": "xterm"}
     with tempfile.TemporaryDirectory() as folder:
         def simulate(*options):
-            return [strut, "simulate", CAR, BUMP, "-o", f"{folder}/run.csv", *options]
+            return [strut, "simulate", CAR, BUMP, "--force", "-o", f"{folder}/run.csv", *options]
 
         wrong, done = simulate("--step", "7"), simulate()
         check(RED + b"strut:" in run_on_terminal(wrong, terminal), "an error is red")

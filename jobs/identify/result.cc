@@ -11,6 +11,7 @@
 #include "jobs/messages.h"
 #include "jobs/output_file.h"
 #include "jobs/progress.h"
+#include "jobs/standard_output.h"
 
 namespace strut {
 namespace {
@@ -88,9 +89,9 @@ void print_one(const IdentifiedRow& row) {
   const int width = static_cast<int>(longest) + 2;
   const auto print = [&](const std::string& name, const std::string& value, const std::string& half,
                          const std::string& unit, const char* in_range) {
-    std::printf("%-*s%16s%14s  ", width, name.c_str(), value.c_str(), half.c_str());
-    row.in_range() ? std::printf("%s\n", unit.c_str())
-                   : std::printf("%-12s%s\n", unit.c_str(), in_range);
+    print_format("%-*s%16s%14s  ", width, name.c_str(), value.c_str(), half.c_str());
+    row.in_range() ? print_format("%s\n", unit.c_str())
+                   : print_format("%-12s%s\n", unit.c_str(), in_range);
   };
   print("parameter", "value", "+-", "unit", "in range");
   for (const IdentifiedParameter& p : row.parameters) {
@@ -102,18 +103,18 @@ void print_many(const std::vector<IdentifiedRow>& rows) {
   std::size_t width = 3;
   for (const IdentifiedRow& row : rows) width = std::max(width, row.place.size());
   const int place = static_cast<int>(width);
-  std::printf("%-*s", place, "row");
+  print_format("%-*s", place, "row");
   for (const IdentifiedParameter& p : rows.front().parameters) {
     const std::string title = p.name + " " + p.unit;
-    std::printf("%26s%12s", title.c_str(), "+-");
+    print_format("%26s%12s", title.c_str(), "+-");
   }
-  std::printf("  in range\n");
+  print_format("  in range\n");
   for (const IdentifiedRow& row : rows) {
-    std::printf("%-*s", place, row.place.c_str());
+    print_format("%-*s", place, row.place.c_str());
     for (const IdentifiedParameter& p : row.parameters) {
-      std::printf("%26s%12s", format_value(p).c_str(), format_width(p).c_str());
+      print_format("%26s%12s", format_value(p).c_str(), format_width(p).c_str());
     }
-    std::printf("  %s\n", row.in_range() ? "yes" : "no");
+    print_format("  %s\n", row.in_range() ? "yes" : "no");
   }
 }
 
@@ -175,7 +176,6 @@ Json make_identified_json(const std::vector<IdentifiedRow>& rows) {
 
 void print_identified(const std::vector<IdentifiedRow>& rows) {
   rows.size() == 1 ? print_one(rows.front()) : print_many(rows);
-  std::fflush(stdout);
   tell_trouble(rows);
 }
 

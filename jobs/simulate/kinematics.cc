@@ -1,7 +1,5 @@
 #include "jobs/simulate/kinematics.h"
 
-#include <fstream>
-
 #include "io/atomic_file.h"
 #include "io/config.h"
 #include "jobs/interrupt.h"
@@ -19,12 +17,12 @@ std::vector<double> list_travels() {
   return travels;
 }
 
-void write_row(std::ostream& stream, const KinematicsPoint& p, const char* axle) {
+void append_row(std::string& text, const KinematicsPoint& p, const std::string& axle) {
   for (const double value : {p.travel, p.camber, p.toe, p.displacement.x, p.displacement.y,
                              p.displacement.z, p.caster_change, p.spring_length, p.damper_length}) {
-    stream << format_number(value) << ',';
+    text += format_number(value) + ',';
   }
-  stream << axle << ',' << format_number(p.track) << '\n';
+  text += axle + ',' + format_number(p.track) + '\n';
 }
 
 }  // namespace
@@ -40,16 +38,13 @@ void write_kinematics(const CaseSource& source, const std::filesystem::path& out
     throw InputError(source.vehicle.string() + ": " + e.what());
   }
 
+  std::string text =
+      "wheel_travel,camber_rad,toe_rad,wc_dx,wc_dy,wc_dz,caster_change_rad,spring_len,damper_len,"
+      "axle,track\n";
+  for (const KinematicsPoint& p : front) append_row(text, p, "front");
+  for (const KinematicsPoint& p : rear) append_row(text, p, "rear");
   const InterruptGuard guard;
-  AtomicFile file(output);
-  std::ofstream stream(file.temporary(), std::ios::binary);
-  stream << "wheel_travel,camber_rad,toe_rad,wc_dx,wc_dy,wc_dz,caster_change_rad,spring_len,"
-            "damper_len,axle,track\n";
-  for (const KinematicsPoint& p : front) write_row(stream, p, "front");
-  for (const KinematicsPoint& p : rear) write_row(stream, p, "rear");
-  stream.close();
-  if (!stream) throw EnvironmentError(output.string() + ": cannot be written: is its disk full?");
-  file.commit();
+  write_text_file(output, text);
 }
 
 }  // namespace strut

@@ -4,6 +4,7 @@
 
 #include "io/config.h"
 #include "jobs/output_file.h"
+#include "sweep/step_count.h"
 
 namespace strut {
 namespace {
@@ -19,10 +20,18 @@ void check_rate(double rate, double duration) {
                    format_number(duration) + " s");
 }
 
+void check_step_count(const SimulateOptions& options, double duration) {
+  if (options.integrator == kIntegratorCvode) return;
+  const double step = options.integrate.step.step;
+  const std::string fault = find_step_count_fault(duration, step);
+  if (!fault.empty()) throw InputError("--step = " + format_number(step) + " s: " + fault);
+}
+
 RunFormat check_output(const SimulateOptions& options) {
   const RunFormat format = find_run_format(options.output);
   check_output_file("output", options.output,
-                    list_files_read({options.source.vehicle, options.source.maneuver}));
+                    list_files_read({options.source.vehicle, options.source.maneuver}),
+                    options.force);
   return format;
 }
 

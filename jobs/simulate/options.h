@@ -23,6 +23,7 @@ struct SimulateOptions {
   IntegrateOptions integrate;
   double rate = 1000.0;  // Hz
   bool kinematics = false, json = false;
+  bool force = false;  // may replace the output
 
   const std::string& integrator_name() const {
     return kIntegrators[static_cast<std::size_t>(integrator)];
@@ -37,8 +38,11 @@ struct SimulateOptions {
 /// InputError.
 void check_rate(double rate, double duration);
 
-/// The format of the output. Refuses one that cannot be written, or that is a file of the run.
-/// Throws InputError, EnvironmentError.
+/// Refuses a step so short that a run of `duration` [s] would not end. Throws InputError.
+void check_step_count(const SimulateOptions& options, double duration);
+
+/// The format of the output, which check_output_file() has let pass. Throws InputError,
+/// EnvironmentError.
 RunFormat check_output(const SimulateOptions& options);
 
 }  // namespace strut

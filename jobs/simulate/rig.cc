@@ -70,6 +70,7 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind 
   const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, kind);
   const RunFormat format = check_output(options);
   check_rate(options.rate, maneuver.duration);
+  check_step_count(options, maneuver.duration);
   SamplePlan plan;
   plan.duration = maneuver.duration;
   plan.interval = 1.0 / options.rate;

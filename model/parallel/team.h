@@ -7,13 +7,42 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 namespace strut {
 
+/// Throws std::system_error where a team of `threads` cannot be started: libgomp would end the
+/// process. To be called before a parallel region, by the thread that enters it.
+inline void check_team(int threads) {
+  // libgomp keeps a team's threads for the next one of the same thread, up to that one's size.
+  thread_local int kept = 1;
+  std::vector<std::thread> probes;
+  std::atomic<bool> over{false};
+  const auto finish = [&] {
+    over = true;
+    over.notify_all();
+    for (std::thread& probe : probes) probe.join();
+  };
+  try {
+    while (kept + static_cast<int>(probes.size()) < threads) {
+      probes.emplace_back([&over] { over.wait(false); });
+    }
+  } catch (const std::system_error& error) {
+    finish();
+    throw std::system_error(error.code(), std::to_string(threads) + " threads cannot be started");
+  }
+  finish();
+  if (threads > 1) kept = threads;
+}
+
 /// Calls `work()` on each of `threads` threads. The first exception turns `halt` true and comes out
-/// when all have returned.
+/// when all have returned. Throws std::system_error where so many threads cannot be started.
 template <class Work>
 void run_team(int threads, std::atomic<bool>& halt, const Work& work) {
+  check_team(threads);
   std::exception_ptr failure;
   std::mutex mutex;
   // libgomp's own fork and join are invisible to ThreadSanitizer; these show it the same order.
