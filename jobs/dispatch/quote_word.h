@@ -49,12 +49,7 @@ inline std::string quote_if_needed(const std::string& word) {
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,+@%=-";
   const bool is_plain = !word.empty() && word.find_first_not_of(kPlain) == std::string::npos;
   if (is_plain) return word;
-  // U+0080 to U+009F steer terminals, too.
-  const auto is_c1 = [](char lead, char next) {
-    return lead == '\xc2' && static_cast<unsigned char>(next) < 0xa0U;
-  };
-  const bool is_visible = !has_control_character(word) && make_valid_utf8(word) == word &&
-                          std::adjacent_find(word.begin(), word.end(), is_c1) == word.end();
+  const bool is_visible = !has_control_character(word) && escape_controls(word) == word;
   return is_visible ? quote_word(word) : escape_word(word);
 }
 
