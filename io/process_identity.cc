@@ -1,5 +1,6 @@
 #include "io/process_identity.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -26,24 +27,29 @@ std::string read_word(const fs::path& path) {
 
 struct ProcessState {
   char letter = '?';
+  std::string group, session;
   std::string start;  // clock ticks since boot
 };
 
-// proc(5): "PID (NAME) STATE ... STARTTIME": fields 3 and 22, counted behind the name, which may
-// hold anything. Empty start: not known.
-ProcessState read_process_state(const std::string& process) {
-  std::string text;
+std::string read_process_file(const std::string& process, const std::string& name) {
   try {
-    text = read_if_present("/proc/" + process + "/stat").value_or("");
-  } catch (const EnvironmentError&) {  // it ended while being read
+    return read_if_present("/proc/" + process + "/" + name).value_or("");
+  } catch (const EnvironmentError&) {  // it ended while being read, or is another user's
+    return "";
   }
+}
+
+// proc(5): "PID (NAME) STATE PPID PGRP SESSION ... STARTTIME": fields 3 to 6 and 22, counted behind
+// the name, which may hold anything. Empty start: not known.
+ProcessState read_process_state(const std::string& process) {
+  const std::string text = read_process_file(process, "stat");
   const auto name_end = text.rfind(')');
   ProcessState state;
   if (name_end == std::string::npos) return state;
   std::istringstream fields(text.substr(name_end + 1));
-  constexpr int kFieldsBetween = 18;
+  constexpr int kFieldsBetween = 15;
   std::string between;
-  fields >> state.letter;
+  fields >> state.letter >> between >> state.group >> state.session;
   for (int i = 0; i < kFieldsBetween; ++i) fields >> between;
   fields >> state.start;
   return state;
@@ -95,6 +101,19 @@ Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own) {
   // A zombie ended; only nobody asked how yet, which in a container may be so for ever.
   const bool ended = state.letter == 'Z' || state.letter == 'X';
   return ended || state.start != process.start ? Life::kGone : Life::kRuns;
+}
+
+std::optional<ProcessOwner> find_process_owner(const std::string& process) {
+  struct stat status {};
+  if (::stat(("/proc/" + process).c_str(), &status) != 0) return std::nullopt;
+  const ProcessState state = read_process_state(process);
+  if (state.start.empty()) return std::nullopt;
+  ProcessOwner owner{status.st_uid, state.group, state.session, {}};
+  std::istringstream environment(read_process_file(process, "environ"));
+  for (std::string variable; std::getline(environment, variable, '\0');) {
+    owner.environment.push_back(variable);
+  }
+  return owner;
 }
 
 }  // namespace strut

@@ -1,7 +1,11 @@
 // Which process a name stands for, and whether that one still runs.
 #pragma once
 
+#include <sys/types.h>
+
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace strut {
 
@@ -30,5 +34,15 @@ enum class Life {
 
 /// `own`: this process. By the process number where host, boot and namespace are the same.
 Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own);
+
+/// Whose a process of this host is, as the system tells.
+struct ProcessOwner {
+  uid_t user = 0;
+  std::string group, session;            // their leaders' numbers
+  std::vector<std::string> environment;  // NAME=VALUE, as it was started with; empty where hidden
+};
+
+/// nullopt where there is no such process, or it may not be looked at.
+std::optional<ProcessOwner> find_process_owner(const std::string& process);
 
 }  // namespace strut

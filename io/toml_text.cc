@@ -49,23 +49,6 @@ std::size_t find_place(const std::string& text, const toml::source_position& pos
   return place;
 }
 
-/// A basic string of TOML.
-std::string quote(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20U && byte != 0x7fU) {
-      quoted += c;
-      continue;
-    }
-    char escaped[8];
-    std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(byte));
-    quoted += escaped;
-  }
-  return quoted + "\"";
-}
-
 TomlValues flatten(const std::filesystem::path& path, const std::string& text) {
   TomlValues values;
   add_values(parse_toml(path, text), "", values);
@@ -124,6 +107,22 @@ void check_set(const std::filesystem::path& path, const std::string& before,
 
 }  // namespace
 
+std::string quote_toml(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20U && byte != 0x7fU) {
+      quoted += c;
+      continue;
+    }
+    char escaped[8];
+    std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(byte));
+    quoted += escaped;
+  }
+  return quoted + "\"";
+}
+
 TomlValues flatten_toml(const std::filesystem::path& path) {
   return flatten(path, read_toml_text(path));
 }
@@ -148,7 +147,7 @@ std::string replace_toml_texts(const std::filesystem::path& path, const TomlValu
     }
     changes.push_back(
         {{find_place(text, node->source().begin), find_place(text, node->source().end)},
-         quote(value)});
+         quote_toml(value)});
   }
   std::sort(changes.begin(), changes.end());
   std::string changed;

@@ -13,6 +13,9 @@ namespace strut {
 /// Dotted key and value.
 using TomlValues = std::vector<std::pair<std::string, std::string>>;
 
+/// A basic string of TOML that reads back as `text`, which is UTF-8: `"a \\"b\\""`.
+std::string quote_toml(const std::string& text);
+
 /// Every value of the file as it was meant ("bump.height", "0.05"), sorted by key: comments, order,
 /// blanks and the way a number is written have no effect. Elements of arrays count from 1,
 /// "rod[2].mass". Throws InputError where the file is missing or not TOML.

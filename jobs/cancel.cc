@@ -1,7 +1,7 @@
 #include "jobs/cancel.h"
 
 #include <iostream>
-#include <map>
+#include <stdexcept>
 
 #include "jobs/command.h"
 #include "jobs/dispatch/follow.h"
@@ -11,19 +11,17 @@
 namespace strut {
 namespace {
 
-/// Takes back what of it is queued. Throws EnvironmentError where that cannot be told or done.
+/// Takes back what of it is queued. Throws EnvironmentError where that cannot be told or done,
+/// InputError where its files name what is none of its jobs.
 void cancel(const Submission& submission) {
   const auto dispatcher = make_dispatcher(submission.dispatcher);
   // Before the tasks stop: they tell by it why they did. A submit that is under way stops by it.
   submission.mark_cancelled();
   try {
-    std::map<std::string, std::string> names;
-    for (const auto& [job, part] : find_jobs(submission, *dispatcher)) {
-      names[job] = submission.job_name(part);
-    }
-    dispatcher->cancel(names);
-    std::cout << "submission " << submission.name() << ": " << names.size() << " jobs cancelled\n";
-  } catch (const EnvironmentError&) {
+    const std::vector<JobRecord> jobs = find_jobs(submission, *dispatcher);
+    dispatcher->cancel(jobs);
+    std::cout << "submission " << submission.name() << ": " << jobs.size() << " jobs cancelled\n";
+  } catch (const std::runtime_error&) {
     submission.take_back_cancelled();
     throw;
   }

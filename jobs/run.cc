@@ -192,7 +192,7 @@ RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& opt
   } catch (...) {
     try {
       task.end(TaskEnd::kError, 0);
-    } catch (const EnvironmentError&) {
+    } catch (const std::runtime_error&) {
       // As on a full disk; what stopped the run is what is to be told.
     }
     throw;

@@ -41,7 +41,6 @@ Submissions follow_all(const SweepFolder& folder) {
       all.faults.emplace_back(e.what());
     }
   }
-  for (std::string& fault : all.faults) fault += "; move this file away";
   return all;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iostream>
 #include <iterator>
-#include <map>
 #include <optional>
 
 #include "io/atomic_file.h"
@@ -43,6 +42,11 @@ class Submitter {
   explicit Submitter(const Arguments& arguments)
       : arguments_(arguments), sweep_(open_sweep(arguments)) {
     sweep_.folder.root = fs::canonical(sweep_.folder.root);
+    if (has_control_character(sweep_.folder.root.string())) {
+      throw InputError(quote_if_needed(sweep_.folder.root.string()) +
+                       ": must not have control characters, such as a line's end, in its name, "
+                       "which goes into scripts; rename the folder");
+    }
     if (!arguments.has("to")) {
       throw InputError("--to: missing; must be one of " + join_names(list_dispatchers()));
     }
@@ -50,9 +54,10 @@ class Submitter {
     const auto which = static_cast<std::size_t>(arguments.choice_or("to", 0));
     dispatcher_ = make_dispatcher(names[which]);
     read_resources();
+    if (arguments.has("scratch")) check_scratch(arguments.text("scratch"));
     limits_ = dispatcher_->check(resources_, sweep_.folder.root);
-    limits_.tasks = std::min(limits_.tasks,
-                             arguments.integer_or("tasks", limits_.tasks, 1, SiteLimits().tasks));
+    limits_.tasks =
+        std::min(arguments.integer_or("tasks", kMostTasks, 1, kMostTasks), limits_.tasks);
   }
 
   int run() {
@@ -204,12 +209,12 @@ class Submitter {
     ScriptOptions options;
     options.resources = resources_;
     options.at_once = arguments_.integer_or("at-once", 0, 1, SiteLimits().tasks);
-    if (arguments_.has("scratch")) options.scratch = arguments_.text("scratch");
+    options.scratch = arguments_.text_or("scratch", "");
     return options;
   }
 
-  std::vector<std::string> make_scripts(const Submission& s) const {
-    return strut::make_scripts(*dispatcher_, sweep_.folder, s, make_script_options());
+  std::vector<TaskArray> list_tasks(const Submission& s) const {
+    return list_task_arrays(sweep_.folder, s, make_script_options());
   }
 
   /// Not where an earlier one still waits or runs.
@@ -223,7 +228,7 @@ class Submitter {
     s.job_prefix = "strut-" + sweep_.plan.hash().substr(0, 8);
     s.arrays = arrays_;
     s.retries = retries();
-    s.collects = !arguments_.is_on("no-merge");
+    s.collects = arguments_.is_on("merge");
     return s;
   }
 
@@ -251,12 +256,20 @@ class Submitter {
     Submission s = make_request();
     s.folder = sweep_.folder.root / "jobs" / "NEXT";
     s.job_prefix += "-NEXT";
-    const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
+    const std::vector<TaskArray> tasks = list_tasks(s);
+    const std::vector<std::string> parts = s.list_parts();
     std::cout << describe() << "\n";
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      std::cout << "\n--- " << s.job_name(parts[i]) << "\n" << scripts[i];
-      if (i > 0) continue;
-      const std::string said = try_out(scripts[i]);
+      const bool waits = i >= s.arrays.size();
+      const std::vector<std::string> after(
+          parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(waits ? i : 0));
+      std::cout << "\n--- " << s.job_name(parts[i]) << "\n$";
+      for (const std::string& word : dispatcher_->make_command(
+               tasks[i], s.folder / Submission::script_name(parts[i]), after)) {
+        std::cout << " " << quote_if_needed(word);
+      }
+      std::cout << "\n" << dispatcher_->make_script(tasks[i]);
+      const std::string said = i == 0 ? dispatcher_->try_tasks(tasks[i]) : "";
       if (!said.empty()) std::cout << "(" << dispatcher_->name() << " says: " << said << ")\n";
     }
     std::cout << "\n";
@@ -270,28 +283,31 @@ class Submitter {
     std::cout << "nothing is queued\n";
   }
 
-  /// What the scheduler says to it. Throws EnvironmentError where it would refuse it.
-  std::string try_out(const std::string& script) const {
-    AtomicFile file(fs::temp_directory_path() / "strut-dry-run.sh");
-    file.write(std::as_bytes(std::span(script)));
-    return dispatcher_->try_script(file.temporary());
+  /// Refuses links in place of what the tasks will write: a scheduler and bash follow them.
+  void prepare_folder() const {
+    const Folder root(sweep_.folder.root);
+    root.make_folder(sweep_.folder.logs().filename().string());
+    if (arguments_.is_on("merge")) {
+      check_regular(root.descriptor(), kMerged, root.path_of(kMerged));
+    }
   }
 
   void submit() {
-    std::error_code ignored;
-    fs::create_directories(sweep_.folder.logs(), ignored);
     const InterruptGuard guard;  // a job that is queued is also written down
     Submission s = make_request();
-    try_out(make_scripts(s).front());
+    prepare_folder();
+    dispatcher_->try_tasks(list_tasks(s).front());
     s = make_submission(sweep_.folder, std::move(s));
-    const std::vector<std::string> scripts = make_scripts(s), parts = s.list_parts();
+    const std::vector<TaskArray> tasks = list_tasks(s);
+    const std::vector<std::string> parts = s.list_parts();
     std::vector<std::string> jobs;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      write_text_file(s.script(parts[i]), scripts[i]);
+      const std::string script = Submission::script_name(parts[i]);
+      write_text_file(s.open(), script, dispatcher_->make_script(tasks[i]));
       const bool waits = i >= s.arrays.size();
       try {
-        jobs.push_back(
-            dispatcher_->submit(s.script(parts[i]), waits ? jobs : std::vector<std::string>()));
+        jobs.push_back(dispatcher_->submit(tasks[i], s.folder / script,
+                                           waits ? jobs : std::vector<std::string>()));
       } catch (const EnvironmentError& e) {
         // It may be queued all the same: its name finds it, so nothing is removed here.
         throw EnvironmentError(std::string(e.what()) + "; " + std::to_string(jobs.size()) + " of " +
@@ -300,9 +316,7 @@ class Submitter {
       }
       s.write_job(parts[i], jobs.back());
       if (!s.is_cancelled()) continue;
-      std::map<std::string, std::string> names;
-      for (std::size_t k = 0; k <= i; ++k) names[jobs[k]] = s.job_name(parts[k]);
-      dispatcher_->cancel(names);
+      dispatcher_->cancel(find_jobs(s, *dispatcher_));
       throw EnvironmentError("submission " + s.name() + ": cancelled meanwhile");
     }
     report(s, parts, jobs);
@@ -345,14 +359,10 @@ class Submitter {
 Arguments describe_submit() {
   Arguments arguments(
       "strut submit DIR --to slurm|local [OPTIONS]",
-      "Queues what the sweep in DIR still lacks: arrays of tasks of some minutes each, and behind "
-      "them one\n"
-      "that merges. Submitting again queues only what is neither there nor queued. Tasks near "
-      "their "
-      "time\n"
-      "limit finish the shard in hand and queue themselves again. `--to local` works through the "
-      "tasks on\n"
-      "this machine, in the background.",
+      "Queues what the sweep in DIR still lacks: arrays of tasks of some minutes each. Submitting\n"
+      "again queues only what is neither there nor queued. Tasks near their time limit finish the\n"
+      "shard in hand and queue themselves again. `--to local` works through the tasks on this\n"
+      "machine, in the background.",
       "  strut submit cars --to slurm --dry-run\n"
       "  strut submit cars --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
       "  strut status cars\n  strut cancel cars");
@@ -369,17 +379,17 @@ Arguments describe_submit() {
   arguments.add_option("minutes", "M", "what a task is to take (default 10)");
   arguments.add_option("tasks", "N", "at most N tasks in all");
   arguments.add_option("at-once", "N", "at most N tasks of an array run at once");
-  arguments.add_list("option", "OPTION", "a further option for the scheduler, as it stands");
+  arguments.add_list("option", "OPTION", "a further option for the scheduler, one word: --qos=low");
   arguments.add_option("scratch", ArgumentValue::folder("PATH"),
-                       "node-local folder, $NAMES as the node has them, where each node keeps a "
-                       "copy of the program");
+                       "node-local folder, $NAME and ${NAME} as the node has them, where each node "
+                       "keeps a copy of the program");
   arguments.add_switch("shared",
                        "all nodes see DIR, though it lies on a disk of this machine (which serves "
                        "it to them)");
   arguments.add_switch("retry",
                        "behind the arrays, a task that tries failed cases once more, as `strut "
                        "resume` does");
-  arguments.add_switch("no-merge", "no last task that writes DIR/merged.h5");
+  arguments.add_switch("merge", "a last task, behind all others, that writes DIR/merged.h5");
   arguments.add_switch("again",
                        "submit although it is unknown whether an earlier submission still runs");
   arguments.add_switch("dry-run", "print the scripts and what waits for what; queue nothing");

@@ -146,8 +146,8 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   CHECK(first.job_prefix != all[1].job_prefix);
   CHECK(all[0].arrays == arrays);
   CHECK(all[0].list_parts() == std::vector<std::string>{"array-0", "array-1", "retry", "collect"});
-  CHECK(all[0].read_job("array-0").empty());
-  CHECK(all[0].read_job("array-1") == "4711");
+  CHECK(all[0].read_job("array-0").job.empty());
+  CHECK(all[0].read_job("array-1").job == "4711");
   CHECK(all[0].is_cancelled());
   CHECK_FALSE(all[0].is_over());
   CHECK(all[1].name() == "002");
@@ -248,9 +248,9 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   TaskRun task(sweep, make_task_name("001", 0, "2"));
   CHECK(task.shards() == ShardRange{30, 35});
   task.begin();
-  const std::filesystem::path file = s.tasks(0) / "2";
-  REQUIRE(read_task_lives(file).size() == 1);
-  CHECK_FALSE(read_task_lives(file)[0].how);
+  const Folder array = s.open().open_folder("array-0");
+  REQUIRE(read_task_lives(array, "2").size() == 1);
+  CHECK_FALSE(read_task_lives(array, "2")[0].how);
   task.end(TaskEnd::kDrained, 0);
   CHECK(task.requeue().find("does not take it back") != std::string::npos);
   TaskRun second(sweep, "001/0/2");
@@ -260,7 +260,7 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   TaskRun again(sweep, "001/0/2");
   again.begin();
   again.end(TaskEnd::kDone, 5);
-  const std::vector<TaskLife> lives = read_task_lives(file);
+  const std::vector<TaskLife> lives = read_task_lives(array, "2");
   REQUIRE(lives.size() == 3);
   CHECK(lives[0].how == TaskEnd::kDrained);
   CHECK(lives[2].how == TaskEnd::kDone);
@@ -271,7 +271,7 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
     CHECK_THROWS_AS(TaskRun(sweep, name), InputError);
   }
   folder.write("jobs/001/array-0/2", "no life\n");
-  CHECK_THROWS_AS(read_task_lives(file), InputError);
+  CHECK_THROWS_AS(read_task_lives(array, "2"), InputError);
 }
 
 }  // namespace

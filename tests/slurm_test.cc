@@ -101,7 +101,7 @@ bool is_running(const std::string& task) {
 TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[cluster]") {
   const SlurmCluster cluster(1, 2);
   const fs::path sweep = get_sweep().copy("killed");
-  const Outcome outcome = submit(sweep);
+  const Outcome outcome = submit(sweep, "--merge");
   INFO(outcome.messages);
   REQUIRE(outcome.code == 0);
   const std::string killed = find_running();
@@ -117,7 +117,7 @@ TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[clus
   CHECK(last.get<int>("restarts") == 1);
   // What the killed task had not written is missing, and all that another submission queues.
   CHECK_FALSE(first.get<bool>("complete"));
-  REQUIRE(submit(sweep).code == 0);
+  REQUIRE(submit(sweep, "--merge").code == 0);
   REQUIRE(wait_for_end(sweep));
   CHECK(read_status(sweep).get<bool>("complete"));
   get_sweep().check_whole(sweep);
@@ -273,9 +273,10 @@ TEST_CASE("Slurm is asked before anything is queued", "[cluster]") {
   const Outcome doctor = run_sweep_command("doctor", sweep, "--to slurm --nodes");
   CHECK(doctor.code == 0);
   CHECK_THAT(doctor.out, Contains("instruction sets of the nodes: n1: ") && Contains("job arrays"));
-  const Outcome dry = submit(sweep, "--dry-run");
+  const Outcome dry = submit(sweep, "--merge --dry-run");
   CHECK(dry.code == 0);
-  CHECK_THAT(dry.out, Contains("#SBATCH") && Contains("afterany"));
+  CHECK_THAT(dry.out, Contains("$ sbatch --parsable --job-name=strut-") && !Contains("#SBATCH") &&
+                          Contains("--dependency=afterany:array-0"));
   CHECK(SlurmCluster::count_tasks("pending,running") == 0);
   CHECK_FALSE(fs::exists(sweep / "jobs"));
 }

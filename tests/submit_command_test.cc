@@ -42,7 +42,7 @@ test::JsonTree wait_for_end(const fs::path& sweep) {
 TEST_CASE("A sweep submitted here is the sweep that was run", "[io]") {
   const fs::path sweep = get_sweep().copy("submitted");
   const Outcome outcome =
-      run_sweep_command("submit", sweep, "--to local --threads 1 --minutes 0.001 --json");
+      run_sweep_command("submit", sweep, "--to local --threads 1 --minutes 0.001 --merge --json");
   INFO(outcome.messages);
   REQUIRE(outcome.code == 0);
   const auto submitted = test::parse_json(outcome.out);
@@ -67,11 +67,11 @@ TEST_CASE("A submission is cancelled, and another does the rest", "[io]") {
   CHECK_THAT(second.out, Contains("nothing to submit"));
   const Outcome outcome = run_sweep_command("cancel", sweep);
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.out, Contains("2 jobs cancelled"));
+  CHECK_THAT(outcome.out, Contains("1 jobs cancelled"));
   const auto status = wait_for_end(sweep);
   CHECK(status.get_child("submissions").front().second.get<bool>("cancelled"));
   CHECK(test::verify_by_program(sweep).damaged.empty());
-  REQUIRE(run_sweep_command("submit", sweep, "--to local --no-merge").code == 0);
+  REQUIRE(run_sweep_command("submit", sweep, "--to local").code == 0);
   CHECK(wait_for_end(sweep).get<bool>("complete"));
   get_sweep().check_whole(sweep);
   CHECK_FALSE(fs::exists(sweep / "merged.h5"));
@@ -85,7 +85,7 @@ TEST_CASE("What failed is tried once more behind the arrays", "[io]") {
   REQUIRE(run_sweep_command("run", sweep).code == 1);
   const Outcome plain = run_sweep_command("submit", sweep, "--to local");
   CHECK_THAT(plain.out, Contains("nothing to submit") && Contains("--retry"));
-  const Outcome outcome = run_sweep_command("submit", sweep, "--to local --retry");
+  const Outcome outcome = run_sweep_command("submit", sweep, "--to local --retry --merge");
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.out, Contains("one task for") && Contains("retry: local"));
   wait_for_end(sweep);
@@ -102,10 +102,11 @@ TEST_CASE("What failed is tried once more behind the arrays", "[io]") {
 
 TEST_CASE("A dry run shows the scripts and queues nothing", "[io]") {
   const fs::path sweep = get_sweep().copy("dry");
-  const Outcome outcome = run_sweep_command("submit", sweep, "--to local --dry-run");
+  const Outcome outcome = run_sweep_command("submit", sweep, "--to local --merge --dry-run");
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.out, Contains("#!/bin/bash") && Contains("--task NEXT/0/") &&
-                              Contains("merge") && Contains("nothing is queued"));
+                              Contains("merged.h5") && Contains("--force") &&
+                              !Contains("--virtual") && Contains("nothing is queued"));
   CHECK_FALSE(fs::exists(sweep / "jobs"));
 }
 

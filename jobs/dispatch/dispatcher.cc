@@ -23,6 +23,10 @@ const std::map<std::string, Maker>& get_makers() {
 
 }  // namespace
 
+std::string make_job_mark(const std::filesystem::path& sweep, const std::string& job_name) {
+  return std::filesystem::canonical(sweep).string() + ":" + job_name;
+}
+
 std::vector<std::string> list_dispatchers() {
   std::vector<std::string> names;
   for (const auto& [name, maker] : get_makers()) names.push_back(name);

@@ -19,7 +19,7 @@ struct Resources {
   int threads = 1;
   double seconds = 0.0;            // wall clock
   double warning = 0.0;            // s before that a task is told to finish
-  std::vector<std::string> extra;  // further options, passed on as they are
+  std::vector<std::string> extra;  // further options, each one word of the scheduler's command
   bool is_shared =
       false;  // all machines see the sweep's folder, whatever its file system looks like
 };
@@ -41,6 +41,21 @@ struct TaskArray {
   bool is_array = true;      // false: one task that has no number
   Resources resources;
   std::filesystem::path folder;  // of the output files, NAME-*.log
+  std::string mark;              // make_job_mark()
+};
+
+/// What tells the processes of a job that strut itself started: STRUT_JOB in their environment.
+/// Copies of the sweep's folder have jobs of the same names, but not the same marks.
+std::string make_job_mark(const std::filesystem::path& sweep, const std::string& job_name);
+
+/// A job as the files of a submission tell of it. They may have come from elsewhere: a dispatcher
+/// proves before it acts that the job is what they say.
+struct JobRecord {
+  std::string part;  // of the submission
+  std::string job;   // as submit() returned it
+  std::string name;  // TaskArray::name
+  std::string mark;
+  std::filesystem::path file;  // that says so
 };
 
 enum class TaskState { kPending, kRunning, kEnded };
@@ -87,26 +102,31 @@ class Dispatcher {
   /// The instruction sets that this program can use on each node that is idle, the widest first.
   virtual std::vector<NodeAnswer> ask_nodes(const Resources& resources) const = 0;
 
-  /// The text of the file that submit() takes.
+  /// The text of the file that submit() takes. Nothing in it comes from outside but as one quoted
+  /// word of bash.
   virtual std::string make_script(const TaskArray& tasks) const = 0;
+  /// The command that submit() starts, for people.
+  virtual std::vector<std::string> make_command(const TaskArray& tasks,
+                                                const std::filesystem::path& script,
+                                                const std::vector<std::string>& after) const = 0;
   /// What the scheduler says to it, nothing being queued. "": it cannot be asked. Throws
   /// EnvironmentError where it would refuse it.
-  virtual std::string try_script(const std::filesystem::path& script) const = 0;
+  virtual std::string try_tasks(const TaskArray& tasks) const = 0;
 
   /// Queues a script, to begin when the jobs `after` have ended in whatever way. Returns the job.
   /// Throws EnvironmentError.
-  virtual std::string submit(const std::filesystem::path& script,
+  virtual std::string submit(const TaskArray& tasks, const std::filesystem::path& script,
                              const std::vector<std::string>& after) const = 0;
   /// The job of that name which a submit() queued without living to say so; "": none. Throws
   /// EnvironmentError where that cannot be told.
   virtual std::string find_job(const std::string& name) const = 0;
 
-  /// `names`: of the jobs, by what submit() returned. A scheduler that lost its memory may have
-  /// given a number to another job since.
-  virtual QueueAnswer query(const std::map<std::string, std::string>& names) const = 0;
+  /// A scheduler that lost its memory may have given a number to another job since. Throws
+  /// InputError where a record names what cannot be such a job, or is another's.
+  virtual QueueAnswer query(const std::vector<JobRecord>& jobs) const = 0;
 
-  /// Ends jobs, running or not; `names` as query()'s. Throws EnvironmentError.
-  virtual void cancel(const std::map<std::string, std::string>& names) const = 0;
+  /// Ends jobs, running or not. Throws as query() does, and EnvironmentError.
+  virtual void cancel(const std::vector<JobRecord>& jobs) const = 0;
 
   /// Of the task that this process is: puts it back into the queue. False where it cannot be.
   virtual bool requeue_own() const = 0;

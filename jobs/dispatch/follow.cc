@@ -35,7 +35,7 @@ class Follower {
   /// Not of one that a submit may still be working on.
   void remember_end() {
     for (const std::string& part : submission_.list_parts()) {
-      if (submission_.read_job(part).empty()) return;
+      if (submission_.read_job(part).job.empty()) return;
     }
     try {
       submission_.mark_over(state_.words);
@@ -55,9 +55,10 @@ class Follower {
         state_.why = "it was submitted to another cluster (" + submission_.place + ")";
         return;
       }
-      std::map<std::string, std::string> part_of_job = find_jobs(submission_, *dispatcher), names;
-      for (const auto& [job, part] : part_of_job) names[job] = submission_.job_name(part);
-      const QueueAnswer answer = dispatcher->query(names);
+      const std::vector<JobRecord> jobs = find_jobs(submission_, *dispatcher);
+      std::map<std::string, std::string> part_of_job;
+      for (const JobRecord& record : jobs) part_of_job[record.job] = record.part;
+      const QueueAnswer answer = dispatcher->query(jobs);
       state_.why = answer.silence;
       if (!state_.why.empty()) return;
       for (const QueuedTasks& tasks : answer.tasks) count(tasks, part_of_job[tasks.job]);
@@ -96,25 +97,31 @@ class Follower {
   }
 
   void read_tasks() {
+    const Folder folder = submission_.open();
+    is_cancelled_ = submission_.is_cancelled();
     for (std::size_t a = 0; a < submission_.arrays.size(); ++a) {
-      for (std::int64_t t = 0; t < submission_.arrays[a].tasks(); ++t) read_task(a, t);
+      const auto array = folder.find_folder(submission_.array_name(a));
+      for (std::int64_t t = 0; t < submission_.arrays[a].tasks(); ++t) {
+        read_task(a, t,
+                  array ? read_task_lives(*array, std::to_string(t)) : std::vector<TaskLife>());
+      }
     }
   }
 
-  void read_task(std::size_t array, std::int64_t task) {
-    const auto lives = read_task_lives(submission_.tasks(array) / std::to_string(task));
+  void read_task(std::size_t array, std::int64_t task, const std::vector<TaskLife>& lives) {
     if (lives.size() > 1) state_.restarts += static_cast<std::int64_t>(lives.size()) - 1;
     if (live_.count({array, task}) > 0) return;
     // Of a job that has no numbers for its tasks, those that have not ended are live.
     if (whole_.count(array) > 0 && (lives.empty() || !lives.back().how)) return;
     const auto word = state_.words.find({array, task});
-    const TaskFate fate = judge_task(lives, submission_.is_cancelled(),
-                                     word == state_.words.end() ? "" : word->second);
+    const TaskFate fate =
+        judge_task(lives, is_cancelled_, word == state_.words.end() ? "" : word->second);
     ++state_.fates[fate];
   }
 
   const Submission& submission_;
   SubmissionState state_;
+  bool is_cancelled_ = false;
   using TaskKey = std::pair<std::size_t, std::int64_t>;
   std::set<TaskKey> live_;
   std::set<std::size_t> whole_;
@@ -127,15 +134,14 @@ const char* get_name(QueueState state) {
   return kNames[static_cast<std::size_t>(state)];
 }
 
-std::map<std::string, std::string> find_jobs(const Submission& submission,
-                                             const Dispatcher& dispatcher) {
-  std::map<std::string, std::string> part_of_job;
+std::vector<JobRecord> find_jobs(const Submission& submission, const Dispatcher& dispatcher) {
+  std::vector<JobRecord> jobs;
   for (const std::string& part : submission.list_parts()) {
-    std::string job = submission.read_job(part);
-    if (job.empty()) job = dispatcher.find_job(submission.job_name(part));
-    if (!job.empty()) part_of_job[job] = part;
+    JobRecord record = submission.read_job(part);
+    if (record.job.empty()) record.job = dispatcher.find_job(record.name);
+    if (!record.job.empty()) jobs.push_back(std::move(record));
   }
-  return part_of_job;
+  return jobs;
 }
 
 SubmissionState follow(const Submission& submission) { return Follower(submission).follow(); }

@@ -33,12 +33,12 @@ struct SubmissionState {
 };
 
 /// Looks, and marks a submission that was queued in full and has ended as over: of such a one
-/// nobody is asked again.
+/// nobody is asked again. Throws InputError where its files are damaged, or name a job that is none
+/// of its own.
 SubmissionState follow(const Submission& submission);
 
-/// The parts of a submission by their jobs; those included that were queued by a submit that was
-/// killed before it could say so. Throws EnvironmentError where that cannot be told.
-std::map<std::string, std::string> find_jobs(const Submission& submission,
-                                             const Dispatcher& dispatcher);
+/// The jobs of a submission; those included that were queued by a submit that was killed before it
+/// could say so. Throws EnvironmentError where that cannot be told.
+std::vector<JobRecord> find_jobs(const Submission& submission, const Dispatcher& dispatcher);
 
 }  // namespace strut

@@ -5,8 +5,9 @@
 
 namespace strut {
 
-/// A job is a process group; its name tells host, boot and start, so that no other process is ever
-/// taken for it.
+/// A job is a session of processes. What submit() returns tells host, boot and start of its leader,
+/// so that no later process is taken for it. Anybody may write such a text, so what it names is
+/// believed and stopped only where it is this user's, leads a session and bears the job's mark.
 class LocalDispatcher : public Dispatcher {
  public:
   std::string name() const override { return "local"; }
@@ -15,12 +16,14 @@ class LocalDispatcher : public Dispatcher {
   Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;
   std::vector<NodeAnswer> ask_nodes(const Resources& resources) const override;
   std::string make_script(const TaskArray& tasks) const override;
-  std::string try_script(const std::filesystem::path&) const override { return ""; }
-  std::string submit(const std::filesystem::path& script,
+  std::vector<std::string> make_command(const TaskArray& tasks, const std::filesystem::path& script,
+                                        const std::vector<std::string>& after) const override;
+  std::string try_tasks(const TaskArray&) const override { return ""; }
+  std::string submit(const TaskArray& tasks, const std::filesystem::path& script,
                      const std::vector<std::string>& after) const override;
   std::string find_job(const std::string&) const override { return ""; }
-  QueueAnswer query(const std::map<std::string, std::string>& names) const override;
-  void cancel(const std::map<std::string, std::string>& names) const override;
+  QueueAnswer query(const std::vector<JobRecord>& jobs) const override;
+  void cancel(const std::vector<JobRecord>& jobs) const override;
   bool requeue_own() const override { return false; }
   std::int64_t find_own_end() const override { return 0; }
   int count_own_restarts() const override { return 0; }

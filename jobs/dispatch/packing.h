@@ -31,6 +31,9 @@ struct PackedArray {
   bool operator==(const PackedArray&) const = default;
 };
 
+/// Of one submission: the tasks' own records are read one by one.
+constexpr std::int64_t kMostTasks = 1'000'000;
+
 struct PackingRequest {
   double shard_seconds = 1.0;   // wall clock of one shard on one task's threads
   double task_seconds = 600.0;  // aimed at

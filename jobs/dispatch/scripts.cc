@@ -1,5 +1,8 @@
 #include "jobs/dispatch/scripts.h"
 
+#include <algorithm>
+
+#include "io/input_error.h"
 #include "jobs/dispatch/quote_word.h"
 #include "jobs/dispatch/task_run.h"
 
@@ -22,13 +25,39 @@ std::vector<std::string> make_preparation(const std::string& scratch) {
   return lines;
 }
 
+/// Of the $NAME or ${NAME} that the text begins with; 0: it begins with neither.
+std::size_t measure_variable(const std::string& text) {
+  constexpr char kDigits[] = "0123456789";
+  constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+  const bool is_braced = text.starts_with("${");
+  const std::size_t first = is_braced ? 2 : 1;
+  const std::size_t end = std::min(text.find_first_not_of(kLetters, first), text.size());
+  if (end <= first || text.find_first_of(kDigits, first) == first) return 0;
+  if (!is_braced) return end;
+  return end < text.size() && text[end] == '}' ? end + 1 : 0;
+}
+
 }  // namespace
 
-std::vector<std::string> make_scripts(const Dispatcher& dispatcher, const SweepFolder& folder,
-                                      const Submission& submission, const ScriptOptions& options) {
-  std::vector<std::string> scripts;
+void check_scratch(const std::string& scratch) {
+  bool is_safe = !has_control_character(scratch) &&
+                 scratch.find_first_of("`\"\\") == std::string::npos &&
+                 (scratch.starts_with('/') || scratch.starts_with('$'));
+  for (std::size_t i = scratch.find('$'); is_safe && i < scratch.size();
+       i = scratch.find('$', i + 1)) {
+    is_safe = measure_variable(scratch.substr(i)) > 0;
+  }
+  if (is_safe) return;
+  throw InputError("--scratch " + quote_if_needed(scratch) +
+                   ": must be an absolute folder, with no more for bash to expand than $NAME and "
+                   "${NAME}, and without quotes and backslashes, as in '/local/$USER'");
+}
+
+std::vector<TaskArray> list_task_arrays(const SweepFolder& folder, const Submission& submission,
+                                        const ScriptOptions& options) {
+  std::vector<TaskArray> all;
   const std::string root = quote_word(folder.root.string());
-  const auto make_task = [&](const std::string& part, const std::string& words) {
+  const auto add_task = [&](const std::string& part, const std::string& words) -> TaskArray& {
     TaskArray task;
     task.name = submission.job_name(part);
     task.preparation = make_preparation(options.scratch);
@@ -36,27 +65,26 @@ std::vector<std::string> make_scripts(const Dispatcher& dispatcher, const SweepF
     task.is_array = false;
     task.resources = options.resources;
     task.folder = folder.logs();
-    return task;
+    task.mark = make_job_mark(folder.root, task.name);
+    all.push_back(std::move(task));
+    return all.back();
   };
   for (std::size_t i = 0; i < submission.arrays.size(); ++i) {
-    TaskArray array =
-        make_task(submission.array_name(i), "run " + root + " --threads \"$threads\" --task " +
-                                                make_task_name(submission.name(), i, "\"$task\""));
+    TaskArray& array =
+        add_task(submission.array_name(i), "run " + root + " --threads \"$threads\" --task " +
+                                               make_task_name(submission.name(), i, "\"$task\""));
     array.is_array = true;
     array.tasks = submission.arrays[i].tasks();
     array.at_once = options.at_once;
-    scripts.push_back(dispatcher.make_script(array));
   }
   if (submission.retries) {
-    scripts.push_back(dispatcher.make_script(
-        make_task(Submission::kRetry, "resume " + root + " --threads \"$threads\"")));
+    add_task(Submission::kRetry, "resume " + root + " --threads \"$threads\"");
   }
   if (submission.collects) {
-    const std::string merged = quote_word((folder.root / "merged.h5").string());
-    scripts.push_back(dispatcher.make_script(
-        make_task(Submission::kCollect, "merge " + root + " -o " + merged + " --virtual --force")));
+    add_task(Submission::kCollect,
+             "merge " + root + " -o " + quote_word((folder.root / kMerged).string()) + " --force");
   }
-  return scripts;
+  return all;
 }
 
 }  // namespace strut

@@ -17,6 +17,8 @@
 #include "io/nearest_name.h"
 #include "io/parse_number.h"
 #include "jobs/dispatch/file_system.h"
+#include "jobs/dispatch/record_file.h"
+#include "jobs/dispatch/submission.h"
 #include "jobs/run_child.h"
 
 namespace strut {
@@ -152,8 +154,9 @@ TaskState find_state(const std::string& word) {
 }
 
 /// Lines of `squeue -r -o %F|%K|%T|%r|%j` about these jobs.
-std::vector<QueuedTasks> parse_queue(const std::string& text,
-                                     const std::map<std::string, std::string>& names) {
+std::vector<QueuedTasks> parse_queue(const std::string& text, const std::vector<JobRecord>& jobs) {
+  std::map<std::string, std::string> names;
+  for (const JobRecord& record : jobs) names[record.job] = record.name;
   std::vector<QueuedTasks> tasks;
   for (const std::string& line : split(text, '\n')) {
     const std::vector<std::string> parts = split(line, '|');
@@ -166,11 +169,77 @@ std::vector<QueuedTasks> parse_queue(const std::string& text,
   return tasks;
 }
 
-/// Slurm puts the job's number and the like in place of %.
-std::string escape_pattern(const std::string& path) {
-  std::string text;
-  for (const char c : path) text += c == '%' ? std::string("%%") : std::string(1, c);
-  return text;
+/// The file that a task's output is appended to, as sbatch is to be told. Slurm puts numbers in
+/// place of %a and the like; where it meets a backslash, which it takes for an escape, it does not:
+/// in such a folder all tasks of an array write to one file.
+std::string make_output_pattern(const TaskArray& tasks) {
+  const std::string path = (tasks.folder / tasks.name).string();
+  const bool is_literal = path.find('\\') != std::string::npos;
+  const char special = is_literal ? '\\' : '%';
+  std::string pattern;
+  for (const char c : path) pattern.append(c == special ? 2 : 1, c);
+  return pattern + (tasks.is_array && !is_literal ? "-%a" : "") + ".log";
+}
+
+/// The options of sbatch. As arguments they are words, whatever is in them; in the script they
+/// would be lines that Slurm takes apart.
+std::vector<std::string> list_options(const TaskArray& tasks) {
+  const Resources& r = tasks.resources;
+  std::vector<std::string> options = {"--job-name=" + tasks.name};
+  const auto set_given = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) options.push_back(option + "=" + value);
+  };
+  if (tasks.is_array) {
+    const std::string throttle = tasks.at_once > 0 ? "%" + std::to_string(tasks.at_once) : "";
+    options.push_back("--array=0-" + std::to_string(tasks.tasks - 1) + throttle);
+  }
+  options.insert(options.end(),
+                 {"--output=" + make_output_pattern(tasks), "--open-mode=append", "--requeue",
+                  "--ntasks=1", "--cpus-per-task=" + std::to_string(r.threads)});
+  if (r.seconds > 0.0) options.push_back("--time=" + format_slurm_time(r.seconds));
+  if (r.warning > 0.0) {
+    options.push_back("--signal=B:USR1@" + std::to_string(std::lround(r.warning)));
+  }
+  set_given("--partition", r.partition);
+  set_given("--account", r.account);
+  set_given("--constraint", r.constraint);
+  set_given("--mem", r.memory);
+  options.insert(options.end(), r.extra.begin(), r.extra.end());
+  return options;
+}
+
+/// Whether sbatch takes the option for one by which strut numbers and finds its jobs, or gets their
+/// numbers: also a name of which only the beginning is written.
+bool is_reserved(const std::string& option) {
+  static constexpr std::array<const char*, 7> kNames = {
+      "--array", "--clusters", "--job-name", "--parsable", "--test-only", "--wait", "--wrap"};
+  const std::string name = option.substr(0, option.find('='));
+  if (!name.starts_with("--")) return std::string("aJMW").find(option[1]) != std::string::npos;
+  return std::any_of(kNames.begin(), kNames.end(),
+                     [&](const std::string& reserved) { return reserved.starts_with(name); });
+}
+
+/// Of --option. Throws InputError.
+void check_option(const std::string& option) {
+  const std::string name = option.substr(0, option.find('='));
+  const bool is_option = name.size() > 1 && name.front() == '-' && name != "--" &&
+                         name.find_first_of(" \t\n") == std::string::npos;
+  if (!is_option) {
+    throw InputError("--option " + option + ": must be one option, as in --option='--qos=low'");
+  }
+  if (is_reserved(option)) {
+    throw InputError("--option " + option +
+                     ": must be left to strut, which finds its jobs by it; for another cluster, "
+                     "submit there");
+  }
+}
+
+/// Throws InputError where a record's job is no number of Slurm's.
+void check_number(const JobRecord& record) {
+  const bool is_number = !record.job.empty() && record.job.size() <= 10 &&
+                         record.job.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number) return;
+  throw InputError(record.file.string() + ": must hold the number of a job" + kRecordRemedy);
 }
 
 }  // namespace
@@ -214,13 +283,7 @@ SiteLimits SlurmDispatcher::check(const Resources& resources, const fs::path& fo
                            "; --to slurm works where Slurm's commands are in PATH, --to "
                            "local everywhere");
   }
-  for (const std::string& option : resources.extra) {
-    if (option.rfind("--clusters", 0) == 0 || option.rfind("-M", 0) == 0) {
-      throw InputError(
-          "--option " + option +
-          ": must be submitted on that cluster itself, where its jobs can be asked for");
-    }
-  }
+  for (const std::string& option : resources.extra) check_option(option);
   const auto settings = read_settings();
   const Partition partition = find_partition(resources.partition);
   if (!partition.is_up) {
@@ -312,54 +375,37 @@ std::vector<NodeAnswer> SlurmDispatcher::ask_nodes(const Resources& resources) c
 }
 
 std::string SlurmDispatcher::make_script(const TaskArray& tasks) const {
-  const Resources& r = tasks.resources;
-  std::string text = "#!/bin/bash\n";
-  const auto set = [&](const std::string& option) { text += "#SBATCH " + option + "\n"; };
-  const auto set_given = [&](const std::string& option, const std::string& value) {
-    if (!value.empty()) set(option + "=" + value);
-  };
-  set("--job-name=" + tasks.name);
-  std::string log = escape_pattern((tasks.folder / tasks.name).string());
-  if (tasks.is_array) {
-    const std::string throttle = tasks.at_once > 0 ? "%" + std::to_string(tasks.at_once) : "";
-    set("--array=0-" + std::to_string(tasks.tasks - 1) + throttle);
-    log += "-%a";
-  }
-  set("--output=\"" + log + ".log\"");
-  set("--open-mode=append");
-  set("--requeue");
-  set("--ntasks=1");
-  set("--cpus-per-task=" + std::to_string(r.threads));
-  if (r.seconds > 0.0) set("--time=" + format_slurm_time(r.seconds));
-  if (r.warning > 0.0) set("--signal=B:USR1@" + std::to_string(std::lround(r.warning)));
-  set_given("--partition", r.partition);
-  set_given("--account", r.account);
-  if (!r.constraint.empty()) set("--constraint=\"" + r.constraint + "\"");
-  set_given("--mem", r.memory);
-  for (const std::string& option : r.extra) set(option);
-  text += "set -u\ntask=${SLURM_ARRAY_TASK_ID:-0}\nthreads=${SLURM_CPUS_PER_TASK:-" +
-          std::to_string(r.threads) + "}\n";
+  std::string text = "#!/bin/bash\nset -u\ntask=${SLURM_ARRAY_TASK_ID:-0}\n";
+  text += "threads=${SLURM_CPUS_PER_TASK:-" + std::to_string(tasks.resources.threads) + "}\n";
   for (const std::string& line : tasks.preparation) text += line + "\n";
   // Slurm's warning goes to the batch shell alone: the program takes its place.
   return text + "exec " + tasks.program + "\n";
 }
 
-std::string SlurmDispatcher::try_script(const fs::path& script) const {
-  const ChildOutput output = call({"sbatch", "--test-only", script.string()});
+std::vector<std::string> SlurmDispatcher::make_command(
+    const TaskArray& tasks, const fs::path& script, const std::vector<std::string>& after) const {
+  std::vector<std::string> words = {"sbatch", "--parsable"};
+  for (const std::string& option : list_options(tasks)) words.push_back(option);
+  if (!after.empty()) {
+    words.emplace_back("--dependency=afterany");
+    for (const std::string& job : after) words.back() += ":" + job;
+  }
+  words.push_back(script.string());
+  return words;
+}
+
+std::string SlurmDispatcher::try_tasks(const TaskArray& tasks) const {
+  std::vector<std::string> words = {"sbatch", "--test-only", "--wrap=:"};
+  for (const std::string& option : list_options(tasks)) words.push_back(option);
+  const ChildOutput output = call(words);
   if (output.code == ChildOutput::kNotStarted) return "";
   if (output.code != 0) throw EnvironmentError("sbatch: " + output.explain());
   return output.explain();
 }
 
-std::string SlurmDispatcher::submit(const fs::path& script,
+std::string SlurmDispatcher::submit(const TaskArray& tasks, const fs::path& script,
                                     const std::vector<std::string>& after) const {
-  std::vector<std::string> words = {"sbatch", "--parsable"};
-  if (!after.empty()) {
-    std::string jobs = "--dependency=afterany";
-    for (const std::string& job : after) jobs += ":" + job;
-    words.push_back(jobs);
-  }
-  words.push_back(script.string());
+  const std::vector<std::string> words = make_command(tasks, script, after);
   const std::string answer = ask(words);  // "123" or "123;cluster"
   std::string job = answer.substr(0, answer.find_first_of(";\n"));
   if (!parse_number<std::int64_t>(job))
@@ -374,33 +420,36 @@ std::string SlurmDispatcher::find_job(const std::string& name) const {
   return jobs.substr(0, jobs.find('\n'));
 }
 
-QueueAnswer SlurmDispatcher::query(const std::map<std::string, std::string>& names) const {
+QueueAnswer SlurmDispatcher::query(const std::vector<JobRecord>& jobs) const {
+  std::for_each(jobs.begin(), jobs.end(), &check_number);
   const ChildOutput output =
       call({"squeue", "-h", "-a", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r|%j"});
   if (output.code != 0) return {{}, "squeue: " + output.explain()};
-  QueueAnswer answer{parse_queue(output.out, names), ""};
+  QueueAnswer answer{parse_queue(output.out, jobs), ""};
   // What squeue passes over has ended only where the controller says that there is no such job, or
   // that the number is another's.
-  for (const auto& [job, name] : names) {
-    const std::string number = job;  // for the lambda
+  for (const JobRecord& record : jobs) {
     const bool is_listed = std::any_of(answer.tasks.begin(), answer.tasks.end(),
-                                       [&](const QueuedTasks& t) { return t.job == number; });
+                                       [&](const QueuedTasks& t) { return t.job == record.job; });
     if (is_listed) continue;
-    const ChildOutput known = call({"scontrol", "show", "job", job});
+    const ChildOutput known = call({"scontrol", "show", "job", record.job});
     const bool is_gone =
         known.code != 0 && (known.out + known.messages).find("Invalid job id") != std::string::npos;
-    const bool is_ours = known.out.find("JobName=" + name + "\n") != std::string::npos ||
-                         known.out.find("JobName=" + name + " ") != std::string::npos;
+    const bool is_ours = known.out.find("JobName=" + record.name + "\n") != std::string::npos ||
+                         known.out.find("JobName=" + record.name + " ") != std::string::npos;
     if (is_gone || (known.code == 0 && !is_ours)) continue;
     return {{},
-            "squeue does not list job " + job + ", and scontrol " +
+            "squeue does not list job " + record.job + ", and scontrol " +
                 (known.code == 0 ? "knows it" : "says: " + known.explain())};
   }
   return answer;
 }
 
-void SlurmDispatcher::cancel(const std::map<std::string, std::string>& names) const {
-  for (const auto& [job, name] : names) ask({"scancel", "--name=" + name, job});
+void SlurmDispatcher::cancel(const std::vector<JobRecord>& jobs) const {
+  std::for_each(jobs.begin(), jobs.end(), &check_number);
+  // Root may cancel anybody's jobs, and a number may be another's by now.
+  const std::string mine = "--user=" + find_user();
+  for (const JobRecord& record : jobs) ask({"scancel", mine, "--name=" + record.name, record.job});
 }
 
 bool SlurmDispatcher::requeue_own() const {

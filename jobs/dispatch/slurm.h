@@ -18,12 +18,14 @@ class SlurmDispatcher : public Dispatcher {
   Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;
   std::vector<NodeAnswer> ask_nodes(const Resources& resources) const override;
   std::string make_script(const TaskArray& tasks) const override;
-  std::string try_script(const std::filesystem::path& script) const override;
-  std::string submit(const std::filesystem::path& script,
+  std::vector<std::string> make_command(const TaskArray& tasks, const std::filesystem::path& script,
+                                        const std::vector<std::string>& after) const override;
+  std::string try_tasks(const TaskArray& tasks) const override;
+  std::string submit(const TaskArray& tasks, const std::filesystem::path& script,
                      const std::vector<std::string>& after) const override;
   std::string find_job(const std::string& name) const override;
-  QueueAnswer query(const std::map<std::string, std::string>& names) const override;
-  void cancel(const std::map<std::string, std::string>& names) const override;
+  QueueAnswer query(const std::vector<JobRecord>& jobs) const override;
+  void cancel(const std::vector<JobRecord>& jobs) const override;
   bool requeue_own() const override;
   std::int64_t find_own_end() const override;
   int count_own_restarts() const override;

@@ -6,6 +6,9 @@
 //   DIR/jobs/NAME/ARRAY/TASK        the lives of a task (task_record.h)
 //   DIR/jobs/NAME/cancelled         a mark
 //   DIR/jobs/NAME/over              a mark; what the scheduler remembered of its tasks' ends
+//
+// The folder may have come from elsewhere: names and numbers read from it are checked, nothing is
+// written through a link, and a job is not touched before the dispatcher has proved it ours.
 #pragma once
 
 #include <filesystem>
@@ -16,6 +19,7 @@
 #include <vector>
 
 #include "io/sweep_folder.h"
+#include "jobs/dispatch/dispatcher.h"
 #include "jobs/dispatch/packing.h"
 
 namespace strut {
@@ -34,6 +38,9 @@ struct Submission {
   bool collects = false;  // a last job, behind all others, merges
 
   std::string name() const { return folder.filename().string(); }
+  std::filesystem::path sweep() const { return folder.parent_path().parent_path(); }
+  /// Its folder, for reading and writing. Throws InputError where a link stands in its place.
+  Folder open() const;
   /// "array-0", ..., "retry", "collect": its files, and with the prefix its job.
   std::string array_name(std::size_t array) const { return "array-" + std::to_string(array); }
   static constexpr const char* kRetry = "retry";
@@ -42,18 +49,18 @@ struct Submission {
   /// Names of all parts, in the order in which they are queued.
   std::vector<std::string> list_parts() const;
 
-  std::filesystem::path script(const std::string& part) const { return folder / (part + ".sh"); }
-  std::filesystem::path tasks(std::size_t array) const { return folder / array_name(array); }
+  static std::string script_name(const std::string& part) { return part + ".sh"; }
 
-  /// The scheduler's name for a part; "" where it was never queued, or nobody lived to write it.
-  std::string read_job(const std::string& part) const;
+  /// A part as its scheduler knows it; `job` is "" where it was never queued, or nobody lived to
+  /// write it down.
+  JobRecord read_job(const std::string& part) const;
   void write_job(const std::string& part, const std::string& job) const;
 
-  bool is_cancelled() const { return std::filesystem::exists(folder / "cancelled"); }
+  bool is_cancelled() const { return open().has("cancelled"); }
   void mark_cancelled() const;
   void take_back_cancelled() const;
   /// Nothing of it is queued any more, and nothing will be.
-  bool is_over() const { return std::filesystem::exists(folder / "over"); }
+  bool is_over() const { return open().has("over"); }
   void mark_over(const TaskWords& words) const;
   /// As mark_over() left them.
   TaskWords read_words() const;

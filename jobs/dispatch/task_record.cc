@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "io/atomic_file.h"
-#include "io/config.h"
+#include "jobs/dispatch/record_file.h"
 
 namespace strut {
 namespace {
@@ -52,10 +52,9 @@ TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled, const st
   return TaskFate::kLost;
 }
 
-std::vector<TaskLife> read_task_lives(const std::filesystem::path& file) {
+std::vector<TaskLife> read_task_lives(const Folder& array, const std::string& task) {
   std::vector<TaskLife> lives;
-  if (!std::filesystem::exists(file)) return lives;
-  std::istringstream lines(read_text_file(file));
+  std::istringstream lines(read_record_file(array, task).value_or(""));
   std::string line;
   while (std::getline(lines, line)) {
     std::istringstream words(line);
@@ -63,7 +62,8 @@ std::vector<TaskLife> read_task_lives(const std::filesystem::path& file) {
     std::string how;
     if (!(words >> life.host >> life.begin >> life.limit >> life.restart >> how >> life.end >>
           life.shards)) {
-      throw InputError(file.string() + ": '" + line + "': not the life of a task");
+      throw InputError(array.path_of(task).string() + ": line " + std::to_string(lives.size() + 1) +
+                       ": not the life of a task" + kRecordRemedy);
     }
     life.how = find_end(how);
     lives.push_back(life);
@@ -71,14 +71,15 @@ std::vector<TaskLife> read_task_lives(const std::filesystem::path& file) {
   return lives;
 }
 
-void write_task_lives(const std::filesystem::path& file, const std::vector<TaskLife>& lives) {
+void write_task_lives(const Folder& array, const std::string& task,
+                      const std::vector<TaskLife>& lives) {
   std::ostringstream text;
   for (const TaskLife& life : lives) {
     text << life.host << ' ' << life.begin << ' ' << life.limit << ' ' << life.restart << ' '
          << (life.how ? get_name(*life.how) : "begun") << ' ' << life.end << ' ' << life.shards
          << '\n';
   }
-  write_text_file(file, text.str());
+  write_text_file(array, task, text.str());
 }
 
 }  // namespace strut

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "io/folder.h"
 
 namespace strut {
 
@@ -52,9 +53,12 @@ const char* get_name(TaskFate fate);
 TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled,
                     const std::string& word = "");
 
-/// Throws InputError where the file is none of ours.
-std::vector<TaskLife> read_task_lives(const std::filesystem::path& file);
-/// Of the one process that runs the task. Throws EnvironmentError.
-void write_task_lives(const std::filesystem::path& file, const std::vector<TaskLife>& lives);
+/// Of a task's record in the folder of its array; none where it is missing. Throws InputError where
+/// the file is none of ours.
+std::vector<TaskLife> read_task_lives(const Folder& array, const std::string& task);
+/// Of the one process that runs the task. Throws EnvironmentError; InputError where a link stands
+/// in its place.
+void write_task_lives(const Folder& array, const std::string& task,
+                      const std::vector<TaskLife>& lives);
 
 }  // namespace strut

@@ -28,19 +28,20 @@ TaskRun::TaskRun(const SweepFolder& folder, const std::string& name) {
                      " has no such task; `strut run` without --task does all that is missing");
   }
   shards_ = submission_.arrays[*array].get_task(*task);
-  file_ = submission_.tasks(*array) / std::to_string(*task);
+  array_ = submission_.open().make_folder(submission_.array_name(*array));
+  file_ = std::to_string(*task);
   dispatcher_ = make_dispatcher(submission_.dispatcher);
 }
 
 void TaskRun::begin() {
-  lives_ = read_task_lives(file_);
+  lives_ = read_task_lives(*array_, file_);
   TaskLife life;
   life.host = find_own_identity().host;
   life.begin = std::time(nullptr);
   life.limit = dispatcher_->find_own_end();
   life.restart = dispatcher_->count_own_restarts();
   lives_.push_back(life);
-  write_task_lives(file_, lives_);
+  write_task_lives(*array_, file_, lives_);
 }
 
 void TaskRun::end(TaskEnd how, std::int64_t shards_written) {
@@ -48,7 +49,7 @@ void TaskRun::end(TaskEnd how, std::int64_t shards_written) {
   life.how = how;
   life.end = std::time(nullptr);
   life.shards = shards_written;
-  write_task_lives(file_, lives_);
+  write_task_lives(*array_, file_, lives_);
 }
 
 std::string TaskRun::requeue() const {

@@ -1,6 +1,7 @@
 // A task from within: what `strut run --task` tells of itself.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ class TaskRun {
  private:
   Submission submission_;
   ShardRange shards_;
-  std::filesystem::path file_;
+  std::optional<Folder> array_;  // of the tasks' records
+  std::string file_;             // there
   std::unique_ptr<Dispatcher> dispatcher_;
   std::vector<TaskLife> lives_;
 };
