@@ -10,6 +10,14 @@
 
 namespace strut::fuzz {
 
+/// How mutants of a format are made.
+enum class Changes {
+  kBytes,            // any bytes
+  kBytesAndContent,  // half of them as kContent
+  kContent,          // of HDF5, with a sound structure and seal: see hdf5_tree.h
+  kSealedBytes,      // any bytes, sealed anew
+};
+
 struct Format {
   std::string name;
   std::filesystem::path file;  // where readers look for the content, within the work folder
@@ -17,10 +25,7 @@ struct Format {
   Dictionary dictionary;
   /// Reads the file, and goes on to what a command would make of it.
   std::function<void(const std::filesystem::path& file)> read;
-  /// Changes behind checksums, see hdf5_tree.h.
-  bool is_hdf5 = false;
-  /// Changes of any bytes; where false, of the content alone.
-  bool flips_bytes = true;
+  Changes changes = Changes::kBytes;
   /// Left out where no format is named.
   bool only_by_name = false;
 };

@@ -110,9 +110,12 @@ std::vector<Format> list_hdf5_formats() {
        [](const fs::path& path) { read_any_hdf5(Hdf5Reader(path), "/"); }},
   };
   for (Format& format : formats) {
-    format.is_hdf5 = format.name != "hdf5_library";
-    format.only_by_name = format.name == "hdf5_library";
-    format.flips_bytes = format.name != "measurement";
+    format.changes = Changes::kBytesAndContent;
+    // Others write these: nothing vouches for them but the library.
+    if (format.name == "measurement") format.changes = Changes::kContent;
+    if (format.name != "hdf5_library") continue;
+    format.changes = Changes::kSealedBytes;
+    format.only_by_name = true;
   }
   return formats;
 }

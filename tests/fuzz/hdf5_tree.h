@@ -13,4 +13,7 @@ namespace strut::fuzz {
 /// library's own metadata stay sound: HDF5 1.10.8 crashes on some damaged ones.
 std::string rewrite_hdf5(const std::string& seed, Random& random);
 
+/// `file` with a seal like that of `seed` that fits its bytes; unchanged where `seed` has none.
+std::string seal_again(const std::string& seed, std::string file);
+
 }  // namespace strut::fuzz

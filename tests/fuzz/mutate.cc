@@ -180,7 +180,7 @@ void blow_up(std::string& text, const Dictionary& dictionary, Random& random) {
       // A key of its own, as otherwise the rest of the line is wrong before it is deep.
       const auto lines = find_lines(text);
       text.insert(random.one_in(4) ? at : random.pick(lines).first,
-                  repeat(piece, random.log_uniform(count)));
+                  repeat(piece, count >> random.below(8)));
       break;
     }
     case 1:
@@ -245,7 +245,7 @@ const std::vector<std::string>& list_extreme_numbers() {
 
 std::string mutate(const std::vector<std::string>& seeds, const Dictionary& dictionary,
                    Random& random) {
-  constexpr std::size_t kMaxChanges = 8, kRarely = 250;
+  constexpr std::size_t kMaxChanges = 8, kRarely = 150;
   std::string text = random.pick(seeds);
   if (random.one_in(kRarely)) {
     blow_up(text, dictionary, random);

@@ -12,6 +12,7 @@
 #include <cctype>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -91,6 +92,7 @@ Usage read_usage(pid_t process) {
   ::dup2(messages, STDERR_FILENO);
   const rlimit none = {0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
+  ::setenv("PATH", "/nonexistent", 1);  // no file makes a reader run a program
   for (std::uint64_t number = first; number != end && Clock::now() < deadline; ++number) {
     const Input input = make_input(format, seeds, campaign.seed, number);
     write_input(work / format.file, input);
@@ -208,10 +210,13 @@ Input make_input(const Format& format, const std::vector<std::string>& seeds, st
   constexpr std::size_t kRarely = 2000;
   Random random({seed, calc_name_key(format.name), number});
   if (random.one_in(kRarely)) return {static_cast<Kind>(1 + random.below(4)), ""};
-  if (format.is_hdf5 && (!format.flips_bytes || random.one_in(2))) {
+  const Changes changes = format.changes;
+  if (changes == Changes::kContent || (changes == Changes::kBytesAndContent && random.one_in(2))) {
     return {Kind::kFile, rewrite_hdf5(random.pick(seeds), random)};
   }
-  return {Kind::kFile, mutate(seeds, format.dictionary, random)};
+  std::string content = mutate(seeds, format.dictionary, random);
+  if (changes == Changes::kSealedBytes) content = seal_again(seeds.front(), std::move(content));
+  return {Kind::kFile, std::move(content)};
 }
 
 void write_input(const fs::path& path, const Input& input) {
@@ -281,6 +286,7 @@ Tally run_campaign(const Format& format, const fs::path& work, const Campaign& c
       campaign.executions > 0 ? campaign.first + campaign.executions : ~std::uint64_t{0};
   Shared& shared = *share();
   Tally tally;
+  const Input sound = read_input(work / format.file);
   for (std::uint64_t first = campaign.first; first != end && Clock::now() < deadline;) {
     shared.number = first;
     const pid_t worker = ::fork();
@@ -292,6 +298,7 @@ Tally run_campaign(const Format& format, const fs::path& work, const Campaign& c
     keep_finding(format, work, campaign, seeds, *what, shared.number, tally);
     first = shared.number + 1;
   }
+  write_input(work / format.file, sound);  // other formats read it, too
   tally.executions = shared.executions;
   tally.accepted = shared.accepted;
   tally.refused = shared.refused;
