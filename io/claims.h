@@ -12,10 +12,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "io/folder.h"
 
 namespace strut {
 
@@ -33,8 +34,8 @@ class Claims {
  public:
   /// Starts the heartbeat of this process in `folder`, by a thread that takes no signals and that a
   /// full disk does not end; removes what killed runners of this host left of themselves. Throws
-  /// EnvironmentError.
-  Claims(const std::filesystem::path& folder, const ClaimOptions& options);
+  /// EnvironmentError; InputError where a link or pipe stands in a claim's place.
+  Claims(const Folder& folder, const ClaimOptions& options);
   /// Stops the heartbeat and gives back all claims.
   ~Claims();
   Claims(const Claims&) = delete;
@@ -59,13 +60,16 @@ class Claims {
   /// calls. To collect what it left in tmp/.
   bool may_live(const std::string& runner);
 
+  /// Whether a name is HOST.PID.NONCE, as runners are named.
+  static bool is_runner_name(const std::string& name);
+
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
 /// The claims in `folder` whose runners may live at one look, for status; stands beside, changes
-/// nothing. Throws EnvironmentError.
-std::vector<ClaimInfo> list_claims(const std::filesystem::path& folder);
+/// nothing. Throws EnvironmentError; InputError where a link or pipe stands in a claim's place.
+std::vector<ClaimInfo> list_claims(const Folder& folder);
 
 }  // namespace strut

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
-#include <sstream>
 
+#include "io/file_sync.h"
 #include "io/nearest_name.h"
 #include "io/parse_toml.h"
 
@@ -55,14 +54,9 @@ std::string describe_value(const toml::node& node) {
 }  // namespace
 
 std::string read_text_file(const fs::path& path) {
-  if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
-  if (!fs::is_regular_file(path)) throw InputError(path.string() + ": not a file");
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  // An empty file sets only the text's fail bit.
-  if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
-  return text.str();
+  auto text = read_if_present(path);
+  if (!text) throw InputError(path.string() + ": file not found");
+  return *std::move(text);
 }
 
 bool Range::contains(double value) const {

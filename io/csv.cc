@@ -198,8 +198,7 @@ void write_csv(const fs::path& path, const std::vector<CsvColumn>& columns) {
 }
 
 CsvTable read_csv(const fs::path& path, MissingCells missing) {
-  if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
-  if (!fs::is_regular_file(path)) throw InputError(path.string() + ": not a file");
+  open_regular_file(path);  // a stream would wait for a pipe's other end
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
   CsvTable table = CsvReader(path, missing).read(stream);

@@ -1,38 +1,50 @@
 #include "io/file_bytes.h"
 
-#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <fstream>
-#include <string>
 
 #include "io/file_sync.h"
 
 namespace strut {
 
+namespace {
+
 namespace fs = std::filesystem;
 
-void write_bytes(const fs::path& path, std::span<const std::byte> bytes, const fs::path& shown) {
-  const FileDescriptor file = open_file(path, O_WRONLY | O_TRUNC);
-  if (!file.is_open()) throw file_failure(shown, "cannot be written", errno);
-  write_all(file.get(), bytes, shown);
-}
-
-std::vector<std::byte> read_first_bytes(const fs::path& path, std::size_t count) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path.string() + ": file not found or not readable");
+std::vector<std::byte> read_from(const FileDescriptor& file, const fs::path& path,
+                                 std::size_t count) {
   std::vector<std::byte> bytes(count);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
-  if (stream.bad()) throw InputError(path.string() + ": cannot be read");
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  std::size_t done = 0;
+  while (done < count) {
+    const ssize_t step = ::read(file.get(), bytes.data() + done, count - done);
+    if (step < 0 && errno == EINTR) continue;
+    if (step < 0) throw file_failure(path, "cannot be read", errno);
+    if (step == 0) break;
+    done += static_cast<std::size_t>(step);
+  }
+  bytes.resize(done);
   return bytes;
 }
 
+std::size_t read_size(const FileDescriptor& file, const fs::path& path) {
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) throw file_failure(path, "cannot be read", errno);
+  return static_cast<std::size_t>(status.st_size);
+}
+
+}  // namespace
+
+std::vector<std::byte> read_first_bytes(const fs::path& path, std::size_t count) {
+  const FileDescriptor file = open_regular_file(path);
+  return read_from(file, path, std::min(count, read_size(file, path)));
+}
+
 std::vector<std::byte> read_bytes(const fs::path& path) {
-  std::error_code error;
-  const auto size = fs::file_size(path, error);
-  if (error) throw InputError(path.string() + ": file not found or not readable");
-  return read_first_bytes(path, size);
+  const FileDescriptor file = open_regular_file(path);
+  return read_from(file, path, read_size(file, path));
 }
 
 }  // namespace strut

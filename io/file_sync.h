@@ -37,8 +37,24 @@ class FileDescriptor {
 /// open(2) with O_CLOEXEC, and again where a signal interrupted it; not open: errno says why.
 FileDescriptor open_file(const std::filesystem::path& path, int flags);
 
-/// All that a file holds, in one piece; none: there is no such file. Throws EnvironmentError.
+/// Throws InputError where `descriptor` is not of a regular file: a pipe or device in its place
+/// could block for ever or never end. `path` stands in the message.
+void check_regular(int descriptor, const std::filesystem::path& path);
+/// The same of the file `name` in an open directory; a missing one passes.
+void check_regular(int directory, const std::string& name, const std::filesystem::path& path);
+
+/// open_file that never waits for another process and takes regular files alone; links are
+/// followed. Throws InputError where the file is missing or not regular, EnvironmentError where it
+/// cannot be read.
+FileDescriptor open_regular_file(const std::filesystem::path& path);
+
+/// All that a regular file holds, in one piece; nullopt where there is no such file. Throws
+/// InputError where it is not a regular file, EnvironmentError where it cannot be read.
 std::optional<std::string> read_if_present(const std::filesystem::path& path);
+
+/// What an open file holds from its position on; nullopt where another host removed or replaced
+/// the file meanwhile. Throws an EnvironmentError that names `path`.
+std::optional<std::string> read_rest(int descriptor, const std::filesystem::path& path);
 
 /// One write(2), and again where a signal interrupted it: bytes written, or -1 with errno. Beyond a
 /// limit of file size it is -1 with EFBIG: the signal SIGXFSZ is held back from the calling thread
@@ -55,39 +71,5 @@ void flush_file(int descriptor, const std::filesystem::path& target);
 
 /// Makes the names in the folder of `target` survive a power cut, as flush_file does a content.
 void flush_folder_of(const std::filesystem::path& target);
-
-/// A new file PREFIX.NUMBER, with the first number that is free, on the way to its target, the name
-/// it is for. All failures are EnvironmentError and name the target.
-class TemporaryFile {
- public:
-  TemporaryFile(const std::filesystem::path& prefix, const std::filesystem::path& target);
-  /// Removes the temporary name.
-  ~TemporaryFile();
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-  void write(std::span<const std::byte> bytes);
-  void write(const std::string& text);
-  /// Flushes to the disk, and reads from there: throws where that is not `bytes`.
-  void flush_and_compare(std::span<const std::byte> bytes);
-
-  /// Gives the file, with all that was written, the target's name unless a file has that name
-  /// already; false: one has. By
-  /// link(2), which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where
-  /// the file system knows no links.
-  bool name_new();
-  /// Gives the file the target's name, replacing what has it.
-  void name_over();
-
- private:
-  void hand_over() const;
-  bool has_target_name() const;
-  bool move_new();
-
-  std::filesystem::path target_;
-  std::filesystem::path path_;
-  FileDescriptor file_;
-  bool moved_ = false;  // the temporary name is gone already
-};
 
 }  // namespace strut

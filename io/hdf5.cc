@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/file_bytes.h"
 #include "io/hdf5_calls.h"
 
 namespace strut {
@@ -99,6 +98,13 @@ std::uint64_t read_end_of_file(const std::byte* superblock) {
 Hdf5Writer::Hdf5Writer(const fs::path& path, const Hdf5WriterOptions& options) {
   target_.emplace(path);
   sink_.shown = path;
+  open(options);
+}
+
+Hdf5Writer::Hdf5Writer(const Folder& folder, const std::string& name,
+                       const Hdf5WriterOptions& options) {
+  target_.emplace(folder, name);
+  sink_.shown = folder.path_of(name);
   open(options);
 }
 
@@ -202,7 +208,7 @@ std::vector<std::byte> Hdf5Writer::image() {
 
 void Hdf5Writer::commit() {
   if (!target_) throw std::logic_error("a file in memory has no name to be written under");
-  write_bytes(target_->temporary(), image(), sink_.shown);
+  target_->write(image());
   target_->commit();
 }
 

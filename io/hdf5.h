@@ -118,6 +118,8 @@ struct Hdf5Sink {
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path, const Hdf5WriterOptions& options = {});
+  /// Inside a folder that strut makes.
+  Hdf5Writer(const Folder& folder, const std::string& name, const Hdf5WriterOptions& options = {});
   explicit Hdf5Writer(const Hdf5InMemory& memory, const Hdf5WriterOptions& options = {});
   ~Hdf5Writer();
 

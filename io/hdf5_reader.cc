@@ -93,8 +93,7 @@ std::vector<T> read_range(const fs::path& path, const std::string& name, hid_t d
 
 Hdf5Reader::Hdf5Reader(const fs::path& path) : path_(path) {
   hdf5::prepare_library();
-  if (!fs::exists(path)) throw InputError(path.string() + ": file not found");
-  if (fs::is_directory(path)) throw InputError(path.string() + ": a folder; must be an HDF5 file");
+  open_regular_file(path);  // the library would wait for a pipe's other end
   check<InputError>(H5Fis_hdf5(path.c_str()) > 0, path, "", "not an HDF5 file");
   file_ = checked<InputError>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, path,
                               "", "damaged or not readable");

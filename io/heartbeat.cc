@@ -57,14 +57,15 @@ RunnerFile read_runner_text(const std::string& text) {
           text};
 }
 
-Heartbeat::Heartbeat(std::filesystem::path path, ProcessIdentity identity,
+Heartbeat::Heartbeat(const Folder& folder, std::string file, ProcessIdentity identity,
                      std::chrono::milliseconds interval)
-    : path_(std::move(path)), identity_(std::move(identity)), interval_(interval) {
+    : folder_(folder), file_(std::move(file)), identity_(std::move(identity)), interval_(interval) {
   const BlockedSignals blocked;
   try {
     thread_ = std::thread([this] { run(); });
   } catch (const std::system_error& error) {
-    throw EnvironmentError(path_.string() + ": no thread for the heartbeat: " + error.what());
+    throw EnvironmentError(folder_.path_of(file_).string() +
+                           ": no thread for the heartbeat: " + error.what());
   }
 }
 
@@ -91,9 +92,9 @@ void Heartbeat::run() {
 void Heartbeat::beat(std::uint64_t counter) const {
   try {
     const std::string text = write_runner_text(identity_, counter);
-    const FileDescriptor file = open_file(path_, O_WRONLY | O_CREAT);
+    const FileDescriptor file = folder_.open_file(file_, O_WRONLY | O_CREAT);
     if (file.is_open()) write_once(file.get(), std::as_bytes(std::span(text)));
-  } catch (const std::bad_alloc&) {  // one beat less
+  } catch (const std::exception&) {  // one beat less
   }
 }
 

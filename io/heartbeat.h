@@ -4,11 +4,11 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <filesystem>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include "io/folder.h"
 #include "io/process_identity.h"
 
 namespace strut {
@@ -29,7 +29,7 @@ RunnerFile read_runner_text(const std::string& text);
 class Heartbeat {
  public:
   /// Throws EnvironmentError where no thread can be made.
-  Heartbeat(std::filesystem::path path, ProcessIdentity identity,
+  Heartbeat(const Folder& folder, std::string file, ProcessIdentity identity,
             std::chrono::milliseconds interval);
   ~Heartbeat();
   Heartbeat(const Heartbeat&) = delete;
@@ -39,7 +39,8 @@ class Heartbeat {
   void run();
   void beat(std::uint64_t counter) const;
 
-  std::filesystem::path path_;
+  Folder folder_;
+  std::string file_;
   ProcessIdentity identity_;
   std::chrono::milliseconds interval_;
   std::mutex mutex_;

@@ -10,7 +10,6 @@
 #include <optional>
 #include <string_view>
 
-#include "io/file_sync.h"
 #include "io/parse_number.h"
 #include "io/sha256.h"
 
@@ -177,8 +176,9 @@ bool ends_torn(int descriptor, off_t size) {
 
 }  // namespace
 
-void append_journal(const fs::path& journal, const JournalEntry& entry) {
-  const FileDescriptor file = open_file(journal, O_RDWR | O_CREAT | O_APPEND);
+void append_journal(const Folder& folder, const std::string& name, const JournalEntry& entry) {
+  const fs::path journal = folder.path_of(name);
+  const FileDescriptor file = folder.open_file(name, O_RDWR | O_CREAT | O_APPEND);
   if (!file.is_open()) throw file_failure(journal, kNotWritten, errno);
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) throw file_failure(journal, kNotWritten, errno);
@@ -191,7 +191,7 @@ void append_journal(const fs::path& journal, const JournalEntry& entry) {
     throw file_failure(journal, kNotWritten, ENOSPC);
   }
   flush_file(file.get(), journal);
-  if (status.st_size == 0) flush_folder_of(journal);
+  if (status.st_size == 0) folder.flush(journal);
 }
 
 Journal read_journal(const fs::path& journal) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/folder.h"
+
 namespace strut {
 
 struct JournalEntry {
@@ -26,12 +28,12 @@ struct JournalEntry {
 /// Appends one line with one write(2) to a file opened with O_APPEND, and flushes it: writers on
 /// one host lose nothing to each other; on a network file system, which may not know O_APPEND, they
 /// may lose a line. A line that an earlier crash left without end is ended first. Throws
-/// EnvironmentError.
+/// EnvironmentError; InputError where a link or pipe stands in the journal's place.
 ///
 ///     file=shards/000042.h5 cases=512 failures=diverged:3 bytes=... ... check=0123456789abcdef
 ///
 /// Values are percent-encoded; `check` is the first 16 digits of the SHA-256 of all before it.
-void append_journal(const std::filesystem::path& journal, const JournalEntry& entry);
+void append_journal(const Folder& folder, const std::string& journal, const JournalEntry& entry);
 
 struct Journal {
   std::vector<JournalEntry> entries;  // in the order of the file

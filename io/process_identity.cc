@@ -79,11 +79,16 @@ ProcessIdentity find_own_identity() {
   return own;
 }
 
+bool is_process_number_taken(const std::string& process) {
+  const pid_t number = parse_number<pid_t>(process).value_or(0);
+  return number > 0 && (::kill(number, 0) == 0 || errno != ESRCH);
+}
+
 Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own) {
   if (!share_process_ids(process, own)) return Life::kUnknown;
   const pid_t number = parse_number<pid_t>(process.process).value_or(0);
   if (number <= 0) return Life::kUnknown;
-  if (::kill(number, 0) != 0 && errno == ESRCH) return Life::kGone;
+  if (!is_process_number_taken(process.process)) return Life::kGone;
   const ProcessState state = read_process_state(process.process);
   // /proc may hide other users' processes; a runner's file may be half written.
   if (state.start.empty() || process.start.empty()) return Life::kUnknown;

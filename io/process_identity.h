@@ -19,6 +19,9 @@ struct ProcessIdentity {
 /// This process. What the system does not tell is empty.
 ProcessIdentity find_own_identity();
 
+/// Whether some process of this host, in this namespace, has the number.
+bool is_process_number_taken(const std::string& process);
+
 enum class Life {
   kGone,     // ended, a zombie, or its number is another process's now
   kRuns,     // perhaps stopped

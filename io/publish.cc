@@ -1,22 +1,20 @@
 #include "io/publish.h"
 
-#include "io/file_sync.h"
+#include "io/temporary_file.h"
 
 namespace strut {
 
-namespace fs = std::filesystem;
-
-Published publish(const fs::path& target, std::span<const std::byte> bytes,
-                  const fs::path& temporary, const std::string& owner) {
+Published publish(const Folder& folder, const std::string& name, std::span<const std::byte> bytes,
+                  const Folder& temporary, const std::string& owner) {
   Published published = Published::kPresent;
   {
-    TemporaryFile file(temporary / owner, target);
+    TemporaryFile file(temporary, owner, folder, name);
     file.write(bytes);
     file.flush_and_compare(bytes);
     if (file.name_new()) published = Published::kNew;
   }
   // Also where it was there already: its runner may have died before doing so.
-  flush_folder_of(target);
+  folder.flush(folder.path_of(name));
   return published;
 }
 

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
+
+#include "io/folder.h"
 
 namespace strut {
 
@@ -14,14 +15,14 @@ enum class Published {
 };
 
 /// Writes `bytes` to the new file OWNER.NUMBER in the folder `temporary`, flushes it to the disk,
-/// reads it back, and gives it the name `target` unless a file has that name already: by link(2),
-/// which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where links are not
-/// supported. Then flushes the target's folder. `target` is whole or absent at any moment, whatever
-/// kills the process or the machine. Throws an EnvironmentError that names the target, with nothing
-/// left behind, where anything fails: no space, a limit of file size (no SIGXFSZ reaches the
-/// process), a bad disk. Where only the last step fails, the folder's flush, the target stands,
-/// whole, but may vanish in a power cut. Both folders lie on one file system.
-Published publish(const std::filesystem::path& target, std::span<const std::byte> bytes,
-                  const std::filesystem::path& temporary, const std::string& owner);
+/// reads it back, and gives it the name `name` in `folder` unless a file has that name already: by
+/// link(2), which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where
+/// links are not supported. Then flushes `folder`. The target is whole or absent at any moment,
+/// whatever kills the process or the machine. Throws an EnvironmentError that names the target,
+/// with nothing left behind, where anything fails: no space, a limit of file size (no SIGXFSZ
+/// reaches the process), a bad disk. Where only the last step fails, the folder's flush, the target
+/// stands, whole, but may vanish in a power cut. Both folders lie on one file system.
+Published publish(const Folder& folder, const std::string& name, std::span<const std::byte> bytes,
+                  const Folder& temporary, const std::string& owner);
 
 }  // namespace strut

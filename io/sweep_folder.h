@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/folder.h"
 #include "io/shard.h"
 
 namespace strut {
@@ -23,6 +24,11 @@ struct SweepFolder {
   std::filesystem::path temporary() const { return root / "tmp"; }
   std::filesystem::path quarantine() const { return root / "quarantine"; }
   std::filesystem::path logs() const { return root / "logs"; }
+
+  /// `subfolder`, one of the above, for writing. Throws InputError where it is missing or a link.
+  Folder open(const std::filesystem::path& subfolder) const {
+    return Folder(root).open_folder(subfolder.filename().string());
+  }
 
   /// The folder's own: "cars" of "cars/", of "../cars" and, within it, of ".".
   std::string name() const;

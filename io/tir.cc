@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
+#include "io/config.h"
 #include "io/parse_number.h"
 
 namespace strut {
@@ -147,13 +146,7 @@ TirFile parse_tir(std::string_view content, const std::filesystem::path& path) {
 }
 
 TirFile read_tir(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path.string() + ": there is no such file");
-  }
-  std::ifstream stream(path, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw EnvironmentError(path.string() + ": cannot be read");
-  return parse_tir(content, path);
+  return parse_tir(read_text_file(path), path);
 }
 
 double get_number(const TirFile& file, const TirEntry& entry) {

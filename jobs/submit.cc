@@ -59,7 +59,8 @@ class Submitter {
     // Two who submit at once would each queue what is missing.
     std::optional<Claims> claims;
     if (!arguments_.is_on("dry-run")) {
-      claims.emplace(sweep_.folder.claims(), ClaimOptions());
+      claims.emplace(Folder(sweep_.folder.root).make_folder(sweep_.folder.claims().filename()),
+                     ClaimOptions());
       if (claims->claim("submit") != Claims::Answer::kMine) {
         throw EnvironmentError(sweep_.folder.root.string() +
                                ": another `strut submit` works on it right now");
@@ -271,8 +272,8 @@ class Submitter {
 
   /// What the scheduler says to it. Throws EnvironmentError where it would refuse it.
   std::string try_out(const std::string& script) const {
-    const AtomicFile file(fs::temp_directory_path() / "strut-dry-run.sh");
-    write_text_file(file.temporary(), script);
+    AtomicFile file(fs::temp_directory_path() / "strut-dry-run.sh");
+    file.write(std::as_bytes(std::span(script)));
     return dispatcher_->try_script(file.temporary());
   }
 

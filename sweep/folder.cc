@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/atomic_file.h"
+#include "io/claims.h"
 #include "io/input_error.h"
 #include "sweep/freeze_inputs.h"
 #include "sweep/plan_file.h"
@@ -11,6 +12,9 @@ namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The claim of a planning that is under way.
+constexpr char kPlanUnit[] = "plan";
 
 std::vector<fs::path> list_subfolders(const SweepFolder& folder) {
   return {folder.inputs(),    folder.shards(),     folder.retries(), folder.claims(),
@@ -31,7 +35,8 @@ bool is_leftover(const SweepFolder& folder, const fs::directory_entry& entry) {
   if (entry.is_regular_file()) return is_file_of(folder.request()) || is_file_of(folder.plan());
   const auto known = list_subfolders(folder);
   if (std::find(known.begin(), known.end(), entry.path()) == known.end()) return false;
-  return entry.path() == folder.inputs() || fs::is_empty(entry.path());
+  return entry.path() == folder.inputs() || entry.path() == folder.claims() ||
+         fs::is_empty(entry.path());
 }
 
 void check_free(const SweepFolder& folder) {
@@ -61,7 +66,8 @@ void check_same(const SweepFolder& folder, const Plan& plan) {
 }  // namespace
 
 void make_subfolders(const SweepFolder& folder) {
-  for (const fs::path& path : list_subfolders(folder)) make_folder(path);
+  const Folder root(folder.root);
+  for (const fs::path& path : list_subfolders(folder)) root.make_folder(path.filename().string());
 }
 
 SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
@@ -77,12 +83,25 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
   }
   make_folder(folder.root);
   make_subfolders(folder);
+  // Of two that plan into one folder at once, one goes on. Dying without a word it keeps nobody
+  // out.
+  Claims claims(folder.open(folder.claims()), ClaimOptions());
+  if (claims.claim(kPlanUnit) != Claims::Answer::kMine) {
+    throw EnvironmentError(folder.root.string() +
+                           ": another `strut plan` is making it right now; nothing was changed");
+  }
+  if (fs::exists(folder.plan())) {
+    check_same(folder, plan);
+    return folder;
+  }
   freeze_inputs(plan.request(), folder);
   if (calc_hash(list_facts(read_request(folder.request()))) != plan.hash()) {
     throw EnvironmentError(folder.request().string() +
                            ": its files changed while they were copied; plan again");
   }
   write_plan(folder.plan(), plan);
+  remove_abandoned_files(Folder(folder.root));
+  remove_abandoned_files(folder.open(folder.inputs()));
   return folder;
 }
 

@@ -15,20 +15,20 @@ namespace fs = std::filesystem;
 /// Names in the folder of copies, one a file, though two may be called the same.
 class Copies {
  public:
-  explicit Copies(fs::path folder) : folder_(std::move(folder)) {}
+  explicit Copies(const Folder& folder) : folder_(folder) {}
 
   /// Copies a file and, first, those it names; returns the copy's name.
   std::string copy(const fs::path& source) {
     std::string name = choose_name(source);
     if (source.extension() != ".toml") {
-      write_text_file(folder_ / name, read_text_file(source));
+      write_text_file(folder_, name, read_text_file(source));
       return name;
     }
     TomlValues changes;
     for (const NamedFile& named : list_named_files(source)) {
       changes.emplace_back(named.key, copy(named.path));
     }
-    write_text_file(folder_ / name, replace_toml_texts(source, changes));
+    write_text_file(folder_, name, replace_toml_texts(source, changes));
     return name;
   }
 
@@ -43,19 +43,19 @@ class Copies {
     return name;
   }
 
-  fs::path folder_;
+  Folder folder_;
   std::map<std::string, fs::path> names_;
 };
 
 }  // namespace
 
 void freeze_inputs(const SweepRequest& request, const SweepFolder& folder) {
-  Copies copies(folder.inputs());
+  Copies copies(folder.open(folder.inputs()));
   const std::string inside = folder.inputs().filename().string() + "/";
   // Two statements: the order of the copies' names must not be the compiler's.
   const std::string vehicle = inside + copies.copy(request.vehicle);
   const std::string maneuver = inside + copies.copy(request.maneuver);
-  write_text_file(folder.request(),
+  write_text_file(Folder(folder.root), folder.request().filename().string(),
                   replace_toml_texts(request.path, {{"vehicle", vehicle}, {"maneuver", maneuver}}));
 }
 

@@ -1,43 +1,41 @@
 #include "sweep/leftovers.h"
 
 #include <string>
-#include <system_error>
-#include <vector>
+
+#include "io/atomic_file.h"
 
 namespace strut {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Listed first: removing and claiming change the folder.
-std::vector<fs::path> list_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator file(folder, error), end; !error && file != end;
-       file.increment(error)) {
-    files.push_back(file->path());
-  }
-  return files;
+/// The runner of a file OWNER.NUMBER in tmp/; empty for a name that no runner gives.
+std::string parse_owner(const std::string& file) {
+  const auto dot = file.rfind('.');
+  const bool is_numbered = dot != std::string::npos && dot + 1 < file.size() &&
+                           file.find_first_not_of("0123456789", dot + 1) == std::string::npos;
+  const std::string owner = is_numbered ? file.substr(0, dot) : "";
+  return Claims::is_runner_name(owner) ? owner : "";
 }
 
 bool is_over(const SweepFolder& folder, const std::string& unit) {
   const std::int64_t shard = SweepFolder::parse_shard_name(unit);
-  return shard >= 0 ? fs::exists(folder.shard(shard)) : SweepFolder::is_retry_unit(unit);
+  return shard >= 0 ? std::filesystem::exists(folder.shard(shard))
+                    : SweepFolder::is_retry_unit(unit);
 }
 
 }  // namespace
 
 void remove_leftovers(const SweepFolder& folder, Claims& claims) {
-  for (const fs::path& file : list_files(folder.temporary())) {
-    const std::string owner = file.stem().string();
-    std::error_code gone;
-    if (owner != claims.runner() && !claims.may_live(owner)) fs::remove(file, gone);
+  const Folder temporary = folder.open(folder.temporary());
+  for (const std::string& file : temporary.list()) {
+    const std::string owner = parse_owner(file);
+    const bool is_dead = !owner.empty() && owner != claims.runner() && !claims.may_live(owner);
+    if (is_dead) temporary.try_remove(file);
   }
-  for (const fs::path& file : list_files(folder.claims())) {
-    const std::string unit = file.filename().string();
+  for (const std::string& unit : folder.open(folder.claims()).list()) {
     if (!is_over(folder, unit)) continue;
     if (claims.claim(unit) == Claims::Answer::kMine) claims.release(unit);
   }
+  remove_abandoned_files(Folder(folder.root));
 }
 
 }  // namespace strut

@@ -37,7 +37,7 @@ void write_layers(Hdf5Writer& file, const Plan& plan) {
 }  // namespace
 
 void write_plan(const std::filesystem::path& path, const Plan& plan) {
-  Hdf5Writer file(path);
+  Hdf5Writer file(Folder(path.parent_path()), path.filename().string());
   file.write_attribute("/", "schema_version", kSchemaVersion);
   file.write_attribute("/", "plan_hash", plan.hash());
   file.write_attribute("/", "points", plan.point_count());

@@ -18,6 +18,9 @@ namespace fs = std::filesystem;
 
 const SweepFolder& prepare(const SweepFolder& folder) {
   make_subfolders(folder);
+  // Before hours of work, not behind the first shard.
+  check_regular(Folder(folder.root).descriptor(), folder.journal().filename().string(),
+                folder.journal());
   return folder;
 }
 
@@ -32,7 +35,7 @@ class Run {
         progress_(progress),
         halt_(halt),
         schema_(plan.make_schema()),
-        claims_(prepare(folder).claims(), options.claims) {
+        claims_(prepare(folder).open(folder.claims()), options.claims) {
     remove_leftovers(folder_, claims_);
     if (options_.retry_failed) rounds_before_ = count_all_retries();
   }

@@ -1,7 +1,6 @@
 #include "sweep/shard_store.h"
 
 #include <algorithm>
-#include <system_error>
 
 #include "io/input_error.h"
 #include "sweep/simulate_cases.h"
@@ -30,14 +29,13 @@ std::string check_seal(const SweepFolder& folder, const Plan& plan, std::int64_t
 }
 
 void quarantine(const SweepFolder& folder, const fs::path& file) {
-  fs::create_directories(folder.quarantine());
-  fs::path place = folder.quarantine() / file.filename();
-  for (int copy = 1; fs::exists(place); ++copy) {
-    place = folder.quarantine() / (file.filename().string() + "." + std::to_string(copy));
+  const Folder source = folder.open(file.parent_path());
+  const Folder aside = Folder(folder.root).make_folder(folder.quarantine().filename().string());
+  const std::string name = file.filename().string();
+  std::string free_name = name;
+  for (int copy = 1; !source.move_new(name, aside, free_name); ++copy) {
+    free_name = name + "." + std::to_string(copy);
   }
-  std::error_code error;
-  fs::rename(file, place, error);
-  if (error) throw EnvironmentError(file.string() + ": cannot be moved aside: " + error.message());
 }
 
 ShardRecords::ShardRecords(const SweepFolder& folder)

@@ -93,10 +93,11 @@ void ShardWriter::write(FinishedShard& shard) {
   provenance.texts.emplace_back("simulation_seconds", std::to_string(entry.seconds));
   const std::vector<std::byte> image = make_shard_image(shard.data, provenance);
   entry.bytes = image.size();
-  entry.duplicate =
-      publish(shard.target, image, folder_.temporary(), entry.runner) == Published::kPresent;
+  const Folder target_folder = folder_.open(shard.target.parent_path());
+  entry.duplicate = publish(target_folder, shard.target.filename().string(), image,
+                            folder_.open(folder_.temporary()), entry.runner) == Published::kPresent;
   entry.sha256 = entry.duplicate ? "" : read_shard_seal(shard.target, image).sha256;
-  append_journal(folder_.journal(), entry);
+  append_journal(Folder(folder_.root), folder_.journal().filename().string(), entry);
   claims_.release(shard.unit);
 
   if (entry.duplicate) {

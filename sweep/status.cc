@@ -65,7 +65,9 @@ SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
   status.cases = plan.case_count();
   status.shards = plan.shard_count();
   // Claims first: a shard that is published in between is then counted as done, not lost.
-  status.claims = list_claims(folder.claims());
+  if (const auto claims = Folder(folder.root).find_folder(folder.claims().filename().string())) {
+    status.claims = list_claims(*claims);
+  }
   ShardRecords records(folder);
   std::int64_t present = 0;
   std::vector<std::int64_t> shards = list_shards(folder);

@@ -1,6 +1,8 @@
 // The journal loses at most the line that a crash tore.
 #include "io/journal.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -26,7 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
+using test::append_worker_entry;
 using test::make_worker_entry;
+using test::read_text;
 using test::TemporaryFolder;
 
 bool is_same(const JournalEntry& a, const JournalEntry& b) {
@@ -47,7 +51,7 @@ std::multiset<int> read_numbers(const fs::path& journal) {
 }
 
 std::vector<std::string> write_lines(const fs::path& journal, int count) {
-  for (int i = 0; i < count; ++i) append_journal(journal, make_worker_entry(i));
+  for (int i = 0; i < count; ++i) append_worker_entry(journal, i);
   std::vector<std::string> lines;
   std::ifstream stream(journal);
   for (std::string line; std::getline(stream, line);) lines.push_back(line + "\n");
@@ -64,10 +68,10 @@ TEST_CASE("A journal gives back what was appended, whatever the texts hold", "[i
   odd.runner.clear();
   odd.failures = {{"", 1}, {"a,b:c d=e%\n", -5}};
   odd.seconds = 1e-300;
-  append_journal(journal, odd);
-  append_journal(journal, make_worker_entry(2));
+  append_journal(Folder(folder / ""), "journal", odd);
+  append_worker_entry(journal, 2);
   JournalEntry plain;
-  append_journal(journal, plain);
+  append_journal(Folder(folder / ""), "journal", plain);
   const Journal read = read_journal(journal);
   REQUIRE(read.entries.size() == 3);
   CHECK(read.bad_lines == 0);
@@ -100,7 +104,7 @@ TEST_CASE("A journal cut at any byte keeps the lines before and takes new ones",
     CHECK((read_numbers(journal) == expected));
     const bool is_torn = size > 0 && text[size - 1] != '\n' && text[size] != '\n';
     CHECK(read_journal(journal).bad_lines == (is_torn ? 1 : 0));
-    append_journal(journal, make_worker_entry(7));
+    append_worker_entry(journal, 7);
     expected.insert(7);
     CHECK((read_numbers(journal) == expected));
   }
@@ -189,7 +193,7 @@ TEST_CASE("A crash at any operation costs the journal its unfinished line only",
         flushed.insert(static_cast<int>(flushed.size()));
       }
     }
-    append_journal(replayed / "journal", make_worker_entry(99));
+    append_worker_entry(replayed / "journal", 99);
     const auto numbers = read_numbers(replayed / "journal");
     CHECK(std::includes(numbers.begin(), numbers.end(), flushed.begin(), flushed.end()));
     CHECK(numbers.size() <= flushed.size() + 2);
@@ -214,7 +218,7 @@ TEST_CASE("Any failing call on a journal is an error that costs no other line", 
                                             "append " + journal.string() + " 0 4");
       CHECK((outcome.code == 0 || outcome.code == 3));
       if (outcome.code == 3) CHECK_THAT(outcome.messages, Contains(journal.string() + ": "));
-      append_journal(journal, make_worker_entry(99));
+      append_worker_entry(journal, 99);
       const auto numbers = read_numbers(journal);
       CHECK(numbers.count(99) == 1);
       if (outcome.code == 0) CHECK(numbers.size() == 5);
@@ -234,18 +238,39 @@ TEST_CASE("A journal that cannot grow is an error and stays readable", "[io]") {
   {
     const test::LimitedFileSize limit(lines[0].size() + lines[1].size() + 10);
     std::signal(SIGXFSZ, SIG_DFL);
-    CHECK_THROWS_AS(append_journal(journal, make_worker_entry(2)), EnvironmentError);
-    CHECK_THROWS_AS(append_journal(journal, make_worker_entry(3)), EnvironmentError);
+    CHECK_THROWS_AS(append_worker_entry(journal, 2), EnvironmentError);
+    CHECK_THROWS_AS(append_worker_entry(journal, 3), EnvironmentError);
   }
   CHECK((read_numbers(journal) == std::multiset<int>{0, 1}));
-  append_journal(journal, make_worker_entry(4));
+  append_worker_entry(journal, 4);
   CHECK((read_numbers(journal) == std::multiset<int>{0, 1, 4}));
 }
 
-TEST_CASE("A journal that is no file is an error", "[io]") {
+TEST_CASE("A journal that is not a regular file is refused", "[io]") {
   const TemporaryFolder folder;
-  CHECK_THROWS_AS(read_journal(folder / ""), EnvironmentError);
-  CHECK_THROWS_AS(append_journal(folder / "", make_worker_entry(1)), EnvironmentError);
+  const fs::path journal = folder / "journal";
+  const auto check_refused = [&](const std::string& kind) {
+    CAPTURE(kind);
+    CHECK_THROWS_WITH(read_journal(journal), Contains("journal: a " + kind));
+    CHECK_THROWS_AS(append_worker_entry(journal, 1), InputError);
+    fs::remove(journal);
+  };
+  fs::create_directory(journal);
+  check_refused("folder");
+  REQUIRE(::mkfifo(journal.c_str(), 0600) == 0);
+  check_refused("named pipe");
+}
+
+TEST_CASE("A journal that is a link is not appended to", "[io]") {
+  const TemporaryFolder folder;
+  folder.write("theirs", "text\n");
+  fs::create_symlink(folder / "theirs", folder / "journal");
+  CHECK_THROWS_AS(append_worker_entry(folder / "journal", 1), InputError);
+  fs::remove(folder / "journal");
+  fs::create_symlink(folder / "missing", folder / "journal");
+  CHECK_THROWS_AS(append_worker_entry(folder / "journal", 1), InputError);
+  CHECK(read_text(folder / "theirs") == "text\n");
+  CHECK_FALSE(fs::exists(folder / "missing"));
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ TEST_CASE("A flipped bit in a model is an error, or changes nothing", "[io][prop
   for (int i = 0; i < 1000; ++i) {
     std::vector<std::byte> image = good;
     image[random() % image.size()] ^= std::byte{1} << (random() % 8);
-    write_bytes(folder / "m.h5", image, "m.h5");
+    test::write_bytes(folder / "m.h5", image);
     try {
       const Model model = read_model(folder / "m.h5");
       if (!test::same_bits(model.weights, truth.weights) || model.sizes != truth.sizes ||
@@ -205,7 +205,7 @@ TEST_CASE("The intervals of a model are under its checksum", "[io]") {
   const auto at = std::search(image.begin(), image.end(), begin, begin + sizeof number);
   REQUIRE(at != image.end());
   *at ^= std::byte{1};  // an ulp
-  write_bytes(folder / "m.h5", image, "m.h5");
+  test::write_bytes(folder / "m.h5", image);
   CHECK_THROWS_WITH(read_model(folder / "m.h5"), Contains("checksum"));
 }
 

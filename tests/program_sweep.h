@@ -113,6 +113,7 @@ class ProgramSweep {
     CHECK(verdict.code == 0);
     CHECK(verdict.digest == digest_);
     CHECK(std::filesystem::is_empty(sweep / "tmp"));
+    CHECK(std::filesystem::is_empty(sweep / "claims"));
   }
 
  private:

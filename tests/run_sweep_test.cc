@@ -143,12 +143,12 @@ TEST_CASE("A shard cut short is moved aside and made again", "[unit][io]") {
 
 TEST_CASE("Leftovers of a dead runner are removed, a living one's are not", "[unit][io]") {
   const PlannedSweep sweep;
-  std::ofstream(sweep.folder().temporary() / "nowhere.1.abc.7") << "half a shard";
-  const Claims living(sweep.folder().claims(), {});
+  std::ofstream(sweep.folder().temporary() / "nowhere.1.0123456789abcdef.7") << "half a shard";
+  const Claims living(Folder(sweep.folder().claims()), {});
   const fs::path theirs = sweep.folder().temporary() / (living.runner() + ".0");
   std::ofstream(theirs) << "half a shard";
   sweep.run();
-  CHECK(!fs::exists(sweep.folder().temporary() / "nowhere.1.abc.7"));
+  CHECK(!fs::exists(sweep.folder().temporary() / "nowhere.1.0123456789abcdef.7"));
   CHECK(fs::exists(theirs));
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("A resume tries a case once, however many runners help", "[unit]") {
   std::atomic<bool> halt{false};
   {
     // The first waits for a shard in other hands; the second meanwhile retries all others.
-    Claims holder(folder.claims(), {});
+    Claims holder(Folder(folder.claims()), {});
     const std::string unit = SweepFolder::shard_name(2);
     REQUIRE(holder.claim(unit) == Claims::Answer::kMine);
     fs::remove(folder.shard(2));

@@ -103,7 +103,7 @@ TEST_CASE("A broken line is named by file and number", "[io]") {
                     "x.tir:1: A = 1.5x: must be a finite number");
   CHECK_THROWS_WITH(get_number(file, *file.find("B")), Contains("B = 'text'"));
   CHECK_THROWS_AS(get_number(file, *file.find("C")), InputError);
-  CHECK_THROWS_WITH(read_tir("/nowhere/x.tir"), "/nowhere/x.tir: there is no such file");
+  CHECK_THROWS_WITH(read_tir("/nowhere/x.tir"), "/nowhere/x.tir: file not found");
 }
 
 TEST_CASE("The paper's tire is read", "[io]") {

@@ -14,7 +14,9 @@
 #include <cstring>
 
 #include "io/config.h"
+#include "io/folder.h"
 #include "io/input_error.h"
+#include "io/sweep_folder.h"
 #include "jobs/dispatch/file_system.h"
 #include "jobs/interrupt.h"
 #include "jobs/progress.h"
@@ -32,11 +34,10 @@ double seconds_since(SteadyClock::time_point start) {
 /// A folder that vanishes with this object, which signals wait for.
 class TrialFolder {
  public:
-  explicit TrialFolder(const fs::path& parent)
-      : path_(parent / ("doctor." + std::to_string(::getpid()))) {
-    std::error_code error;
-    fs::create_directory(path_, error);
-    if (error) throw EnvironmentError(path_.string() + ": cannot be made: " + error.message());
+  explicit TrialFolder(const fs::path& parent) {
+    std::string name = (parent / "doctor.XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw file_failure(name, "cannot be made", errno);
+    path_ = name;
   }
   ~TrialFolder() {
     std::error_code ignored;
@@ -49,7 +50,7 @@ class TrialFolder {
 
  private:
   const InterruptGuard guard_;
-  const fs::path path_;
+  fs::path path_;
 };
 
 /// errno; 0: it worked.
@@ -179,6 +180,22 @@ Finding check_sight(const fs::path& folder) {
                         : "of this machine alone: for `strut run` and --to local"};
 }
 
+/// Links in place of what strut writes: commands that would write through them refuse to.
+Finding check_links(const fs::path& path) {
+  const Folder folder(path);
+  std::string links;
+  for (const std::string& name : folder.list()) {
+    std::error_code error;
+    const fs::path leads_to = fs::read_symlink(folder.path_of(name), error);
+    if (!error) links += (links.empty() ? "" : ", ") + name + " -> " + leads_to.string();
+  }
+  if (links.empty()) return {"links inside", Health::kGood, "none", ""};
+  const bool is_sweep = fs::exists(SweepFolder{path}.plan());
+  return {"links inside", is_sweep ? Health::kBad : Health::kWarning, links,
+          "nothing is written through a link inside a sweep's folder; put what it leads to in its "
+          "place, or let the whole folder be behind a link"};
+}
+
 }  // namespace
 
 const char* get_name(Health health) {
@@ -188,10 +205,9 @@ const char* get_name(Health health) {
 
 Findings check_file_system(const fs::path& folder, const SpaceNeeds& needs) {
   const TrialFolder trial(folder);
-  return {check_sight(folder),         check_exclusive_create(trial),
-          check_publishing(trial),     check_rename(trial),
-          check_flush(trial),          check_space(folder, needs),
-          check_inodes(folder, needs), check_clock(trial)};
+  return {check_sight(folder),        check_links(folder),         check_exclusive_create(trial),
+          check_publishing(trial),    check_rename(trial),         check_flush(trial),
+          check_space(folder, needs), check_inodes(folder, needs), check_clock(trial)};
 }
 
 }  // namespace strut

@@ -423,11 +423,12 @@ int remove(const char* path) noexcept {
   return result != 0 && errno == EISDIR ? ::rmdir(path) : result;
 }
 
-int mkdir(const char* path, mode_t mode) noexcept {
-  return change_name("mkdir", FileCall::kMakeFolder, find_path(AT_FDCWD, path), "", [&] {
-    return static_cast<int>(::syscall(SYS_mkdirat, AT_FDCWD, path, mode));
-  });
+int mkdirat(int folder, const char* path, mode_t mode) noexcept {
+  return change_name("mkdir", FileCall::kMakeFolder, find_path(folder, path), "",
+                     [&] { return static_cast<int>(::syscall(SYS_mkdirat, folder, path, mode)); });
 }
+
+int mkdir(const char* path, mode_t mode) noexcept { return mkdirat(AT_FDCWD, path, mode); }
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
   if (clock != CLOCK_REALTIME && clock != CLOCK_REALTIME_COARSE) {

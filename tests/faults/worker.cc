@@ -14,7 +14,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -34,25 +33,21 @@ const ClaimOptions kClaimOptions{std::chrono::milliseconds(20), std::chrono::mil
 
 int publish_bytes(const std::vector<std::string>& words) {
   const std::string text = make_worker_text(std::stoul(words.at(2)));
-  const auto published =
-      publish(words.at(1), std::as_bytes(std::span(text)), words.at(3), words.at(4));
+  const std::filesystem::path target = words.at(1);
+  const auto published = publish(Folder(target.parent_path()), target.filename().string(),
+                                 std::as_bytes(std::span(text)), Folder(words.at(3)), words.at(4));
   std::cout << (published == Published::kNew ? "new\n" : "present\n");
   return 0;
 }
 
 int replace_text(const std::vector<std::string>& words) {
-  AtomicFile file(words.at(1));
-  std::ofstream stream(file.temporary(), std::ios::binary);
-  stream << words.at(2);
-  stream.close();
-  if (!stream) throw EnvironmentError("not written");
-  file.commit();
+  write_text_file(words.at(1), words.at(2));
   return 0;
 }
 
 int append_entries(const std::vector<std::string>& words) {
   const int first = std::stoi(words.at(2)), count = std::stoi(words.at(3));
-  for (int i = first; i < first + count; ++i) append_journal(words.at(1), make_worker_entry(i));
+  for (int i = first; i < first + count; ++i) append_worker_entry(words.at(1), i);
   return 0;
 }
 
@@ -60,7 +55,7 @@ int hold(const std::vector<std::string>& words) {
   sigset_t end;
   sigemptyset(&end);
   sigaddset(&end, SIGTERM);
-  Claims claims(words.at(1), kClaimOptions);
+  Claims claims(Folder(words.at(1)), kClaimOptions);
   // After the heartbeat's start: a thread that let the signal through would end the process.
   ::pthread_sigmask(SIG_BLOCK, &end, nullptr);
   const bool mine = claims.claim(words.at(2)) == Claims::Answer::kMine;
@@ -72,7 +67,7 @@ int hold(const std::vector<std::string>& words) {
 
 // Whoever holds the unit adds one byte, and sees nobody else's byte come until it gives it back.
 int contend(const std::vector<std::string>& words) {
-  Claims claims(words.at(1), kClaimOptions);
+  Claims claims(Folder(words.at(1)), kClaimOptions);
   int held = 0;
   for (int round = 0; round < std::stoi(words.at(3)); ++round) {
     if (claims.claim("u") != Claims::Answer::kMine) continue;

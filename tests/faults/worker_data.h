@@ -33,4 +33,9 @@ inline JournalEntry make_worker_entry(int number) {
   return entry;
 }
 
+inline void append_worker_entry(const std::filesystem::path& journal, int number) {
+  append_journal(Folder(journal.parent_path()), journal.filename().string(),
+                 make_worker_entry(number));
+}
+
 }  // namespace strut::test
