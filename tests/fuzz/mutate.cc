@@ -159,7 +159,7 @@ void insert_token(std::string& text, const Dictionary& dictionary, Random& rando
 /// A line many times, each with a number of its own.
 std::string make_many_lines(const std::string& line, Random& random) {
   const std::size_t at = random.below(line.size());
-  const std::size_t count = random.log_uniform(kMaxContent / (line.size() + 6));
+  const std::size_t count = kMaxContent / (line.size() + 6) >> random.below(6);
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
     text += line.substr(0, at) + std::to_string(i) + line.substr(at);

@@ -22,7 +22,7 @@ void read_journal_file(const fs::path& path) {
   read_status(folder, open_plan(folder));
 }
 
-void read_claims_folder(const fs::path& path) { list_claims(path.parent_path()); }
+void read_claims_folder(const fs::path& path) { list_claims(Folder(path.parent_path())); }
 
 }  // namespace
 

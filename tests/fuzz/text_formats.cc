@@ -1,4 +1,6 @@
 // Files that people write: TOML, property files of tires, tables.
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "diagnose/campaign_data.h"
@@ -31,8 +33,17 @@ void call_model(const Function& function) {
   }
 }
 
+/// Finds where a car stands, and drives it for some steps.
 void prepare(const Case& c) {
-  call_model([&] { CasePreparer().prepare(c); });
+  constexpr double kSeconds = 0.02;
+  call_model([&] {
+    PreparedCase prepared = CasePreparer().prepare(c);
+    for (const double x : prepared.start) {
+      if (!std::isfinite(x)) throw std::logic_error("a car that starts at no finite place");
+    }
+    prepared.duration = std::min(prepared.duration, kSeconds);
+    list_kernels().back().run_scalar(prepared, IntegrateOptions{}, SamplePlan{.interval = 0.0});
+  });
 }
 
 Dictionary make_toml_dictionary(std::vector<std::string> tokens) {

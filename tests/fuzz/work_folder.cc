@@ -68,7 +68,7 @@ SweepFolder make_sweep(const fs::path& work) {
     const fs::path file = folder.shard(shard);
     const auto image = make_shard_image(compress_shard(schema, rows), {plan.hash(), shard, {}});
     write_text_file(file, {reinterpret_cast<const char*>(image.data()), image.size()});
-    append_journal(folder.journal(), make_journal_entry(folder, file, rows));
+    append_journal(Folder(folder.root), "journal", make_journal_entry(folder, file, rows));
   }
   merge_sweep(folder, {plan.hash(), plan.shard_count(), schema}, work / "merged.h5", {},
               [](std::int64_t) { return true; });
