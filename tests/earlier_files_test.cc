@@ -99,9 +99,13 @@ TEST_CASE("A checkpoint of an earlier version is resumed on its instruction set"
 }
 
 TEST_CASE("A virtual merged file of an earlier version is refused with the remedy", "[io]") {
+  // With all the shards that it views in their place.
   const TemporaryFolder folder;
+  fs::rename(copy_earlier(folder, "half_done"), folder / "whole");
+  REQUIRE(test::run_sweep_command("run", folder / "whole").code == 1);
+  const std::string view = copy_earlier(folder, "virtual.h5").string();
   const std::string model = folder / "model.h5";
-  const Outcome trained = run_program("train " + kEarlier + "virtual.h5 -o " + model + kTraining);
+  const Outcome trained = run_program("train " + view + " -o " + model + kTraining);
   CHECK(trained.code == 2);
   CHECK_THAT(trained.messages, Contains("virtual.h5") && Contains("strut merge"));
   CHECK_FALSE(fs::exists(model));

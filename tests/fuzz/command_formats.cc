@@ -19,6 +19,11 @@ void read_submission_file(const fs::path& path) {
   found.read_words();
 }
 
+/// What a submission keeps beside it.
+void read_beside_submission(const fs::path& path) {
+  read_submission_file(path.parent_path() / "submission.toml");
+}
+
 void read_report(const fs::path& path) { write_page_again(PageFolder{path.parent_path()}); }
 
 }  // namespace
@@ -47,6 +52,12 @@ std::vector<Format> list_command_formats() {
        {"sweep/jobs/001/submission.toml.seed"},
        toml,
        read_submission_file},
+      {"job",
+       "sweep/jobs/001/array-0.job",
+       {"sweep/jobs/001/array-0.job.seed"},
+       words,
+       read_beside_submission},
+      {"over", "sweep/jobs/001/over", {"sweep/jobs/001/over.seed"}, words, read_beside_submission},
       {"task",
        "sweep/jobs/001/array-0/0",
        {"sweep/jobs/001/array-0/0.seed"},

@@ -84,6 +84,16 @@ void read_group(const Hdf5Reader& file, const std::string& group, Tree& tree) {
   }
 }
 
+/// Seeds are few and read again and again.
+const Tree& read_tree(const std::string& seed) {
+  static std::map<std::string, Tree> trees;
+  const auto [at, is_new] = trees.try_emplace(seed);
+  if (is_new) {
+    read_group(Hdf5Reader(kShownPath, std::as_bytes(std::span(seed))), "/", at->second);
+  }
+  return at->second;
+}
+
 double make_number(Random& random) {
   constexpr double kNumbers[] = {0.0,
                                  -0.0,
@@ -400,8 +410,7 @@ std::string seal_again(const std::string& seed, std::string file) {
 }
 
 std::string rewrite_hdf5(const std::string& seed, Random& random) {
-  Tree tree;
-  read_group(Hdf5Reader(kShownPath, std::as_bytes(std::span(seed))), "/", tree);
+  Tree tree = read_tree(seed);
   const std::size_t changes = random.log_uniform(4);
   for (std::size_t i = 0; i < changes; ++i) change_tree(tree, random);
 

@@ -148,6 +148,9 @@ void make_work_folder(const fs::path& work) {
   fs::copy(earlier / "half_done/jobs", sweep.root / "jobs", fs::copy_options::recursive);
   keep(sweep.root / "jobs/001/submission.toml");
   keep(sweep.root / "jobs/001/array-0/0");
+  keep(sweep.root / "jobs/001/array-0.job");
+  write_text_file(sweep.root / "jobs/001/over", "0 0 TIMEOUT\n0 1 CANCELLED\n");
+  keep(sweep.root / "jobs/001/over");
   fs::copy(earlier / "comparison", work / "report", fs::copy_options::recursive);
   keep(work / "report/report.json");
 }
