@@ -126,7 +126,7 @@ std::string summarize_messages(const fs::path& messages) {
 
 std::string describe_end(int status, const fs::path& work, const Shared& shared) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == kFindingCode) return shared.finding;
-  const std::string summary = summarize_messages(work / "messages");
+  std::string summary = summarize_messages(work / "messages");
   if (!summary.empty()) return summary;
   if (WIFSIGNALED(status)) return std::string("ended by signal ") + ::strsignal(WTERMSIG(status));
   return "ended with code " + std::to_string(WEXITSTATUS(status));
@@ -169,10 +169,11 @@ std::optional<std::string> watch(pid_t worker, const fs::path& work, const Campa
   }
 }
 
-/// The same for findings of one kind: without numbers, addresses and what the input says.
+/// The same for findings of one kind: without numbers, addresses and the
+/// paths that exceptions of the standard library name in brackets.
 std::string make_signature(const std::string& what) {
   std::string signature;
-  for (const char c : what) {
+  for (const char c : what.substr(0, what.find('['))) {
     if (std::isdigit(static_cast<unsigned char>(c)) == 0) signature += c;
   }
   return signature.substr(0, 200);
