@@ -161,6 +161,7 @@ Values convert_all(const Values& values) {
   return std::visit(
       [](const auto& from) -> Values {
         std::vector<To> to;
+        to.reserve(from.size());
         for (const auto& value : from) to.push_back(convert(value, To{}));
         return to;
       },

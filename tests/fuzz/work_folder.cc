@@ -61,7 +61,7 @@ SweepFolder make_sweep(const fs::path& work) {
   const fs::path request = work / "sweeps/small.toml";
   write_text_file(request, kSweep);
   const Plan plan(read_request(request));
-  const SweepFolder folder = make_sweep_folder(work / "sweep", plan);
+  SweepFolder folder = make_sweep_folder(work / "sweep", plan);
   const ShardSchema schema = plan.make_schema();
   for (std::int64_t shard = 0; shard < plan.shard_count(); ++shard) {
     const ShardRows rows = make_rows(plan, schema, shard);
