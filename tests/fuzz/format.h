@@ -1,0 +1,45 @@
+// What is fuzzed: the formats that strut reads, each with its readers.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/fuzz/mutate.h"
+
+namespace strut::fuzz {
+
+/// How mutants of a format are made.
+enum class Changes {
+  kBytes,            // any bytes
+  kBytesAndContent,  // half of them as kContent
+  kContent,          // of HDF5, with a sound structure and seal: see hdf5_tree.h
+  kSealedBytes,      // any bytes, sealed anew
+};
+
+struct Format {
+  std::string name;
+  std::filesystem::path file;  // where readers look for the content, within the work folder
+  std::vector<std::filesystem::path> seeds;  // within the work folder
+  Dictionary dictionary;
+  /// Reads the file, and goes on to what a command would make of it.
+  std::function<void(const std::filesystem::path& file)> read;
+  Changes changes = Changes::kBytes;
+  /// Left out where no format is named.
+  bool only_by_name = false;
+};
+
+/// Fills an empty folder with what the formats read beside their own file: the examples, a planned
+/// sweep with shards, networks, a report.
+void make_work_folder(const std::filesystem::path& folder);
+
+std::vector<Format> list_formats();
+
+// By room.
+std::vector<Format> list_text_formats();
+std::vector<Format> list_hdf5_formats();
+std::vector<Format> list_sweep_formats();
+std::vector<Format> list_command_formats();
+
+}  // namespace strut::fuzz

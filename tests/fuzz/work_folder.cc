@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <span>
+
+#include "io/atomic_file.h"
+#include "io/heartbeat.h"
+#include "io/journal.h"
+#include "sweep/folder.h"
+#include "sweep/merge.h"
+#include "sweep/shard_store.h"
+#include "tests/fuzz/format.h"
+#include "train/checkpoint.h"
+#include "train/model_file.h"
+#include "train/network.h"
+
+namespace strut::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kSweep[] = R"(
+vehicle = "../vehicles/paper_sedan.toml"
+maneuver = "../maneuvers/bump_20mps.toml"
+[grid]
+front_stiffness = { from = 40000, to = 35500, count = 4 }
+rear_damping = { from = 1980, to = 1800, count = 3 }
+[sample]
+strata = 2
+count = 10
+[record]
+snapshot = { when = "rear_wheels_on_bump", channels = ["pitch_angle", "pitch_rate"] }
+history = { rate = 10, channels = ["pitch_rate"] }
+[shards]
+cases = 5
+)";
+
+/// Rows as a run would leave them; what the numbers are does not matter to readers.
+ShardRows make_rows(const Plan& plan, const ShardSchema& schema, std::int64_t shard) {
+  const auto [first, last] = plan.shard_range(shard);
+  ShardRows rows = ShardRows::make(schema, static_cast<std::size_t>(last - first));
+  const std::size_t axes = schema.parameters.size();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows.case_id[i] = plan.calc_case_id(first + static_cast<std::int64_t>(i));
+    rows.layer[i] = plan.calc_layer(rows.case_id[i]);
+    plan.calc_parameters(rows.case_id[i], std::span(rows.parameters).subspan(i * axes, axes));
+    rows.event_time[i] = 0.5;
+  }
+  const auto fill = [](std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<double>(i));
+  };
+  fill(rows.snapshot);
+  for (std::vector<double>& channel : rows.history) fill(channel);
+  rows.status.back() = 1;
+  rows.failure_time.back() = 0.25;
+  rows.reason.back() = "diverged";
+  return rows;
+}
+
+SweepFolder make_sweep(const fs::path& work) {
+  const fs::path request = work / "sweeps/small.toml";
+  write_text_file(request, kSweep);
+  const Plan plan(read_request(request));
+  SweepFolder folder = make_sweep_folder(work / "sweep", plan);
+  const ShardSchema schema = plan.make_schema();
+  for (std::int64_t shard = 0; shard < plan.shard_count(); ++shard) {
+    const ShardRows rows = make_rows(plan, schema, shard);
+    const fs::path file = folder.shard(shard);
+    const auto image = make_shard_image(compress_shard(schema, rows), {plan.hash(), shard, {}});
+    write_text_file(file, {reinterpret_cast<const char*>(image.data()), image.size()});
+    append_journal(Folder(folder.root), "journal", make_journal_entry(folder, file, rows));
+  }
+  merge_sweep(folder, {plan.hash(), plan.shard_count(), schema}, work / "merged.h5", {},
+              [](std::int64_t) { return true; });
+  return folder;
+}
+
+Model make_model() {
+  Model model;
+  model.sizes = {2, 3, 1};
+  model.weights = make_nguyen_widrow_weights(NetworkShape(model.sizes), {}, 1);
+  model.inputs = {{"pitch_angle", "rad", "angle"}, {"pitch_rate", "rad/s", "rate"}};
+  model.targets = {{"front_stiffness", "N/m", "rate"}};
+  model.input_map = Normalizer({0.1, 0.5}, {0.2, 0.75});
+  model.target_map = Normalizer({35500.0}, {40000.0});
+  model.ci95 = {12.5};
+  model.plan_hash = std::string(64, 'a');
+  model.samples = 2000;
+  model.usable = 1990;
+  model.split = {0.6, 0.2, 77};
+  model.options = {{"rule", "trainlm"}, {"epochs", "12"}};
+  model.record = {{0, 1.0, 2.0, 3.0, 4.0}, {1, 0.1, 0.2, 0.3, 0.4}};
+  model.stop = StopReason::kValidation;
+  model.best_epoch = 1;
+  return model;
+}
+
+void write_networks(const fs::path& work) {
+  Model model = make_model();
+  write_model(work / "model.h5", model);
+
+  model.noise = NoiseModel{.sigma = {1e-3, 2e-3}, .bias = {0.0, 1e-2}, .copies = 2, .seed = 5};
+  write_model(work / "noisy.h5", model);
+
+  model.noise.reset();
+  model.inputs = {{"component_1", "1", "direction"}, {"component_2", "1", "direction"}};
+  WindowTransform window;
+  window.channels = {{"pitch_rate", "rad/s", "rate"}};
+  window.noise = NoiseModel{.sigma = {1e-3}, .bias = {1e-2}, .hit_time = 5e-3, .copies = 2};
+  window.grid = {.interval = 0.1, .first = 3, .samples = 4, .lags = 1};
+  window.mean = {0.1, 0.2, 0.3, 0.4};
+  window.reference = window.mean;
+  window.basis = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0};
+  model.window = window;
+  write_model(work / "window.h5", model);
+
+  Checkpoint checkpoint;
+  checkpoint.started_with = {{"seed", "1"}, {"layers", "4, 27, 4"}};
+  checkpoint.state.rows = 5;
+  LevenbergMarquardtState& state = checkpoint.state.training;
+  state.weights = state.best_weights = model.weights;
+  state.scale.assign(model.weights.size(), 1.0);
+  state.epoch = 7;
+  checkpoint.record = model.record;
+  write_checkpoint(work / "checkpoint.h5", checkpoint);
+}
+
+/// The original of a file that is to be overwritten, for seeds.
+void keep(const fs::path& file) { fs::copy_file(file, file.string() + ".seed"); }
+
+}  // namespace
+
+void make_work_folder(const fs::path& work) {
+  fs::copy(STRUT_SOURCE_DIR "/examples", work, fs::copy_options::recursive);
+  const SweepFolder sweep = make_sweep(work);
+  keep(sweep.plan());
+  keep(sweep.journal());
+  write_networks(work);
+
+  const std::string runner = "host.1.ab";
+  write_text_file(sweep.root / "claim.seed", runner + "\n");
+  write_text_file(sweep.root / "runner.seed",
+                  write_runner_text({"host", "boot", "pid:[1]", "1", "2"}, 7));
+  fs::copy_file(sweep.root / "claim.seed", sweep.claims() / "000001");
+  fs::copy_file(sweep.root / "runner.seed", sweep.claims() / ("runner." + runner));
+
+  const fs::path earlier = STRUT_SOURCE_DIR "/tests/data/d0caeb7";
+  fs::copy(earlier / "half_done/jobs", sweep.root / "jobs", fs::copy_options::recursive);
+  keep(sweep.root / "jobs/001/submission.toml");
+  keep(sweep.root / "jobs/001/array-0/0");
+  keep(sweep.root / "jobs/001/array-0.job");
+  write_text_file(sweep.root / "jobs/001/over", "0 0 TIMEOUT\n0 1 CANCELLED\n");
+  keep(sweep.root / "jobs/001/over");
+  fs::copy(earlier / "comparison", work / "report", fs::copy_options::recursive);
+  keep(work / "report/report.json");
+}
+
+std::vector<Format> list_formats() {
+  std::vector<Format> all;
+  for (const auto& formats :
+       {list_text_formats(), list_hdf5_formats(), list_sweep_formats(), list_command_formats()}) {
+    all.insert(all.end(), formats.begin(), formats.end());
+  }
+  return all;
+}
+
+}  // namespace strut::fuzz
