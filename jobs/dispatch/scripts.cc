@@ -54,7 +54,7 @@ std::vector<std::string> make_scripts(const Dispatcher& dispatcher, const SweepF
   if (submission.collects) {
     const std::string merged = quote_word((folder.root / "merged.h5").string());
     scripts.push_back(dispatcher.make_script(
-        make_task(Submission::kCollect, "merge " + root + " -o " + merged + " --virtual --force")));
+        make_task(Submission::kCollect, "merge " + root + " -o " + merged + " --force")));
   }
   return scripts;
 }
