@@ -48,7 +48,8 @@ ShardRows read_merged_rows(const Hdf5Reader& file, const ShardSchema& schema, st
 
 std::size_t count_piece_rows(const ShardSchema& schema) {
   const std::size_t numbers = schema.history.size() * schema.history_samples;
-  return numbers == 0 ? kPieceRows : std::clamp<std::size_t>(kPieceNumbers / numbers, 1, kPieceRows);
+  return numbers == 0 ? kPieceRows
+                      : std::clamp<std::size_t>(kPieceNumbers / numbers, 1, kPieceRows);
 }
 
 /// Every dataset of a merged file has one row per case.

@@ -141,8 +141,8 @@ SealCheck check_seal(const fs::path& path, const SealKind& kind) {
 SealCheck check_sealed_file(const fs::path& path, const SealKind& kind) {
   SealCheck check = check_seal(path, kind);
   if (!check.fault.empty()) return check;
-  const std::optional<std::string> sha256 = hash_content(open_file(path, O_RDONLY));
-  if (!sha256) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
+  const std::optional<std::string> sha256 = hash_content(open_regular_file(path));
+  if (!sha256) throw file_failure(path, "cannot be read", errno);
   compare_hash(check, *sha256, kind);
   return check;
 }
@@ -180,8 +180,8 @@ bool is_sealed(const fs::path& path) {
 }
 
 void seal_image(const SealLabel& label, std::span<std::byte> image) {
-  const std::string text = render({label.kind.name, label.lines, image.size(),
-                                   to_hex(calc_sha256(image.subspan(kSealBytes)))});
+  const std::string text = render(
+      {label.kind.name, label.lines, image.size(), to_hex(calc_sha256(image.subspan(kSealBytes)))});
   std::memcpy(image.data(), text.data(), text.size());
 }
 

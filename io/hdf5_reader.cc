@@ -133,8 +133,8 @@ Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
                                            H5Dclose, path_, name, "not a dataset");
   const Hdf5Handle creation =
       checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
-  const bool lies_elsewhere = H5Pget_layout(creation.id()) == H5D_VIRTUAL ||
-                              H5Pget_external_count(creation.id()) > 0;
+  const bool lies_elsewhere =
+      H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0;
   check<InputError>(!lies_elsewhere, path_, name,
                     "a view over shards or other files, which cannot be verified; `strut merge DIR "
                     "-o FILE` writes a copy");

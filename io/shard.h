@@ -96,6 +96,7 @@ struct ShardSeal {
 };
 
 SealLabel make_shard_label(const std::string& plan_hash, std::int64_t shard);
+ShardSeal make_shard_seal(const FileSeal& seal);
 
 /// Reads 512 bytes and the file's size. Throws InputError where that is no shard's seal, or the
 /// size is another.

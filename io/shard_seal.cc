@@ -9,31 +9,31 @@ namespace fs = std::filesystem;
 
 constexpr char kPlanLine[] = "plan", kShardLine[] = "shard";
 
-ShardSeal interpret(const FileSeal& seal) {
-  const auto shard = parse_number<std::int64_t>(seal.get(kShardLine));
-  return {seal.get(kPlanLine), shard.value_or(-1), seal.size, seal.sha256};
-}
-
 }  // namespace
 
 SealLabel make_shard_label(const std::string& plan_hash, std::int64_t shard) {
   return {kShardSeal, {{kPlanLine, plan_hash}, {kShardLine, std::to_string(shard)}}};
 }
 
+ShardSeal make_shard_seal(const FileSeal& seal) {
+  const auto shard = parse_number<std::int64_t>(seal.get(kShardLine));
+  return {seal.get(kPlanLine), shard.value_or(-1), seal.size, seal.sha256};
+}
+
 ShardSeal read_shard_seal(const fs::path& path) {
-  return interpret(require_sound(path, check_seal(path, kShardSeal)));
+  return make_shard_seal(require_sound(path, check_seal(path, kShardSeal)));
 }
 
 ShardSeal read_shard_seal(const fs::path& path, std::span<const std::byte> bytes) {
-  return interpret(require_sound(path, check_seal(bytes, bytes.size(), kShardSeal)));
+  return make_shard_seal(require_sound(path, check_seal(bytes, bytes.size(), kShardSeal)));
 }
 
 ShardSeal check_shard_bytes(const fs::path& path) {
-  return interpret(require_sound(path, check_sealed_file(path, kShardSeal)));
+  return make_shard_seal(require_sound(path, check_sealed_file(path, kShardSeal)));
 }
 
 ShardSeal check_shard_bytes(const fs::path& path, std::span<const std::byte> bytes) {
-  return interpret(require_sound(path, check_sealed_bytes(bytes, kShardSeal)));
+  return make_shard_seal(require_sound(path, check_sealed_bytes(bytes, kShardSeal)));
 }
 
 std::string find_misplacement(const ShardSeal& seal, const std::string& plan_hash,

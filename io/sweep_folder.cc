@@ -18,10 +18,9 @@ ShardSeal get_seal(const Shard& shard) {
 }
 
 /// Throws InputError unless `overlay` can be a retry of some cases of `shard`.
-void require_retry(const fs::path& file, const SweepExtent& extent, const Shard& shard,
-                   const Shard& overlay) {
+void require_retry(const fs::path& file, const Shard& shard, const Shard& overlay) {
   std::string fault =
-      find_misplacement(get_seal(overlay), extent.plan_hash, shard.provenance.shard);
+      find_misplacement(get_seal(overlay), shard.provenance.plan_hash, shard.provenance.shard);
   if (fault.empty() && overlay.schema != shard.schema) fault = "has other columns than its shard";
   if (const std::int64_t twice = find_repeated(overlay.rows.case_id); fault.empty() && twice >= 0) {
     fault = "holds case " + std::to_string(twice) + " twice";
@@ -72,26 +71,32 @@ SweepExtent read_sweep_extent(const SweepFolder& folder) {
   return read_sweep_extent(folder.plan(), plan);
 }
 
-Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
-                        ShardParts parts) {
-  Shard mended = read_shard(folder.shard(shard), parts);
-  require_shard(folder.shard(shard), extent, shard, get_seal(mended), mended.rows.case_id);
+void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts) {
+  ShardRows& rows = shard.rows;
+  const std::int64_t number = shard.provenance.shard;
   std::map<std::int64_t, std::size_t> row_of;
-  for (std::size_t row = 0; row < mended.rows.size(); ++row) row_of[mended.rows.case_id[row]] = row;
-  const int rounds = count_retries(folder, shard);
+  for (std::size_t row = 0; row < rows.size(); ++row) row_of[rows.case_id[row]] = row;
+  const int rounds = count_retries(folder, number);
   for (int round = 0; round < rounds; ++round) {
-    const fs::path file = folder.retry(shard, round);
+    const fs::path file = folder.retry(number, round);
     const Shard overlay = read_shard(file, parts);
-    require_retry(file, extent, mended, overlay);
+    require_retry(file, shard, overlay);
     for (std::size_t row = 0; row < overlay.rows.size(); ++row) {
       const auto found = row_of.find(overlay.rows.case_id[row]);
       if (found == row_of.end()) {
         throw InputError(file.string() + ": case " + std::to_string(overlay.rows.case_id[row]) +
-                         " is not in shard " + std::to_string(shard));
+                         " is not in shard " + std::to_string(number) + "; " + kShardSeal.remedy);
       }
-      mended.rows.set_row(found->second, overlay.rows, row);
+      rows.set_row(found->second, overlay.rows, row);
     }
   }
+}
+
+Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
+                        ShardParts parts) {
+  Shard mended = read_shard(folder.shard(shard), parts);
+  require_shard(folder.shard(shard), extent, shard, get_seal(mended), mended.rows.case_id);
+  apply_retries(folder, mended, parts);
   return mended;
 }
 

@@ -67,6 +67,10 @@ int count_retries(const SweepFolder& folder, std::int64_t shard);
 /// What plan.h5 says. Throws InputError where it is missing or damaged.
 SweepExtent read_sweep_extent(const SweepFolder& folder);
 
+/// Replaces the rows of a shard by those of its retries. Throws InputError where one is damaged or
+/// not of this shard.
+void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts = ShardParts::kAll);
+
 /// A shard with its rows as the retries left them. Throws InputError where a file is damaged, or
 /// not the plan's (require_shard), or a retry is not of this shard.
 Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,

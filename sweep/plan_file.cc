@@ -62,9 +62,10 @@ PlanRecord read_plan(const std::filesystem::path& path) {
 void require_same_plan(const std::filesystem::path& path, const PlanRecord& record,
                        const Plan& plan) {
   if (record.extent != plan.make_extent() || record.layers != flatten(plan.layers())) {
-    throw InputError(path.string() +
-                     ": damaged, or its cases, /drawn or /layers are not what this version plans; " +
-                     kPlanSeal.remedy);
+    throw InputError(
+        path.string() +
+        ": damaged, or its cases, /drawn or /layers are not what this version plans; " +
+        kPlanSeal.remedy);
   }
 }
 

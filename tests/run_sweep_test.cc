@@ -232,7 +232,7 @@ TEST_CASE("A resume tries a case once, however many runners help", "[unit]") {
   }
   int still_failing = 0;
   for (const std::int64_t shard : list_shards(folder)) {
-    const ShardRows rows = read_mended_shard(folder, shard).rows;
+    const ShardRows rows = read_mended_shard(folder, sweep.plan().make_extent(), shard).rows;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       CHECK(rows.attempt[row] <= 2);
       still_failing += rows.status[row] != 0 ? 1 : 0;
