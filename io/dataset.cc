@@ -88,14 +88,14 @@ Dataset::Dataset(const std::vector<fs::path>& paths, const DatasetOptions& optio
     case DataKind::kMerged: {
       const FileSeal seal =
           require_sound(paths.front(), check_sealed_file(paths.front(), kMergedSeal));
-      open_merged(paths.front());
+      open_merged(paths.front(), Hdf5Reader(paths.front()));
       if (seal.get("plan") != plan_hash_) {
         throw InputError(paths.front().string() + ": its seal names another plan than the file");
       }
       break;
     }
     case DataKind::kUnsealedMerged:
-      open_merged(paths.front());
+      open_merged(paths.front(), Hdf5Reader::open_unsealed(paths.front()));
       check_merged_digest(paths.front());
       break;
   }
@@ -120,8 +120,8 @@ void Dataset::open_folder(const SweepFolder& folder, bool partial) {
   }
 }
 
-void Dataset::open_merged(const fs::path& path) {
-  merged_.emplace(path);
+void Dataset::open_merged(const fs::path& path, Hdf5Reader file) {
+  merged_ = std::move(file);
   check_same(path, merged_->read_attribute("/", kPlanHashKey), read_shard_schema(path, *merged_));
   check_shapes(path, *merged_, schema_);
   const std::size_t rows = merged_->read_shape("/case_id").front();

@@ -52,7 +52,7 @@ class Dataset {
   };
 
   void open_folder(const SweepFolder& folder, bool partial);
-  void open_merged(const std::filesystem::path& path);
+  void open_merged(const std::filesystem::path& path, Hdf5Reader file);
   void open_shards(const std::vector<std::filesystem::path>& paths);
   void add_shard(const std::filesystem::path& path);
   void check_merged_digest(const std::filesystem::path& path);

@@ -179,6 +179,22 @@ bool is_sealed(const fs::path& path) {
          std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) != 0;
 }
 
+void refuse_global_heap(const fs::path& path) {
+  constexpr std::array<char, 8> kHeader = {'G', 'C', 'O', 'L', '\1', '\0', '\0', '\0'};
+  constexpr std::size_t kBlock = std::size_t{1} << 20, kOverlap = kHeader.size() - 1;
+  const FileDescriptor file = open_regular_file(path);
+  std::vector<char> block(kBlock);
+  for (off_t at = 0;; at += static_cast<off_t>(kBlock - kOverlap)) {
+    const ssize_t count = ::pread(file.get(), block.data(), block.size(), at);
+    if (count < 0) throw file_failure(path, "cannot be read", errno);
+    const auto end = block.begin() + count;
+    if (std::search(block.begin(), end, kHeader.begin(), kHeader.end()) != end) {
+      throw InputError(path.string() + ": " + kViewFault);
+    }
+    if (count < static_cast<ssize_t>(kBlock)) return;
+  }
+}
+
 void seal_image(const SealLabel& label, std::span<std::byte> image) {
   const std::string text = render(
       {label.kind.name, label.lines, image.size(), to_hex(calc_sha256(image.subspan(kSealBytes)))});

@@ -22,22 +22,30 @@ namespace strut {
 
 inline constexpr std::size_t kSealBytes = 512;
 
+/// What is wrong with a file whose values lie in others.
+inline constexpr char kViewFault[] =
+    "a view over shards cannot be verified; `strut merge DIR -o FILE` writes a copy";
+
 /// A kind of file that is sealed.
 struct SealKind {
-  const char* name;    // "shard"
-  const char* remedy;  // what to do where a file of this kind is damaged
+  const char* name;     // "shard"
+  const char* remedy;   // what to do where a file of this kind is damaged
+  const char* sealing;  // how to seal one that an earlier version wrote without a seal
 };
 
 inline constexpr SealKind kShardSeal = {
     "shard",
-    "`strut verify DIR --quarantine` moves it aside, `strut run DIR` then simulates it again"};
+    "`strut verify DIR --quarantine` moves it aside, `strut run DIR` then simulates it again", ""};
 inline constexpr SealKind kPlanSeal = {
-    "plan", "`strut plan DIR/request.toml -o NEW` makes the same plan.h5 to replace it"};
-inline constexpr SealKind kModelSeal = {"model", "`strut train` makes it anew"};
-inline constexpr SealKind kCheckpointSeal = {"checkpoint",
-                                             "`strut train` without --resume starts anew"};
+    "plan", "`strut plan DIR/request.toml -o NEW` makes the same plan.h5 to replace it",
+    "`strut plan DIR/request.toml -o DIR` seals it"};
+inline constexpr SealKind kModelSeal = {"model", "`strut train` makes it anew",
+                                        "`strut train` writes sealed ones"};
+inline constexpr SealKind kCheckpointSeal = {
+    "checkpoint", "`strut train` without --resume starts anew", "the next one will be sealed"};
 inline constexpr SealKind kMergedSeal = {"merged",
-                                         "`strut merge DIR -o FILE --force` makes it anew"};
+                                         "`strut merge DIR -o FILE --force` makes it anew",
+                                         "`strut merge DIR -o FILE --force` writes a sealed one"};
 
 /// Lines of a seal that only some kinds have: (key, text).
 using SealLines = std::vector<std::pair<std::string, std::string>>;
@@ -93,6 +101,10 @@ std::string find_seal_kind(const std::filesystem::path& path);
 /// False for an HDF5 file without a seal, as earlier versions of strut wrote plans, models,
 /// checkpoints and merged files. Throws InputError where the file cannot be read.
 bool is_sealed(const std::filesystem::path& path);
+
+/// Throws InputError where an HDF5 file without a seal has a global heap. strut writes one in views
+/// over other files alone, and the HDF5 library may crash where a bit of it is flipped.
+void refuse_global_heap(const std::filesystem::path& path);
 
 /// Overwrites the first kSealBytes bytes of a file's image. Throws std::logic_error where the lines
 /// do not fit.

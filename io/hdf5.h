@@ -162,6 +162,8 @@ class Hdf5Reader {
   /// Reads a file of `kind` into memory, checks its seal, and opens those very bytes. A file of an
   /// earlier version, which has no seal, is opened as it is.
   Hdf5Reader(const std::filesystem::path& path, const SealKind& kind);
+  /// Opens a file that an earlier version wrote, without a seal, unless it is a view.
+  static Hdf5Reader open_unsealed(const std::filesystem::path& path);
   /// Reads the bytes of a file; `path` stands in messages.
   Hdf5Reader(const std::filesystem::path& path, std::span<const std::byte> image);
 

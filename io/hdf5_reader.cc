@@ -114,7 +114,12 @@ Hdf5Reader::Hdf5Reader(const fs::path& path, std::span<const std::byte> image) :
 
 Hdf5Reader::Hdf5Reader(const fs::path& path, const SealKind& kind)
     : Hdf5Reader(is_sealed(path) ? Hdf5Reader(path, read_sealed(path, kind).bytes)
-                                 : Hdf5Reader(path)) {}
+                                 : open_unsealed(path)) {}
+
+Hdf5Reader Hdf5Reader::open_unsealed(const fs::path& path) {
+  refuse_global_heap(path);
+  return Hdf5Reader(path);
+}
 
 bool Hdf5Reader::has(const std::string& name) const {
   // H5Lexists needs every group on the way to exist.
@@ -135,9 +140,7 @@ Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
       checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
   const bool lies_elsewhere =
       H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0;
-  check<InputError>(!lies_elsewhere, path_, name,
-                    "a view over shards or other files, which cannot be verified; `strut merge DIR "
-                    "-o FILE` writes a copy");
+  check<InputError>(!lies_elsewhere, path_, name, kViewFault);
   return dataset;
 }
 
