@@ -1,11 +1,9 @@
 #include "io/dataset.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 #include <type_traits>
+#include <utility>
 
-#include "io/file_bytes.h"
 #include "io/input_error.h"
 #include "io/shard_layout.h"
 
@@ -18,12 +16,17 @@ namespace fs = std::filesystem;
 /// numbers of their histories.
 constexpr std::size_t kPieceRows = 8192, kPieceNumbers = std::size_t{4} << 20;
 
-/// True for a file without the user block that every shard begins with.
-bool is_merged(const fs::path& path) {
-  constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  const std::vector<std::byte> bytes = read_first_bytes(path, kSignature.size());
-  return bytes.size() == kSignature.size() &&
-         std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) == 0;
+enum class DataKind { kFolder, kShard, kMerged, kUnsealedMerged };
+
+DataKind find_kind(const fs::path& path) {
+  if (!fs::exists(path)) throw InputError(path.string() + ": not found");
+  if (fs::is_directory(path)) return DataKind::kFolder;
+  if (!is_sealed(path)) return DataKind::kUnsealedMerged;
+  const std::string kind = find_seal_kind(path);
+  if (kind == kMergedSeal.name) return DataKind::kMerged;
+  if (kind.empty() || kind == kShardSeal.name) return DataKind::kShard;
+  throw InputError(path.string() + ": a " + kind +
+                   " of strut; must be a sweep folder, shards of one, or a merged file");
 }
 
 /// Rows [first, first + count) of a merged file but for their reasons.
@@ -41,6 +44,12 @@ ShardRows read_merged_rows(const Hdf5Reader& file, const ShardSchema& schema, st
     }
   });
   return rows;
+}
+
+std::size_t count_piece_rows(const ShardSchema& schema) {
+  const std::size_t numbers = schema.history.size() * schema.history_samples;
+  return numbers == 0 ? kPieceRows
+                      : std::clamp<std::size_t>(kPieceNumbers / numbers, 1, kPieceRows);
 }
 
 /// Every dataset of a merged file has one row per case.
@@ -65,29 +74,43 @@ Dataset::Dataset(const std::vector<fs::path>& paths, const DatasetOptions& optio
     : parts_(options.histories ? ShardParts::kAll : ShardParts::kTables) {
   if (paths.empty()) throw InputError("no data: name a sweep folder, shards, or a merged file");
   for (const fs::path& path : paths) {
-    if (!fs::exists(path)) throw InputError(path.string() + ": not found");
-    if (paths.size() > 1 && (fs::is_directory(path) || is_merged(path))) {
+    if (paths.size() > 1 && find_kind(path) != DataKind::kShard) {
       throw InputError(path.string() + ": stands alone; several files must be shards of one sweep");
     }
   }
-  if (fs::is_directory(paths.front())) {
-    open_folder(SweepFolder{paths.front()}, options.partial);
-  } else if (is_merged(paths.front())) {
-    open_merged(paths.front());
-  } else {
-    open_shards(paths);
+  switch (find_kind(paths.front())) {
+    case DataKind::kFolder:
+      open_folder(SweepFolder{paths.front()}, options.partial);
+      break;
+    case DataKind::kShard:
+      open_shards(paths);
+      break;
+    case DataKind::kMerged: {
+      const FileSeal seal =
+          require_sound(paths.front(), check_sealed_file(paths.front(), kMergedSeal));
+      open_merged(paths.front(), Hdf5Reader(paths.front()));
+      if (seal.get("plan") != plan_hash_) {
+        throw InputError(paths.front().string() + ": its seal names another plan than the file");
+      }
+      break;
+    }
+    case DataKind::kUnsealedMerged:
+      open_merged(paths.front(), Hdf5Reader::open_unsealed(paths.front()));
+      check_merged_digest(paths.front());
+      break;
   }
   if (row_count_ == 0) throw InputError(paths.front().string() + ": holds no case");
+  refuse_repeated();
 }
 
 void Dataset::open_folder(const SweepFolder& folder, bool partial) {
   if (!fs::exists(folder.plan())) {
     throw InputError(folder.root.string() + ": no sweep folder; `strut plan` makes one");
   }
-  const Hdf5Reader plan(folder.plan());
-  const auto cases = static_cast<std::size_t>(plan.read_integer_attribute("/", "cases"));
-  plan_hash_ = plan.read_attribute("/", kPlanHashKey);
+  extent_ = read_sweep_extent(folder);
+  plan_hash_ = extent_.plan_hash;
   folder_ = folder;
+  const auto cases = static_cast<std::size_t>(extent_.cases);
   for (const std::int64_t shard : list_shards(folder)) add_shard(folder.shard(shard));
   number_rows();
   if (row_count_ < cases && !partial) {
@@ -97,18 +120,15 @@ void Dataset::open_folder(const SweepFolder& folder, bool partial) {
   }
 }
 
-void Dataset::open_merged(const fs::path& path) {
-  merged_.emplace(path);
+void Dataset::open_merged(const fs::path& path, Hdf5Reader file) {
+  merged_ = std::move(file);
   check_same(path, merged_->read_attribute("/", kPlanHashKey), read_shard_schema(path, *merged_));
   check_shapes(path, *merged_, schema_);
   const std::size_t rows = merged_->read_shape("/case_id").front();
   std::string table = schema_.snapshot.empty() ? kParametersName : kSnapshotName;
-  std::size_t most = kPieceRows;
-  if (const ShardSchema read = list_read(); !read.history.empty()) {
-    table = kHistoryGroup + ("/" + read.history.front().name);
-    most = std::clamp<std::size_t>(kPieceNumbers / (read.history.size() * read.history_samples), 1,
-                                   kPieceRows);
-  }
+  const ShardSchema read = list_read();
+  if (!read.history.empty()) table = kHistoryGroup + ("/" + read.history.front().name);
+  const std::size_t most = count_piece_rows(read);
   const std::size_t chunk =
       std::min(std::max<std::size_t>(merged_->read_chunk_rows(table), 1), most);
   const std::size_t step = most / chunk * chunk;
@@ -116,6 +136,35 @@ void Dataset::open_merged(const fs::path& path) {
     pieces_.push_back({path, -1, first, std::min(step, rows - first)});
   }
   row_count_ = rows;
+  case_ids_ = merged_->read_integers("/case_id");
+}
+
+/// The checksum of a merged file is the digest of its rows: all but names, units and reasons.
+void Dataset::check_merged_digest(const fs::path& path) {
+  DataDigest digest;
+  const std::size_t step = count_piece_rows(schema_);
+  for (std::size_t first = 0; first < row_count_; first += step) {
+    const std::size_t count = std::min(step, row_count_ - first);
+    digest.add(calc_rows_digest(read_merged_rows(*merged_, schema_, first, count)));
+  }
+  if (digest.text() != merged_->read_attribute("/", kChecksumKey)) {
+    throw InputError(path.string() + ": " + kChecksumKey +
+                     ": damaged: the rows have another one; " + kMergedSeal.remedy);
+  }
+}
+
+void Dataset::refuse_repeated() {
+  const std::int64_t twice = find_repeated(std::exchange(case_ids_, {}));
+  if (twice < 0) return;
+  std::string files;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const std::vector<std::int64_t>& ids = read_piece(i).case_id;
+    if (std::find(ids.begin(), ids.end(), twice) == ids.end()) continue;
+    const std::string file = pieces_[i].file.string();
+    if (!files.ends_with(file)) files += (files.empty() ? "" : ", ") + file;
+  }
+  throw InputError(files + ": case " + std::to_string(twice) +
+                   " is there twice; each may be once in a dataset");
 }
 
 void Dataset::open_shards(const std::vector<fs::path>& paths) {
@@ -132,11 +181,20 @@ void Dataset::open_shards(const std::vector<fs::path>& paths) {
 }
 
 void Dataset::add_shard(const fs::path& path) {
-  const std::vector<std::byte> bytes = read_shard_bytes(path);
-  const ShardSeal seal = check_shard_bytes(path, bytes);
-  const Hdf5Reader file(path, bytes);
+  const SealedBytes sealed = read_sealed(path, kShardSeal);
+  const ShardSeal seal = read_shard_seal(path, sealed.bytes);
+  const Hdf5Reader file(path, sealed.bytes);
+  const std::vector<std::int64_t> case_ids = file.read_integers("/case_id");
+  const std::int64_t named = SweepFolder::parse_shard_name(path.stem().string());
+  if (folder_) {
+    require_shard(path, extent_, named, seal, case_ids);
+  } else if (named >= 0 && named != seal.shard) {
+    throw InputError(path.string() + ": " + find_misplacement(seal, seal.plan_hash, named) +
+                     "; must bear its own number");
+  }
   check_same(path, seal.plan_hash, read_shard_schema(path, file));
-  pieces_.push_back({path, seal.shard, 0, file.read_shape("/case_id").front()});
+  pieces_.push_back({path, seal.shard, 0, case_ids.size()});
+  case_ids_.insert(case_ids_.end(), case_ids.begin(), case_ids.end());
 }
 
 void Dataset::check_same(const fs::path& path, const std::string& plan_hash,
@@ -177,9 +235,9 @@ const ShardRows& Dataset::read_piece(std::size_t number) {
   if (merged_) {
     rows_ = read_merged_rows(*merged_, list_read(), piece.first_row, piece.rows);
   } else {
-    Shard shard = folder_ ? read_mended_shard(*folder_, piece.shard, nullptr, parts_)
+    Shard shard = folder_ ? read_mended_shard(*folder_, extent_, piece.shard, parts_)
                           : read_shard(piece.file, parts_);
-    if (shard.rows.size() != piece.rows) {
+    if (shard.rows.size() != piece.rows || shard.provenance.shard != piece.shard) {
       throw InputError(piece.file.string() + ": changed while it was read");
     }
     rows_ = std::move(shard.rows);

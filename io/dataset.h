@@ -23,10 +23,12 @@ struct DatasetOptions {
 /// thousand rows of a merged file, and the only one in memory.
 class Dataset {
  public:
-  /// `paths`: one sweep folder, or one merged file (also a virtual one), or shards, which are put
-  /// in the order of their numbers. A folder's retries are applied; a shard alone is as it is.
-  /// Checks every shard's bytes. Throws InputError that names the file where one is damaged, of
-  /// another plan or with other columns than the first, given twice, or missing.
+  /// `paths`: one sweep folder, or one merged file, or shards, which are put in the order of their
+  /// numbers. A folder's retries are applied; a shard alone is as it is. Checks every byte of every
+  /// file (of a merged file without a seal: every number), and that no case is there twice; of a
+  /// folder that its shards hold the plan's cases and bear their own numbers. Throws InputError
+  /// that names the file where one is damaged, of another plan or with other columns than the
+  /// first, given twice, or missing.
   explicit Dataset(const std::vector<std::filesystem::path>& paths,
                    const DatasetOptions& options = {});
 
@@ -50,9 +52,11 @@ class Dataset {
   };
 
   void open_folder(const SweepFolder& folder, bool partial);
-  void open_merged(const std::filesystem::path& path);
+  void open_merged(const std::filesystem::path& path, Hdf5Reader file);
   void open_shards(const std::vector<std::filesystem::path>& paths);
   void add_shard(const std::filesystem::path& path);
+  void check_merged_digest(const std::filesystem::path& path);
+  void refuse_repeated();
   void check_same(const std::filesystem::path& path, const std::string& plan_hash,
                   const ShardSchema& schema);
   void number_rows();
@@ -64,7 +68,9 @@ class Dataset {
   std::filesystem::path first_file_;  // whose plan and columns are those of all
   std::size_t row_count_ = 0;
   std::vector<Piece> pieces_;
+  std::vector<std::int64_t> case_ids_;  // while the dataset is opened
   std::optional<SweepFolder> folder_;
+  SweepExtent extent_;  // of the folder
   std::optional<Hdf5Reader> merged_;
   std::size_t held_ = 0;  // piece in rows_
   std::optional<ShardRows> rows_;

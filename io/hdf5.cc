@@ -125,8 +125,8 @@ void Hdf5Writer::open(const Hdf5WriterOptions& options) {
   const bool good = H5Pset_fapl_core(access.id(), kMemoryIncrement, false) >= 0 &&
                     H5Pset_file_image_callbacks(access.id(), &callbacks) >= 0;
   check<EnvironmentError>(good, sink_.shown, "", "cannot be written");
-  user_block_ = options.user_block ? kHdf5UserBlock : 0;
-  const Hdf5Handle creation = hdf5::make_file_creation(sink_.shown, user_block_);
+  seal_ = options.seal;
+  const Hdf5Handle creation = hdf5::make_file_creation(sink_.shown, seal_.has_value());
   sink_.file = checked<EnvironmentError>(
       H5Fcreate(hdf5::make_memory_name().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()),
       H5Fclose, sink_.shown, "", "cannot be written");
@@ -199,10 +199,11 @@ std::vector<std::byte> Hdf5Writer::image() {
   const bool good = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0 && sink_.file.reset();
   check<EnvironmentError>(good && memory_->closed, sink_.shown, "", "cannot be written");
   const auto* const begin = static_cast<const std::byte*>(memory_->data);
-  const std::uint64_t end = read_end_of_file(begin + user_block_);
+  const std::uint64_t end = read_end_of_file(begin + (seal_ ? kSealBytes : 0));
   if (end > memory_->size) throw std::logic_error("an HDF5 file ends behind its memory");
   std::vector<std::byte> bytes(begin, begin + end);
   memory_.reset();
+  if (seal_) seal_image(*seal_, bytes);
   return bytes;
 }
 

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "io/atomic_file.h"
+#include "io/file_seal.h"
 #include "io/input_error.h"
 
 namespace strut {
@@ -94,11 +95,8 @@ struct Hdf5Dataset {
   Hdf5Label label;
 };
 
-/// Bytes that a file may hold in front of its HDF5 content.
-inline constexpr std::size_t kHdf5UserBlock = 512;
-
 struct Hdf5WriterOptions {
-  bool user_block = false;  // leave kHdf5UserBlock zero bytes in front
+  std::optional<SealLabel> seal = {};  // none: a plain HDF5 file
 };
 
 /// A file that is not to be written to disk; the name stands in messages.
@@ -141,7 +139,7 @@ class Hdf5Writer {
   void write_attribute_list(const std::string& object, const std::string& key,
                             const std::vector<std::string>& values);
 
-  /// Ends the file; its bytes, those of the user block zero. Nothing can be written any more.
+  /// Ends the file; its bytes, sealed. Nothing can be written any more.
   std::vector<std::byte> image();
   void commit();
 
@@ -151,16 +149,21 @@ class Hdf5Writer {
   void open(const Hdf5WriterOptions& options);
 
   std::optional<AtomicFile> target_;
-  std::size_t user_block_ = 0;
+  std::optional<SealLabel> seal_;
   std::unique_ptr<Memory> memory_;
   Hdf5Sink sink_;
 };
 
 /// Reads a file. A missing file, one that is not HDF5, and a missing or damaged dataset are
-/// InputError.
+/// InputError, and so is one whose values lie in other files: no seal covers those.
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(const std::filesystem::path& path);
+  /// Reads a file of `kind` into memory, checks its seal, and opens those very bytes. A file of an
+  /// earlier version, which has no seal, is opened as it is.
+  Hdf5Reader(const std::filesystem::path& path, const SealKind& kind);
+  /// Opens a file that an earlier version wrote, without a seal, unless it is a view.
+  static Hdf5Reader open_unsealed(const std::filesystem::path& path);
   /// Reads the bytes of a file; `path` stands in messages.
   Hdf5Reader(const std::filesystem::path& path, std::span<const std::byte> image);
 

@@ -115,11 +115,11 @@ Hdf5Handle make_file_access(const fs::path& path) {
   return access;
 }
 
-Hdf5Handle make_file_creation(const fs::path& path, std::size_t user_block) {
+Hdf5Handle make_file_creation(const fs::path& path, bool sealed) {
   Hdf5Handle creation = checked<EnvironmentError>(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path, "",
                                                   "cannot be written");
   const bool good = H5Pset_obj_track_times(creation.id(), false) >= 0 &&
-                    H5Pset_userblock(creation.id(), user_block) >= 0;
+                    H5Pset_userblock(creation.id(), sealed ? kSealBytes : 0) >= 0;
   check<EnvironmentError>(good, path, "", "cannot be written");
   return creation;
 }

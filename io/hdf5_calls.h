@@ -65,8 +65,9 @@ Hdf5Handle select_rows(const std::filesystem::path& path, const std::string& nam
 
 /// File access: the format of 1.10, which has checksums over all of its own structures.
 Hdf5Handle make_file_access(const std::filesystem::path& path);
-/// File creation without times, so that equal content is equal bytes.
-Hdf5Handle make_file_creation(const std::filesystem::path& path, std::size_t user_block);
+/// File creation without times, so that equal content is equal bytes; `sealed`: with room for a
+/// seal in front.
+Hdf5Handle make_file_creation(const std::filesystem::path& path, bool sealed);
 
 /// Dataset creation: fill value NaN, -1 or an empty text, no times.
 Hdf5Handle make_dataset_creation(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,

@@ -46,9 +46,8 @@ std::size_t count_elements(const fs::path& path, const std::string& name, hid_t 
     check<InputError>(size == 0 || bytes <= kMost / size, path, name, "damaged: data missing");
     bytes *= size;
   }
-  const bool is_view = H5Pget_layout(creation.id()) == H5D_VIRTUAL;
   const std::size_t packed = H5Pget_nfilters(creation.id()) == 0 ? 1 : 1040;
-  const bool present = is_view || H5Dget_storage_size(dataset) >= bytes / packed;
+  const bool present = H5Dget_storage_size(dataset) >= bytes / packed;
   check<InputError>(present, path, name, "damaged: data missing");
   return bytes / element;
 }
@@ -113,6 +112,15 @@ Hdf5Reader::Hdf5Reader(const fs::path& path, std::span<const std::byte> image) :
                           H5Fclose, path, "", "damaged, or not an HDF5 file");
 }
 
+Hdf5Reader::Hdf5Reader(const fs::path& path, const SealKind& kind)
+    : Hdf5Reader(is_sealed(path) ? Hdf5Reader(path, read_sealed(path, kind).bytes)
+                                 : open_unsealed(path)) {}
+
+Hdf5Reader Hdf5Reader::open_unsealed(const fs::path& path) {
+  refuse_global_heap(path);
+  return Hdf5Reader(path);
+}
+
 bool Hdf5Reader::has(const std::string& name) const {
   // H5Lexists needs every group on the way to exist.
   for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
@@ -126,8 +134,14 @@ bool Hdf5Reader::has(const std::string& name) const {
 
 Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
   check<InputError>(has(name), path_, name, "no such dataset");
-  return checked<InputError>(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), H5Dclose, path_, name,
-                             "not a dataset");
+  Hdf5Handle dataset = checked<InputError>(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT),
+                                           H5Dclose, path_, name, "not a dataset");
+  const Hdf5Handle creation =
+      checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
+  const bool lies_elsewhere =
+      H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0;
+  check<InputError>(!lies_elsewhere, path_, name, kViewFault);
+  return dataset;
 }
 
 Hdf5Dataset Hdf5Reader::read(const std::string& name) const {

@@ -12,11 +12,12 @@ namespace fs = std::filesystem;
 using hdf5::check;
 using hdf5::checked;
 
-Hdf5StreamWriter::Hdf5StreamWriter(const fs::path& path) : target_(path) {
+Hdf5StreamWriter::Hdf5StreamWriter(const fs::path& path, SealLabel seal)
+    : target_(path), seal_(std::move(seal)) {
   hdf5::prepare_library();
   sink_.shown = path;
   const Hdf5Handle access = hdf5::make_file_access(path);
-  const Hdf5Handle creation = hdf5::make_file_creation(path, 0);
+  const Hdf5Handle creation = hdf5::make_file_creation(path, true);
   sink_.file = checked<EnvironmentError>(
       H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose,
       path, "", "cannot be written");
@@ -63,32 +64,6 @@ void Hdf5StreamWriter::write_chunk(const std::string& name, Stream& stream) {
   stream.pending.clear();
 }
 
-void Hdf5StreamWriter::write_virtual(const std::string& name, Hdf5Type type,
-                                     const std::vector<std::size_t>& shape,
-                                     const std::vector<Hdf5ViewPart>& parts, const Hdf5Label& label,
-                                     std::size_t text_length) {
-  const Hdf5Handle creation = hdf5::make_dataset_creation(sink_, name, type, text_length);
-  for (const Hdf5ViewPart& part : parts) {
-    std::vector<std::size_t> source_shape = shape;
-    source_shape.front() = part.source_rows;
-    // The library takes what lies behind the end, and reads other rows for it.
-    if (part.source_first + part.rows > part.source_rows ||
-        part.target_first + part.rows > shape.front()) {
-      throw std::logic_error(name + ": a part of the view lies behind its end");
-    }
-    const Hdf5Handle target =
-        hdf5::select_rows<EnvironmentError>(sink_.shown, name, shape, part.target_first, part.rows);
-    const Hdf5Handle source = hdf5::select_rows<EnvironmentError>(sink_.shown, name, source_shape,
-                                                                  part.source_first, part.rows);
-    check<EnvironmentError>(H5Pset_virtual(creation.id(), target.id(), part.file.c_str(),
-                                           part.dataset.c_str(), source.id()) >= 0,
-                            sink_.shown, name, "view cannot be written");
-  }
-  Hdf5Handle dataset =
-      hdf5::create_dataset(sink_, name, type, text_length, shape, creation.id(), label);
-  hdf5::close_dataset(sink_, name, dataset);
-}
-
 void Hdf5StreamWriter::write_attribute(const std::string& object, const std::string& key,
                                        const std::string& value) {
   hdf5::write_text_attribute(sink_, object, key, {value}, true);
@@ -118,6 +93,7 @@ void Hdf5StreamWriter::commit() {
   const bool flushed = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0;
   check<EnvironmentError>(flushed, sink_.shown, "", "cannot be written");
   check<EnvironmentError>(sink_.file.reset(), sink_.shown, "", "cannot be written");
+  seal_file(seal_, target_.temporary(), sink_.shown);
   target_.commit();
 }
 

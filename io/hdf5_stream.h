@@ -1,4 +1,4 @@
-// HDF5 files that do not fit in memory, written block by block, and views over other files.
+// HDF5 files that do not fit in memory, written block by block and sealed.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,13 @@
 
 namespace strut {
 
-/// Rows of a dataset elsewhere that appear in a view.
-struct Hdf5ViewPart {
-  std::string file;  // relative to the folder of the view's file
-  std::string dataset;
-  std::size_t source_rows = 0;  // that the dataset there has
-  std::size_t source_first = 0, target_first = 0, rows = 0;
-};
-
 /// Writes one file, which appears under its name at `commit` or not at all; its datasets have known
 /// shapes and are filled from the first row on. Chunks are compressed here and handed to the
 /// library whole, so that a full disk fails the call that meets it; every call is checked, closing
 /// too. Memory: one chunk a dataset. Failures are EnvironmentError.
 class Hdf5StreamWriter {
  public:
-  explicit Hdf5StreamWriter(const std::filesystem::path& path);
+  Hdf5StreamWriter(const std::filesystem::path& path, SealLabel seal);
   Hdf5StreamWriter(const Hdf5StreamWriter&) = delete;
   Hdf5StreamWriter& operator=(const Hdf5StreamWriter&) = delete;
 
@@ -42,18 +34,13 @@ class Hdf5StreamWriter {
     append(name, std::as_bytes(std::span(values)));
   }
 
-  /// A dataset that shows rows of other files; what no part covers reads as NaN, -1 or "".
-  void write_virtual(const std::string& name, Hdf5Type type, const std::vector<std::size_t>& shape,
-                     const std::vector<Hdf5ViewPart>& parts, const Hdf5Label& label,
-                     std::size_t text_length = 0);
-
   void write_attribute(const std::string& object, const std::string& key, const std::string& value);
   void write_attribute(const std::string& object, const std::string& key, std::int64_t value);
   void write_attribute(const std::string& object, const std::string& key, double value);
   void write_attribute_list(const std::string& object, const std::string& key,
                             const std::vector<std::string>& values);
 
-  /// Throws std::logic_error where a dataset lacks rows.
+  /// Reads the file once more, for its seal. Throws std::logic_error where a dataset lacks rows.
   void commit();
 
  private:
@@ -68,6 +55,7 @@ class Hdf5StreamWriter {
   void write_chunk(const std::string& name, Stream& stream);
 
   AtomicFile target_;
+  SealLabel seal_;
   Hdf5Sink sink_;
   std::map<std::string, Stream> streams_;
 };

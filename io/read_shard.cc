@@ -105,9 +105,9 @@ ShardSchema read_shard_schema(const fs::path& path, const Hdf5Reader& file) {
 }
 
 Shard read_shard(const fs::path& path, ShardParts parts) {
-  const std::vector<std::byte> bytes = read_shard_bytes(path);
-  const ShardSeal seal = check_shard_bytes(path, bytes);
-  const Hdf5Reader file(path, bytes);
+  const SealedBytes sealed = read_sealed(path, kShardSeal);
+  const ShardSeal seal = read_shard_seal(path, sealed.bytes);
+  const Hdf5Reader file(path, sealed.bytes);
   Shard shard;
   shard.schema = read_shard_schema(path, file);
   ShardSchema wanted = shard.schema;

@@ -1,8 +1,7 @@
 // One shard of a sweep: some hundred finished cases in one immutable HDF5 file.
 //
-// The file is built in memory, hashed, and only then written, so the library never meets a full
-// disk. Its first 512 bytes, HDF5's user block, hold a text with plan, shard, size and SHA-256 of
-// everything behind them: any flipped byte is found with the file alone.
+// The file is built in memory, sealed (io/file_seal.h) with its plan and number, and only then
+// written, so the library never meets a full disk.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "io/data_digest.h"
+#include "io/file_seal.h"
 #include "io/hdf5.h"
 #include "io/sha256.h"
 
@@ -87,29 +87,23 @@ CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows)
 std::vector<std::byte> make_shard_image(const CompressedShard& shard,
                                         const ShardProvenance& provenance);
 
-/// What the user block says: lines of text, the last of them the SHA-256 of those before, then
-/// zeros. `tail -c +513 FILE | sha256sum` computes `sha256`.
+/// What the seal of a shard says (io/file_seal.h).
 struct ShardSeal {
   std::string plan_hash;
-  std::int64_t shard = 0;
+  std::int64_t shard = 0;  // -1: none
   std::uint64_t size = 0;  // bytes of the whole file
-  std::string sha256;      // of all bytes behind the user block
+  std::string sha256;      // of all bytes behind the seal
 };
 
-/// Reads 512 bytes and the file's size. Throws InputError where that is no seal, or the size is
-/// another.
+SealLabel make_shard_label(const std::string& plan_hash, std::int64_t shard);
+ShardSeal make_shard_seal(const FileSeal& seal);
+
+/// Reads 512 bytes and the file's size. Throws InputError where that is no shard's seal, or the
+/// size is another.
 ShardSeal read_shard_seal(const std::filesystem::path& path);
 
 /// As above, of the bytes of a file called `path`.
 ShardSeal read_shard_seal(const std::filesystem::path& path, std::span<const std::byte> bytes);
-
-/// The user block of `image`, whose first 512 bytes do not count.
-std::string render_shard_seal(const std::string& plan_hash, std::int64_t shard,
-                              std::span<const std::byte> image);
-
-/// All bytes of a file whose first 512 are a seal that names its size, so that what is no shard is
-/// not read, however large. Throws InputError.
-std::vector<std::byte> read_shard_bytes(const std::filesystem::path& path);
 
 /// Reads every byte and compares it with the seal. Throws InputError that names the file and what
 /// is wrong.
@@ -117,6 +111,10 @@ ShardSeal check_shard_bytes(const std::filesystem::path& path);
 
 /// As above, of the bytes of a file called `path`.
 ShardSeal check_shard_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Why a file with this seal cannot be shard `shard` of the plan `plan_hash`; empty where it can.
+std::string find_misplacement(const ShardSeal& seal, const std::string& plan_hash,
+                              std::int64_t shard);
 
 struct Shard {
   ShardSchema schema;

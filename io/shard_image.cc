@@ -1,6 +1,5 @@
 // Rows to the bytes of a shard's file: compression, then HDF5.
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -76,16 +75,14 @@ CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows)
 
 std::vector<std::byte> make_shard_image(const CompressedShard& shard,
                                         const ShardProvenance& provenance) {
-  Hdf5Writer file(Hdf5InMemory{"shard " + std::to_string(provenance.shard)}, {.user_block = true});
+  Hdf5Writer file(Hdf5InMemory{"shard " + std::to_string(provenance.shard)},
+                  {.seal = make_shard_label(provenance.plan_hash, provenance.shard)});
   for (const Hdf5Chunks& dataset : shard.datasets) file.write_chunks(dataset);
   write_shard_attributes(file, shard.history_names, shard.history_interval, shard.status_meaning,
                          provenance.plan_hash, shard.digest);
   file.write_attribute("/", kShardKey, provenance.shard);
   for (const auto& [key, text] : provenance.texts) file.write_attribute("/", key, text);
-  std::vector<std::byte> image = file.image();
-  const std::string seal = render_shard_seal(provenance.plan_hash, provenance.shard, image);
-  std::memcpy(image.data(), seal.data(), seal.size());
-  return image;
+  return file.image();
 }
 
 }  // namespace strut

@@ -13,6 +13,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+ShardSeal get_seal(const Shard& shard) {
+  return {.plan_hash = shard.provenance.plan_hash, .shard = shard.provenance.shard, .sha256 = {}};
+}
+
+/// Throws InputError unless `overlay` can be a retry of some cases of `shard`.
+void require_retry(const fs::path& file, const Shard& shard, const Shard& overlay) {
+  std::string fault =
+      find_misplacement(get_seal(overlay), shard.provenance.plan_hash, shard.provenance.shard);
+  if (fault.empty() && overlay.schema != shard.schema) fault = "has other columns than its shard";
+  if (const std::int64_t twice = find_repeated(overlay.rows.case_id); fault.empty() && twice >= 0) {
+    fault = "holds case " + std::to_string(twice) + " twice";
+  }
+  if (!fault.empty()) throw InputError(file.string() + ": " + fault + "; " + kShardSeal.remedy);
+}
+
 }  // namespace
 
 std::string SweepFolder::name() const {
@@ -51,28 +66,37 @@ int count_retries(const SweepFolder& folder, std::int64_t shard) {
   return rounds;
 }
 
-Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
-                        std::vector<RowOrigin>* origins, ShardParts parts) {
-  Shard mended = read_shard(folder.shard(shard), parts);
+SweepExtent read_sweep_extent(const SweepFolder& folder) {
+  const Hdf5Reader plan(folder.plan(), kPlanSeal);
+  return read_sweep_extent(folder.plan(), plan);
+}
+
+void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts) {
+  ShardRows& rows = shard.rows;
+  const std::int64_t number = shard.provenance.shard;
   std::map<std::int64_t, std::size_t> row_of;
-  for (std::size_t row = 0; row < mended.rows.size(); ++row) row_of[mended.rows.case_id[row]] = row;
-  std::vector<RowOrigin> from(mended.rows.size());
-  for (std::size_t row = 0; row < from.size(); ++row) from[row] = {-1, row, from.size()};
-  const int rounds = count_retries(folder, shard);
+  for (std::size_t row = 0; row < rows.size(); ++row) row_of[rows.case_id[row]] = row;
+  const int rounds = count_retries(folder, number);
   for (int round = 0; round < rounds; ++round) {
-    const fs::path file = folder.retry(shard, round);
-    const ShardRows overlay = read_shard(file, parts).rows;
-    for (std::size_t row = 0; row < overlay.size(); ++row) {
-      const auto found = row_of.find(overlay.case_id[row]);
+    const fs::path file = folder.retry(number, round);
+    const Shard overlay = read_shard(file, parts);
+    require_retry(file, shard, overlay);
+    for (std::size_t row = 0; row < overlay.rows.size(); ++row) {
+      const auto found = row_of.find(overlay.rows.case_id[row]);
       if (found == row_of.end()) {
-        throw InputError(file.string() + ": case " + std::to_string(overlay.case_id[row]) +
-                         " is not in shard " + std::to_string(shard));
+        throw InputError(file.string() + ": case " + std::to_string(overlay.rows.case_id[row]) +
+                         " is not in shard " + std::to_string(number) + "; " + kShardSeal.remedy);
       }
-      mended.rows.set_row(found->second, overlay, row);
-      from[found->second] = {round, row, overlay.size()};
+      rows.set_row(found->second, overlay.rows, row);
     }
   }
-  if (origins != nullptr) *origins = std::move(from);
+}
+
+Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
+                        ShardParts parts) {
+  Shard mended = read_shard(folder.shard(shard), parts);
+  require_shard(folder.shard(shard), extent, shard, get_seal(mended), mended.rows.case_id);
+  apply_retries(folder, mended, parts);
   return mended;
 }
 

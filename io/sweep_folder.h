@@ -8,6 +8,7 @@
 
 #include "io/folder.h"
 #include "io/shard.h"
+#include "io/sweep_extent.h"
 
 namespace strut {
 
@@ -63,16 +64,16 @@ std::vector<std::int64_t> list_shards(const SweepFolder& folder);
 /// Rounds of retries that `retries/` holds for a shard: 0, 1, ... without a gap.
 int count_retries(const SweepFolder& folder, std::int64_t shard);
 
-/// Where a mended row comes from.
-struct RowOrigin {
-  int round = -1;  // -1: the shard itself; else the retry
-  std::size_t row = 0, file_rows = 0;
-};
+/// What plan.h5 says. Throws InputError where it is missing or damaged.
+SweepExtent read_sweep_extent(const SweepFolder& folder);
 
-/// A shard with its rows as the retries left them; `origins`, where given, tells of each row where
-/// it comes from. Throws InputError where a file is damaged.
-Shard read_mended_shard(const SweepFolder& folder, std::int64_t shard,
-                        std::vector<RowOrigin>* origins = nullptr,
+/// Replaces the rows of a shard by those of its retries. Throws InputError where one is damaged or
+/// not of this shard.
+void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts = ShardParts::kAll);
+
+/// A shard with its rows as the retries left them. Throws InputError where a file is damaged, or
+/// not the plan's (require_shard), or a retry is not of this shard.
+Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
                         ShardParts parts = ShardParts::kAll);
 
 }  // namespace strut

@@ -107,6 +107,10 @@ void Arguments::add_list(const std::string& name, ArgumentValue value, const std
   add(name, {"", "", false, true, std::move(value), help});
 }
 
+void Arguments::add_removed(const std::string& name, const std::string& why) {
+  removed_[name] = why;
+}
+
 const std::vector<ArgumentOption>& Arguments::common_options() {
   static const std::vector<ArgumentOption> options = {
       {"quiet", "q", true, false, "", "say nothing on standard error but errors"},
@@ -144,6 +148,9 @@ bool Arguments::parse(const std::vector<std::string>& words) {
               values_);
   } catch (const po::unknown_option& e) {
     const std::string name = strip_dashes(e.get_option_name());
+    if (const auto removed = removed_.find(name); removed != removed_.end()) {
+      throw InputError("--" + name + ": no longer an option: " + removed->second);
+    }
     std::string suggestion = nearest_name(name, known_options());
     if (!suggestion.empty()) suggestion = "; did you mean '--" + suggestion + "'?";
     throw usage_error("unknown option '" + e.get_option_name() + "'" + suggestion);

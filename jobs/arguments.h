@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ class Arguments {
   /// As add_option; may be given more than once, of NAME=VALUE once for each NAME.
   void add_list(const std::string& name, ArgumentValue value, const std::string& help);
 
+  /// An option that earlier versions had; `why` says what to do instead.
+  void add_removed(const std::string& name, const std::string& why);
+
   const std::string& synopsis() const { return synopsis_; }
   const std::string& description() const { return description_; }
   const std::string& examples() const { return examples_; }
@@ -102,6 +106,7 @@ class Arguments {
   std::vector<ArgumentValue> operands_;
   bool last_operand_repeats_ = false;
   std::vector<ArgumentOption> options_;
+  std::map<std::string, std::string> removed_;  // name -> what to do instead
   std::vector<std::string> words_;
   boost::program_options::variables_map values_;
   std::vector<std::string> positional_;

@@ -40,7 +40,7 @@ const std::vector<Command>& list_commands() {
        &run_doctor},
       {"verify", "check every byte of a sweep, simulate some of it again", &describe_verify,
        &run_verify},
-      {"merge", "one HDF5 file of all shards, copied or virtual", &describe_merge, &run_merge},
+      {"merge", "one HDF5 file of all shards", &describe_merge, &run_merge},
       {"train", "a network that identifies parameters, from a sweep's cases", &describe_train,
        &run_train},
       {"evaluate", "how well a trained network identifies them", &describe_evaluate, &run_evaluate},

@@ -11,6 +11,7 @@
 #include "jobs/messages.h"
 #include "jobs/progress.h"
 #include "jobs/standard_output.h"
+#include "jobs/unsealed.h"
 
 namespace strut {
 Json make_json(const Model& model, const ModelEvaluation& evaluation) {
@@ -80,11 +81,12 @@ int run_evaluate(const Arguments& arguments) {
   if (names.size() < 2)
     throw arguments.usage_error(
         "expected MODEL, of strut train, and DATA, a sweep folder, shards or a merged file");
-  const Model model = read_model(names.front());
+  const Model model = load_model(names.front());
   DatasetOptions options;
   options.partial = arguments.is_on("partial");
   options.histories = model.window.has_value();
   Dataset dataset({names.begin() + 1, names.end()}, options);
+  note_unsealed_data({names.begin() + 1, names.end()});
   const int own = dataset.plan_hash() == model.plan_hash ? 0 : 1;
   const bool all = arguments.choice_or("part", own) == 1;
   const EvaluatedPart part = all ? EvaluatedPart::kAll : EvaluatedPart::kTest;

@@ -9,6 +9,7 @@
 #include "jobs/command.h"
 #include "jobs/messages.h"
 #include "jobs/output_file.h"
+#include "jobs/unsealed.h"
 #include "train/export/header.h"
 #include "train/export/onnx.h"
 #include "train/model_file.h"
@@ -91,7 +92,7 @@ int run_export(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) throw arguments.usage_error("expected one MODEL, a file of strut train");
   const fs::path output = find_output_file(arguments, names);
-  const Model model = read_model(names.front());
+  const Model model = load_model(names.front());
   if (model.window) {
     throw InputError(names.front() +
                      ": a network over windows of time histories: its inputs are no channels but "

@@ -8,6 +8,7 @@
 #include "jobs/identify/result.h"
 #include "jobs/identify/snapshot.h"
 #include "jobs/identify/window.h"
+#include "jobs/unsealed.h"
 #include "train/model_file.h"
 
 namespace strut {
@@ -54,7 +55,7 @@ int run_identify(const Arguments& arguments) {
     return identify_by_fit(arguments, names.front(), files);
   }
   refuse_fit_options(arguments);
-  const Model model = read_model(names.front());
+  const Model model = load_model(names.front());
   return model.window ? identify_by_window(arguments, model, files)
                       : identify_by_snapshot(arguments, model, files);
 }

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 MergeInput make_input(const Plan& plan) {
-  MergeInput input{plan.hash(), plan.shard_count(), plan.make_schema()};
+  MergeInput input{plan.make_extent(), plan.make_schema()};
   if (input.schema.history.empty()) {
     input.schema.history_samples = 0;
     input.schema.history_interval = 0.0;
@@ -59,12 +59,12 @@ Arguments describe_merge() {
       "rows\n"
       "of NaN.",
       "  strut merge cars -o dataset.h5\n"
-      "  strut merge cars -o view.h5 --virtual");
+      "  strut merge cars -o so_far.h5 --partial");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"h5", "hdf5"}), "file to write");
-  arguments.add_switch("virtual",
-                       "virtual datasets over the shards: small, but the shards must stay, and\n"
-                       "what vanishes reads as NaN");
+  arguments.add_removed("virtual",
+                        "a view over shards cannot be verified; `strut merge DIR -o FILE` writes a "
+                        "copy");
   arguments.add_switch("partial", "leave out what is missing instead of refusing");
   arguments.add_switch("force", "replace FILE where it exists");
   arguments.add_switch("json", "print JSON");
@@ -75,7 +75,6 @@ int run_merge(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const fs::path output = find_output_file(arguments, {});
   MergeOptions options;
-  options.is_view = arguments.is_on("virtual");
   options.partial = arguments.is_on("partial");
   const BuildInfo& build = get_build_info();
   options.provenance = {{"strut_version", build.version}, {"commit", build.commit}};

@@ -2,6 +2,8 @@
 
 #include <omp.h>
 
+#include "jobs/unsealed.h"
+
 namespace strut {
 
 OpenSweep open_sweep(const Arguments& arguments) {
@@ -13,6 +15,7 @@ OpenSweep open_sweep(const Arguments& arguments) {
   }
   SweepFolder folder{names.front()};
   Plan plan = open_sweep_folder(folder);
+  note_unsealed(folder.plan(), kPlanSeal);
   return {std::move(folder), std::move(plan)};
 }
 

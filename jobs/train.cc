@@ -21,6 +21,7 @@
 #include "jobs/output_file.h"
 #include "jobs/progress.h"
 #include "jobs/train_noise.h"
+#include "jobs/unsealed.h"
 #include "train/train_network.h"
 
 namespace strut {
@@ -287,13 +288,17 @@ int run_train(const Arguments& arguments) {
   options.histories = arguments.has("window");
   InterruptWatcher watcher;
   Dataset dataset({names.begin(), names.end()}, options);
+  note_unsealed_data(names);
   read_noise_options(arguments, dataset.schema(), request);
   Training training = [&] {
     const Stage reading("reading");
     const ProgressLine line("reading cases");
     return Training(dataset, request);
   }();
-  if (arguments.is_on("resume")) training.resume(checkpoint, read_checkpoint(checkpoint));
+  if (arguments.is_on("resume")) {
+    training.resume(checkpoint, read_checkpoint(checkpoint));
+    note_unsealed(checkpoint, kCheckpointSeal);
+  }
   tell_detail(describe(request));
   if (!train(training, request.options, checkpoint, watcher.halt())) {
     tell_interrupted(arguments, checkpoint);

@@ -53,8 +53,9 @@ void check_free(const SweepFolder& folder) {
 
 void check_same(const SweepFolder& folder, const Plan& plan) {
   const PlanRecord record = read_plan(folder.plan());
-  if (record.hash == plan.hash()) {
+  if (record.extent.plan_hash == plan.hash()) {
     open_sweep_folder(folder);  // its own files may have been changed
+    if (!is_sealed(folder.plan())) write_plan(folder.plan(), plan);
     return;
   }
   throw InputError(folder.root.string() + ": planned for another request than " +
@@ -112,15 +113,13 @@ Plan open_sweep_folder(const SweepFolder& folder) {
   }
   const PlanRecord record = read_plan(folder.plan());
   Plan plan(read_request(folder.request()));
-  if (record.hash != plan.hash()) {
+  if (record.extent.plan_hash != plan.hash()) {
     throw InputError(folder.request().string() +
                      ": no longer what was planned; allowed: the planned request, or another "
                      "folder. Changed:" +
                      list_changes(record.facts, plan.facts()));
   }
-  if (record.drawn != plan.list_drawn()) {
-    throw InputError(folder.plan().string() + ": /drawn: not the cases that this version draws");
-  }
+  require_same_plan(folder.plan(), record, plan);
   return plan;
 }
 

@@ -15,13 +15,11 @@ namespace strut {
 
 /// What of a plan a merge must know.
 struct MergeInput {
-  std::string plan_hash;
-  std::int64_t shard_count = 0;
+  SweepExtent extent;
   ShardSchema schema;
 };
 
 struct MergeOptions {
-  bool is_view = false;  // HDF5 virtual datasets over the shards instead of copies of their rows
   bool partial = false;  // go on where shards are missing; without their rows
   std::vector<std::pair<std::string, std::string>> provenance;  // attribute -> text
 };
@@ -33,11 +31,10 @@ struct MergeReport {
 };
 
 /// Writes the cases of all shards, in the plan's order and as the retries left them, to one file
-/// with the datasets and attributes of a shard. Every byte of every shard is checked on the way.
-/// The group /shards tells of each shard of the plan its `number`, `first_row` (-1: missing),
-/// `rows` and `retries`. A view finds its shards by their path relative to its own folder; what
-/// vanishes later reads as NaN, -1 or an empty text. Memory: one shard. `progress` is called with
-/// the cases done; where it returns false, nothing is written and the report ends there.
+/// with the datasets and attributes of a shard, sealed. Every byte of every shard is checked on the
+/// way. The group /shards tells of each shard that is there its `number`, `first_row`, `rows` and
+/// `retries`. Memory: one shard, and 8 bytes a case. `progress` is called with the cases done;
+/// where it returns false, nothing is written and the report ends there.
 ///
 /// Throws InputError where a shard is damaged or not the plan's, or missing though `partial` is
 /// off.

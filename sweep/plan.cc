@@ -165,6 +165,10 @@ Case Plan::make_case(std::int64_t case_id) const {
   return c;
 }
 
+SweepExtent Plan::make_extent() const {
+  return {hash(), point_count(), case_count(), request().shard_cases, list_drawn()};
+}
+
 ShardSchema Plan::make_schema() const {
   ShardSchema schema;
   schema.parameters.reserve(state_->parameters.size());

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "io/shard.h"
+#include "io/sweep_extent.h"
 #include "sweep/facts.h"
 #include "sweep/layers.h"
 #include "sweep/request.h"
@@ -57,6 +58,7 @@ class Plan {
   /// The base case with the case's parameters.
   Case make_case(std::int64_t case_id) const;
 
+  SweepExtent make_extent() const;
   ShardSchema make_schema() const;
 
  private:

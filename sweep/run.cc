@@ -35,6 +35,7 @@ class Run {
         progress_(progress),
         halt_(halt),
         schema_(plan.make_schema()),
+        extent_(plan.make_extent()),
         claims_(prepare(folder).open(folder.claims()), options.claims) {
     remove_leftovers(folder_, claims_);
     if (options_.retry_failed) rounds_before_ = count_all_retries();
@@ -146,7 +147,7 @@ class Run {
   /// None, and told, where the shard is damaged.
   ShardRows read_rows(std::int64_t shard) {
     try {
-      return read_mended_shard(folder_, shard).rows;
+      return read_mended_shard(folder_, extent_, shard).rows;
     } catch (const InputError& e) {
       const std::lock_guard lock(mutex_);
       summary_.damaged[shard] = e.what();
@@ -204,7 +205,7 @@ class Run {
   /// Calls `act(shard, entry)` for each of the shards asked for that is there and can be read.
   template <class Act>
   void for_each_present(const Act& act) {
-    ShardRecords records(folder_);
+    const ShardRecords records(folder_, extent_);
     const std::int64_t end = options_.find_end_shard(plan_);
     for (const std::int64_t shard : list_shards(folder_)) {
       if (shard < options_.first_shard || shard >= end) continue;
@@ -240,6 +241,7 @@ class Run {
   RunProgress& progress_;
   std::atomic<bool>& halt_;
   const ShardSchema schema_;
+  const SweepExtent extent_;
   Claims claims_;
   std::map<std::int64_t, int> rounds_before_;  // shards that were retried before this run began
   std::mutex mutex_;                           // guards summary_ while the team works

@@ -34,7 +34,7 @@ void ShardSource::scan(std::int64_t first, std::int64_t end) {
     progress_.cases += cases;
     if (present != there.end() && *present == shard) {
       ++present;
-      const std::string fault = check_seal(folder_, plan_, shard);
+      const std::string fault = find_seal_fault(folder_, plan_, shard);
       if (fault.empty()) {
         progress_.present += cases;
         continue;

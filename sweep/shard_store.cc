@@ -1,6 +1,6 @@
 #include "sweep/shard_store.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "io/input_error.h"
 #include "sweep/simulate_cases.h"
@@ -10,19 +10,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kOtherData[] = "does not hold the data that were published under this name";
+
 }  // namespace
 
-std::string check_place(const std::string& plan_hash, std::int64_t shard,
-                        const std::string& wanted_plan, std::int64_t wanted) {
-  if (plan_hash != wanted_plan) return "belongs to another plan";
-  if (shard != wanted) return "is shard " + std::to_string(shard) + " of the plan";
-  return "";
-}
-
-std::string check_seal(const SweepFolder& folder, const Plan& plan, std::int64_t shard) {
+std::string find_seal_fault(const SweepFolder& folder, const Plan& plan, std::int64_t shard) {
   try {
-    const ShardSeal seal = read_shard_seal(folder.shard(shard));
-    return check_place(seal.plan_hash, seal.shard, plan.hash(), shard);
+    const SealCheck check = check_seal(folder.shard(shard), kShardSeal);
+    if (!check.fault.empty()) return check.fault;
+    return find_misplacement(make_shard_seal(check.seal), plan.hash(), shard);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -38,8 +34,8 @@ void quarantine(const SweepFolder& folder, const fs::path& file) {
   }
 }
 
-ShardRecords::ShardRecords(const SweepFolder& folder)
-    : folder_(folder), journal_(read_journal(folder.journal())) {
+ShardRecords::ShardRecords(const SweepFolder& folder, SweepExtent extent)
+    : folder_(folder), extent_(std::move(extent)), journal_(read_journal(folder.journal())) {
   for (std::size_t i = 0; i < journal_.entries.size(); ++i) {
     if (journal_.entries[i].duplicate) {
       ++duplicates_;
@@ -49,23 +45,34 @@ ShardRecords::ShardRecords(const SweepFolder& folder)
   }
 }
 
-JournalEntry ShardRecords::get(std::int64_t shard) {
-  JournalEntry entry = get_file(folder_.shard(shard));
-  const int rounds = count_retries(folder_, shard);
-  if (rounds > 0) {
-    const ShardRows rows = read_mended_shard(folder_, shard).rows;
-    const JournalEntry mended = make_journal_entry(folder_, folder_.shard(shard), rows);
-    entry.failures = mended.failures;
-    entry.digest = mended.digest;
-  }
-  return entry;
+const JournalEntry* ShardRecords::find_line(const fs::path& file) const {
+  const auto line = lines_.find(folder_.name_of(file));
+  return line == lines_.end() ? nullptr : &journal_.entries[line->second];
 }
 
-JournalEntry ShardRecords::get_file(const fs::path& file) {
-  const auto line = lines_.find(folder_.name_of(file));
-  if (line != lines_.end()) return journal_.entries[line->second];
-  JournalEntry entry = make_journal_entry(folder_, file, read_shard(file).rows);
-  entry.bytes = fs::file_size(file);
+std::string ShardRecords::find_fault(const fs::path& file, std::int64_t shard,
+                                     const ShardSeal& seal) const {
+  const std::string fault = find_misplacement(seal, extent_.plan_hash, shard);
+  if (!fault.empty()) return fault;
+  const JournalEntry* const line = find_line(file);
+  const bool is_as_published = line == nullptr || line->sha256 == seal.sha256 ||
+                               line->digest == calc_rows_digest(read_shard(file).rows).state();
+  return is_as_published ? "" : kOtherData;
+}
+
+JournalEntry ShardRecords::get(std::int64_t shard) const {
+  const fs::path file = folder_.shard(shard);
+  const ShardSeal seal = read_shard_seal(file);
+  const std::string fault = find_fault(file, shard, seal);
+  if (!fault.empty()) throw InputError(file.string() + ": " + fault + "; " + kShardSeal.remedy);
+  const JournalEntry* const line = find_line(file);
+  if (line != nullptr && count_retries(folder_, shard) == 0) return *line;
+  const JournalEntry mended =
+      make_journal_entry(folder_, file, read_mended_shard(folder_, extent_, shard).rows);
+  JournalEntry entry = line == nullptr ? mended : *line;
+  entry.bytes = seal.size;
+  entry.failures = mended.failures;
+  entry.digest = mended.digest;
   return entry;
 }
 

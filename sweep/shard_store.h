@@ -13,14 +13,9 @@
 
 namespace strut {
 
-/// Why a file that says to be shard `shard` of the plan with this hash cannot be the `wanted` shard
-/// of the `wanted_plan`; empty where it can.
-std::string check_place(const std::string& plan_hash, std::int64_t shard,
-                        const std::string& wanted_plan, std::int64_t wanted);
-
 /// Why a shard cannot be what the plan asks for, by its seal alone (512 bytes and the size); empty
 /// where nothing speaks against it.
-std::string check_seal(const SweepFolder& folder, const Plan& plan, std::int64_t shard);
+std::string find_seal_fault(const SweepFolder& folder, const Plan& plan, std::int64_t shard);
 
 /// Moves a file aside, into `quarantine/`, under a name that is free there. Nothing is deleted.
 void quarantine(const SweepFolder& folder, const std::filesystem::path& file);
@@ -28,19 +23,26 @@ void quarantine(const SweepFolder& folder, const std::filesystem::path& file);
 /// What the journal says of each file, or the file itself where the journal is silent.
 class ShardRecords {
  public:
-  explicit ShardRecords(const SweepFolder& folder);
+  ShardRecords(const SweepFolder& folder, SweepExtent extent);
 
-  /// Of a shard that is there; failures as the last retry left them. Throws InputError.
-  JournalEntry get(std::int64_t shard);
+  /// Of a shard that is there; failures as the last retry left them. Throws InputError where its
+  /// seal or size is wrong, or not the plan's or the journal's.
+  JournalEntry get(std::int64_t shard) const;
+  /// Why a file with this seal, a shard or a retry of it, is not the plan's or not what the journal
+  /// says was published; empty where it is. A shard that was moved aside and made again by a runner
+  /// that died before it could say so is another file with the same rows.
+  std::string find_fault(const std::filesystem::path& file, std::int64_t shard,
+                         const ShardSeal& seal) const;
   /// Lines that were no lines; entries of work done twice.
   std::size_t bad_lines() const { return journal_.bad_lines; }
   std::int64_t duplicates() const { return duplicates_; }
   const Journal& journal() const { return journal_; }
 
  private:
-  JournalEntry get_file(const std::filesystem::path& file);
+  const JournalEntry* find_line(const std::filesystem::path& file) const;  // null: none
 
   SweepFolder folder_;
+  SweepExtent extent_;
   Journal journal_;
   std::map<std::string, std::size_t> lines_;  // file -> its last entry
   std::int64_t duplicates_ = 0;

@@ -39,7 +39,7 @@ std::int64_t count_mendable(const JournalEntry& entry) {
   return count;
 }
 
-void add_shard(const SweepFolder& folder, ShardRecords& records, const Plan& plan,
+void add_shard(const SweepFolder& folder, const ShardRecords& records, const Plan& plan,
                std::int64_t shard, SweepStatus& status) {
   try {
     const JournalEntry entry = records.get(shard);
@@ -68,10 +68,15 @@ SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
   if (const auto claims = Folder(folder.root).find_folder(folder.claims().filename().string())) {
     status.claims = list_claims(*claims);
   }
-  ShardRecords records(folder);
+  const ShardRecords records(folder, plan.make_extent());
   std::int64_t present = 0;
   std::vector<std::int64_t> shards = list_shards(folder);
-  shards.erase(std::lower_bound(shards.begin(), shards.end(), status.shards), shards.end());
+  const auto end = std::lower_bound(shards.begin(), shards.end(), status.shards);
+  for (auto foreign = end; foreign != shards.end(); ++foreign) {
+    status.faults.push_back(folder.shard(*foreign).string() + ": the plan has no such shard; " +
+                            kShardSeal.remedy);
+  }
+  shards.erase(end, shards.end());
   for (const std::int64_t shard : shards) {
     present += plan.shard_size(shard);
     add_shard(folder, records, plan, shard, status);

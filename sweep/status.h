@@ -27,14 +27,15 @@ struct SweepStatus {
   double seconds_left = 0.0;  // at that rate; NaN: unknown
   std::uint64_t bytes = 0;
   double simulation_seconds = 0.0;
-  std::vector<std::string> faults;  // shards that cannot be read
+  std::vector<std::string> faults;  // files that are not the plan's shards
   DataDigest digest;                // of the cases simulated so far
 
   bool complete() const { return left == 0; }
 };
 
-/// Throws EnvironmentError where the folder cannot be listed. A damaged shard is listed, its cases
-/// count as left.
+/// Looks at the seal and the size of each shard, not at all of its bytes. A shard in which these
+/// are wrong, or not those of the plan or the journal, is listed as a fault, and its cases count as
+/// left. Throws EnvironmentError where the folder cannot be listed.
 SweepStatus read_status(const SweepFolder& folder, const Plan& plan);
 
 }  // namespace strut

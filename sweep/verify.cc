@@ -61,11 +61,13 @@ bool is_close(const ShardRows& x, std::size_t a, const ShardRows& y, std::size_t
 class Verification {
  public:
   Verification(const SweepFolder& folder, const Plan& plan, const VerifyOptions& options)
-      : folder_(folder), plan_(plan), options_(options), schema_(plan.make_schema()) {
+      : folder_(folder),
+        plan_(plan),
+        options_(options),
+        schema_(plan.make_schema()),
+        extent_(plan.make_extent()),
+        records_(folder, extent_) {
     report_.cases = plan.case_count();
-    for (const JournalEntry& entry : read_journal(folder.journal()).entries) {
-      if (!entry.duplicate) told_[entry.file] = entry;
-    }
   }
 
   VerifyReport run(const std::function<void(std::int64_t)>& progress) {
@@ -91,21 +93,11 @@ class Verification {
 
   /// Bytes, plan, number and journal of one file; false, and told, where something is wrong.
   bool check_file(const fs::path& file, std::int64_t shard) {
-    const ShardSeal seal = check_shard_bytes(file);
-    std::string fault = check_place(seal.plan_hash, seal.shard, plan_.hash(), shard);
-    if (fault.empty() && !is_as_told(file, seal)) {
-      fault = "does not hold the data that were published under this name";
-    }
+    const SealCheck check = check_sealed_file(file, kShardSeal);
+    if (!check.fault.empty()) throw InputError(file.string() + ": " + check.fault);
+    const std::string fault = records_.find_fault(file, shard, make_shard_seal(check.seal));
     if (!fault.empty()) add_damage(file, fault);
     return fault.empty();
-  }
-
-  /// Against the journal. A shard that was moved aside and made again by a runner that died before
-  /// it could say so is another file with the same rows.
-  bool is_as_told(const fs::path& file, const ShardSeal& seal) const {
-    const auto told = told_.find(folder_.name_of(file));
-    return told == told_.end() || told->second.sha256 == seal.sha256 ||
-           told->second.digest == calc_rows_digest(read_shard(file).rows).state();
   }
 
   /// The same of an overlay: where its bytes are damaged, it is not its shard that is.
@@ -130,7 +122,8 @@ class Verification {
       for (int round = 0; round < count_retries(folder_, shard); ++round) {
         if (!check_retry(folder_.retry(shard, round), shard)) return 0;
       }
-      const Shard mended = read_mended_shard(folder_, shard);
+      Shard mended = read_shard(file);
+      apply_retries(folder_, mended);
       ++report_.shards;
       if (same_schema(mended.schema, schema_)) return check_rows(file, shard, mended.rows);
       add_damage(file, "its columns are not the plan's");
@@ -202,7 +195,7 @@ class Verification {
     }
     for (const auto& [shard, rows] : rows_of) {
       try {
-        const Shard mended = read_mended_shard(folder_, shard);
+        const Shard mended = read_mended_shard(folder_, extent_, shard);
         for (const std::size_t row : rows) compare_case(mended, row);
       } catch (const InputError&) {
         // Missing or damaged, and told already.
@@ -240,7 +233,8 @@ class Verification {
   const Plan& plan_;
   const VerifyOptions& options_;
   const ShardSchema schema_;
-  std::map<std::string, JournalEntry> told_;  // by file, the journal's last word
+  const SweepExtent extent_;
+  const ShardRecords records_;
   DataDigest digest_;
   VerifyReport report_;
 };

@@ -159,7 +159,7 @@ TEST_CASE("Threads that share one runner never hold one unit together", "[io][th
     threads.emplace_back([&] {
       for (std::size_t i = 0; i < kUnits; ++i) {
         if (claims.claim(std::to_string(i)) == Answer::kMine) ++mine[i];
-        if (claims.may_live("elsewhere.1.0")) ++overlaps;
+        if (claims.may_live("elsewhere.1.0123456789abcdef")) ++overlaps;
         // One that goes from hand to hand.
         if (claims.claim("shared") != Answer::kMine) continue;
         if (++holders > 1) ++overlaps;
@@ -269,7 +269,7 @@ TEST_CASE("A runner killed while it takes over blocks nobody", "[io]") {
 TEST_CASE("Another host's claim is held while its counter moves, and free a lease after", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kOptions);
-  const std::string runner = "elsewhere.example.org.1.00";
+  const std::string runner = "elsewhere.example.org.1.0123456789abcdef";
   std::string key, value;
   std::tie(key, value) = GENERATE(std::pair<std::string, std::string>{"host", "elsewhere"},
                                   std::pair<std::string, std::string>{"boot", "another-boot"},
@@ -294,14 +294,14 @@ TEST_CASE("A process number given out again is not taken for the old runner", "[
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   // This process, but started at another time.
-  write_runner(folder / "", "a.1.0", claims, "start", "12");
-  folder.write("1", "a.1.0\n");
-  CHECK_FALSE(claims.may_live("a.1.0"));
+  write_runner(folder / "", "a.1.000000000000000a", claims, "start", "12");
+  folder.write("1", "a.1.000000000000000a\n");
+  CHECK_FALSE(claims.may_live("a.1.000000000000000a"));
   CHECK(claims.claim("1") == Answer::kMine);
   // The same start: the same process.
-  write_runner(folder / "", "a.1.1", claims, "none", "");
-  folder.write("2", "a.1.1\n");
-  CHECK(claims.may_live("a.1.1"));
+  write_runner(folder / "", "a.1.000000000000000b", claims, "none", "");
+  folder.write("2", "a.1.000000000000000b\n");
+  CHECK(claims.may_live("a.1.000000000000000b"));
   CHECK(claims.claim("2") == Answer::kTaken);
 }
 
@@ -331,8 +331,8 @@ TEST_CASE("Claims that say nothing, or nothing true, block nobody", "[io]") {
   folder.write("3", "../../etc/passwd\n");
   for (const std::string unit : {"1", "2", "3"}) CHECK(claims.claim(unit) == Answer::kMine);
   // An empty runner's file, as a power cut may leave it: nobody knows, so the lease decides.
-  folder.write("runner.x.1.0", "");
-  folder.write("4", "x.1.0\n");
+  folder.write("runner.x.1.000000000000000c", "");
+  folder.write("4", "x.1.000000000000000c\n");
   CHECK(claims.claim("4") == Answer::kTaken);
   CHECK(wait_until([&] { return claims.claim("4") == Answer::kMine; }));
 }
@@ -341,11 +341,11 @@ TEST_CASE("A runner's file cut anywhere is never taken for a dead runner's", "[i
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   const std::string text = read_text(folder / ("runner." + claims.runner()));
-  folder.write("1", "half.1.0\n");
+  folder.write("1", "half.1.000000000000000d\n");
   for (std::size_t size = 0; size <= text.size(); ++size) {
-    folder.write("runner.half.1.0", text.substr(0, size));
+    folder.write("runner.half.1.000000000000000d", text.substr(0, size));
     INFO("'" << text.substr(0, size) << "'");
-    REQUIRE(claims.may_live("half.1.0"));
+    REQUIRE(claims.may_live("half.1.000000000000000d"));
     REQUIRE(claims.claim("1") == Answer::kTaken);
   }
 }

@@ -7,6 +7,7 @@
 #include "io/row_store.h"
 #include "sweep/merge.h"
 #include "tests/example_shard.h"
+#include "tests/flip_bits.h"
 #include "tests/test_sweep.h"
 #include "train/dataset_source.h"
 
@@ -34,6 +35,14 @@ fs::path write_example(const TemporaryFolder& folder, std::int64_t number, std::
                      test::make_example_rows(schema, count, 100 * number));
 }
 
+void merge(const test::PlannedSweep& sweep, const fs::path& file) {
+  ShardSchema schema = sweep.plan().make_schema();
+  schema.history_samples = 0;
+  schema.history_interval = 0.0;
+  merge_sweep(sweep.folder(), {sweep.plan().make_extent(), schema}, file, {},
+              [](std::int64_t) { return true; });
+}
+
 void check_same(const ShardRows& a, const ShardRows& b) {
   CHECK(a.case_id == b.case_id);
   CHECK(a.status == b.status);
@@ -50,16 +59,7 @@ TEST_CASE("A folder, its shards in any order and a merged file are the same rows
   for (const std::int64_t shard : list_shards(folder)) shards.push_back(folder.shard(shard));
   std::reverse(shards.begin(), shards.end());
   const TemporaryFolder files;
-  for (const bool is_view : {false, true}) {
-    MergeOptions options;
-    options.is_view = is_view;
-    ShardSchema schema = sweep.plan().make_schema();
-    schema.history_samples = 0;
-    schema.history_interval = 0.0;
-    merge_sweep(folder, {sweep.plan().hash(), sweep.plan().shard_count(), schema},
-                files / (is_view ? "view.h5" : "copy.h5"), options,
-                [](std::int64_t) { return true; });
-  }
+  merge(sweep, files / "copy.h5");
   Dataset whole({folder.root});
   REQUIRE(whole.row_count() == 27);
   CHECK(whole.plan_hash() == sweep.plan().hash());
@@ -67,7 +67,7 @@ TEST_CASE("A folder, its shards in any order and a merged file are the same rows
   for (std::size_t i = 0; i < 27; ++i) {
     CHECK(rows.case_id[i] == sweep.plan().calc_case_id(static_cast<std::int64_t>(i)));
   }
-  for (const auto& paths : {shards, {files / "copy.h5"}, {files / "view.h5"}}) {
+  for (const auto& paths : {shards, {files / "copy.h5"}}) {
     Dataset other(paths);
     CHECK(other.row_count() == 27);
     CHECK(other.schema() == whole.schema());
@@ -104,6 +104,131 @@ TEST_CASE("Files of another plan, of other columns, or given twice are refused b
   CHECK_THROWS_WITH(Dataset({folder / "none.h5"}), Contains("none.h5: not found"));
   CHECK_THROWS_WITH(Dataset({folder / "."}), Contains("no sweep folder"));
   CHECK_THROWS_AS(Dataset({folder.write("text.h5", "no data")}), InputError);
+}
+
+/// A shard of a sweep with its seal in order and other content.
+void replace_shard(const fs::path& file, const test::PlannedSweep& sweep, std::int64_t number,
+                   const ShardRows& rows) {
+  write_shard(file, number, sweep.plan().make_schema(), rows, sweep.plan().hash());
+}
+
+TEST_CASE("A folder's shard under another's name or of another sweep is refused with a remedy",
+          "[io]") {
+  const test::PlannedSweep sweep;
+  sweep.run();
+  const SweepFolder& folder = sweep.folder();
+  const auto over = fs::copy_options::overwrite_existing;
+  const std::string remedy = "`strut verify DIR --quarantine`";
+
+  SECTION("copied") {
+    fs::copy_file(folder.shard(1), folder.shard(3), over);
+    CHECK_THROWS_WITH(Dataset({folder.root}),
+                      Contains("000003.h5: is shard 1 of the plan") && Contains(remedy));
+  }
+  SECTION("swapped") {
+    fs::rename(folder.shard(1), folder.root / "aside");
+    fs::rename(folder.shard(3), folder.shard(1));
+    fs::rename(folder.root / "aside", folder.shard(3));
+    CHECK_THROWS_WITH(Dataset({folder.root}), Contains("000001.h5: is shard 3 of the plan"));
+  }
+  SECTION("beyond the plan") {
+    replace_shard(folder.shard(77), sweep, 77, read_shard(folder.shard(1)).rows);
+    CHECK_THROWS_WITH(Dataset({folder.root}), Contains("000077.h5: the plan has no shard 77"));
+  }
+  SECTION("foreign") {
+    test::SweepText text;
+    text.integrate = "method = \"rk4\"\nstep = 1e-3\nclosure = \"table\"\n";
+    const test::PlannedSweep other(text);
+    other.run();
+    fs::copy_file(other.folder().shard(0), folder.shard(0), over);
+    CHECK_THROWS_WITH(Dataset({folder.root}),
+                      Contains("000000.h5: belongs to another plan") && Contains(remedy));
+  }
+  SECTION("longer, shorter, with a case twice or of no plan") {
+    const ShardRows rows = read_shard(folder.shard(1)).rows;
+    ShardRows other = ShardRows::make(sweep.plan().make_schema(), 4);
+    for (std::size_t row = 0; row < 4; ++row) other.set_row(row, rows, row);
+    replace_shard(folder.shard(1), sweep, 1, other);
+    CHECK_THROWS_WITH(Dataset({folder.root}),
+                      Contains("000001.h5: has 4 cases; the plan has 5 in this shard"));
+    other = rows;
+    other.case_id[0] = 27;
+    replace_shard(folder.shard(1), sweep, 1, other);
+    CHECK_THROWS_WITH(Dataset({folder.root}), Contains("000001.h5: case 27 is not in the plan"));
+    other.case_id[0] = other.case_id[1];
+    replace_shard(folder.shard(1), sweep, 1, other);
+    CHECK_THROWS_WITH(Dataset({folder.root}),
+                      Contains("000001.h5: holds case") && Contains("twice"));
+    other.case_id[0] = read_shard(folder.shard(2)).rows.case_id[0];
+    replace_shard(folder.shard(1), sweep, 1, other);
+    CHECK_THROWS_WITH(Dataset({folder.root}), Contains("000001.h5") &&
+                                                  Contains("000002.h5: case") &&
+                                                  Contains("is there twice"));
+  }
+}
+
+TEST_CASE("A retry of another shard or sweep is refused", "[io]") {
+  const test::PlannedSweep sweep;
+  sweep.run();
+  const SweepFolder& folder = sweep.folder();
+  fs::create_directories(folder.retries());
+  const auto check = [&](const std::string& what) {
+    CHECK_THROWS_WITH(
+        [&] {
+          Dataset dataset({folder.root});
+          dataset.read(0, 27);
+        }(),
+        Contains("retries/000001.0.h5: " + what));
+    CHECK_THROWS_WITH(read_mended_shard(folder, sweep.plan().make_extent(), 1),
+                      Contains("retries/000001.0.h5: " + what));
+  };
+  const ShardRows rows = read_shard(folder.shard(1)).rows;
+  const fs::path file = folder.retry(1, 0);
+  const ShardSchema schema = sweep.plan().make_schema();
+  write_shard(file, 1, schema, rows, std::string(64, 'b'));
+  check("belongs to another plan");
+  write_shard(file, 2, schema, rows, sweep.plan().hash());
+  check("is shard 2 of the plan");
+  ShardRows other = rows;
+  other.case_id[0] = other.case_id[1];
+  replace_shard(file, sweep, 1, other);
+  check("holds case");
+  ShardSchema fewer = schema;
+  fewer.snapshot.pop_back();
+  write_shard(file, 1, fewer, ShardRows::make(fewer, 1), sweep.plan().hash());
+  check("has other columns than its shard");
+  replace_shard(file, sweep, 1, rows);
+  CHECK(Dataset({folder.root}).read(0, 27).case_id[5] == rows.case_id[0]);
+}
+
+TEST_CASE("Shards given alone bear their own number, and no case is there twice", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path one = write_example(folder, 1), other = folder / "000002.h5";
+  fs::copy_file(one, other);
+  CHECK_THROWS_WITH(Dataset({other}), Contains("000002.h5: is shard 1 of the plan"));
+  const ShardSchema schema = test::make_example_schema();
+  write_shard(other, 2, schema, test::make_example_rows(schema, 20, 119));
+  CHECK_THROWS_WITH(Dataset({one, other}),
+                    Contains("1.h5") && Contains("000002.h5: case 119 is there twice"));
+  CHECK(Dataset({other}).row_count() == 20);
+}
+
+TEST_CASE("Every flipped bit of a plan, a shard and a merged file is found by who reads them",
+          "[io][property]") {
+  const test::PlannedSweep sweep;
+  sweep.run();
+  const SweepFolder& folder = sweep.folder();
+  const TemporaryFolder files;
+  const fs::path merged = files / "merged.h5";
+  merge(sweep, merged);
+  const auto read_folder = [&] { Dataset dataset({folder.root}); };
+  CHECK(test::count_missed_flips(folder.plan(), read_folder, "`strut plan DIR/request.toml") == 0);
+  CHECK(test::count_missed_flips(
+            folder.plan(), [&] { open_sweep_folder(folder); }, "`strut plan DIR/request.toml") ==
+        0);
+  CHECK(test::count_missed_flips(folder.shard(2), read_folder, "--quarantine`") == 0);
+  CHECK(test::count_missed_flips(
+            merged, [&] { Dataset dataset({merged}); }, "") == 0);
 }
 
 TEST_CASE("Rows of a store are the same in memory and in a scratch file", "[unit][property]") {

@@ -84,21 +84,23 @@ TEST_CASE("Integers, texts and numbers of attributes read back", "[io][property]
   CHECK_THROWS_WITH(file.read_number_attribute("/", "third"), Contains("no such attribute"));
 }
 
-TEST_CASE("A file in memory is that on disk, behind its user block or without", "[io][property]") {
+TEST_CASE("A file in memory is that on disk, behind its seal or without", "[io][property]") {
   const TemporaryFolder folder;
-  const bool user_block = GENERATE(false, true);
+  const bool sealed = GENERATE(false, true);
   const auto fill = [](Hdf5Writer& writer) {
     writer.write("/a/b", kValues, 2, kLabel);
     writer.write_attribute("/", "key", "value");
   };
-  Hdf5Writer first(folder / "run.h5", {.user_block = user_block});
-  Hdf5Writer second(Hdf5InMemory{"here"}, {.user_block = user_block});
+  const Hdf5WriterOptions options = {.seal = sealed ? std::optional(SealLabel{kModelSeal, {}})
+                                                    : std::nullopt};
+  Hdf5Writer first(folder / "run.h5", options), second(Hdf5InMemory{"here"}, options);
   fill(first);
   fill(second);
   first.commit();
   const std::vector<std::byte> image = second.image();
   CHECK(image == read_bytes(folder / "run.h5"));
-  CHECK(image[0] == (user_block ? std::byte{0} : std::byte{0x89}));
+  CHECK(image[0] == (sealed ? std::byte{'s'} : std::byte{0x89}));
+  CHECK(is_sealed(folder / "run.h5") == sealed);
   CHECK(Hdf5Reader(folder / "run.h5").read("/a/b").values == kValues);
   const Hdf5Reader one("here", image), other("here", image);
   CHECK(one.read("/a/b").values == kValues);

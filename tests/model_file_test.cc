@@ -9,6 +9,7 @@
 #include "io/hdf5.h"
 #include "io/input_error.h"
 #include "tests/example_shard.h"
+#include "tests/flip_bits.h"
 #include "tests/limited_file_size.h"
 #include "tests/temporary_folder.h"
 #include "train/checkpoint.h"
@@ -138,10 +139,11 @@ TEST_CASE("What is no model, or one that does not fit itself, is refused", "[io]
   const TemporaryFolder folder;
   const fs::path file = folder / "m.h5";
   write_checkpoint(file, make_checkpoint());
-  CHECK_THROWS_WITH(read_model(file), Contains("m.h5: no model of strut"));
+  CHECK_THROWS_WITH(read_model(file), Contains("m.h5: no model file of strut"));
   write_model(file, make_model());
-  CHECK_THROWS_WITH(read_checkpoint(file), Contains("m.h5: no checkpoint of strut"));
-  CHECK_THROWS_WITH(read_model(folder.write("text.h5", "text")), Contains("not an HDF5 file"));
+  CHECK_THROWS_WITH(read_checkpoint(file), Contains("m.h5: no checkpoint file of strut"));
+  CHECK_THROWS_WITH(read_model(folder.write("text.h5", "text")),
+                    Contains("text.h5: damaged, or no model file"));
   Model model = make_model();
   model.weights.pop_back();
   write_model(file, model);
@@ -167,10 +169,31 @@ TEST_CASE("What is no model, or one that does not fit itself, is refused", "[io]
   CHECK_THROWS_WITH(read_model(file), Contains("/inputs, /targets"));
 }
 
-TEST_CASE("A flipped bit in a model is an error, or changes nothing", "[io][property]") {
+TEST_CASE("Every flipped bit of a model or a checkpoint is found", "[io][property]") {
+  const TemporaryFolder folder;
+  const fs::path model = folder / "m.h5", checkpoint = folder / "c.h5";
+  write_model(model, make_model());
+  write_checkpoint(checkpoint, make_checkpoint());
+  CHECK(test::count_missed_flips(
+            model, [&] { read_model(model); }, "`strut train`") == 0);
+  CHECK(test::count_missed_flips(
+            checkpoint, [&] { read_checkpoint(checkpoint); }, "without --resume") == 0);
+}
+
+/// The HDF5 content of a sealed file alone, as earlier versions wrote it.
+void strip_seal(const fs::path& file) {
+  const std::vector<std::byte> bytes = read_bytes(file);
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data() + kSealBytes),
+             static_cast<std::streamsize>(bytes.size() - kSealBytes));
+}
+
+TEST_CASE("A flipped bit in a model without a seal is an error, or changes nothing",
+          "[io][property]") {
   const TemporaryFolder folder;
   const Model truth = make_model();
   write_model(folder / "m.h5", truth);
+  strip_seal(folder / "m.h5");
   const std::vector<std::byte> good = read_bytes(folder / "m.h5");
   std::mt19937 random(1);
   int found = 0, wrong = 0;
@@ -198,6 +221,7 @@ TEST_CASE("The intervals of a model are under its checksum", "[io]") {
   const TemporaryFolder folder;
   const Model model = make_model();
   write_model(folder / "m.h5", model);
+  strip_seal(folder / "m.h5");
   const std::vector<std::byte> good = read_bytes(folder / "m.h5");
   const double number = model.ci95[0];
   const auto* const begin = reinterpret_cast<const std::byte*>(&number);

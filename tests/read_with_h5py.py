@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Reads a shard, a merged file and a view as users do, with h5py and h5dump, and computes their data
-digest anew, from docs/data_format.md alone.
+"""Reads a shard and a merged file as users do, with h5py and h5dump, and computes their data digest
+anew and checks their seals, from docs/data_format.md alone.
 
 usage: read_with_h5py.py TEST_PROGRAM
 
@@ -73,6 +73,19 @@ def check_file(path, folder):
               f"{path.name}: the data digest by the documentation is another one")
 
 
+def check_seal(path):
+    """The first 512 bytes: lines of text, then zeros."""
+    data = path.read_bytes()
+    lines = data[:512].rstrip(b"\0").decode().splitlines()
+    words = dict(line.split(" ", 1) for line in lines[1:])
+    above = "".join(line + "\n" for line in lines[:-1])
+    check(lines[0] == f"strut {path.stem} seal 1", f"{path.name}: {lines[0]}")
+    check(words["plan"] == "a" * 64, f"{path.name}: plan of the seal")
+    check(int(words["size"]) == len(data), f"{path.name}: size of the seal")
+    check(words["sha256"] == hashlib.sha256(data[512:]).hexdigest(), f"{path.name}: sha256")
+    check(words["seal"] == hashlib.sha256(above.encode()).hexdigest(), f"{path.name}: seal")
+
+
 def check_dump(path):
     if shutil.which("h5dump") is None:
         print("not checked: h5dump (Debian: hdf5-tools)")
@@ -88,8 +101,9 @@ def main():
         subprocess.run([sys.argv[1], "[example_files]"], check=True, stdout=subprocess.DEVNULL,
                        env=os.environ | {"STRUT_EXAMPLE_FOLDER": name})
         files = sorted(folder.glob("*.h5"))
-        check(len(files) == 3, "shard, merged file and view are not there")
+        check(len(files) == 2, "shard and merged file are not there")
         for path in files:
+            check_seal(path)
             check_file(path, folder)
             check_dump(path)
 

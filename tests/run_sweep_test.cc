@@ -15,6 +15,7 @@ namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
 using test::PlannedSweep;
 using test::SweepText;
 
@@ -141,6 +142,64 @@ TEST_CASE("A shard cut short is moved aside and made again", "[unit][io]") {
   CHECK(get_digest(sweep) == before);
 }
 
+TEST_CASE("Status counts no shard whose seal, size, place or data are wrong", "[unit][io]") {
+  const PlannedSweep sweep;
+  sweep.run();
+  const SweepFolder& folder = sweep.folder();
+  const std::string digest = get_digest(sweep);
+  const fs::path file = folder.shard(1);
+  const auto check_fault = [&](const std::string& what) {
+    const SweepStatus status = read_status(folder, sweep.plan());
+    CHECK(status.done == 22);
+    CHECK(status.left == 5);
+    CHECK(status.shards_present == 5);
+    CHECK(!status.complete());
+    REQUIRE(status.faults.size() == 1);
+    CHECK_THAT(status.faults[0], Contains("000001.h5: " + what) && Contains("--quarantine"));
+  };
+  SECTION("empty") {
+    fs::resize_file(file, 0);
+    check_fault("damaged");
+  }
+  SECTION("cut short") {
+    fs::resize_file(file, 700);
+    check_fault("damaged: has 700 bytes");
+  }
+  SECTION("garbage") {
+    std::ofstream(file) << std::string(9000, 'x');
+    check_fault("damaged, or no shard");
+  }
+  SECTION("another's") {
+    fs::copy_file(folder.shard(2), file, fs::copy_options::overwrite_existing);
+    check_fault("is shard 2");
+  }
+  CHECK(sweep.run().shards_written == 1);
+  CHECK(read_status(folder, sweep.plan()).complete());
+  CHECK(get_digest(sweep) == digest);
+}
+
+TEST_CASE("Status tells sound shards whose data the journal does not know", "[unit][io]") {
+  const PlannedSweep sweep;
+  sweep.run();
+  const SweepFolder& folder = sweep.folder();
+  const Shard shard = read_shard(folder.shard(1));
+  const auto replace = [&](const ShardRows& rows) {
+    test::write_bytes(folder.shard(1), make_shard_image(compress_shard(shard.schema, rows),
+                                                        {sweep.plan().hash(), 1, {}}));
+  };
+  replace(shard.rows);  // made again, before the journal said so
+  CHECK(read_status(folder, sweep.plan()).faults.empty());
+  ShardRows other = shard.rows;
+  other.snapshot[4] += 1.0;
+  replace(other);
+  const SweepStatus status = read_status(folder, sweep.plan());
+  CHECK(status.left == 5);
+  REQUIRE(status.faults.size() == 1);
+  CHECK_THAT(status.faults[0], Contains("000001.h5: does not hold the data"));
+  fs::copy_file(folder.shard(2), folder.shard(77));
+  CHECK(read_status(folder, sweep.plan()).faults.size() == 2);
+}
+
 TEST_CASE("Leftovers of a dead runner are removed, a living one's are not", "[unit][io]") {
   const PlannedSweep sweep;
   std::ofstream(sweep.folder().temporary() / "nowhere.1.0123456789abcdef.7") << "half a shard";
@@ -232,7 +291,7 @@ TEST_CASE("A resume tries a case once, however many runners help", "[unit]") {
   }
   int still_failing = 0;
   for (const std::int64_t shard : list_shards(folder)) {
-    const ShardRows rows = read_mended_shard(folder, shard).rows;
+    const ShardRows rows = read_mended_shard(folder, sweep.plan().make_extent(), shard).rows;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       CHECK(rows.attempt[row] <= 2);
       still_failing += rows.status[row] != 0 ? 1 : 0;

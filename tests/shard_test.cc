@@ -258,7 +258,7 @@ TEST_CASE("Rows that are not of the schema are refused", "[unit]") {
 /// A sealed file with all that a shard has, but for what `change` does.
 fs::path write_changed(const TemporaryFolder& folder, const CompressedShard& shard,
                        int schema_version) {
-  Hdf5Writer file(Hdf5InMemory{"changed"}, {.user_block = true});
+  Hdf5Writer file(Hdf5InMemory{"changed"}, {.seal = make_shard_label("p", 7)});
   for (const Hdf5Chunks& dataset : shard.datasets) file.write_chunks(dataset);
   file.write_attribute("/", "schema_version", std::int64_t{schema_version});
   file.write_attribute("/", "plan_hash", "p");
@@ -266,10 +266,7 @@ fs::path write_changed(const TemporaryFolder& folder, const CompressedShard& sha
   file.write_attribute("/", "checksum", shard.digest.text());
   file.write_attribute("/", "status_meaning", "");
   file.write_attribute("/", "history_interval", 0.0);
-  std::vector<std::byte> image = file.image();
-  const std::vector<std::byte> seal = to_bytes(render_shard_seal("p", 7, image));
-  std::copy(seal.begin(), seal.end(), image.begin());
-  return write_image(folder, image);
+  return write_image(folder, file.image());
 }
 
 TEST_CASE("A shard of another schema version or shape is refused by name", "[io]") {
@@ -328,8 +325,7 @@ TEST_CASE("HDF5 content that was damaged before it was sealed is found", "[io][p
     std::vector<std::byte> image = good;
     const std::size_t at = 512 + random() % (image.size() - 512);
     image[at] ^= std::byte{1} << (random() % 8);
-    const std::vector<std::byte> seal = to_bytes(render_shard_seal(std::string(64, 'a'), 7, image));
-    std::copy(seal.begin(), seal.end(), image.begin());
+    seal_image(make_shard_label(std::string(64, 'a'), 7), image);
     try {
       check_same_rows(read_shard(write_image(folder, image)).rows, rows);
       ++harmless;

@@ -94,17 +94,14 @@ TEST_CASE("A network learns the stiffness of both axles from a sweep's snapshots
 TEST_CASE("Weights depend neither on how cases are stored nor on batches or threads",
           "[io][property][slow]") {
   const TemporaryFolder folder;
-  const std::string sweep = get_sweep().string(), merged = folder / "all.h5",
-                    view = folder / "view.h5";
+  const std::string sweep = get_sweep().string(), merged = folder / "all.h5";
   REQUIRE(run_program("merge " + sweep + " -o " + merged).code == 0);
-  REQUIRE(run_program("merge " + sweep + " -o " + view + " --virtual").code == 0);
   const std::vector<double> weights = train_weights(sweep, "--threads 1");
   CHECK(weights.size() == 5 * 6 + 7 * 4 + 5 * 2);
   CHECK(train_weights(sweep, "--threads 2") == weights);
   CHECK(train_weights(sweep, "--batch 1") == weights);
   CHECK(train_weights(sweep + "/shards/*.h5", "--batch 100") == weights);
   CHECK(train_weights(merged) == weights);
-  CHECK(train_weights(view) == weights);
   CHECK(train_weights(sweep, "--seed 2") != weights);
   CHECK(train_weights(sweep, "--rule trainlm") != weights);
   const std::vector<double> grown = train_weights(sweep, "--growing --threads 1");

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr TrainingFileKind kKind = {"strut checkpoint", 2};
+constexpr TrainingFileKind kKind = {kCheckpointSeal, 2};
 
 std::string calc_checksum(const Checkpoint& checkpoint) {
   const LevenbergMarquardtState& state = checkpoint.state.training;
@@ -33,7 +33,7 @@ std::string calc_checksum(const Checkpoint& checkpoint) {
 
 void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
   const LevenbergMarquardtState& state = checkpoint.state.training;
-  Hdf5Writer file(path);
+  Hdf5Writer file(path, {.seal = SealLabel{kKind.seal}});
   file.write("/weights", state.weights, {"1", "at this epoch", {}});
   file.write("/best_weights", state.best_weights, {"1", "at the validation minimum", {}});
   file.write("/scale", state.scale, {"1", "what the damping multiplies", {}});
@@ -57,7 +57,7 @@ void write_checkpoint(const fs::path& path, const Checkpoint& checkpoint) {
 }
 
 Checkpoint read_checkpoint(const fs::path& path) {
-  const Hdf5Reader file(path);
+  const Hdf5Reader file(path, kKind.seal);
   check_kind(path, file, kKind);
   Checkpoint checkpoint;
   LevenbergMarquardtState& state = checkpoint.state.training;
@@ -71,9 +71,9 @@ Checkpoint read_checkpoint(const fs::path& path) {
   state.validation = file.read_number_attribute("/", "validation");
   state.best_validation = file.read_number_attribute("/", "best_validation");
   state.seconds = file.read_number_attribute("/", "seconds");
-  state.epoch = read_int(file, "epoch");
-  state.best_epoch = read_int(file, "best_epoch");
-  state.failures = read_int(file, "failures");
+  state.epoch = read_int(path, file, "epoch");
+  state.best_epoch = read_int(path, file, "best_epoch");
+  state.failures = read_int(path, file, "failures");
   state.trials = static_cast<long>(file.read_integer_attribute("/", "trials"));
   state.stop = read_stop(path, file);
   checkpoint.state.rows = static_cast<std::size_t>(file.read_integer_attribute("/", "rows"));

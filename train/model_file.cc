@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// 2: with /ci95.
-constexpr TrainingFileKind kKind = {"strut model", 2};
+constexpr TrainingFileKind kKind = {kModelSeal, 2};
 constexpr char kSplitSeedKey[] = "split_seed";
 constexpr char kIntervalName[] = "/ci95", kNoiseName[] = "/noise";
 
@@ -115,7 +115,7 @@ void check_model(const fs::path& path, const Model& model) {
 }  // namespace
 
 void write_model(const fs::path& path, const Model& model) {
-  Hdf5Writer file(path);
+  Hdf5Writer file(path, {.seal = SealLabel{kKind.seal}});
   const std::vector<std::int64_t> sizes = widen(model.sizes);
   file.write("/layer_sizes", std::span<const std::int64_t>(sizes),
              {"1", "inputs, hidden layers (tanh), outputs (linear)", {}});
@@ -150,11 +150,11 @@ void write_model(const fs::path& path, const Model& model) {
 }
 
 Model read_model(const fs::path& path) {
-  const Hdf5Reader file(path);
+  const Hdf5Reader file(path, kKind.seal);
   check_kind(path, file, kKind);
   Model model;
   for (const std::int64_t size : file.read_integers("/layer_sizes")) {
-    model.sizes.push_back(static_cast<int>(size));
+    model.sizes.push_back(to_int(path, "/layer_sizes", static_cast<double>(size)));
   }
   model.weights = file.read("/weights").values;
   read_columns(path, file, "/inputs", model.inputs, model.input_map);
@@ -170,7 +170,7 @@ Model read_model(const fs::path& path) {
   model.split.train = file.read_number_attribute("/", "split_train");
   model.split.validate = file.read_number_attribute("/", "split_validate");
   model.stop = read_stop(path, file);
-  model.best_epoch = read_int(file, "best_epoch");
+  model.best_epoch = read_int(path, file, "best_epoch");
   model.best_validation = file.read_number_attribute("/", "best_validation");
   model.seconds = file.read_number_attribute("/", "seconds");
   if (file.has(kNoiseName)) model.noise = read_noise_of(path, file, model.inputs);

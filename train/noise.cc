@@ -127,7 +127,8 @@ NoiseModel read_noise(const fs::path& path, const Hdf5Reader& file, const std::s
   const auto cut = data.values.begin() + static_cast<std::ptrdiff_t>(count);
   NoiseModel noise{{data.values.begin(), cut}, {cut, data.values.end()}};
   noise.hit_time = file.read_number_attribute(name, "hit_time_sigma");
-  noise.copies = static_cast<int>(file.read_integer_attribute(name, "copies"));
+  noise.copies =
+      to_int(path, name, static_cast<double>(file.read_integer_attribute(name, "copies")));
   noise.seed = static_cast<std::uint64_t>(file.read_integer_attribute(name, "seed"));
   try {
     noise.validate(channels);

@@ -1,5 +1,8 @@
 #include "train/training_file.h"
 
+#include <cmath>
+#include <limits>
+
 #include "io/shard_layout.h"
 
 namespace strut {
@@ -29,14 +32,13 @@ void fail_file(const fs::path& path, const std::string& what) {
 }
 
 void write_kind(Hdf5Writer& file, const TrainingFileKind& kind) {
-  file.write_attribute("/", kKindKey, std::string(kind.kind));
+  file.write_attribute("/", kKindKey, kind.name());
   file.write_attribute("/", kSchemaVersionKey, kind.schema_version);
 }
 
 void check_kind(const fs::path& path, const Hdf5Reader& file, const TrainingFileKind& kind) {
-  const std::string name = kind.kind;
-  if (!file.has_attribute("/", kKindKey) || file.read_attribute("/", kKindKey) != name) {
-    fail_file(path, "no " + name.substr(name.find(' ') + 1) + " of strut");
+  if (!file.has_attribute("/", kKindKey) || file.read_attribute("/", kKindKey) != kind.name()) {
+    fail_file(path, std::string("no ") + kind.seal.name + " file of strut");
   }
   const std::int64_t version = file.read_integer_attribute("/", kSchemaVersionKey);
   if (version != kind.schema_version) {
@@ -67,7 +69,7 @@ std::vector<EpochRecord> read_record(const fs::path& path, const Hdf5Reader& fil
   record.reserve(data.shape[0]);
   for (std::size_t i = 0; i < data.shape[0]; ++i) {
     const double* r = data.values.data() + i * kRecordColumns;
-    record.push_back({static_cast<int>(r[0]), r[1], r[2], r[3], r[4]});
+    record.push_back({to_int(path, "/record", r[0]), r[1], r[2], r[3], r[4]});
   }
   return record;
 }
@@ -80,8 +82,15 @@ StopReason read_stop(const fs::path& path, const Hdf5Reader& file) {
   return static_cast<StopReason>(number);
 }
 
-int read_int(const Hdf5Reader& file, const char* key) {
-  return static_cast<int>(file.read_integer_attribute("/", key));
+int read_int(const fs::path& path, const Hdf5Reader& file, const char* key) {
+  return to_int(path, key, static_cast<double>(file.read_integer_attribute("/", key)));
+}
+
+int to_int(const fs::path& path, const std::string& object, double value) {
+  if (!(value >= 0.0 && value <= std::numeric_limits<int>::max()) || value != std::floor(value)) {
+    fail_file(path, object + ": damaged: must be a whole number of at least 0");
+  }
+  return static_cast<int>(value);
 }
 
 }  // namespace strut

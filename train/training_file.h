@@ -17,8 +17,10 @@ namespace strut {
 
 /// What a file is and which of its kind's layouts it has.
 struct TrainingFileKind {
-  const char* kind;  // "strut model"
+  SealKind seal;
   std::int64_t schema_version;
+
+  std::string name() const { return std::string("strut ") + seal.name; }  // "strut model"
 };
 
 /// Hash over the numbers of a file, in the order in which they are added.
@@ -49,7 +51,8 @@ void write_kind(Hdf5Writer& file, const TrainingFileKind& kind);
 /// Throws InputError where the file is of another kind or version.
 void check_kind(const std::filesystem::path& path, const Hdf5Reader& file,
                 const TrainingFileKind& kind);
-/// Throws InputError where the file names another checksum.
+/// Throws InputError where the file names another checksum: the only one that a file without a seal
+/// has.
 void check_sum(const std::filesystem::path& path, const Hdf5Reader& file,
                const std::string& checksum);
 
@@ -57,7 +60,9 @@ void write_record(Hdf5Writer& file, const std::vector<EpochRecord>& record);
 std::vector<EpochRecord> read_record(const std::filesystem::path& path, const Hdf5Reader& file);
 
 StopReason read_stop(const std::filesystem::path& path, const Hdf5Reader& file);
-/// An integer attribute of the file.
-int read_int(const Hdf5Reader& file, const char* key);
+/// An integer attribute of the file, at least 0. Throws InputError.
+int read_int(const std::filesystem::path& path, const Hdf5Reader& file, const char* key);
+/// `value` as an integer. Throws InputError where it is none, or below 0.
+int to_int(const std::filesystem::path& path, const std::string& object, double value);
 
 }  // namespace strut

@@ -10,6 +10,7 @@
 #include "jobs/report/figures.h"
 #include "jobs/report/html.h"
 #include "jobs/report/sensitivities.h"
+#include "jobs/unsealed.h"
 #include "model/math/random.h"
 #include "sweep/folder.h"
 #include "sweep/status.h"
@@ -224,6 +225,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
 
 std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   const Plan plan = open_sweep_folder(folder);
+  note_unsealed(folder.plan(), kPlanSeal);
   const SweepStatus status = read_status(folder, plan);
   const FigureDrawer drawer(Folder(folder.root));
   ReportPage page;

@@ -5,6 +5,7 @@
 
 #include "io/config.h"
 #include "jobs/study/bars.h"
+#include "jobs/unsealed.h"
 #include "train/evaluate.h"
 
 namespace strut {
@@ -50,7 +51,7 @@ Rows read_columns(const RowStore& store, std::size_t first, std::size_t count) {
 }
 
 Identified identify(const StudyFolder& folder, const CellResult& cell) {
-  Identified identified{read_model(folder.root / find_median_seed(cell).model), {}, {}, {}};
+  Identified identified{load_model(folder.root / find_median_seed(cell).model), {}, {}, {}};
   const Model& model = identified.model;
   Dataset dataset({folder.sweep(cell.sweep).root});
   const RowStore test = read_test_rows(model, dataset);

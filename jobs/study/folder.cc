@@ -5,6 +5,7 @@
 #include "io/atomic_file.h"
 #include "io/config.h"
 #include "io/toml_text.h"
+#include "jobs/unsealed.h"
 #include "sweep/design.h"
 #include "sweep/facts.h"
 #include "sweep/folder.h"
@@ -149,7 +150,9 @@ fs::path make_window_request(const StudyFolder& folder, const StudyRequest& requ
 template <class Make>
 Plan plan_once(const SweepFolder& sweep, const Make& make) {
   if (!fs::exists(sweep.plan())) make_sweep_folder(sweep.root, Plan(read_request(make())));
-  return open_sweep_folder(sweep);
+  Plan plan = open_sweep_folder(sweep);
+  note_unsealed(sweep.plan(), kPlanSeal);
+  return plan;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "jobs/study/noise_limits.h"
+#include "jobs/unsealed.h"
 #include "sweep/find_channel.h"
 #include "train/evaluate.h"
 
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 
 /// Root mean square errors of a model on its test cases; sets the parameters.
 std::vector<double> evaluate(const fs::path& file, const fs::path& data, NoiseStudy& study) {
-  const Model model = read_model(file);
+  const Model model = load_model(file);
   study.parameters = model.targets;
   Dataset dataset({data}, {.histories = model.window.has_value()});
   const ModelEvaluation evaluation = evaluate_model(model, dataset, EvaluatedPart::kTest);
