@@ -91,15 +91,17 @@ using hdf5::checked;
 namespace fs = std::filesystem;
 
 bool Hdf5Reader::has_attribute(const std::string& object, const std::string& key) const {
-  const bool there = H5Aexists_by_name(file_.id(), object.c_str(), key.c_str(), H5P_DEFAULT) > 0;
+  const bool there =
+      H5Aexists_by_name(file_.id(), object.c_str(), key.c_str(), hdf5::stay_in_file()) > 0;
   H5Eclear2(H5E_DEFAULT);
   return there;
 }
 
 std::vector<std::string> Hdf5Reader::read_attribute_list(const std::string& object,
                                                          const std::string& key) const {
-  const Hdf5Handle handle = checked<InputError>(H5Oopen(file_.id(), object.c_str(), H5P_DEFAULT),
-                                                H5Oclose, path_, object, "no such object");
+  const Hdf5Handle handle =
+      checked<InputError>(H5Oopen(file_.id(), object.c_str(), hdf5::stay_in_file()), H5Oclose,
+                          path_, object, "no such object");
   return hdf5::read_texts_of(path_, handle.id(), object, key);
 }
 
@@ -116,8 +118,8 @@ void read_number(const fs::path& path, hid_t file, const std::string& object,
                  const std::string& key, bool real, hid_t type, void* value) {
   const std::string name = object + "@" + key;
   const Hdf5Handle attribute = checked<InputError>(
-      H5Aopen_by_name(file, object.c_str(), key.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, path,
-      name, "no such attribute");
+      H5Aopen_by_name(file, object.c_str(), key.c_str(), H5P_DEFAULT, hdf5::stay_in_file()),
+      H5Aclose, path, name, "no such attribute");
   const Hdf5Handle stored =
       checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, "damaged");
   const Hdf5Handle space =
@@ -152,7 +154,7 @@ std::vector<std::string> Hdf5Reader::list_attributes(const std::string& object) 
   };
   hsize_t start = 0;
   const herr_t status = H5Aiterate_by_name(file_.id(), object.c_str(), H5_INDEX_NAME, H5_ITER_INC,
-                                           &start, add, &names, H5P_DEFAULT);
+                                           &start, add, &names, hdf5::stay_in_file());
   check<InputError>(status >= 0, path_, object, "attributes cannot be read");
   return names;
 }

@@ -107,6 +107,17 @@ Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_lengt
   return text;
 }
 
+hid_t stay_in_file() {
+  static const hid_t access = [] {
+    const hid_t list = H5Pcreate(H5P_DATASET_ACCESS);
+    const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t,
+                           void*) -> herr_t { return -1; };
+    H5Pset_elink_cb(list, refuse, nullptr);
+    return list;
+  }();
+  return access;
+}
+
 Hdf5Handle make_file_access(const fs::path& path) {
   Hdf5Handle access = checked<EnvironmentError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "",
                                                 "cannot be written");

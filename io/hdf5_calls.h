@@ -63,6 +63,10 @@ Hdf5Handle select_rows(const std::filesystem::path& path, const std::string& nam
   return space;
 }
 
+/// Access by name that never leaves the file: what an external link points to counts as missing.
+/// Serves as the access list of links and of datasets.
+hid_t stay_in_file();
+
 /// File access: the format of 1.10, which has checksums over all of its own structures.
 Hdf5Handle make_file_access(const std::filesystem::path& path);
 /// File creation without times, so that equal content is equal bytes; `sealed`: with room for a

@@ -124,7 +124,7 @@ Hdf5Reader Hdf5Reader::open_unsealed(const fs::path& path) {
 bool Hdf5Reader::has(const std::string& name) const {
   // H5Lexists needs every group on the way to exist.
   for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
-    if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
+    if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), hdf5::stay_in_file()) <= 0) {
       H5Eclear2(H5E_DEFAULT);
       return false;
     }
@@ -134,8 +134,8 @@ bool Hdf5Reader::has(const std::string& name) const {
 
 Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
   check<InputError>(has(name), path_, name, "no such dataset");
-  Hdf5Handle dataset = checked<InputError>(H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT),
-                                           H5Dclose, path_, name, "not a dataset");
+  Hdf5Handle dataset = checked<InputError>(H5Dopen2(file_.id(), name.c_str(), hdf5::stay_in_file()),
+                                           H5Dclose, path_, name, "not a dataset of this file");
   const Hdf5Handle creation =
       checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
   const bool lies_elsewhere =
@@ -234,7 +234,7 @@ std::vector<std::string> Hdf5Reader::list(const std::string& group) const {
     return 0;
   };
   const herr_t status = H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC,
-                                           nullptr, add, &names, H5P_DEFAULT);
+                                           nullptr, add, &names, hdf5::stay_in_file());
   check<InputError>(status >= 0, path_, group, "no such group");
   return names;
 }

@@ -166,11 +166,11 @@ StudyFolder make_study_folder(const fs::path& root, const StudyRequest& request)
     make_folder(folder.root);
     freeze(folder, request);
   }
-  const Folder root(folder.root);
-  root.make_folder("sweeps");
-  root.make_folder(folder.figures().filename().string());
-  check_files(root.make_folder(folder.models().filename().string()));
-  if (request.noise) check_files(root.make_folder(folder.noise().filename().string()));
+  const Folder opened(folder.root);
+  opened.make_folder("sweeps");
+  opened.make_folder(folder.figures().filename().string());
+  check_files(opened.make_folder(folder.models().filename().string()));
+  if (request.noise) check_files(opened.make_folder(folder.noise().filename().string()));
   return folder;
 }
 

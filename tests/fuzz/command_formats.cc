@@ -62,7 +62,9 @@ std::vector<Format> list_command_formats() {
        "sweep/jobs/001/array-0/0",
        {"sweep/jobs/001/array-0/0.seed"},
        words,
-       [](const fs::path& path) { judge_task(read_task_lives(path), false); }},
+       [](const fs::path& path) {
+         judge_task(read_task_lives(Folder(path.parent_path()), path.filename()), false);
+       }},
   };
 }
 

@@ -383,7 +383,7 @@ void write_tree(Hdf5Writer& file, const Tree& tree, Random& random) {
 
 /// The text that stands in front of a sealed file, without its padding; empty: there is none.
 std::string get_seal(const std::string& file) {
-  const std::string block = file.substr(0, kHdf5UserBlock);
+  const std::string block = file.substr(0, kSealBytes);
   const bool sealed = block.starts_with("strut ") && block.find("\nseal ") != std::string::npos;
   return sealed ? block.substr(0, block.find('\0')) : "";
 }
@@ -396,18 +396,18 @@ std::string hash_text(const std::string& text) {
 
 std::string seal_again(const std::string& seed, std::string file) {
   const std::string old = get_seal(seed);
-  if (old.empty() || file.size() < kHdf5UserBlock) return file;
+  if (old.empty() || file.size() < kSealBytes) return file;
   std::istringstream lines(old);
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     const std::string key = line.substr(0, line.find(' '));
     if (key == "size") line = "size " + std::to_string(file.size());
-    if (key == "sha256") line = "sha256 " + hash_text(file.substr(kHdf5UserBlock));
+    if (key == "sha256") line = "sha256 " + hash_text(file.substr(kSealBytes));
     if (key == "seal") line = "seal " + hash_text(text);
     text += line + "\n";
   }
-  text.resize(kHdf5UserBlock, '\0');
-  return file.replace(0, kHdf5UserBlock, text);
+  text.resize(kSealBytes, '\0');
+  return file.replace(0, kSealBytes, text);
 }
 
 std::string rewrite_hdf5(const std::string& seed, Random& random) {
@@ -415,7 +415,9 @@ std::string rewrite_hdf5(const std::string& seed, Random& random) {
   const std::size_t changes = random.log_uniform(4);
   for (std::size_t i = 0; i < changes; ++i) change_tree(tree, random);
 
-  Hdf5Writer file(Hdf5InMemory{kShownPath}, {.user_block = !get_seal(seed).empty()});
+  Hdf5WriterOptions options;
+  if (!get_seal(seed).empty()) options.seal.emplace();  // of which only the room is kept
+  Hdf5Writer file(Hdf5InMemory{kShownPath}, options);
   try {
     write_tree(file, tree, random);
   } catch (const EnvironmentError&) {

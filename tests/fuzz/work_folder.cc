@@ -70,7 +70,7 @@ SweepFolder make_sweep(const fs::path& work) {
     write_text_file(file, {reinterpret_cast<const char*>(image.data()), image.size()});
     append_journal(Folder(folder.root), "journal", make_journal_entry(folder, file, rows));
   }
-  merge_sweep(folder, {plan.hash(), plan.shard_count(), schema}, work / "merged.h5", {},
+  merge_sweep(folder, {plan.make_extent(), schema}, work / "merged.h5", {},
               [](std::int64_t) { return true; });
   return folder;
 }
