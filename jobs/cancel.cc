@@ -20,7 +20,8 @@ void cancel(const Submission& submission) {
   try {
     const std::vector<JobRecord> jobs = find_jobs(submission, *dispatcher);
     dispatcher->cancel(jobs);
-    std::cout << "submission " << submission.name() << ": " << jobs.size() << " jobs cancelled\n";
+    std::cout << "submission " << submission.name() << ": " << jobs.size()
+              << (jobs.size() == 1 ? " job cancelled\n" : " jobs cancelled\n");
   } catch (const std::runtime_error&) {
     submission.take_back_cancelled();
     throw;

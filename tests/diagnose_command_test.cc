@@ -155,7 +155,7 @@ TEST_CASE("strut report makes a diagnosis' page again from what its folder holds
   const test::TemporaryFolder folder;
   const CampaignData data = make_data(folder);
   const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
-  const bool has_figures = write_diagnose_report(out, data, make_named(data), {}).empty();
+  write_diagnose_report(out, data, make_named(data), {});
   write_text_file(out.verdict(), "{}\n");
   const std::string report = test::read_text(out.report());
   const std::string make_again = " " STRUT_PROGRAM " report " + out.root.string();
@@ -163,13 +163,8 @@ TEST_CASE("strut report makes a diagnosis' page again from what its folder holds
   const test::Outcome bare =
       test::run_shell("PATH=" + std::string(folder / "nothing") + make_again);
   CHECK(bare.code == 0);
-  CHECK_THAT(bare.messages, Contains("gnuplot cannot be started"));
-  CHECK_THAT(test::read_text(out.report()), !Contains(".svg\""));
-
-  const test::Outcome whole = test::run_shell(make_again);
-  CHECK(whole.code == 0);
-  CHECK(whole.out == out.report().string() + "\n");
-  if (has_figures) CHECK(test::read_text(out.report()) == report);
+  CHECK(bare.out == out.report().string() + "\n");
+  CHECK(test::read_text(out.report()) == report);
 
   write_text_file(out.root / "report.json", "{ \"title\": \"cut off\" }\n");
   const test::Outcome broken = test::run_shell(make_again);

@@ -283,7 +283,8 @@ TEST_CASE("identify refuses what it cannot read, and says what is allowed", "[io
                 {"body_acceleration_z is in g; must be in m/s^2"});
   check_refused(write(names + "1,2,3,4\n") + desk.set(x), {"--set", "no file beside it"});
   CHECK_THAT(run_program("identify").messages, Contains("MODEL: missing"));
-  CHECK_THAT(run_program("identify " + write(names)).messages, Contains("not an HDF5 file"));
+  CHECK_THAT(run_program("identify " + write(names)).messages,
+             Contains("a.csv: damaged, or no model file"));
 }
 
 }  // namespace

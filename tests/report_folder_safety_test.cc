@@ -79,7 +79,7 @@ TEST_CASE("Names in a report's page that lead out of its folder are refused", "[
     const std::string before = read_text(report / "report.html");
     const Outcome outcome = run_program("report " + report.string());
     CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains("the name must be letters, digits"));
+    CHECK_THAT(outcome.messages, Contains("name must be letters, digits"));
     CHECK(read_text(report / "report.html") == before);
   }
 }
@@ -138,7 +138,9 @@ TEST_CASE("A report writes through no link and waits for no pipe", "[io]") {
     CHECK_THAT(again.messages, Contains(name) && Contains("symbolic link"));
     const Outcome anew =
         run_program(kRun + (folder / "run.csv").string() + " --force --report " + report.string());
-    CHECK(anew.code != 0);
+    // The page itself may be replaced, not what a link in its place leads to.
+    CHECK(anew.code == (name == "report.html" ? 0 : 2));
+    CHECK_FALSE((anew.code == 0 && fs::is_symlink(report / name)));
     CHECK(read_text(theirs) == "mine");
     CHECK(fs::is_empty(folder / "elsewhere"));
   }

@@ -62,6 +62,17 @@ class SlurmCluster {
   ~SlurmCluster() { stop(); }
 
   void start_controller() { start("slurmctld"); }
+  /// Waits until the controller has written down what it knows of its jobs, which it does every few
+  /// seconds while something happens to them: what it loses beyond that is Slurm's, not ours.
+  bool wait_until_saved() {
+    const std::string file = path("state/job_state");
+    const auto when = [&] {
+      std::error_code missing;
+      return std::filesystem::last_write_time(file, missing);
+    };
+    const auto before = when();
+    return wait_until([&] { return when() != before; });
+  }
   /// As if its machine had lost power.
   void kill_controller() {
     run("kill -9 $(cat " + path("controller.pid") + ")");

@@ -216,6 +216,7 @@ TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]")
   const fs::path sweep = get_sweep().copy("two");
   REQUIRE(submit(sweep).code == 0);
   find_running();
+  REQUIRE(cluster.wait_until_saved());
   cluster.kill_controller();
   // Nobody knows: that is neither the end nor a reason to queue anything anew.
   const auto silent = read_status(sweep).get_child("submissions").back().second;

@@ -67,7 +67,7 @@ TEST_CASE("A submission is cancelled, and another does the rest", "[io]") {
   CHECK_THAT(second.out, Contains("nothing to submit"));
   const Outcome outcome = run_sweep_command("cancel", sweep);
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.out, Contains("1 jobs cancelled"));
+  CHECK_THAT(outcome.out, Contains("1 job cancelled"));
   const auto status = wait_for_end(sweep);
   CHECK(status.get_child("submissions").front().second.get<bool>("cancelled"));
   CHECK(test::verify_by_program(sweep).damaged.empty());

@@ -29,7 +29,7 @@ ReportSection make_run_section(const CampaignData& data, const RunComparison& ru
 std::vector<std::string> write_compare_report(const CompareFolder& folder, const CampaignData& data,
                                               const Comparison& comparison,
                                               const std::vector<std::string>& tables) {
-  const FigureDrawer drawer(folder.open());
+  const FigureDrawer drawer(folder.make());
   ReportPage page;
   page.title = "Measured against simulated: " + data.campaign.path.filename().string();
   page.lead = {make_verdict_text(data, comparison)};

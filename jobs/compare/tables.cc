@@ -212,10 +212,10 @@ std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComp
 std::vector<std::string> write_compare_tables(const CompareFolder& folder, const CampaignData& data,
                                               const Comparison& comparison) {
   std::vector<std::string> names = {"channels"};
-  write_csv(folder.open(), names.front() + ".csv", make_channel_columns(comparison));
+  write_csv(folder.make(), names.front() + ".csv", make_channel_columns(comparison));
   for (const RunComparison& run : comparison.runs) {
     names.push_back(make_run_name(data, run.run));
-    write_csv(folder.open(), names.back() + ".csv", make_run_columns(data, run));
+    write_csv(folder.make(), names.back() + ".csv", make_run_columns(data, run));
   }
   return names;
 }

@@ -78,7 +78,7 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
 std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
                                                const CampaignData& data, const Diagnosis& diagnosis,
                                                const std::vector<std::string>& tables) {
-  const FigureDrawer drawer(folder.open());
+  const FigureDrawer drawer(folder.make());
   ReportPage page = make_page(data, diagnosis, drawer);
   page.of = kDiagnosisContent.name;
   page.tables = tables;

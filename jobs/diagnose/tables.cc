@@ -147,12 +147,12 @@ std::vector<std::string> write_diagnose_tables(const DiagnoseFolder& folder,
   std::vector<std::string> names;
   for (const DiagnosedRun& run : diagnosis.runs) {
     names.push_back(make_run_name(data, run.run));
-    write_csv(folder.open(), names.back() + ".csv",
+    write_csv(folder.make(), names.back() + ".csv",
               make_curve_columns(data, run.run, list_model_curves(diagnosis, run)));
   }
   if (!diagnosis.force) return names;
   names.emplace_back("force_map");
-  write_csv(folder.open(), names.back() + ".csv",
+  write_csv(folder.make(), names.back() + ".csv",
             make_force_map_columns(*diagnosis.force, diagnosis.selection.extended));
   return names;
 }

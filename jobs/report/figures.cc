@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "io/atomic_file.h"
+#include "io/shorten.h"
 #include "jobs/build_info.h"
 #include "jobs/report/chart_csv.h"
 #include "jobs/report/gnuplot.h"
@@ -17,8 +18,10 @@ constexpr std::size_t kMaxChartBytes = std::size_t{256} << 20;
 
 void check_figure_name(const Folder& folder, const std::string& name) {
   if (is_figure_name(name)) return;
-  throw InputError(folder.path().string() + ": figure '" + name +
-                   "': the name must be letters, digits, '_' and '-', as strut writes it");
+  throw InputError(
+      folder.path().string() +
+      ": a figure's name must be letters, digits, '_' and '-', as strut writes it; is '" +
+      shorten(name) + "'");
 }
 
 }  // namespace

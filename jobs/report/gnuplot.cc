@@ -15,12 +15,13 @@ constexpr const char* kMissing =
     "gnuplot: cannot be started; pictures need it (Debian: apt install gnuplot-nox)";
 
 /// In single quotes gnuplot replaces nothing: no backticks, no macros. A line's end would end the
-/// text, and what follows would be a command.
+/// text, and what follows would be a command. A quote in it is written as the typographic one:
+/// gnuplot reads a doubled one as the end where the text begins with it.
 std::string quote(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
     const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    quoted += c == '\'' ? std::string("''") : std::string(1, is_control ? ' ' : c);
+    quoted += c == '\'' ? std::string("\u2019") : std::string(1, is_control ? ' ' : c);
   }
   return quoted + "' noenhanced";
 }

@@ -163,6 +163,7 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
 }
 
 void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker) {
+  folder.make();
   const EarlierPage earlier = read_earlier_page(folder);
   remove_file_inside(folder.root, marker);
   for (const fs::path& file : earlier.files) remove_file_inside(folder.root, file);
@@ -171,12 +172,13 @@ void clear_page_folder(const PageFolder& folder, const std::filesystem::path& ma
 }
 
 void write_page(const PageFolder& folder, const ReportPage& page) {
+  folder.make();
   write_text_file_inside(folder.root, folder.page(), make_page_json(page).dump() + "\n");
   write_text_file_inside(folder.root, folder.report(), make_html(page));
 }
 
 void write_page_again(const PageFolder& folder) {
-  const FigureDrawer drawer(folder.open());
+  const FigureDrawer drawer(Folder(folder.root));
   try {
     const Tree tree = read_json(folder.page());
     write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));

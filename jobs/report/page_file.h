@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/atomic_file.h"
 #include "io/folder.h"
 #include "jobs/report/content.h"
 #include "jobs/report/html.h"
@@ -16,7 +17,11 @@ namespace strut {
 struct PageFolder {
   std::filesystem::path root;
 
-  Folder open() const { return Folder(root); }
+  /// The folder, made where it is missing.
+  Folder make() const {
+    make_folder(root);
+    return Folder(root);
+  }
   std::filesystem::path report() const { return root / "report.html"; }
   std::filesystem::path page() const { return root / "report.json"; }
   std::filesystem::path figures() const { return root / "figures"; }
@@ -29,9 +34,10 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
                        const FolderContent& content,
                        const std::vector<std::filesystem::path>& files);
 
-/// Removes what an earlier command left: `marker` first, by which the folder is told to hold it, so
-/// that what is half replaced is not taken for whole; then the page with the tables and figures
-/// that its report.json names. Whatever else is in the folder stays. Throws EnvironmentError.
+/// Makes the folder, and removes what an earlier command left in it: `marker` first, by which the
+/// folder is told to hold it, so that what is half replaced is not taken for whole; then the page
+/// with the tables and figures that its report.json names. Whatever else is in the folder stays.
+/// Throws EnvironmentError.
 void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker);
 
 /// Writes report.json and report.html.

@@ -57,7 +57,7 @@ std::vector<std::string> write_run_report(const std::filesystem::path& folder,
                                           const RunRecord& run) {
   const PageFolder out{folder};
   clear_page_folder(out, out.page());
-  const FigureDrawer drawer(out.open());
+  const FigureDrawer drawer(out.make());
   ReportSection motion{"Motion"};
   motion.motions = {drawer.draw_motion(
       make_motion(c, run.results), "motion",
