@@ -15,6 +15,9 @@ namespace {
 constexpr int kMaxDepth = 32;
 constexpr int kMaxKeyParts = 32;
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
+// Names, paths and short notes: longer ones would only make messages that nobody can read.
+constexpr std::size_t kMaxWordBytes = 256;
+constexpr std::size_t kMaxStringBytes = 4096;
 constexpr std::size_t kMaxDescription = 200;
 
 InputError error_at(const std::filesystem::path& path, std::string_view before,
@@ -43,14 +46,21 @@ std::size_t find_string_end(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Refuses what would exhaust the stack. Reads no more of TOML than strings, comments, brackets and
-/// dots, and agrees with the parser as far as the text is valid.
+/// Refuses what would exhaust the stack, and words that no file needs. Reads no more of TOML than
+/// strings, comments, brackets and dots, and agrees with the parser as far as the text is valid.
 void check_limits(const std::filesystem::path& path, std::string_view text) {
   int depth = 0, parts = 1;
+  std::size_t word = 0;  // bytes of a key or value without quotes
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
     if (c == '"' || c == '\'') {
-      i = find_string_end(text, i);
+      const std::size_t end = find_string_end(text, i);
+      if (end - i > kMaxStringBytes) {
+        throw error_at(
+            path, text.substr(0, i),
+            "text too long; at most " + std::to_string(kMaxStringBytes) + " bytes are allowed");
+      }
+      i = end;
       continue;
     }
     if (c == '#') {
@@ -61,6 +71,7 @@ void check_limits(const std::filesystem::path& path, std::string_view text) {
     if (c == ']' || c == '}') depth = std::max(depth - 1, 0);
     if (c == '.') ++parts;
     if (std::string_view("[]{}=,\n").find(c) != std::string_view::npos) parts = 1;
+    word = std::string_view("[]{}=,.\n \t").find(c) == std::string_view::npos ? word + 1 : 0;
     if (depth > kMaxDepth) {
       throw error_at(path, text.substr(0, i),
                      "arrays and tables nested too deep; at most " + std::to_string(kMaxDepth) +
@@ -70,6 +81,11 @@ void check_limits(const std::filesystem::path& path, std::string_view text) {
       throw error_at(
           path, text.substr(0, i),
           "dotted key too long; at most " + std::to_string(kMaxKeyParts) + " parts are allowed");
+    }
+    if (word > kMaxWordBytes) {
+      throw error_at(
+          path, text.substr(0, i),
+          "key or value too long; at most " + std::to_string(kMaxWordBytes) + " bytes are allowed");
     }
     ++i;
   }

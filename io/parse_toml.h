@@ -13,7 +13,8 @@ namespace strut {
 std::string read_toml_text(const std::filesystem::path& path);
 
 /// Throws InputError with file and line where `text`, the content of `path`, is not TOML, nests
-/// arrays and tables deeper than 32 levels, or has a dotted key of more than 32 parts.
+/// arrays and tables deeper than 32 levels, or has a dotted key of more than 32 parts, a word of
+/// more than 256 bytes or a string of more than 4096.
 toml::table parse_toml(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace strut

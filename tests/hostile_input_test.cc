@@ -45,7 +45,7 @@ void check_shown(const std::string& messages) {
   CHECK(escape_controls(messages) == messages);
 }
 
-TEST_CASE("Deeply nested TOML is refused with its line, by every command", "[io]") {
+TEST_CASE("TOML of endless depth or words is refused with its line, by every command", "[io]") {
   const TemporaryFolder folder;
   const std::pair<const char*, std::string> texts[] = {
       {"dotted key too long", "\n" + repeat("a.", 50000) + "a = 1\n"},
@@ -53,7 +53,11 @@ TEST_CASE("Deeply nested TOML is refused with its line, by every command", "[io]
       {"dotted key too long", "\n" + repeat("'b.b' . ", 20000) + "a = 1\n"},
       {"nested too deep", "\na = " + repeat("[", 50000)},
       {"nested too deep", "\na = " + repeat("{a=", 50000)},
-      {"nested too deep", "\na = " + repeat("[[{a.a=", 20000)}};
+      {"nested too deep", "\na = " + repeat("[[{a.a=", 20000)},
+      {"key or value too long", "\n" + repeat("a", 257) + " = 1\n"},
+      {"key or value too long", "\na = " + repeat("1", 100000) + "\n"},
+      {"text too long", "\na = '" + repeat("a", 4097) + "'\n"},
+      {"text too long", "\n\"" + repeat("a", 100000) + "\" = 1\n"}};
   const std::string file = folder / "deep.toml", out = " -o " + std::string(folder / "out");
   for (const auto& [what, text] : texts) {
     folder.write("deep.toml", text);

@@ -21,11 +21,6 @@ using test::same_bits;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
 
-std::vector<std::byte> to_bytes(const std::string& text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 fs::path write_image(const TemporaryFolder& folder, std::span<const std::byte> image) {
   return folder.write("shard.h5",
                       std::string(reinterpret_cast<const char*>(image.data()), image.size()));
