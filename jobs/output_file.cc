@@ -40,17 +40,18 @@ fs::path find_sweep_of(const fs::path& path) {
   return {};
 }
 
-void refuse_sweep_files(const std::string& option, const fs::path& output) {
+/// `shown`: what the option was given.
+void refuse_sweep_files(const std::string& option, const fs::path& shown, const fs::path& output) {
   const fs::path sweep = find_sweep_of(output);
   if (sweep.empty()) return;
-  throw InputError("--" + option + " = " + output.string() + ": belongs to the sweep in " +
+  throw InputError("--" + option + " = " + shown.string() + ": belongs to the sweep in " +
                    sweep.string() + "; must be another file or folder");
 }
 
 }  // namespace
 
 void check_output_folder(const std::string& option, const fs::path& folder) {
-  refuse_sweep_files(option, folder / "file");
+  refuse_sweep_files(option, folder, folder / "file");
   if (fs::exists(folder) && !fs::is_directory(folder)) {
     throw InputError("--" + option + " = " + folder.string() + ": is a file; must be a folder");
   }
@@ -64,7 +65,7 @@ void check_output_file(const std::string& option, const fs::path& output,
   if (fs::exists(output) && !fs::is_regular_file(output)) {
     throw InputError(start + "not a regular file; must be another file");
   }
-  refuse_sweep_files(option, output);
+  refuse_sweep_files(option, output, output);
   if (is_one_of(output, inputs)) {
     throw InputError(start + "is what is read; must be another file");
   }

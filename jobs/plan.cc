@@ -8,6 +8,7 @@
 #include "jobs/command.h"
 #include "jobs/json.h"
 #include "jobs/messages.h"
+#include "jobs/output_file.h"
 #include "jobs/plan_estimate.h"
 #include "jobs/progress.h"
 #include "sweep/case_order.h"
@@ -137,6 +138,7 @@ int run_plan(const Arguments& arguments) {
   if (!dry && !arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
 
+  if (!dry) check_output_folder("output", arguments.text("output"));
   const Plan plan(read_request(arguments.positional().front()));
   check_plan(plan);
   std::optional<SweepFolder> folder;

@@ -9,7 +9,8 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+// A tree in memory takes some 200 times the bytes of its text.
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr int kMaxDepth = 64;
 
 /// Levels of objects and arrays, texts left out.

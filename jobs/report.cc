@@ -65,9 +65,9 @@ Arguments describe_report() {
       "strut report DIR",
       "Writes DIR/report.html, one file that needs no other, about the study, sweep, comparison,\n"
       "diagnosis or simulated run in DIR, from what is there: no case is simulated, no network\n"
-      "trained; of a sweep only the few runs by which its sensitivities are told. Charts are also "
-      "in\n"
-      "DIR/figures as SVG, their numbers as CSV.",
+      "trained; of a sweep only the few runs by which its sensitivities are told. Of a study and "
+      "a\n"
+      "sweep, charts are also in DIR/figures as SVG, their numbers as CSV.",
       "  strut report study\n  strut report cars\n  strut report diagnosis");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;

@@ -8,6 +8,7 @@
 #include "jobs/machine.h"
 #include "jobs/messages.h"
 #include "jobs/open_sweep.h"
+#include "jobs/output_file.h"
 #include "jobs/progress.h"
 #include "jobs/run.h"
 #include "jobs/study/noise_limits.h"
@@ -166,6 +167,7 @@ int run_study(const Arguments& arguments) {
   }
   if (!arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
+  check_output_folder("output", arguments.text("output"));
   const StudyRequest asked = read_study(names.front());
   const int threads = find_threads(arguments);
   prepare_interrupt(arguments, "goes on");

@@ -48,7 +48,10 @@ TEST_CASE("No command replaces what a sweep is made of, however it is told to", 
       "export --force " + model + " -o ",
       "design --force " + kExamples + "api/small_sweep.toml --csv ",
       "simulate " + kRun + " -o " + std::string(folder / "r.csv") + " --report ",
-      "compare --force " + kExamples + "extended_loop/campaign.toml -o "};
+      "compare --force " + kExamples + "extended_loop/campaign.toml -o ",
+      "diagnose --force " + kExamples + "extended_loop/campaign.toml -o ",
+      "plan " + kExamples + "api/small_sweep.toml -o ",
+      "study " + kExamples + "studies/paper_quick.toml -o "};
   for (const std::string& command : commands) {
     for (const char* place :
          {"cars/plan.h5", "cars/request.toml", "cars/journal", "cars/shards/000000.h5",

@@ -103,6 +103,58 @@ TEST_CASE("Texts and charts of a report's folder cannot become scripts of its pa
   CHECK_THAT(page, !Contains("<img src=x"));
 }
 
+TEST_CASE("A page made of a report's folder asks for nothing beside itself", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path report = copy_report(folder);
+  const fs::path chart = find_figure(report, ".csv").replace_extension(".json");
+  replace(chart, "\"layout\": {",
+          "\"layout\": {\"images\": [{\"source\": \"http://127.0.0.1:9/track.png\"}], ");
+  CHECK(run_program("report " + report.string()).code == 0);
+  // The browser refuses them by the page's own rule.
+  CHECK_THAT(read_text(report / "report.html"),
+             Contains("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';"));
+}
+
+TEST_CASE("A report removes no file of another's for what its report.json names", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path report = copy_report(folder);
+  write(report / "thesis.csv", "mine");
+  write(report / "figures/photo.svg", "mine");
+  replace(report / "report.json", "\"tables\": [],\n  \"footer\"",
+          "\"tables\": [\"thesis\"],\n  \"footer\"");
+  const std::string run = kRun + (folder / "run.csv").string() + " --force --report ";
+  CHECK(run_program(run + report.string()).code == 0);
+  CHECK(read_text(report / "thesis.csv") == "mine");
+  CHECK(read_text(report / "figures/photo.svg") == "mine");
+  // Nor is a picture replaced that no report has left.
+  fs::create_directories(folder / "mine/figures");
+  write(folder / "mine/figures/curves.svg", "mine");
+  CHECK(run_program(run + (folder / "mine").string()).code == 2);
+  CHECK(read_text(folder / "mine/figures/curves.svg") == "mine");
+}
+
+TEST_CASE("A report's folder with a link for its figures keeps its page", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path report = copy_report(folder);
+  fs::create_directory(folder / "elsewhere");
+  fs::remove_all(report / "figures");
+  fs::create_directory_symlink(folder / "elsewhere", report / "figures");
+  const fs::path run = folder / "late.csv";
+  CHECK(run_program(kRun + run.string() + " --report " + report.string()).code == 2);
+  CHECK_FALSE(fs::exists(run));
+  CHECK(fs::exists(report / "report.html"));
+}
+
+TEST_CASE("A figure that a page names twice is refused", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path report = copy_report(folder);
+  const std::string figure = "{\"name\": \"" + find_figure(report, ".csv").stem().string() + "\"";
+  replace(report / "report.json", figure, figure + ", \"caption\": \"\"}, " + figure);
+  const Outcome outcome = run_program("report " + report.string());
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains("named twice"));
+}
+
 TEST_CASE("A report's JSON that is nested deeply or not JSON is refused", "[io]") {
   const TemporaryFolder folder;
   const fs::path report = copy_report(folder);

@@ -6,6 +6,8 @@
 #include <map>
 #include <sstream>
 
+#include "jobs/study/folder.h"
+#include "jobs/study/request.h"
 #include "jobs/study/results.h"
 #include "tests/check_hint.h"
 #include "tests/check_page.h"
@@ -202,6 +204,19 @@ TEST_CASE("A folder of another study or of none is refused", "[io][slow]") {
   const Outcome none = run_program("report " + (files / "full").string());
   CHECK(none.code == 2);
   CHECK_THAT(none.messages, Contains("nothing to report on") && Contains("study.toml"));
+}
+
+TEST_CASE("A study makes no sweep where a link inside its folder leads", "[io]") {
+  const StudyFiles files;
+  const StudyRequest request = read_study(files / "study.toml");
+  const StudyFolder folder = make_study_folder(files / "made", request);
+  const std::string sweep = make_sweep_name(request, list_cells(request).front());
+  fs::create_directory(files / "elsewhere");
+  fs::create_directory_symlink(files / "elsewhere", folder.sweep(sweep).root);
+  const Outcome outcome = files.run();
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains(sweep + ": a symbolic link"));
+  CHECK(fs::is_empty(files / "elsewhere"));
 }
 
 TEST_CASE("Wrong words and numbers of a study file are told", "[io]") {

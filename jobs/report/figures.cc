@@ -1,5 +1,7 @@
 #include "jobs/report/figures.h"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -69,7 +71,7 @@ ReportFigure FigureDrawer::read_again(const std::string& name, const std::string
   ReportFigure figure{name, caption, read_json_of(name), {}};
   const std::string link = folder_.path().filename().string() + "/" + name;
   for (const char* end : {".svg", ".csv"}) {
-    if (folder_.has(name + end)) figure.files.push_back(link + end);
+    if (folder_.open_file(name + end, O_RDONLY).is_open()) figure.files.push_back(link + end);
   }
   return figure;
 }

@@ -237,6 +237,7 @@ bool has_gnuplot() { return read_child({"gnuplot", "--version"}).code == 0; }
 
 std::string draw_picture(const std::string& name, const std::string& script) {
   ChildOptions options;
+  options.patience = std::chrono::minutes(10);  // of a crowded machine
   options.input = script;
   options.hidden_variables = {"GNUPLOT"};
   // Not by the user's own settings.

@@ -194,6 +194,9 @@ std::string escape_html(const std::string& text) {
 std::string make_html(const ReportPage& page) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      // Charts of a folder from elsewhere may name pictures and styles on a network.
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escape_html(page.title) + "</title>\n<style>\n" + std::string(embedded::page_css) +
       "</style>\n</head>\n<body>\n<h1>" + escape_html(page.title) + "</h1>\n" +

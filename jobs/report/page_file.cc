@@ -1,9 +1,14 @@
 #include "jobs/report/page_file.h"
 
 #include <algorithm>
+#include <array>
+#include <set>
+#include <stdexcept>
+#include <string_view>
 
 #include "io/atomic_file.h"
 #include "io/input_error.h"
+#include "io/shorten.h"
 #include "jobs/json.h"
 #include "jobs/read_json.h"
 #include "jobs/report/figures.h"
@@ -79,17 +84,44 @@ ReportTable read_table(const Tree& tree) {
           tree.get<std::size_t>("text_columns")};
 }
 
+/// Names of the figures and tables of comparisons, diagnoses and simulated runs, but those of one
+/// recording, which are run_NUMBER_...: nothing else is removed for what a report.json says.
+constexpr std::array<const char*, 9> kNames = {"channels",      "curves", "force_law",
+                                               "force_map",     "gain",   "motion",
+                                               "probabilities", "states", "balance"};
+
+bool is_page_name(const std::string& name) {
+  constexpr std::string_view kRun = "run_";
+  const std::size_t end = name.find_first_not_of("0123456789", kRun.size());
+  const bool is_of_run =
+      name.starts_with(kRun) && end != std::string::npos && end > kRun.size() && name[end] == '_';
+  return is_figure_name(name) &&
+         (is_of_run || std::find(kNames.begin(), kNames.end(), name) != kNames.end());
+}
+
+/// What a page is written of, a later one can remove.
+void check_names(const ReportPage& page) {
+  const auto check = [](const std::string& name) {
+    if (!is_page_name(name)) throw std::logic_error("report: '" + name + "' is not in kNames");
+  };
+  for (const std::string& table : page.tables) check(table);
+  for (const ReportSection& section : page.sections) {
+    for (const ReportFigure& figure : section.figures) check(figure.name);
+    for (const ReportMotion& motion : section.motions) check(motion.name);
+  }
+}
+
 /// The files that the folder's page names.
 std::vector<fs::path> list_files(const PageFolder& folder, const Tree& page) {
   std::vector<fs::path> files;
   for (const std::string& name : read_list(page, "tables", &read_text)) {
-    if (is_figure_name(name)) files.push_back(folder.table(name));
+    if (is_page_name(name)) files.push_back(folder.table(name));
   }
   const auto add_figures = [&](const Tree& list, const std::vector<const char*>& ends) {
     for (const auto& [key, figure] : list) {
       const auto name = figure.get<std::string>("name");
       for (const char* end : ends) {
-        if (is_figure_name(name)) files.push_back(folder.figures() / (name + end));
+        if (is_page_name(name)) files.push_back(folder.figures() / (name + end));
       }
     }
   };
@@ -113,6 +145,22 @@ EarlierPage read_earlier_page(const PageFolder& folder) {
     return {page.get<std::string>("of"), list_files(folder, page)};
   } catch (const boost::property_tree::ptree_error&) {
     return {};
+  }
+}
+
+/// Each figure stands in a page once: a small file could else name a large one without end.
+void refuse_repeated(const PageFolder& folder, const Tree& page) {
+  std::set<std::string> names;
+  for (const auto& [key, section] : page.get_child("sections")) {
+    for (const char* list : {"figures", "motions"}) {
+      for (const auto& [index, figure] : section.get_child(list)) {
+        const auto name = figure.get<std::string>("name");
+        if (!names.insert(name).second) {
+          throw InputError(folder.page().string() + ": figure '" + shorten(name) +
+                           "': named twice; must be as strut wrote it");
+        }
+      }
+    }
   }
 }
 
@@ -144,6 +192,9 @@ ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
 
 void check_page_folder(const std::string& option, const PageFolder& folder,
                        const FolderContent& content, const std::vector<fs::path>& files) {
+  // Links are refused before anything is calculated, and before an earlier page is removed.
+  if (fs::exists(folder.root))
+    Folder(folder.root).find_folder(folder.figures().filename().string());
   const std::string start = "--" + option + " = " + folder.root.string() + ": holds ";
   const FolderContent* other = find_content(folder.root);
   if (other != nullptr && other != &content && other != &kRunContent) {
@@ -154,6 +205,9 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
   if (!of.empty()) throw InputError(start + "the report of a " + of + "; must be another folder");
   std::vector<fs::path> written = files;
   written.insert(written.end(), {folder.report(), folder.page()});
+  if (fs::exists(folder.figures()) && !fs::is_empty(folder.figures())) {
+    written.push_back(folder.figures());
+  }
   for (const fs::path& file : written) {
     if (fs::exists(file)) {
       throw InputError(start + file.filename().string() + ", which is not of an earlier " +
@@ -172,15 +226,17 @@ void clear_page_folder(const PageFolder& folder, const std::filesystem::path& ma
 }
 
 void write_page(const PageFolder& folder, const ReportPage& page) {
+  check_names(page);
   folder.make();
   write_text_file_inside(folder.root, folder.page(), make_page_json(page).dump() + "\n");
   write_text_file_inside(folder.root, folder.report(), make_html(page));
 }
 
 void write_page_again(const PageFolder& folder) {
-  const FigureDrawer drawer(Folder(folder.root));
   try {
     const Tree tree = read_json(folder.page());
+    refuse_repeated(folder, tree);
+    const FigureDrawer drawer(Folder(folder.root));
     write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));
   } catch (const boost::property_tree::ptree_error& e) {
     throw InputError(folder.page().string() + ": " + e.what() +

@@ -1,4 +1,4 @@
-// A page kept beside its figures, so that it can be made again where they could not be drawn.
+// A page kept beside its figures, so that it can be made again from data alone.
 #pragma once
 
 #include <filesystem>

@@ -146,9 +146,11 @@ fs::path make_window_request(const StudyFolder& folder, const StudyRequest& requ
   return made;
 }
 
-/// Plans what `make` writes the request of, where `sweep` is not planned yet.
+/// Plans what `make` writes the request of, where `sweep` is not planned yet. Throws InputError
+/// where the sweep's folder in the study is a link.
 template <class Make>
-Plan plan_once(const SweepFolder& sweep, const Make& make) {
+Plan plan_once(const StudyFolder& folder, const SweepFolder& sweep, const Make& make) {
+  Folder(folder.root).make_folder(kSweeps).make_folder(sweep.root.filename().string());
   if (!fs::exists(sweep.plan())) make_sweep_folder(sweep.root, Plan(read_request(make())));
   Plan plan = open_sweep_folder(sweep);
   note_unsealed(sweep.plan(), kPlanSeal);
@@ -167,7 +169,7 @@ StudyFolder make_study_folder(const fs::path& root, const StudyRequest& request)
     freeze(folder, request);
   }
   const Folder opened(folder.root);
-  opened.make_folder("sweeps");
+  opened.make_folder(kSweeps);
   opened.make_folder(folder.figures().filename().string());
   check_files(opened.make_folder(folder.models().filename().string()));
   if (request.noise) check_files(opened.make_folder(folder.noise().filename().string()));
@@ -184,7 +186,7 @@ StudyRequest open_study_folder(const StudyFolder& folder) {
 
 Plan plan_study_sweep(const StudyFolder& folder, const StudyRequest& request,
                       const StudyCell& cell) {
-  return plan_once(folder.sweep(make_sweep_name(request, cell)),
+  return plan_once(folder, folder.sweep(make_sweep_name(request, cell)),
                    [&] { return make_request(folder, request, cell); });
 }
 
@@ -193,7 +195,7 @@ SweepFolder get_window_sweep(const StudyFolder& folder, const StudyRequest& requ
 }
 
 Plan plan_window_sweep(const StudyFolder& folder, const StudyRequest& request) {
-  return plan_once(get_window_sweep(folder, request),
+  return plan_once(folder, get_window_sweep(folder, request),
                    [&] { return make_window_request(folder, request); });
 }
 

@@ -10,6 +10,8 @@
 
 namespace strut {
 
+inline constexpr char kSweeps[] = "sweeps";
+
 struct StudyFolder {
   std::filesystem::path root;
 
@@ -19,7 +21,7 @@ struct StudyFolder {
   SweepFolder base() const { return {root / "base"}; }
   /// The same of the noise section's sweep.
   SweepFolder window_base() const { return {root / "window_base"}; }
-  SweepFolder sweep(const std::string& name) const { return {root / "sweeps" / name}; }
+  SweepFolder sweep(const std::string& name) const { return {root / kSweeps / name}; }
   std::filesystem::path models() const { return root / "models"; }
   std::filesystem::path figures() const { return root / "figures"; }
   /// Bounds and fits of the noise section.
