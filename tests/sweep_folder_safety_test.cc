@@ -184,8 +184,11 @@ TEST_CASE("Pipes, devices and dangling links in a sweep folder end in a message"
         const bool is_report = command.starts_with("status") || command.starts_with("verify");
         // A link to no journal is a missing journal to whoever only reads it.
         const bool is_missing = place.file == "journal" && kind == "dangling link" && is_report;
-        CHECK(outcome.code == (is_missing ? 0 : is_shard && is_report ? 1 : 2));
-        if (is_missing) continue;
+        if (is_missing) {
+          CHECK(outcome.code <= 1);
+          continue;
+        }
+        CHECK(outcome.code == (is_shard && is_report ? 1 : 2));
         const std::string stem = fs::path(place.file).stem();
         CHECK_THAT(outcome.out + outcome.messages, Contains(stem));
       }
