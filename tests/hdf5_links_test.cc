@@ -18,7 +18,7 @@ constexpr std::array<double, 3> kValues = {1.0, 2.0, 3.0};
 
 // A file with a dataset, and an attribute at its root.
 fs::path write_secret(const TemporaryFolder& folder) {
-  const fs::path path = folder / "secret.h5";
+  fs::path path = folder / "secret.h5";
   Hdf5Writer writer(path);
   writer.write("/group/values", kValues, {"m", "", {}});
   writer.write_attribute("/", "key", "secret");
