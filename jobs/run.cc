@@ -160,7 +160,8 @@ std::optional<TaskRun> find_task(const Arguments& arguments, const OpenSweep& sw
                                  RunOptions& options) {
   if (!arguments.has("task")) return std::nullopt;
   if (arguments.has("shards")) throw InputError("--task, --shards: must not both be given");
-  std::optional<TaskRun> task(std::in_place, sweep.folder, arguments.text("task"));
+  std::optional<TaskRun> task(std::in_place, sweep.folder, arguments.text("task"),
+                              sweep.plan.shard_count());
   options.first_shard = task->shards().first;
   options.end_shard = task->shards().end;
   return task;

@@ -389,6 +389,7 @@ Arguments describe_submit() {
   arguments.add_switch("retry",
                        "behind the arrays, a task that tries failed cases once more, as `strut "
                        "resume` does");
+  arguments.add_removed("no-merge", "nothing is merged without --merge");
   arguments.add_switch("merge", "a last task, behind all others, that writes DIR/merged.h5");
   arguments.add_switch("again",
                        "submit although it is unknown whether an earlier submission still runs");

@@ -195,13 +195,23 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
     return s;
   };
   const Submission ended = queue("ours");
-  const std::string name = "|" + ended.job_name("array-0") + "'";
+  const std::string mark = make_job_mark(sweep.root, ended.job_name("array-0"));
+  const std::string name = "|" + ended.job_name("array-0") + "|" + mark + "'";
   slurm.say("squeue",
             "echo '4711|0|RUNNING|None" + name + "; echo '4711|1|PENDING|Resources" + name);
   const SubmissionState running = follow(ended);
   CHECK(running.queue == QueueState::kQueued);
   CHECK(running.running == 1);
   CHECK(running.live == Ranges{{0, 5}, {5, 10}});
+  // A job of a copied folder: whether this one's runs is not known, and it is not stopped.
+  slurm.say("squeue", "echo '4711|0|RUNNING|None|" + ended.job_name("array-0") + "|0123'");
+  slurm.say("scancel", "touch " + (folder / "cancelled").string());
+  const SubmissionState copied = follow(ended);
+  CHECK(copied.queue == QueueState::kUnknown);
+  CHECK(copied.why.find("copied") != std::string::npos);
+  CHECK_THROWS_AS(SlurmDispatcher().cancel({ended.read_job("array-0")}), EnvironmentError);
+  CHECK(SlurmDispatcher().find_job(ended.read_job("array-0")).empty());
+  CHECK_FALSE(std::filesystem::exists(folder / "cancelled"));
   // What the environment would hide from the answer is kept from the command.
   slurm.say("squeue", "[[ -z ${SQUEUE_PARTITION:-} ]] && echo '4711|0|RUNNING|None" + name);
   ::setenv("SQUEUE_PARTITION", "x", 1);
@@ -210,7 +220,8 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   // Nothing listed, but the controller still knows it, or says nothing.
   slurm.say("squeue", "");
   const std::string config = "[[ $2 == config ]] && echo 'ClusterName = ours' && exit\n";
-  const std::string known = "echo 'JobId=4711 JobName=" + ended.job_name("array-0") + " '";
+  const std::string known =
+      "echo 'JobId=4711 JobName=" + ended.job_name("array-0") + " Comment=" + mark + " '";
   for (const std::string& script : {known, std::string("echo 'Unable to contact' >&2; exit 1")}) {
     INFO(script);
     slurm.say("scontrol", config + script);
@@ -229,7 +240,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
 
   // A number that the scheduler has given to another job since.
   const Submission lost = queue("ours");
-  slurm.say("squeue", "echo '4711|0|RUNNING|None|other'");
+  slurm.say("squeue", "echo '4711|0|RUNNING|None|other|'");
   slurm.say("scontrol", config + "echo 'JobId=4711 JobName=other'");
   CHECK(follow(lost).queue == QueueState::kEnded);
 
@@ -245,7 +256,7 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
   const Submission s = make_submission(sweep, {"", "local", "", "", "strut", {{{10, 35}, 10}}});
-  TaskRun task(sweep, make_task_name("001", 0, "2"));
+  TaskRun task(sweep, make_task_name("001", 0, "2"), 35);
   CHECK(task.shards() == ShardRange{30, 35});
   task.begin();
   const Folder array = s.open().open_folder("array-0");
@@ -253,11 +264,11 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   CHECK_FALSE(read_task_lives(array, "2")[0].how);
   task.end(TaskEnd::kDrained, 0);
   CHECK(task.requeue().find("does not take it back") != std::string::npos);
-  TaskRun second(sweep, "001/0/2");
+  TaskRun second(sweep, "001/0/2", 35);
   second.begin();
   second.end(TaskEnd::kDrained, 0);
   CHECK(second.requeue().find("longer --time") != std::string::npos);
-  TaskRun again(sweep, "001/0/2");
+  TaskRun again(sweep, "001/0/2", 35);
   again.begin();
   again.end(TaskEnd::kDone, 5);
   const std::vector<TaskLife> lives = read_task_lives(array, "2");
@@ -268,8 +279,10 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
 
   for (const char* name : {"001/0/3", "001/1/0", "002/0/0", "001/0", "001/0/x"}) {
     INFO(name);
-    CHECK_THROWS_AS(TaskRun(sweep, name), InputError);
+    CHECK_THROWS_AS(TaskRun(sweep, name, 35), InputError);
   }
+  // A submission of a larger sweep.
+  CHECK_THROWS_AS(TaskRun(sweep, "001/0/0", 34), InputError);
   folder.write("jobs/001/array-0/2", "no life\n");
   CHECK_THROWS_AS(read_task_lives(array, "2"), InputError);
 }

@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "io/sha256.h"
 #include "jobs/dispatch/local.h"
 #include "jobs/dispatch/slurm.h"
 
@@ -24,7 +25,16 @@ const std::map<std::string, Maker>& get_makers() {
 }  // namespace
 
 std::string make_job_mark(const std::filesystem::path& sweep, const std::string& job_name) {
-  return std::filesystem::canonical(sweep).string() + ":" + job_name;
+  constexpr std::size_t kDigits = 32;
+  const std::string text = std::filesystem::canonical(sweep).string() + ":" + job_name;
+  return to_hex(calc_sha256(text)).substr(0, kDigits);
+}
+
+std::string describe_foreign(const std::string& job, const std::string& name) {
+  return job + " runs, but is not proved to be job " + name +
+         " of this folder: the folder was copied, renamed or is seen by another path, or the job "
+         "is "
+         "of an earlier build";
 }
 
 std::vector<std::string> list_dispatchers() {

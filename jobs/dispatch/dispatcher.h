@@ -44,8 +44,9 @@ struct TaskArray {
   std::string mark;              // make_job_mark()
 };
 
-/// What tells the processes of a job that strut itself started: STRUT_JOB in their environment.
-/// Copies of the sweep's folder have jobs of the same names, but not the same marks.
+/// What tells a job that strut itself started for this very folder, 32 hexadecimal digits:
+/// STRUT_JOB in the environment of a process, the comment of a Slurm job. Copies of the sweep's
+/// folder have jobs of the same names, but not the same marks.
 std::string make_job_mark(const std::filesystem::path& sweep, const std::string& job_name);
 
 /// A job as the files of a submission tell of it. They may have come from elsewhere: a dispatcher
@@ -82,6 +83,9 @@ struct NodeAnswer {
   std::string name, answer;
 };
 
+/// Silence about a job that runs, but without the mark of this folder.
+std::string describe_foreign(const std::string& job, const std::string& name);
+
 class Dispatcher {
  public:
   virtual ~Dispatcher() = default;
@@ -117,15 +121,17 @@ class Dispatcher {
   /// Throws EnvironmentError.
   virtual std::string submit(const TaskArray& tasks, const std::filesystem::path& script,
                              const std::vector<std::string>& after) const = 0;
-  /// The job of that name which a submit() queued without living to say so; "": none. Throws
-  /// EnvironmentError where that cannot be told.
-  virtual std::string find_job(const std::string& name) const = 0;
+  /// The job of a record without number, which a submit() queued without living to say so; "":
+  /// none. Throws EnvironmentError where that cannot be told.
+  virtual std::string find_job(const JobRecord& record) const = 0;
 
-  /// A scheduler that lost its memory may have given a number to another job since. Throws
-  /// InputError where a record names what cannot be such a job, or is another's.
+  /// A scheduler that lost its memory may have given a number to another job since. Where a job of
+  /// a record's number and name runs that does not bear its mark, the answer is silence. Throws
+  /// InputError where a record names what cannot be a job.
   virtual QueueAnswer query(const std::vector<JobRecord>& jobs) const = 0;
 
-  /// Ends jobs, running or not. Throws as query() does, and EnvironmentError.
+  /// Ends jobs, running or not, all of them proved first. Throws as query() does, and
+  /// EnvironmentError where query() has no answer.
   virtual void cancel(const std::vector<JobRecord>& jobs) const = 0;
 
   /// Of the task that this process is: puts it back into the queue. False where it cannot be.

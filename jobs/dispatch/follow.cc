@@ -138,7 +138,7 @@ std::vector<JobRecord> find_jobs(const Submission& submission, const Dispatcher&
   std::vector<JobRecord> jobs;
   for (const std::string& part : submission.list_parts()) {
     JobRecord record = submission.read_job(part);
-    if (record.job.empty()) record.job = dispatcher.find_job(record.name);
+    if (record.job.empty()) record.job = dispatcher.find_job(record);
     if (!record.job.empty()) jobs.push_back(std::move(record));
   }
   return jobs;

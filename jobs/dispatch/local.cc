@@ -46,7 +46,7 @@ InputError record_error(const JobRecord& record, const std::string& what) {
 ProcessIdentity parse_record(const JobRecord& record) {
   const std::string letters =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._:[]";
-  const ProcessIdentity process = read_identity(record.job);
+  ProcessIdentity process = read_identity(record.job);
   const auto number = parse_number<pid_t>(process.process);
   const auto start = parse_number<std::uint64_t>(process.start);
   const bool is_written_so = write_identity(process) == record.job && !process.host.empty() &&
@@ -74,18 +74,21 @@ std::string find_doubt(const std::string& process, const JobRecord& record) {
   return is_marked ? "" : std::string(kMark) + " in its environment is not " + record.mark;
 }
 
-/// Whether the job of a record runs. Throws InputError where another process does.
-Life judge_job(const JobRecord& record, const ProcessIdentity& process,
-               const ProcessIdentity& own) {
+/// Whether the job of a record runs, and why a process that does is not proved to be it.
+struct JobLife {
+  Life life;
+  std::string doubt = {};
+};
+
+JobLife judge_job(const JobRecord& record, const ProcessIdentity& process,
+                  const ProcessIdentity& own) {
   // What ran before a host was started again has ended.
-  if (process.host == own.host && process.boot != own.boot) return Life::kGone;
+  if (process.host == own.host && process.boot != own.boot) return {Life::kGone};
   Life life = judge_process(process, own);
-  if (life != Life::kRuns) return life;
+  if (life != Life::kRuns) return {life};
   const std::string doubt = find_doubt(process.process, record);
   life = judge_process(process, own);  // it may have ended while it was looked at
-  if (life != Life::kRuns || doubt.empty()) return life;
-  throw record_error(record, "process " + process.process + " runs, but is not job " + record.name +
-                                 " of this sweep: " + doubt);
+  return {life, life == Life::kRuns ? doubt : ""};
 }
 
 /// In the child: begins a session, so that it outlives the terminal, tells who it is and becomes
@@ -104,6 +107,7 @@ Life judge_job(const JobRecord& record, const ProcessIdentity& process,
   pthread_sigmask(SIG_SETMASK, &none, nullptr);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   std::vector<char*> words;
+  words.reserve(command.size() + 1);
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   if (told && ::setenv(kMark, mark.c_str(), 1) == 0) ::execvp(words[0], words.data());
@@ -206,9 +210,13 @@ QueueAnswer LocalDispatcher::query(const std::vector<JobRecord>& jobs) const {
   QueueAnswer answer;
   for (const JobRecord& record : jobs) {
     const ProcessIdentity process = parse_record(record);
-    const Life life = judge_job(record, process, own);
-    if (life == Life::kUnknown) return {{}, "it was submitted on " + process.host};
-    if (life == Life::kRuns) {
+    const JobLife job = judge_job(record, process, own);
+    if (job.life == Life::kUnknown) return {{}, "it was submitted on " + process.host};
+    if (!job.doubt.empty()) {
+      return {{},
+              describe_foreign("process " + process.process, record.name) + " (" + job.doubt + ")"};
+    }
+    if (job.life == Life::kRuns) {
       answer.tasks.push_back({record.job, -1, 1, TaskState::kRunning, "RUNNING", ""});
     }
   }
@@ -220,7 +228,12 @@ void LocalDispatcher::cancel(const std::vector<JobRecord>& jobs) const {
   std::vector<pid_t> leaders;  // all are proved before one is stopped
   for (const JobRecord& record : jobs) {
     const ProcessIdentity process = parse_record(record);
-    if (judge_job(record, process, own) != Life::kRuns) continue;
+    const JobLife job = judge_job(record, process, own);
+    if (!job.doubt.empty()) {
+      throw record_error(record, describe_foreign("process " + process.process, record.name) +
+                                     " (" + job.doubt + ")");
+    }
+    if (job.life != Life::kRuns) continue;
     leaders.push_back(*parse_number<pid_t>(process.process));
   }
   for (const pid_t leader : leaders) {

@@ -21,7 +21,7 @@ class LocalDispatcher : public Dispatcher {
   std::string try_tasks(const TaskArray&) const override { return ""; }
   std::string submit(const TaskArray& tasks, const std::filesystem::path& script,
                      const std::vector<std::string>& after) const override;
-  std::string find_job(const std::string&) const override { return ""; }
+  std::string find_job(const JobRecord&) const override { return ""; }
   QueueAnswer query(const std::vector<JobRecord>& jobs) const override;
   void cancel(const std::vector<JobRecord>& jobs) const override;
   bool requeue_own() const override { return false; }

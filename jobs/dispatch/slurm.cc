@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -153,20 +154,31 @@ TaskState find_state(const std::string& word) {
   return ended.count(word) > 0 ? TaskState::kEnded : TaskState::kRunning;
 }
 
-/// Lines of `squeue -r -o %F|%K|%T|%r|%j` about these jobs.
-std::vector<QueuedTasks> parse_queue(const std::string& text, const std::vector<JobRecord>& jobs) {
-  std::map<std::string, std::string> names;
-  for (const JobRecord& record : jobs) names[record.job] = record.name;
-  std::vector<QueuedTasks> tasks;
+/// Lines of `squeue -r -o %F|%K|%T|%r|%j|%k` about these jobs.
+QueueAnswer parse_queue(const std::string& text, const std::vector<JobRecord>& jobs) {
+  std::map<std::string, const JobRecord*> records;
+  for (const JobRecord& record : jobs) records[record.job] = &record;
+  QueueAnswer answer;
   for (const std::string& line : split(text, '\n')) {
     const std::vector<std::string> parts = split(line, '|');
-    if (parts.size() < 5) continue;
-    const auto job = names.find(parts[0]);
-    if (job == names.end() || job->second != parts[4]) continue;
-    tasks.push_back({parts[0], parse_number<std::int64_t>(parts[1]).value_or(-1), 1,
-                     find_state(parts[2]), parts[2], parts[3]});
+    if (parts.size() < 6) continue;
+    const auto found = records.find(parts[0]);
+    if (found == records.end() || found->second->name != parts[4]) continue;
+    if (found->second->mark != parts[5]) {
+      return {{}, describe_foreign("job " + parts[0], parts[4])};
+    }
+    answer.tasks.push_back({parts[0], parse_number<std::int64_t>(parts[1]).value_or(-1), 1,
+                            find_state(parts[2]), parts[2], parts[3]});
   }
-  return tasks;
+  return answer;
+}
+
+/// Whether the text of `scontrol show job` has a field of that value.
+bool has_field(const std::string& text, const std::string& field) {
+  const std::size_t at = text.find(field);
+  return at != std::string::npos &&
+         (at + field.size() == text.size() ||
+          std::isspace(static_cast<unsigned char>(text[at + field.size()])) != 0);
 }
 
 /// The file that a task's output is appended to, as sbatch is to be told. Slurm puts numbers in
@@ -185,7 +197,7 @@ std::string make_output_pattern(const TaskArray& tasks) {
 /// would be lines that Slurm takes apart.
 std::vector<std::string> list_options(const TaskArray& tasks) {
   const Resources& r = tasks.resources;
-  std::vector<std::string> options = {"--job-name=" + tasks.name};
+  std::vector<std::string> options = {"--job-name=" + tasks.name, "--comment=" + tasks.mark};
   const auto set_given = [&](const std::string& option, const std::string& value) {
     if (!value.empty()) options.push_back(option + "=" + value);
   };
@@ -211,8 +223,9 @@ std::vector<std::string> list_options(const TaskArray& tasks) {
 /// Whether sbatch takes the option for one by which strut numbers and finds its jobs, or gets their
 /// numbers: also a name of which only the beginning is written.
 bool is_reserved(const std::string& option) {
-  static constexpr std::array<const char*, 7> kNames = {
-      "--array", "--clusters", "--job-name", "--parsable", "--test-only", "--wait", "--wrap"};
+  static constexpr std::array<const char*, 8> kNames = {"--array",    "--clusters", "--comment",
+                                                        "--job-name", "--parsable", "--test-only",
+                                                        "--wait",     "--wrap"};
   const std::string name = option.substr(0, option.find('='));
   if (!name.starts_with("--")) return std::string("aJMW").find(option[1]) != std::string::npos;
   return std::any_of(kNames.begin(), kNames.end(),
@@ -414,18 +427,22 @@ std::string SlurmDispatcher::submit(const TaskArray& tasks, const fs::path& scri
   return job;
 }
 
-std::string SlurmDispatcher::find_job(const std::string& name) const {
+std::string SlurmDispatcher::find_job(const JobRecord& record) const {
   const std::string jobs =
-      ask({"squeue", "-h", "-a", "--me", "-t", "all", "--name", name, "-o", "%F"});
-  return jobs.substr(0, jobs.find('\n'));
+      ask({"squeue", "-h", "-a", "--me", "-t", "all", "--name", record.name, "-o", "%F|%k"});
+  for (const std::string& line : split(jobs, '\n')) {
+    if (line.ends_with("|" + record.mark)) return line.substr(0, line.find('|'));
+  }
+  return "";
 }
 
 QueueAnswer SlurmDispatcher::query(const std::vector<JobRecord>& jobs) const {
   std::for_each(jobs.begin(), jobs.end(), &check_number);
   const ChildOutput output =
-      call({"squeue", "-h", "-a", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r|%j"});
+      call({"squeue", "-h", "-a", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r|%j|%k"});
   if (output.code != 0) return {{}, "squeue: " + output.explain()};
-  QueueAnswer answer{parse_queue(output.out, jobs), ""};
+  QueueAnswer answer = parse_queue(output.out, jobs);
+  if (!answer.silence.empty()) return answer;
   // What squeue passes over has ended only where the controller says that there is no such job, or
   // that the number is another's.
   for (const JobRecord& record : jobs) {
@@ -435,8 +452,8 @@ QueueAnswer SlurmDispatcher::query(const std::vector<JobRecord>& jobs) const {
     const ChildOutput known = call({"scontrol", "show", "job", record.job});
     const bool is_gone =
         known.code != 0 && (known.out + known.messages).find("Invalid job id") != std::string::npos;
-    const bool is_ours = known.out.find("JobName=" + record.name + "\n") != std::string::npos ||
-                         known.out.find("JobName=" + record.name + " ") != std::string::npos;
+    const bool is_ours = has_field(known.out, "JobName=" + record.name) &&
+                         has_field(known.out, "Comment=" + record.mark);
     if (is_gone || (known.code == 0 && !is_ours)) continue;
     return {{},
             "squeue does not list job " + record.job + ", and scontrol " +
@@ -446,10 +463,18 @@ QueueAnswer SlurmDispatcher::query(const std::vector<JobRecord>& jobs) const {
 }
 
 void SlurmDispatcher::cancel(const std::vector<JobRecord>& jobs) const {
-  std::for_each(jobs.begin(), jobs.end(), &check_number);
+  const QueueAnswer answer = query(jobs);
+  if (!answer.silence.empty()) {
+    throw EnvironmentError(answer.silence + "; nothing is cancelled, scancel does it by hand");
+  }
   // Root may cancel anybody's jobs, and a number may be another's by now.
   const std::string mine = "--user=" + find_user();
-  for (const JobRecord& record : jobs) ask({"scancel", mine, "--name=" + record.name, record.job});
+  for (const JobRecord& record : jobs) {
+    const bool is_queued = std::any_of(
+        answer.tasks.begin(), answer.tasks.end(),
+        [&](const auto& t) { return t.job == record.job && t.state != TaskState::kEnded; });
+    if (is_queued) ask({"scancel", mine, "--name=" + record.name, record.job});
+  }
 }
 
 bool SlurmDispatcher::requeue_own() const {

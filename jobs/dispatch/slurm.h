@@ -23,7 +23,7 @@ class SlurmDispatcher : public Dispatcher {
   std::string try_tasks(const TaskArray& tasks) const override;
   std::string submit(const TaskArray& tasks, const std::filesystem::path& script,
                      const std::vector<std::string>& after) const override;
-  std::string find_job(const std::string& name) const override;
+  std::string find_job(const JobRecord& record) const override;
   QueueAnswer query(const std::vector<JobRecord>& jobs) const override;
   void cancel(const std::vector<JobRecord>& jobs) const override;
   bool requeue_own() const override;

@@ -60,7 +60,7 @@ void write_submission(const Submission& s, const Folder& folder) {
 /// A text that begins so and of which every character is one of `allowed`. Throws InputError.
 std::string read_word(const Table& root, const std::string& key, const std::string& begin,
                       const std::string& allowed) {
-  const std::string word = root.text(key);
+  std::string word = root.text(key);
   constexpr std::size_t kMostBytes = 255;
   if (word.size() <= kMostBytes && word.starts_with(begin) &&
       word.find_first_not_of(allowed) == std::string::npos) {

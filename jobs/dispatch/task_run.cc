@@ -6,6 +6,7 @@
 #include "io/input_error.h"
 #include "io/parse_number.h"
 #include "io/process_identity.h"
+#include "jobs/dispatch/record_file.h"
 
 namespace strut {
 std::string make_task_name(const std::string& submission, std::size_t array,
@@ -13,7 +14,7 @@ std::string make_task_name(const std::string& submission, std::size_t array,
   return submission + "/" + std::to_string(array) + "/" + task;
 }
 
-TaskRun::TaskRun(const SweepFolder& folder, const std::string& name) {
+TaskRun::TaskRun(const SweepFolder& folder, const std::string& name, std::int64_t shard_count) {
   const std::size_t first = name.find('/');
   const std::size_t second = first == std::string::npos ? first : name.find('/', first + 1);
   if (second == std::string::npos) {
@@ -26,6 +27,12 @@ TaskRun::TaskRun(const SweepFolder& folder, const std::string& name) {
       *task >= submission_.arrays[*array].tasks()) {
     throw InputError("--task " + name + ": submission " + submission_.name() +
                      " has no such task; `strut run` without --task does all that is missing");
+  }
+  if (submission_.arrays[*array].shards.end > shard_count) {
+    throw InputError("--task " + name + ": " + submission_.folder.string() +
+                     ": not of this sweep: it has shards up to " +
+                     std::to_string(submission_.arrays[*array].shards.end) + ", the plan " +
+                     std::to_string(shard_count) + kRecordRemedy);
   }
   shards_ = submission_.arrays[*array].get_task(*task);
   array_ = submission_.open().make_folder(submission_.array_name(*array));

@@ -19,7 +19,7 @@ std::string make_task_name(const std::string& submission, std::size_t array,
 class TaskRun {
  public:
   /// `name`: SUBMISSION/ARRAY/TASK. Throws InputError where there is no such task.
-  TaskRun(const SweepFolder& folder, const std::string& name);
+  TaskRun(const SweepFolder& folder, const std::string& name, std::int64_t shard_count);
 
   ShardRange shards() const { return shards_; }
 
