@@ -46,17 +46,21 @@ int run_cancel(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const std::string root = sweep.folder.root.string();
   std::string dispatcher;  // of the last that was cancelled
+  bool is_unknown = false;
   for (const Submission& submission : list_submissions(sweep.folder)) {
     const SubmissionState state = follow(submission);
     if (state.queue == QueueState::kEnded) continue;
     if (state.queue == QueueState::kUnknown) {
-      throw EnvironmentError("submission " + submission.name() +
-                             ": whether it still runs is unknown: " + state.why +
-                             "; nothing of it is cancelled; try again once the scheduler answers");
+      tell_error("submission " + submission.name() +
+                 ": whether it still runs is unknown: " + state.why +
+                 "; nothing of it is cancelled; try again later, or stop its job by hand");
+      is_unknown = true;
+      continue;
     }
     cancel(submission);
     dispatcher = submission.dispatcher;
   }
+  if (is_unknown) return kExitEnvironment;
   if (dispatcher.empty()) {
     std::cout << "nothing to cancel: no submission waits or runs\n";
     tell_next({"strut", "status", root});

@@ -196,7 +196,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   };
   const Submission ended = queue("ours");
   const std::string mark = make_job_mark(sweep.root, ended.job_name("array-0"));
-  const std::string name = "|" + ended.job_name("array-0") + "|" + mark + "'";
+  const std::string name = "|" + mark + "|" + ended.job_name("array-0") + "'";
   slurm.say("squeue",
             "echo '4711|0|RUNNING|None" + name + "; echo '4711|1|PENDING|Resources" + name);
   const SubmissionState running = follow(ended);
@@ -204,7 +204,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   CHECK(running.running == 1);
   CHECK(running.live == Ranges{{0, 5}, {5, 10}});
   // A job of a copied folder: whether this one's runs is not known, and it is not stopped.
-  slurm.say("squeue", "echo '4711|0|RUNNING|None|" + ended.job_name("array-0") + "|0123'");
+  slurm.say("squeue", "echo '4711|0|RUNNING|None|0123|" + ended.job_name("array-0") + "'");
   slurm.say("scancel", "touch " + (folder / "cancelled").string());
   const SubmissionState copied = follow(ended);
   CHECK(copied.queue == QueueState::kUnknown);
@@ -240,7 +240,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
 
   // A number that the scheduler has given to another job since.
   const Submission lost = queue("ours");
-  slurm.say("squeue", "echo '4711|0|RUNNING|None|other|'");
+  slurm.say("squeue", "echo '4711|0|RUNNING|None||other'");
   slurm.say("scontrol", config + "echo 'JobId=4711 JobName=other'");
   CHECK(follow(lost).queue == QueueState::kEnded);
 

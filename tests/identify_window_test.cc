@@ -34,8 +34,8 @@ struct Recording {
 fs::path record(const TemporaryFolder& folder, const std::string& name, const Recording& r) {
   const fs::path run = folder / (name + "_run.csv");
   fs::path file = folder / name;
-  REQUIRE(run_program("simulate " + kCar + " " + kBump + " -o " + run.string() + " --rate " +
-                      r.rate + " --set duration=1.5 " + r.car)
+  REQUIRE(run_program("simulate " + kCar + " " + kBump + " -o " + run.string() +
+                      " --force --rate " + r.rate + " --set duration=1.5 " + r.car)
               .code == 0);
   const CsvTable table = read_csv(run);
   const NoiseModel noise{{0.02 * r.noise, 1e-3 * r.noise}, {0.3, 0.02}};

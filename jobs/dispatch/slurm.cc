@@ -154,7 +154,7 @@ TaskState find_state(const std::string& word) {
   return ended.count(word) > 0 ? TaskState::kEnded : TaskState::kRunning;
 }
 
-/// Lines of `squeue -r -o %F|%K|%T|%r|%j|%k` about these jobs.
+/// Lines of `squeue -r -o %F|%K|%T|%r|%k|%j` about these jobs.
 QueueAnswer parse_queue(const std::string& text, const std::vector<JobRecord>& jobs) {
   std::map<std::string, const JobRecord*> records;
   for (const JobRecord& record : jobs) records[record.job] = &record;
@@ -163,9 +163,9 @@ QueueAnswer parse_queue(const std::string& text, const std::vector<JobRecord>& j
     const std::vector<std::string> parts = split(line, '|');
     if (parts.size() < 6) continue;
     const auto found = records.find(parts[0]);
-    if (found == records.end() || found->second->name != parts[4]) continue;
-    if (found->second->mark != parts[5]) {
-      return {{}, describe_foreign("job " + parts[0], parts[4])};
+    if (found == records.end() || found->second->name != parts[5]) continue;
+    if (found->second->mark != parts[4]) {
+      return {{}, describe_foreign("job " + parts[0], parts[5])};
     }
     answer.tasks.push_back({parts[0], parse_number<std::int64_t>(parts[1]).value_or(-1), 1,
                             find_state(parts[2]), parts[2], parts[3]});
@@ -439,7 +439,7 @@ std::string SlurmDispatcher::find_job(const JobRecord& record) const {
 QueueAnswer SlurmDispatcher::query(const std::vector<JobRecord>& jobs) const {
   std::for_each(jobs.begin(), jobs.end(), &check_number);
   const ChildOutput output =
-      call({"squeue", "-h", "-a", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r|%j|%k"});
+      call({"squeue", "-h", "-a", "-r", "--me", "-t", "all", "-o", "%F|%K|%T|%r|%k|%j"});
   if (output.code != 0) return {{}, "squeue: " + output.explain()};
   QueueAnswer answer = parse_queue(output.out, jobs);
   if (!answer.silence.empty()) return answer;
@@ -452,9 +452,11 @@ QueueAnswer SlurmDispatcher::query(const std::vector<JobRecord>& jobs) const {
     const ChildOutput known = call({"scontrol", "show", "job", record.job});
     const bool is_gone =
         known.code != 0 && (known.out + known.messages).find("Invalid job id") != std::string::npos;
-    const bool is_ours = has_field(known.out, "JobName=" + record.name) &&
-                         has_field(known.out, "Comment=" + record.mark);
-    if (is_gone || (known.code == 0 && !is_ours)) continue;
+    const bool is_named_so = has_field(known.out, "JobName=" + record.name);
+    if (is_gone || (known.code == 0 && !is_named_so)) continue;
+    if (known.code == 0 && !has_field(known.out, "Comment=" + record.mark)) {
+      return {{}, describe_foreign("job " + record.job, record.name)};
+    }
     return {{},
             "squeue does not list job " + record.job + ", and scontrol " +
                 (known.code == 0 ? "knows it" : "says: " + known.explain())};
