@@ -324,6 +324,30 @@ TEST_CASE("Parts partition the rows and bounds are those of the training part", 
   }
 }
 
+TEST_CASE("Rows of the other parts do not widen the bounds, whatever the seed", "[unit]") {
+  int narrower = 0;  // seeds that leave the lowest or the highest row to another part
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    UsableRows usable{{{"x", "m", ""}}, {{"p", "N", ""}}, RowStore(2)};
+    for (int i = 0; i < 40; ++i) {
+      usable.rows.append(std::vector<double>{static_cast<double>(i), 2.0 * i});
+    }
+    const TrainingRows parts = split_rows(std::move(usable), {.seed = seed});
+    double low = 1e300, high = -1e300;
+    for_each_piece(parts.train, [&](std::span<const double> rows, std::size_t, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) {
+        low = std::min(low, rows[2 * i]);
+        high = std::max(high, rows[2 * i]);
+      }
+    });
+    INFO("seed " << seed);
+    CHECK(parts.input_map.low()[0] == low);
+    CHECK(parts.input_map.high()[0] == high);
+    CHECK(parts.target_map.high()[0] == 2.0 * high);
+    narrower += low > 0.0 || high < 39.0 ? 1 : 0;
+  }
+  CHECK(narrower > 0);
+}
+
 TEST_CASE("A constant column and too few cases for three parts are told", "[unit]") {
   UsableRows usable{{{"x", "m", ""}, {"y", "m", ""}}, {{"p", "N", ""}}, RowStore(3)};
   for (int i = 0; i < 20; ++i) {

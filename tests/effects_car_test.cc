@@ -224,6 +224,83 @@ TEST_CASE("The whole car's pitch inertia is what the effect says", "[unit][effec
         Approx(calc_inertia(c)).epsilon(tolerance(1e-12)));
 }
 
+/// The car's workspace and derivative at a state.
+struct Evaluation {
+  Workspace<double> ws{};
+  State<double> dx{};
+  PreparedCase prepared;
+};
+
+Evaluation evaluate(const Case& c, const State<double>& x) {
+  Evaluation e{{}, {}, prepare(c)};
+  const NewtonClosure<double> closure{&e.prepared.vehicle.layout, &e.prepared.vehicle.numbers};
+  calc_derivative(e.prepared.vehicle, closure, TireMode::kRolling, x.data(), e.dx.data(), e.ws);
+  return e;
+}
+
+TEST_CASE("A payload adds its point's inertia about the chassis origin", "[unit][effects]") {
+  State<double> x{};
+  x[I::kQuaternion] = 1.0;
+  x[I::kPosition + 2] = 0.5373;
+  const double mass = 60.0, at_x = -0.5, at_z = 0.1;
+  const Evaluation bare = evaluate(make_case(), x);
+  const Evaluation loaded = evaluate(make_case({{"payload", "body", {mass, at_x, at_z}}}), x);
+  const auto added = [&](double Sym3<double>::*element) {
+    return loaded.ws.inertia.*element - bare.ws.inertia.*element;
+  };
+  CHECK(added(&Sym3<double>::xx) == Approx(mass * at_z * at_z).epsilon(tolerance(1e-9)));
+  CHECK(added(&Sym3<double>::yy) ==
+        Approx(mass * (at_x * at_x + at_z * at_z)).epsilon(tolerance(1e-9)));
+  CHECK(added(&Sym3<double>::zz) == Approx(mass * at_x * at_x).epsilon(tolerance(1e-9)));
+}
+
+TEST_CASE("The long radius of an out-of-round wheel presses its tire in", "[unit][effects]") {
+  const double amplitude = 3e-4, phase = 0.5, angle = 0.4;
+  State<double> x{};
+  x[I::kQuaternion] = 1.0;
+  x[I::kPosition + 2] = 0.5373;
+  for (int c = 0; c < kCorners; ++c) x[I::kWheelAngle + c] = angle;
+  const Evaluation round = evaluate(make_case(), x);
+  const Evaluation odd = evaluate(make_case({{"wheel_runout", "rear", {amplitude, phase}}}), x);
+  for (int c = 0; c < kCorners; ++c) {
+    const double wanted = c < 2 ? 0.0 : amplitude * std::cos(angle + phase);
+    // The wheel plane leans a little: its radius is longer by its camber's cosine.
+    CHECK(odd.ws.contact[c].deflection - round.ws.contact[c].deflection ==
+          Approx(wanted).epsilon(tolerance(1e-2)).margin(1e-15));
+  }
+}
+
+TEST_CASE("Each slip lags by its own relaxation length", "[unit]") {
+  Case c = make_case();
+  c.vehicle.tire.relaxation = true;
+  c.vehicle.pacejka.PTX1 = 2.0;
+  c.vehicle.pacejka.PTY1 = 1.2;
+  c.vehicle.pacejka.PTY2 = 1.5;
+  const State<double> x = make_state(3);
+  const Evaluation e = evaluate(c, x);
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const TireSlipState<double>& slip = e.ws.slip[corner];
+    const auto& p = c.vehicle.pacejka;
+    const double load = e.ws.contact[corner].load, nominal = p.LFZO * p.FNOMIN;
+    const double dfz = load / nominal - 1.0;
+    const double camber = dot(e.ws.wheel[corner].axis, e.ws.contact[corner].normal);
+    // Longhand; of the scale factors only LFZO is not 1.
+    const double kappa_length =
+        load * (p.PTX1 + p.PTX2 * dfz) * std::exp(-p.PTX3 * dfz) * p.UNLOADED_RADIUS / p.FNOMIN;
+    const double alpha_length = p.PTY1 * std::sin(2.0 * std::atan(load / (p.PTY2 * nominal))) *
+                                (1.0 - p.PKY3 * std::abs(camber)) * p.UNLOADED_RADIUS * p.LFZO;
+    REQUIRE(kappa_length > 0.1);
+    REQUIRE(alpha_length > 0.1);
+    REQUIRE(std::abs(kappa_length / alpha_length - 1.0) > 0.05);
+    CHECK(e.dx[I::kKappa + corner] ==
+          Approx(slip.speed * (slip.kappa - x[I::kKappa + corner]) / kappa_length)
+              .epsilon(tolerance(1e-9)));
+    CHECK(e.dx[I::kTanAlpha + corner] ==
+          Approx(slip.speed * (slip.tan_alpha - x[I::kTanAlpha + corner]) / alpha_length)
+              .epsilon(tolerance(1e-9)));
+  }
+}
+
 EffectSettings make_many() {
   return {{"damper_asymmetry", "front", {0.3}},
           {"damper_blow_off", "rear", {0.5, 0.3}},

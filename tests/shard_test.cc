@@ -299,6 +299,20 @@ TEST_CASE("A shard of another schema version or shape is refused by name", "[io]
   CHECK_THROWS_WITH(read_shard(write_changed(folder, other, 1)), Contains("checksum"));
 }
 
+TEST_CASE("A data digest counts its rows", "[unit]") {
+  DataDigest once, twice, removed;
+  const Hash row = calc_sha256("x");
+  once.add(row);
+  twice.add(row);
+  twice.add(Hash{});  // adds nothing to the sums
+  CHECK(once.text() != twice.text());
+  CHECK(DataDigest().text() != once.text());
+  removed.add(row);
+  removed.add(calc_sha256("y"));
+  removed.subtract(calc_sha256("y"));
+  CHECK(removed.text() == once.text());
+}
+
 TEST_CASE("A damaged shard never reaches the HDF5 library", "[io][property]") {
   const TemporaryFolder folder;
   const std::vector<std::byte> good = make_example_image(4);

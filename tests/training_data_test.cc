@@ -28,6 +28,11 @@ TEST_CASE("The five figures of an identification are those of a worked example",
   CHECK(m.r2 == Approx(1.0 - 6.0 / 500.0).epsilon(tolerance(1e-15)));
 }
 
+TEST_CASE("Percentages of negative references are those of positive ones", "[unit]") {
+  const Metrics m = calc_metrics(std::vector{-10.0, 20.0}, std::vector{-9.0, 22.0});
+  CHECK(m.mean_absolute_percentage == Approx(10.0).epsilon(tolerance(1e-14)));
+}
+
 TEST_CASE("A prediction that is no number shows in every figure", "[unit]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Metrics m = calc_metrics(std::vector{1.0, 2.0, 3.0}, std::vector{1.0, nan, 3.0});
