@@ -120,13 +120,17 @@ class Bystander {
     while (read_word(1) != "(sleep)") std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   ~Bystander() {
+    if (!lives()) return;
     ::kill(pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
   }
   Bystander(const Bystander&) = delete;
   Bystander& operator=(const Bystander&) = delete;
 
-  bool lives() const { return ::waitpid(pid_, nullptr, WNOHANG) == 0; }
+  bool lives() {
+    has_ended_ = has_ended_ || ::waitpid(pid_, nullptr, WNOHANG) != 0;
+    return !has_ended_;
+  }
 
   /// As a submission's file names it.
   JobRecord make_record(const std::string& mark) const {
@@ -147,20 +151,21 @@ class Bystander {
   }
 
   pid_t pid_;
+  bool has_ended_ = false;  // and its number may be another's
 };
 
 TEST_CASE("cancel stops a process that bears the job's mark, and no other", "[io]") {
   const std::string mark(32, 'b');
   const LocalDispatcher dispatcher;
   for (const std::string& other : {std::string(), std::string(32, 'c')}) {
-    const Bystander bystander(other);
+    Bystander bystander(other);
     const JobRecord record = bystander.make_record(mark);
     CHECK_THROWS_WITH(dispatcher.cancel({record}),
                       Contains("not proved to be job") && Contains("nothing is stopped"));
     CHECK_THAT(dispatcher.query({record}).silence, Contains("copied"));
     CHECK(bystander.lives());
   }
-  const Bystander job(mark);
+  Bystander job(mark);
   const Bystander foreign("");
   // None is stopped where one of them is not proved.
   CHECK_THROWS_AS(dispatcher.cancel({job.make_record(mark), foreign.make_record(mark)}),
