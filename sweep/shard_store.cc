@@ -52,7 +52,7 @@ const JournalEntry* ShardRecords::find_line(const fs::path& file) const {
 
 std::string ShardRecords::find_fault(const fs::path& file, std::int64_t shard,
                                      const ShardSeal& seal) const {
-  const std::string fault = find_misplacement(seal, extent_.plan_hash, shard);
+  std::string fault = find_misplacement(seal, extent_.plan_hash, shard);
   if (!fault.empty()) return fault;
   const JournalEntry* const line = find_line(file);
   const bool is_as_published = line == nullptr || line->sha256 == seal.sha256 ||
