@@ -20,7 +20,6 @@ using Catch::Matchers::Contains;
 using test::Outcome;
 using test::ProgramSweep;
 using test::read_text;
-using test::run_program;
 using test::run_shell;
 using test::run_sweep_command;
 
@@ -40,7 +39,7 @@ std::map<std::string, std::string> read_all(const fs::path& folder) {
 
 /// Somebody's folder, with names that could be taken for ours.
 fs::path make_victim(const std::string& name) {
-  const fs::path victim = get_sweep() / name;
+  fs::path victim = get_sweep() / name;
   fs::remove_all(victim);
   fs::create_directory(victim);
   for (const char* file : {"thesis.tex", "000000.h5", "000000", "host.1.0123456789abcdef.0",
@@ -129,7 +128,7 @@ TEST_CASE("What killed processes leave in a sweep folder is collected by the nex
   std::vector<std::string> names = {"claims/new." + dead + ".0", "claims/new." + dead + ".1",
                                     "claims/new." + dead + ".2", "claims/000001~0123456789abcdef",
                                     "tmp/" + dead + ".0"};
-  std::ofstream(sweep / names[0]);                  // killed before it wrote who it is
+  std::ofstream(sweep / names[0]) << "";            // killed before it wrote who it is
   std::ofstream(sweep / names[1]) << identity;      // before it named its runner's file
   std::ofstream(sweep / names[2]) << dead << "\n";  // before it named a claim
   std::ofstream(sweep / names[3]) << dead << "\n";  // while it took a claim over
