@@ -62,8 +62,8 @@ class SlurmCluster {
   ~SlurmCluster() { stop(); }
 
   void start_controller() { start("slurmctld"); }
-  /// Waits until the controller has written down what it knows of its jobs, which it does every few
-  /// seconds while something happens to them: what it loses beyond that is Slurm's, not ours.
+  /// Waits until the controller has written down what it knows of its jobs, which it does some
+  /// seconds after something happened to one: what it loses beyond that is Slurm's, not ours.
   bool wait_until_saved() {
     const std::string file = path("state/job_state");
     const auto when = [&] {
@@ -71,6 +71,7 @@ class SlurmCluster {
       return std::filesystem::last_write_time(file, missing);
     };
     const auto before = when();
+    ask("scontrol update JobId=$(squeue -h -o %F | head -n 1) Requeue=1");
     return wait_until([&] { return when() != before; });
   }
   /// As if its machine had lost power.

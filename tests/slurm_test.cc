@@ -215,8 +215,17 @@ TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]")
   SlurmCluster cluster(2);
   const fs::path sweep = get_sweep().copy("two");
   REQUIRE(submit(sweep).code == 0);
-  find_running();
+  // However fast the machine: no task ends before its node does.
+  const auto signal_tasks = [&](const std::string& signal) {
+    test::run_shell("pkill -" + signal + " -f '[r]un " + sweep.string() + " .*--task 001/0/'");
+  };
+  const auto runs_on_second_node = [&] {
+    signal_tasks("STOP");
+    return !SlurmCluster::ask("squeue -h -t running -w n2").empty();
+  };
+  REQUIRE(wait_until(runs_on_second_node));
   REQUIRE(cluster.wait_until_saved());
+  signal_tasks("STOP");
   cluster.kill_controller();
   // Nobody knows: that is neither the end nor a reason to queue anything anew.
   const auto silent = read_status(sweep).get_child("submissions").back().second;
@@ -224,9 +233,10 @@ TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]")
   const Outcome refused = submit(sweep);
   CHECK(refused.code == 3);
   cluster.start_controller();
-  REQUIRE(wait_until([] { return !SlurmCluster::ask("squeue -h -t running -w n2").empty(); }));
+  REQUIRE(wait_until(runs_on_second_node));
   REQUIRE(test::run_shell("scontrol update NodeName=n2 State=DOWN Reason=test >/dev/null").code ==
           0);
+  signal_tasks("CONT");
   REQUIRE(wait_for_end(sweep));
   // The scheduler put what ran there back by itself.
   const auto ended = read_status(sweep);
