@@ -25,9 +25,10 @@ constexpr double kResponseError = 0.003;
 struct Below {
   const char* name;
   double share;
+  bool is_bump;
 };
 constexpr std::array<Below, 3> kBelow = {
-    {{"bump_height", 0.1}, {"bump_length", 0.1}, {"tire_stiffness", 0.2}}};
+    {{"bump_height", 0.1, true}, {"bump_length", 0.1, true}, {"tire_stiffness", 0.2, false}}};
 
 bool has_channel(const std::vector<MeasuredChannel>& channels, int channel) {
   return std::any_of(channels.begin(), channels.end(),
@@ -76,6 +77,7 @@ Start make_start(const CampaignData& data, const SharedValues& shared, const Run
   std::vector<MeasuredRun> cars = data.cars;
   set_parameters(cars.front().setup, at.unknowns, at.values, 0);
   for (const Below& below : kBelow) {
+    if (below.is_bump && !cars.front().setup.maneuver.road.has_formula()) continue;
     Unknown u = make_parameter(cars, below.name);
     if (!(u.start > 0.0)) continue;  // a level road
     u.prior = {u.start, below.share * u.start};

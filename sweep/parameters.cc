@@ -188,10 +188,10 @@ void add_bump(Parameters& list, const std::string& name, double default_value, c
               const std::string& description, Field field) {
   add_number(list, name, default_value, allowed, description, kPaperText, field);
   list.back().set = [field, name](Case& c, double value) {
-    const BumpShape shape = c.maneuver.road.shape;
-    if (shape == BumpShape::kTable || shape == BumpShape::kNone) {
+    const RoadSpec& road = c.maneuver.road;
+    if (!road.has_formula()) {
       throw InputError(name + ": cannot be set, the maneuver's bump is " +
-                       (shape == BumpShape::kNone ? "\"none\"" : "a table"));
+                       (road.shape == BumpShape::kNone ? "\"none\"" : "a table"));
     }
     field(c) = value;
   };

@@ -194,6 +194,13 @@ TEST_CASE("Effects that are numbers of car and maneuver equal those numbers", "[
   c.maneuver.road.length *= 1.1;
   CHECK(run_alike(with({"bump_length", "road", {0.1}}), c));
   c = make_case();
+  c.maneuver.road.shape = BumpShape::kTrapezoid;
+  Case longer = c;
+  longer.vehicle.effects = {{"bump_length", "road", {0.1}}};
+  c.maneuver.road.length *= 1.1;
+  c.maneuver.road.ramp *= 1.1;
+  CHECK(run_alike(longer, c));
+  c = make_case();
   c.maneuver.speed *= 1.0 + 0.02;
   CHECK(run_alike(with({"speed_error", "road", {0.02}}), c));
   c = make_case();

@@ -135,6 +135,22 @@ TEST_CASE("A spring that cannot carry the car is refused", "[unit]") {
                     Catch::Contains("front_suspension.spring.stiffness = 8000 N/m"));
 }
 
+TEST_CASE("An equilibrium beyond a corner's travel is refused", "[unit]") {
+  PreparedCase c = prepare(make_flat_case(make_worn_spec()));
+  const TrimResult trim = rest(c);
+  double sag = 0.0;
+  for (int corner = 0; corner < kCorners; ++corner) {
+    sag = std::max(sag, std::abs(trim.state[I::kCorner + corner]));
+  }
+  const auto set_travel = [&](double half_travel) {
+    for (auto& predictor : c.vehicle.layout.predictor) predictor.half_travel = half_travel;
+  };
+  set_travel(1.01 * sag);
+  CHECK_NOTHROW(rest(c));
+  set_travel(0.99 * sag);
+  CHECK_THROWS_WITH(rest(c), Catch::Contains("finds none at rest within"));
+}
+
 TEST_CASE("A torque the tires cannot pass on leaves no steady rolling", "[unit]") {
   Case c = make_flat_case(reference::make_paper_sedan_spec());
   c.maneuver.drive_torque = 2e4;  // 43 kN at the radius, five times the load on the front tires

@@ -38,7 +38,8 @@ std::array<double, 6> to_array(const TireForce<double>& f) {
 
 // Rows made by tests/reference/pac2002_longhand.py: load, kappa, alpha, camber, speed; fx, fy, mx,
 // my, mz, slip stiffness.
-constexpr std::array<std::array<double, 11>, 12> kLonghand = {{
+using LonghandRows = std::array<std::array<double, 11>, 12>;
+constexpr LonghandRows kLonghand = {{
     {{3928.5, 0, 0, 0, 20, 107.687975108453, -37.467506024166, 17.6487835946137, -21.0380170403092,
       -9.13215568011672, 87617.3355}},
     {{4207, 0.012, 0, 0, 20, 1236.26647159083, -12.6397433018062, 19.4031371396594,
@@ -65,12 +66,45 @@ constexpr std::array<std::array<double, 11>, 12> kLonghand = {{
       -21.3805434838445, 43.7894497815486, 89593.4855597243}},
 }};
 
-TEST_CASE("The tire is the printed PAC2002", "[reference]") {
+// With every scale factor other than one.
+constexpr LonghandRows kScaledLonghand = {{
+    {{3928.5, 0, 0, 0, 20, 130.204354272451, 36.3120149345341, 17.0367985941018, -30.5298406609052,
+      -9.04480654851683, 93105.4552631401}},
+    {{4207, 0.012, 0, 0, 20, 1314.32117124468, 82.7991232470939, 19.5165036648677,
+      -34.0861036396005, 1.74950222562704, 101129.295004807}},
+    {{4207, 0.012, 0.002, 0.01, 20, 1310.98757576138, -81.7390341868533, 7.05257117245812,
+      -34.0821849807959, 6.94166194279374, 101129.295004807}},
+    {{1459, -0.03, -0.015, -0.02, 20, -799.166468604181, 371.28625440838, 15.0282937908111,
+      -10.9595585232293, -11.7546356496972, 30491.7842320571}},
+    {{2500, 0.1, 0, 0.03, 3, 2623.29873031135, 205.46927401682, -0.60208810928141,
+      -19.0784258408897, 28.4873048103186, 55093.4567007552}},
+    {{2500, -0.25, 0.08, 0, 3, -2276.55133407122, -1161.63316671173, -8.63577355376096,
+      -15.6556785152458, -28.9408937871931, 55093.4567007552}},
+    {{9000, 0.05, -0.12, 0.05, 30, 4084.843035503, 5717.24731351139, 286.386875857598,
+      -88.7811381774696, -32.8229370421761, 276042.193570183}},
+    {{9000, -0.8, 0.3, -0.05, 10, -4905.20113467107, -2546.88674699028, -27.0063219221958,
+      -52.4012674442746, -77.9782782103813, 276042.193570183}},
+    {{500, 0.02, 0.04, 0, -5, 170.602093224688, -304.057144987718, 1.06153663556069,
+      3.51408431012304, 1.36464584322414, 9951.06685371976}},
+    {{14000, 0.03, 0.01, 0, 20, 9538.66696315833, -1418.78952885629, -71.7747368059056,
+      -145.603543539837, 163.342980295997, 454641.424611429}},
+    {{100, -0.02, -0.01, 0, 20, -36.1050999072176, 16.5768807569952, 0.420836789288613,
+      -0.772490386118327, -0.702745437525239, 1962.50447767805}},
+    {{4000, 0, 0.1, 0, 20, 74.3541312782414, -3493.80017990625, -74.4877210307116,
+      -31.0230719695377, 34.4693355540324, 95145.6429486835}},
+}};
+
+/// The paper's tire with what its file leaves at zero: overturning couple, terms of the speed.
+Pac2002<double> make_whole_tire() {
   Pac2002<double> p = read_paper_tire();
   p.QSX1 = 0.01, p.QSX2 = 0.3, p.QSX3 = 0.05;
   p.QSY2 = 0.002, p.QSY3 = 0.001, p.QSY4 = 0.0001;
   p.PDX3 = 1.5, p.QBZ10 = 0.1;
-  for (const auto& row : kLonghand) {
+  return p;
+}
+
+void check_longhand(const Pac2002<double>& p, const LonghandRows& rows) {
+  for (const auto& row : rows) {
     const TireSlip<double> slip{row[0], row[1], row[2], row[3], row[4]};
     for (const Pac2002Parts& parts : {Pac2002Parts{}, find_parts(p)}) {
       const auto f = to_array(calc_tire_force(p, slip, 1.0, parts));
@@ -80,6 +114,19 @@ TEST_CASE("The tire is the printed PAC2002", "[reference]") {
       }
     }
   }
+}
+
+TEST_CASE("The tire is the printed PAC2002", "[reference]") {
+  check_longhand(make_whole_tire(), kLonghand);
+}
+
+TEST_CASE("Each scale factor stands where the printed PAC2002 has it", "[reference]") {
+  Pac2002<double> p = make_whole_tire();
+  p.LFZO = 0.95, p.LCX = 1.03, p.LMUX = 0.85, p.LEX = 0.9, p.LKX = 1.1, p.LHX = 1.2, p.LVX = 0.8;
+  p.LGAX = 1.15, p.LCY = 0.97, p.LMUY = 0.9, p.LEY = 1.05, p.LKY = 0.93, p.LHY = 0.75;
+  p.LVY = 1.25, p.LGAY = 0.85, p.LTR = 1.12, p.LRES = 0.7, p.LGAZ = 1.3, p.LXAL = 0.88;
+  p.LYKA = 1.07, p.LVYKA = 1.4, p.LS = 0.6, p.LMX = 1.35, p.LVMX = 0.65, p.LMY = 1.45;
+  check_longhand(p, kScaledLonghand);
 }
 
 TEST_CASE("The bounded trigonometric functions are exact to rounding", "[reference]") {

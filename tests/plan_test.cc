@@ -138,8 +138,20 @@ TEST_CASE("The same seed draws the same cases in the same order, another seed ot
   const Replacements two_hundred = {{"\"all\"", "200"}};
   const auto first = list_cases(make_plan_of(make_sweep_text(two_hundred)));
   CHECK(list_cases(make_plan_of(make_sweep_text(two_hundred))) == first);
-  CHECK(list_cases(make_plan_of(
-            make_sweep_text({{"\"all\"", "200"}, {"seed   = 1", "seed = 2"}}))) != first);
+  const Plan other =
+      make_plan_of(make_sweep_text({{"\"all\"", "200"}, {"seed   = 1", "seed = 2"}}));
+  CHECK(list_cases(other) != first);
+  CHECK(other.list_drawn() != make_plan_of(make_sweep_text(two_hundred)).list_drawn());
+}
+
+TEST_CASE("All cases of a grid run in another order with another seed", "[unit]") {
+  const auto first = list_cases(make_plan_of(make_sweep_text()));
+  const auto other = list_cases(make_plan_of(make_sweep_text({{"seed   = 1", "seed = 2"}})));
+  std::size_t alike = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) alike += first[i] == other[i];
+  // Two random orders have one case in common on the average.
+  CHECK(alike < 10);
+  CHECK(std::set<std::int64_t>(other.begin(), other.end()).size() == first.size());
 }
 
 TEST_CASE("Layers by degradation are the sorted grid cut into equal parts", "[unit][reference]") {

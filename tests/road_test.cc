@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/math/xsimd_backend.h"
+#include "model/scenario/envelope.h"
 
 namespace strut {
 namespace {
@@ -253,6 +254,39 @@ TEST_CASE("The disc envelope is the highest of all contacts", "[reference][road]
       CHECK(height < found + step);
       // At a smooth contact it misses curvature * step^2 / 8, curvature below 30 / m.
       if (spec.shape != BumpShape::kTrapezoid) CHECK(height < found + 4.0 * step * step + 2e-12);
+    }
+  }
+}
+
+/// Straight lines through points that begin and end on the flat road.
+Profile make_line_profile(const std::vector<double>& x, const std::vector<double>& z) {
+  return {x, [=](std::size_t piece, double at) -> Jet {
+            const double slope = (z[piece + 1] - z[piece]) / (x[piece + 1] - x[piece]);
+            return {z[piece] + slope * (at - x[piece]), slope, 0.0};
+          }};
+}
+
+TEST_CASE("A peak that carries the disc for a fraction of a millimeter is found",
+          "[reference][road]") {
+  // Three peaks 50 mm apart; the middle one reaches by `excess` below a disc on the outer two.
+  const double outer = 0.03, apart = 0.05;
+  const auto calc_arc = [](double s) { return std::sqrt(kRadius * kRadius - s * s) - kRadius; };
+  for (int i = 0; i < 10; ++i) {
+    const double center = 0.1 + 3e-4 * i, excess = 2e-5;
+    const double middle = outer + calc_arc(apart) + excess;
+    const std::vector<double> x = {0.0,    center - apart,       center - 0.5 * apart,
+                                   center, center + 0.5 * apart, center + apart,
+                                   0.25};
+    const Profile profile = make_line_profile(x, {0.0, outer, 0.01, middle, 0.01, outer, 0.0});
+    const std::vector<Branch> branches = make_disc_envelope(profile, kRadius);
+    for (double at = center - 5e-4; at < center + 5e-4; at += 2e-5) {
+      const double truth =
+          std::max({outer + calc_arc(at - center + apart), outer + calc_arc(at - center - apart),
+                    middle + calc_arc(at - center)});
+      const auto branch = std::find_if(branches.begin(), branches.end(),
+                                       [&](const Branch& b) { return at < b.end; });
+      REQUIRE(branch != branches.end());
+      CHECK(branch->calc(at).value == Approx(truth).margin(1e-14));
     }
   }
 }

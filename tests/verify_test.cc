@@ -103,12 +103,13 @@ TEST_CASE("A shard beyond the plan and files of no sweep are found", "[unit]") {
 }
 
 /// Publishes `rows` as shard `number`, with everything about the file right.
-void replace_shard(const PlannedSweep& sweep, std::int64_t number, const ShardRows& rows) {
+void replace_shard(const PlannedSweep& sweep, std::int64_t number, const ShardRows& rows,
+                   const std::string& isa = list_kernels().front().isa) {
   const CompressedShard data = compress_shard(sweep.plan().make_schema(), rows);
   ShardProvenance provenance;
   provenance.plan_hash = sweep.plan().hash();
   provenance.shard = number;
-  provenance.texts = {{"instruction_set", list_kernels().front().isa}};
+  provenance.texts = {{"instruction_set", isa}};
   const std::vector<std::byte> image = make_shard_image(data, provenance);
   std::ofstream stream(sweep.folder().shard(number), std::ios::binary);
   stream.write(reinterpret_cast<const char*>(image.data()),
@@ -131,6 +132,23 @@ TEST_CASE("A shard that was replaced by a sound one with other data is found", "
   CHECK(!by_simulation.ok());
   CHECK(by_simulation.differing ==
         std::vector<std::string>{"case " + std::to_string(rows.case_id[1])});
+}
+
+TEST_CASE("A shard of another instruction set is compared to 1e-9", "[unit]") {
+  const PlannedSweep sweep;
+  sweep.run();
+  fs::remove(sweep.folder().journal());
+  const ShardRows sound = read_shard(sweep.folder().shard(1)).rows;
+  for (const double change : {0.0, 1e-10, 1e-8, 1e-4}) {
+    ShardRows rows = sound;
+    double& value = rows.snapshot[4];
+    value += change * std::max(1.0, std::abs(value));
+    replace_shard(sweep, 1, rows, "of another machine");
+    const VerifyReport report = sweep.verify(27);
+    INFO(change);
+    CHECK(report.compared_by_tolerance == 5);
+    CHECK(report.differing.size() == (change > 1e-9 ? 1 : 0));
+  }
 }
 
 TEST_CASE("A shard made again before the journal knew is as sound as the first", "[unit]") {

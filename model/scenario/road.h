@@ -27,6 +27,8 @@ struct RoadSpec {
   BumpSide side = BumpSide::kBoth;       // which wheels meet it; the caller's business
   std::vector<double> table_x, table_z;  // m, kTable: natural cubic spline, flat road outside
   bool operator==(const RoadSpec&) const = default;
+  /// Whether height and length (a trapezoid's ramp) describe it.
+  bool has_formula() const { return shape != BumpShape::kNone && shape != BumpShape::kTable; }
 };
 
 enum class ContactKind { kEnvelope, kPoint };

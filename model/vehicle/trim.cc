@@ -173,12 +173,7 @@ TrimResult solve_rolling(const Vehicle<double>& vehicle, const VehicleTables<dou
   TrimProblem problem = make_problem(vehicle, tables, center_height);
   problem.rolling = true;
   problem.speed = speed;
-  TrimResult result = solve(problem);
-  if (vehicle.layout.relaxation) {
-    State<double> dx{};
-    evaluate(problem, result.state, dx);
-  }
-  return result;
+  return solve(problem);
 }
 
 }  // namespace strut

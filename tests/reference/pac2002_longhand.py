@@ -1,6 +1,6 @@
 """PAC2002 written out as printed (Pacejka, Tyre and Vehicle Dynamics, 2nd ed., 4.3.2; Adams/Tire
-help): angles by atan and cos, forces multiplied by the load at once, no identities. Prints the table
-of tests/pac2002_test.cc:  python3 tests/reference/pac2002_longhand.py examples/tires/paper_sedan.tir
+help): angles by atan and cos, forces multiplied by the load at once, no identities. Prints the tables
+of tests/pac2002_test.cc, the second with every scale factor other than one:  python3 tests/reference/pac2002_longhand.py examples/tires/paper_sedan.tir
 """
 
 import sys
@@ -20,6 +20,11 @@ STATES = [  # load, kappa, alpha, camber, speed
     (100.0, -0.02, -0.01, 0.0, 20.0),
     (4000.0, 0.0, 0.1, 0.0, 20.0),
 ]
+
+SCALES = dict(
+    LFZO=0.95, LCX=1.03, LMUX=0.85, LEX=0.9, LKX=1.1, LHX=1.2, LVX=0.8, LGAX=1.15, LCY=0.97, LMUY=0.9,
+    LEY=1.05, LKY=0.93, LHY=0.75, LVY=1.25, LGAY=0.85, LTR=1.12, LRES=0.7, LGAZ=1.3, LXAL=0.88, LYKA=1.07,
+    LVYKA=1.4, LS=0.6, LMX=1.35, LVMX=0.65, LMY=1.45)
 
 
 def read(path):
@@ -117,6 +122,9 @@ if __name__ == "__main__":
     parameters = read(sys.argv[1])
     # The overturning couple and the speed terms are zero in the file: given here to be tested.
     parameters.update(QSX1=0.01, QSX2=0.3, QSX3=0.05, QSY2=0.002, QSY3=0.001, QSY4=0.0001, PDX3=1.5, QBZ10=0.1)
-    for state in STATES:
-        row = ", ".join(f"{x:.15g}" for x in state + tire(parameters, *state))
-        print("    {{" + row + "}},")
+    for scales in ({}, SCALES):
+        parameters.update(scales)
+        for state in STATES:
+            row = ", ".join(f"{x:.15g}" for x in state + tire(parameters, *state))
+            print("    {{" + row + "}},")
+        print()
