@@ -13,11 +13,11 @@
 #include <cstdlib>
 #include <functional>
 
+#include "base/least_squares/damped_system.h"
 #include "benchmarks/lm_peers.h"
-#include "jobs/machine.h"
-#include "tests/lm_study_problem.h"
-#include "train/damped_system.h"
-#include "train/growing_sample.h"
+#include "jobs/cli/machine.h"
+#include "tests/train/lm_study_problem.h"
+#include "train/network/growing_sample.h"
 
 namespace strut {
 namespace {
@@ -112,7 +112,7 @@ void measure_iteration(const Timer& timer, const StudyProblem& study, int thread
   double sum = timer.measure(
       "H and gradient", [&] { problem.calc_gram(weights.data(), 0, h.data(), gradient.data()); });
   if (threads == 1) measure_kernel(timer, shape, weights);
-  DampedSystem system(weights.size(), threads, get_train_kernel());
+  DampedSystem system(weights.size(), threads, get_cholesky_kernel());
   sum += timer.measure("Cholesky", [&] { system.factor(h, scale, 1.0); });
   sum += 2.0 * timer.measure("back substitution (twice)", [&] {
     Numbers x = gradient;

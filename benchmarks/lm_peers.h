@@ -1,7 +1,7 @@
 // Other people's Levenberg-Marquardt on the study problem, where it is installed.
 #pragma once
 
-#include "tests/lm_study_problem.h"
+#include "tests/train/lm_study_problem.h"
 
 namespace strut {
 

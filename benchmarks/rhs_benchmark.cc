@@ -12,11 +12,11 @@
 #include <memory>
 #include <vector>
 
+#include "base/math/xsimd_backend.h"
 #include "benchmarks/lane_backends/stdx_backend.h"
 #include "benchmarks/lane_backends/vector_backend.h"
 #include "model/kernel/run_cases.h"
-#include "model/math/xsimd_backend.h"
-#include "sweep/read_vehicle.h"
+#include "model_files/read_vehicle.h"
 #ifdef STRUT_HAS_HIGHWAY
 #include "benchmarks/lane_backends/highway_backend.h"
 #endif

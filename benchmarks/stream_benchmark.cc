@@ -18,9 +18,9 @@
 #include <mutex>
 #include <string>
 
-#include "io/shard.h"
-#include "model/math/random.h"
-#include "model/parallel/team.h"
+#include "base/math/random.h"
+#include "base/parallel/team.h"
+#include "io/store/shard.h"
 
 namespace strut {
 namespace {

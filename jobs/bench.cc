@@ -12,17 +12,17 @@
 #include <mutex>
 #include <optional>
 
-#include "jobs/arguments.h"
+#include "base/parallel/team.h"
+#include "base/text/quote_word.h"
 #include "jobs/bench/find_example.h"
 #include "jobs/bench/report.h"
-#include "jobs/command.h"
-#include "jobs/dispatch/quote_word.h"
-#include "jobs/interrupt.h"
-#include "jobs/machine.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/progress.h"
-#include "model/parallel/team.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/machine.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/progress.h"
 
 namespace strut {
 namespace {

@@ -1,7 +1,7 @@
 // `strut bench`: throughput and accuracy of this machine.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

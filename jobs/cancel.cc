@@ -3,10 +3,10 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "jobs/command.h"
-#include "jobs/dispatch/follow.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
+#include "cluster/follow.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
 
 namespace strut {
 namespace {

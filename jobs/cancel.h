@@ -1,7 +1,7 @@
 // strut cancel: ends what `strut submit` began.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

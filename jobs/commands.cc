@@ -1,6 +1,6 @@
 #include "jobs/commands.h"
 
-#include "io/nearest_name.h"
+#include "base/text/nearest_name.h"
 #include "jobs/bench.h"
 #include "jobs/cancel.h"
 #include "jobs/compare.h"

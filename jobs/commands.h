@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/command.h"
+#include "jobs/cli/command.h"
 
 namespace strut {
 

@@ -3,17 +3,17 @@
 #include <filesystem>
 #include <iostream>
 
-#include "io/atomic_file.h"
-#include "jobs/arguments.h"
-#include "jobs/command.h"
+#include "io/file/atomic_file.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/progress.h"
 #include "jobs/compare/folder.h"
 #include "jobs/compare/json.h"
 #include "jobs/compare/report.h"
 #include "jobs/compare/tables.h"
-#include "jobs/interrupt.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/progress.h"
 
 namespace strut {
 namespace {

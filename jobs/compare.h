@@ -1,7 +1,7 @@
 // `strut compare`: measured against simulated, channel by channel.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

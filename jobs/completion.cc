@@ -4,10 +4,10 @@
 
 #include <iostream>
 
-#include "jobs/build_info.h"
+#include "base/text/build_info.h"
+#include "base/text/quote_word.h"
+#include "jobs/cli/messages.h"
 #include "jobs/commands.h"
-#include "jobs/dispatch/quote_word.h"
-#include "jobs/messages.h"
 
 namespace strut {
 namespace {

@@ -4,15 +4,16 @@
 #include <cstdio>
 #include <iostream>
 
-#include "jobs/arguments.h"
-#include "jobs/command.h"
-#include "jobs/design_report.h"
-#include "jobs/interrupt.h"
-#include "jobs/lists.h"
-#include "jobs/messages.h"
-#include "jobs/output_file.h"
-#include "jobs/progress.h"
-#include "sweep/find_channel.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/lists.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
+#include "jobs/design/design_report.h"
+#include "model_files/find_channel.h"
+#include "sweep/request.h"
 
 namespace strut {
 namespace {
@@ -124,7 +125,8 @@ int run_design(const Arguments& arguments) {
   DesignReport report;
   report.noise = read_noise(arguments);
   report.channels = read_channels(arguments, request);
-  const Case base = make_base_point(request, list_or_empty(arguments, "at"), arguments.list("set"));
+  const Case base = make_base_point(request.base, request.grid, list_or_empty(arguments, "at"),
+                                    arguments.list("set"));
   const SensitivityOptions options = read_options(arguments, request, base.maneuver.duration);
   report.sensitivity = name_option(request.path.string() + ":", [&] {
     const Stage stage("sensitivities");

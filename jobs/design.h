@@ -1,7 +1,7 @@
 // `strut design`: which snapshot instant, window and sensors identify a sweep's parameters best.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

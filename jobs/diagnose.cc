@@ -5,18 +5,18 @@
 #include <mutex>
 #include <system_error>
 
-#include "io/atomic_file.h"
-#include "jobs/arguments.h"
-#include "jobs/command.h"
+#include "io/file/atomic_file.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/machine.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/progress.h"
 #include "jobs/diagnose/folder.h"
 #include "jobs/diagnose/json.h"
 #include "jobs/diagnose/report.h"
 #include "jobs/diagnose/tables.h"
-#include "jobs/interrupt.h"
-#include "jobs/machine.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/progress.h"
 
 namespace strut {
 namespace {

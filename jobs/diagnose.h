@@ -1,7 +1,7 @@
 // `strut diagnose`: what the simulation gets wrong, why, and what mending it gains.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

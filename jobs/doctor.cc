@@ -6,16 +6,16 @@
 #include <set>
 #include <sstream>
 
-#include "io/nearest_name.h"
-#include "jobs/command.h"
-#include "jobs/dispatch/dispatcher.h"
+#include "base/text/nearest_name.h"
+#include "cluster/dispatcher.h"
+#include "jobs/case/plan_estimate.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/standard_output.h"
 #include "jobs/doctor/file_checks.h"
-#include "jobs/json.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/plan_estimate.h"
-#include "jobs/progress.h"
-#include "jobs/standard_output.h"
+#include "report/json.h"
 
 namespace strut {
 namespace {

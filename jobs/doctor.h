@@ -1,7 +1,7 @@
 // strut doctor: can a file system, a scheduler and its processors keep what a sweep promises?
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

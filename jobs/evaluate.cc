@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <iostream>
 
-#include "io/nearest_name.h"
-#include "io/shard_layout.h"
-#include "jobs/arguments.h"
-#include "jobs/command.h"
-#include "jobs/messages.h"
-#include "jobs/progress.h"
-#include "jobs/standard_output.h"
-#include "jobs/unsealed.h"
+#include "base/text/nearest_name.h"
+#include "io/store/shard_layout.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/standard_output.h"
+#include "jobs/cli/unsealed.h"
 
 namespace strut {
 Json make_json(const Model& model, const ModelEvaluation& evaluation) {

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "jobs/arguments.h"
-#include "jobs/json.h"
-#include "train/evaluate.h"
+#include "jobs/cli/arguments.h"
+#include "report/json.h"
+#include "train/model/evaluate.h"
 
 namespace strut {
 

@@ -3,16 +3,16 @@
 #include <filesystem>
 #include <iostream>
 
-#include "io/atomic_file.h"
-#include "jobs/arguments.h"
-#include "jobs/build_info.h"
-#include "jobs/command.h"
-#include "jobs/messages.h"
-#include "jobs/output_file.h"
-#include "jobs/unsealed.h"
+#include "base/text/build_info.h"
+#include "io/file/atomic_file.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/unsealed.h"
 #include "train/export/header.h"
 #include "train/export/onnx.h"
-#include "train/model_file.h"
+#include "train/model/model_file.h"
 
 namespace strut {
 namespace {

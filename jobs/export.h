@@ -1,7 +1,7 @@
 // strut export: a trained network for other programs.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

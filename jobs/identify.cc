@@ -2,14 +2,14 @@
 
 #include <filesystem>
 
-#include "jobs/arguments.h"
-#include "jobs/command.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/unsealed.h"
 #include "jobs/identify/fit.h"
 #include "jobs/identify/result.h"
 #include "jobs/identify/snapshot.h"
 #include "jobs/identify/window.h"
-#include "jobs/unsealed.h"
-#include "train/model_file.h"
+#include "train/model/model_file.h"
 
 namespace strut {
 namespace {

@@ -1,7 +1,7 @@
 // strut identify: parameters from measurements.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

@@ -12,16 +12,16 @@
 #include <new>
 #include <system_error>
 
-#include "io/hdf5.h"
-#include "io/nearest_name.h"
+#include "base/text/build_info.h"
+#include "base/text/nearest_name.h"
+#include "io/format/hdf5.h"
 #include "jobs/bench/find_example.h"
-#include "jobs/build_info.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/standard_output.h"
 #include "jobs/commands.h"
-#include "jobs/interrupt.h"
-#include "jobs/messages.h"
-#include "jobs/standard_output.h"
+#include "model/error/model_error.h"
 #include "model/kernel/simulation.h"
-#include "model/vehicle/model_error.h"
 
 namespace {
 

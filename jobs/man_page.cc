@@ -5,9 +5,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "jobs/build_info.h"
+#include "base/text/build_info.h"
+#include "jobs/cli/messages.h"
 #include "jobs/commands.h"
-#include "jobs/messages.h"
 
 namespace strut {
 namespace {

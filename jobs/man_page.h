@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

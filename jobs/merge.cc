@@ -4,15 +4,15 @@
 #include <filesystem>
 #include <iostream>
 
-#include "jobs/build_info.h"
-#include "jobs/command.h"
-#include "jobs/interrupt.h"
-#include "jobs/json.h"
-#include "jobs/machine.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/output_file.h"
-#include "jobs/progress.h"
+#include "base/text/build_info.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/machine.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
+#include "report/json.h"
 #include "sweep/merge.h"
 
 namespace strut {

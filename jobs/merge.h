@@ -1,7 +1,7 @@
 // strut merge: one file of all shards.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

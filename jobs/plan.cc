@@ -4,16 +4,16 @@
 #include <iostream>
 #include <optional>
 
-#include "jobs/arguments.h"
-#include "jobs/command.h"
-#include "jobs/json.h"
-#include "jobs/messages.h"
-#include "jobs/output_file.h"
-#include "jobs/plan_estimate.h"
-#include "jobs/progress.h"
+#include "jobs/case/plan_estimate.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
+#include "model_files/parameters.h"
+#include "report/json.h"
 #include "sweep/case_order.h"
 #include "sweep/folder.h"
-#include "sweep/parameters.h"
 
 namespace strut {
 namespace {

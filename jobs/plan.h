@@ -1,7 +1,7 @@
 // strut plan: from a sweep file to a sweep folder.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

@@ -3,16 +3,16 @@
 #include <filesystem>
 #include <iostream>
 
-#include "io/nearest_name.h"
-#include "jobs/arguments.h"
-#include "jobs/command.h"
-#include "jobs/interrupt.h"
-#include "jobs/messages.h"
-#include "jobs/progress.h"
-#include "jobs/report/content.h"
-#include "jobs/report/page_file.h"
+#include "base/text/nearest_name.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/progress.h"
 #include "jobs/report/sweep.h"
 #include "jobs/study/report.h"
+#include "report/content.h"
+#include "report/page_file.h"
 
 namespace strut {
 namespace {

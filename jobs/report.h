@@ -1,7 +1,7 @@
 // strut report: one HTML file about a folder of ours.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

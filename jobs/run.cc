@@ -8,16 +8,16 @@
 #include <iostream>
 #include <optional>
 
-#include "io/parse_number.h"
-#include "jobs/build_info.h"
-#include "jobs/command.h"
-#include "jobs/dispatch/task_run.h"
-#include "jobs/interrupt.h"
-#include "jobs/json.h"
-#include "jobs/machine.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/progress.h"
+#include "base/text/build_info.h"
+#include "base/text/parse_number.h"
+#include "cluster/task_run.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/machine.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/progress.h"
+#include "report/json.h"
 #include "sweep/run.h"
 #include "sweep/status.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

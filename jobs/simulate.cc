@@ -9,20 +9,20 @@
 #include <iostream>
 #include <system_error>
 
-#include "jobs/arguments.h"
-#include "jobs/bench/step_check.h"
-#include "jobs/command.h"
-#include "jobs/json.h"
-#include "jobs/messages.h"
-#include "jobs/output_file.h"
-#include "jobs/progress.h"
-#include "jobs/report/page_file.h"
-#include "jobs/run_file.h"
+#include "jobs/case/run_file.h"
+#include "jobs/case/step_check.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
 #include "jobs/simulate/kinematics.h"
 #include "jobs/simulate/rig.h"
 #include "jobs/simulate/run_report.h"
-#include "sweep/parameters.h"
-#include "sweep/read_rig.h"
+#include "model_files/parameters.h"
+#include "model_files/read_rig.h"
+#include "report/json.h"
+#include "report/page_file.h"
 #include "sweep/simulate_case.h"
 
 namespace strut {
@@ -103,7 +103,7 @@ SimulateOptions read_options(const Arguments& arguments) {
 
 LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
                       const StepOptions& step) {
-  IntegrateRequest request;
+  SolverOptions request;
   request.solver = options.integrator == kIntegratorCvode ? Solver::kCvode : Solver::kLanes;
   request.options = options.integrate;
   request.options.step = step;

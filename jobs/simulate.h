@@ -1,7 +1,7 @@
 // `strut simulate`: one run, all channels over time; or the suspension's kinematics.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

@@ -7,14 +7,14 @@
 #include <iostream>
 #include <thread>
 
-#include "jobs/command.h"
-#include "jobs/dispatch/follow.h"
-#include "jobs/json.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/progress.h"
-#include "jobs/standard_output.h"
-#include "jobs/terminal.h"
+#include "cluster/follow.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/standard_output.h"
+#include "jobs/cli/terminal.h"
+#include "report/json.h"
 #include "sweep/status.h"
 
 namespace strut {

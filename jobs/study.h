@@ -1,7 +1,7 @@
 // strut study: a table of trainings, from sweeps to a report.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

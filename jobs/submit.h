@@ -1,7 +1,7 @@
 // strut submit: a sweep as tasks that run elsewhere.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

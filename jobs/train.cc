@@ -8,20 +8,20 @@
 #include <limits>
 #include <mutex>
 
-#include "io/parse_number.h"
-#include "jobs/arguments.h"
-#include "jobs/build_info.h"
-#include "jobs/command.h"
+#include "base/text/build_info.h"
+#include "base/text/parse_number.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/lists.h"
+#include "jobs/cli/machine.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/open_sweep.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/unsealed.h"
 #include "jobs/evaluate.h"
-#include "jobs/interrupt.h"
-#include "jobs/lists.h"
-#include "jobs/machine.h"
-#include "jobs/messages.h"
-#include "jobs/open_sweep.h"
-#include "jobs/output_file.h"
-#include "jobs/progress.h"
-#include "jobs/train_noise.h"
-#include "jobs/unsealed.h"
+#include "jobs/train/train_noise.h"
 #include "train/train_network.h"
 
 namespace strut {

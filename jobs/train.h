@@ -1,7 +1,7 @@
 // strut train: a network that identifies parameters from a snapshot.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

@@ -1,7 +1,7 @@
 // `strut verify`.
 #pragma once
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "model/kernel/mechanism.h"
-#include "sweep/parameters.h"
+#include "model_files/parameters.h"
 #include "sweep/random_streams.h"
 
 namespace strut {

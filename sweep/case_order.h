@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/math/permutation.h"
+#include "base/math/permutation.h"
 #include "sweep/case_points.h"
 
 namespace strut {

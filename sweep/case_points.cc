@@ -2,8 +2,8 @@
 
 #include <boost/random/sobol.hpp>
 
-#include "model/math/random.h"
-#include "model/math/strata.h"
+#include "base/math/random.h"
+#include "base/math/strata.h"
 #include "sweep/random_streams.h"
 
 namespace strut {

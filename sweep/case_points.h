@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "model/math/permutation.h"
+#include "base/math/permutation.h"
 #include "sweep/request.h"
 
 namespace strut {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "io/config.h"
-#include "io/file_bytes.h"
-#include "io/sha256.h"
-#include "io/toml_text.h"
+#include "io/file/file_bytes.h"
+#include "io/file/sha256.h"
+#include "io/format/config.h"
+#include "io/format/toml_text.h"
+#include "model_files/named_files.h"
 #include "sweep/choices.h"
-#include "sweep/named_files.h"
 
 namespace strut {
 namespace {
@@ -30,7 +30,7 @@ void add_grid(const SweepRequest& request, Facts& facts) {
   }
 }
 
-void add_integrate(const IntegrateRequest& request, Facts& facts) {
+void add_integrate(const SolverOptions& request, Facts& facts) {
   const auto closure = static_cast<std::size_t>(request.options.closure);
   if (request.solver == Solver::kCvode) {
     facts.emplace_back("integrate.method", "cvode");

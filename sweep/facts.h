@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/named_texts.h"
+#include "io/format/named_texts.h"
 #include "sweep/request.h"
 
 namespace strut {

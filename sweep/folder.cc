@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "io/atomic_file.h"
-#include "io/claims.h"
-#include "io/input_error.h"
+#include "base/error/input_error.h"
+#include "io/file/atomic_file.h"
+#include "io/store/claims.h"
 #include "sweep/freeze_inputs.h"
 #include "sweep/plan_file.h"
 

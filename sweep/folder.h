@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "io/sweep_folder.h"
+#include "io/store/sweep_folder.h"
 #include "sweep/plan.h"
 
 namespace strut {

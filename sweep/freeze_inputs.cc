@@ -2,10 +2,10 @@
 
 #include <map>
 
-#include "io/atomic_file.h"
-#include "io/config.h"
-#include "io/toml_text.h"
-#include "sweep/named_files.h"
+#include "io/file/atomic_file.h"
+#include "io/format/config.h"
+#include "io/format/toml_text.h"
+#include "model_files/named_files.h"
 
 namespace strut {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "io/input_error.h"
-#include "model/math/strata.h"
+#include "base/error/input_error.h"
+#include "base/math/strata.h"
 
 namespace strut {
 namespace {

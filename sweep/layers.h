@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "model/math/grid_sums.h"
+#include "base/math/grid_sums.h"
 #include "sweep/case_points.h"
 
 namespace strut {

@@ -1,7 +1,7 @@
 // What killed runners have left in a sweep folder.
 #pragma once
 
-#include "io/claims.h"
+#include "io/store/claims.h"
 #include "sweep/folder.h"
 
 namespace strut {

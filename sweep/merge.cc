@@ -4,8 +4,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "io/hdf5_stream.h"
-#include "io/shard_layout.h"
+#include "io/format/hdf5_stream.h"
+#include "io/store/shard_layout.h"
 
 namespace strut {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/shard.h"
+#include "io/store/shard.h"
 #include "sweep/folder.h"
 
 namespace strut {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/input_error.h"
-#include "model/math/strata.h"
+#include "base/error/input_error.h"
+#include "base/math/strata.h"
+#include "model_files/parameters.h"
 #include "sweep/case_order.h"
-#include "sweep/parameters.h"
 #include "sweep/random_streams.h"
 #include "sweep/simulate_cases.h"
 

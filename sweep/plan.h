@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/shard.h"
-#include "io/sweep_extent.h"
+#include "io/store/shard.h"
+#include "io/store/sweep_extent.h"
 #include "sweep/facts.h"
 #include "sweep/layers.h"
 #include "sweep/request.h"

@@ -1,7 +1,7 @@
 #include "sweep/plan_file.h"
 
-#include "io/hdf5.h"
-#include "io/named_texts.h"
+#include "io/format/hdf5.h"
+#include "io/format/named_texts.h"
 
 namespace strut {
 namespace {

@@ -1,4 +1,4 @@
-// Who draws from which stream of a sweep's seed (model/math/random.h).
+// Who draws from which stream of a sweep's seed (base/math/random.h).
 #pragma once
 
 #include <cstddef>

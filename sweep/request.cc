@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "io/config.h"
-#include "io/nearest_name.h"
+#include "base/text/nearest_name.h"
+#include "io/format/config.h"
+#include "model_files/find_channel.h"
+#include "model_files/parameters.h"
+#include "model_files/read_maneuver.h"
+#include "model_files/read_vehicle.h"
 #include "sweep/case_order.h"
 #include "sweep/choices.h"
-#include "sweep/find_channel.h"
-#include "sweep/parameters.h"
-#include "sweep/read_maneuver.h"
-#include "sweep/read_vehicle.h"
 #include "sweep/step_count.h"
 
 namespace strut {
@@ -185,8 +185,8 @@ double find_longest_duration(const SweepRequest& request) {
   return longest;
 }
 
-IntegrateRequest read_integrate(const std::optional<Table>& table, double longest_duration) {
-  IntegrateRequest request;
+SolverOptions read_integrate(const std::optional<Table>& table, double longest_duration) {
+  SolverOptions request;
   if (!table) return request;
   const int method = table->choice_or("method", 0, kIntegrators);
   const auto closure = static_cast<Closure>(table->choice_or("closure", 0, kClosures));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "base/math/grid.h"
+#include "model/car/case.h"
 #include "model/kernel/simulation.h"
-#include "model/vehicle/case.h"
-#include "sweep/grid.h"
 
 namespace strut {
 
@@ -20,14 +20,6 @@ struct SampleRequest {
   std::string by;           // a grid parameter, or "degradation"; absent: the first axis
   std::int64_t count = -1;  // -1: all
   std::uint64_t seed = 1;
-};
-
-enum class Solver { kLanes, kCvode };
-
-struct IntegrateRequest {
-  Solver solver = Solver::kLanes;
-  IntegrateOptions options;    // of the lanes
-  ReferenceOptions reference;  // of CVODE
 };
 
 struct SnapshotRequest {
@@ -46,7 +38,7 @@ struct SweepRequest {
   Case base;
   Grid grid;
   SampleRequest sample;
-  IntegrateRequest integrate;
+  SolverOptions integrate;
   SnapshotRequest snapshot;
   HistoryRequest history;
   int shard_cases = 512;

@@ -3,8 +3,8 @@
 #include <exception>
 #include <mutex>
 
-#include "io/input_error.h"
-#include "model/parallel/team.h"
+#include "base/error/input_error.h"
+#include "base/parallel/team.h"
 #include "sweep/leftovers.h"
 #include "sweep/shard_source.h"
 #include "sweep/shard_store.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/claims.h"
+#include "io/store/claims.h"
 #include "sweep/folder.h"
 #include "sweep/simulate_cases.h"
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "io/claims.h"
-#include "io/shard.h"
+#include "io/store/claims.h"
+#include "io/store/shard.h"
 #include "sweep/folder.h"
 #include "sweep/run.h"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "io/input_error.h"
+#include "base/error/input_error.h"
 #include "sweep/simulate_cases.h"
 
 namespace strut {
@@ -90,7 +90,7 @@ JournalEntry make_journal_entry(const SweepFolder& folder, const fs::path& file,
   DataDigest digest;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     digest.add(calc_row_hash(rows, row));
-    if (rows.status[row] != 0) ++entry.failures[get_case_status_name(rows.status[row])];
+    if (rows.status[row] != 0) ++entry.failures[get_run_status_name(rows.status[row])];
   }
   entry.digest = digest.state();
   return entry;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/journal.h"
-#include "io/shard.h"
+#include "io/store/journal.h"
+#include "io/store/shard.h"
 #include "sweep/folder.h"
 
 namespace strut {

@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-#include "io/publish.h"
+#include "io/file/publish.h"
 #include "sweep/timer.h"
 
 namespace strut {

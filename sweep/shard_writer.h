@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/claims.h"
-#include "io/journal.h"
-#include "io/shard.h"
+#include "io/store/claims.h"
+#include "io/store/journal.h"
+#include "io/store/shard.h"
 #include "sweep/folder.h"
 
 namespace strut {

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
-#include "model/effects/read_out.h"
+#include "model/sensor/read_out.h"
 
 namespace strut {
 
-LaneResults simulate_case(const PreparedCase& c, const IntegrateRequest& integrate,
-                          double interval) {
+LaneResults simulate_case(const PreparedCase& c, const SolverOptions& integrate, double interval) {
   SamplePlan plan;
   plan.interval = interval;
   const ReadOut out(list_car_channels(), {&c.sensors});

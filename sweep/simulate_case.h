@@ -11,7 +11,7 @@ namespace strut {
 /// CVODE, and reads all channels as their sensors do: the snapshot and, with `interval` [s] above
 /// 0, their history. One lane. Whether the run got through is in `status` (0: it did) and
 /// `failure_time`.
-LaneResults simulate_case(const PreparedCase& c, const IntegrateRequest& integrate = {},
+LaneResults simulate_case(const PreparedCase& c, const SolverOptions& integrate = {},
                           double interval = 0.0);
 
 /// True where the snapshot's line was reached.

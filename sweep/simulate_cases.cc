@@ -6,23 +6,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "model/effects/read_out.h"
-#include "model/vehicle/model_error.h"
+#include "model/error/model_error.h"
+#include "model/sensor/read_out.h"
 #include "sweep/timer.h"
 
 namespace strut {
 namespace {
-
-constexpr std::array<const char*, kCaseStatusCount> kStatusNames = {
-    "done", "diverged", "out_of_travel", "stalled", "no_equilibrium", "no_event", "impossible"};
-constexpr std::array<const char*, kCaseStatusCount> kStatusReasons = {
-    "",
-    "a state is no longer finite, or faster than any car",
-    "a corner left the travel its loops were closed over",
-    "steps cut short by contact events, one upon the other, get nowhere",
-    "",
-    "the rear wheels never met the snapshot's line",
-    ""};
 
 IntegrateOptions make_retry_options(const IntegrateOptions& options, int attempt) {
   IntegrateOptions finer = options;
@@ -39,7 +28,7 @@ ReadOut make_read_out(const std::vector<const PreparedCase*>& lanes) {
   return ReadOut(list_car_channels(), sensors);
 }
 
-void fail(ShardRows& rows, std::size_t row, CaseStatus status, double time, std::string reason) {
+void fail(ShardRows& rows, std::size_t row, RunStatus status, double time, std::string reason) {
   rows.status[row] = static_cast<std::int32_t>(status);
   rows.failure_time[row] = time;
   rows.reason[row] = std::move(reason);
@@ -47,23 +36,19 @@ void fail(ShardRows& rows, std::size_t row, CaseStatus status, double time, std:
 
 }  // namespace
 
-const char* get_case_status_name(std::int32_t status) {
-  return status >= 0 && status < kCaseStatusCount ? kStatusNames[static_cast<std::size_t>(status)]
-                                                  : "unknown";
-}
-
 std::string describe_case_status() {
   std::string text;
-  for (std::int32_t status = 0; status < kCaseStatusCount; ++status) {
-    text += (status > 0 ? ", " : "") + std::to_string(status) + " " + get_case_status_name(status);
+  for (const RunStatusInfo& info : kRunStatuses) {
+    text += (text.empty() ? "" : ", ") + std::to_string(static_cast<int>(info.status)) + " " +
+            info.name;
   }
   return text;
 }
 
 bool may_retry(std::int32_t status) {
-  return status == static_cast<std::int32_t>(CaseStatus::kDiverged) ||
-         status == static_cast<std::int32_t>(CaseStatus::kOutOfTravel) ||
-         status == static_cast<std::int32_t>(CaseStatus::kStalled);
+  return status == static_cast<std::int32_t>(RunStatus::kDiverged) ||
+         status == static_cast<std::int32_t>(RunStatus::kOutOfTravel) ||
+         status == static_cast<std::int32_t>(RunStatus::kStalled);
 }
 
 SimulationSeconds& SimulationSeconds::operator+=(const SimulationSeconds& other) {
@@ -103,7 +88,7 @@ void CaseSimulator::retry(std::int64_t case_id, int attempt, ShardRows& rows, st
   rows.attempt[row] = attempt;
   const std::optional<PreparedCase> prepared = prepare(case_id, rows, row);
   if (!prepared) return;
-  const IntegrateRequest& integrate = plan_.request().integrate;
+  const SolverOptions& integrate = plan_.request().integrate;
   const LaneResults results =
       simulate_readings(make_read_out({&*prepared}), samples_, [&](const SamplePlan& samples) {
         return integrate.solver == Solver::kCvode
@@ -138,9 +123,9 @@ std::optional<PreparedCase> CaseSimulator::prepare(std::int64_t case_id, ShardRo
   try {
     return preparer_.prepare(plan_.make_case(case_id), plan_.request().snapshot.offset);
   } catch (const ModelError& e) {
-    fail(rows, row, CaseStatus::kNoEquilibrium, 0.0, e.what());
+    fail(rows, row, RunStatus::kNoEquilibrium, 0.0, e.what());
   } catch (const std::invalid_argument& e) {  // the road's
-    fail(rows, row, CaseStatus::kImpossible, 0.0, e.what());
+    fail(rows, row, RunStatus::kImpossible, 0.0, e.what());
   }
   return std::nullopt;
 }
@@ -163,7 +148,7 @@ std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std
 /// many ran.
 std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& rows) {
   const Timer timer(seconds_.integrate);
-  const IntegrateRequest& integrate = plan_.request().integrate;
+  const SolverOptions& integrate = plan_.request().integrate;
   std::vector<const PreparedCase*> lanes;
   lanes.reserve(batch_size());
   for (const Ready& next : ready) {
@@ -192,9 +177,9 @@ void CaseSimulator::record(const LaneResults& results, int lane, ShardRows& rows
   const auto in_lane = static_cast<std::size_t>(lane);
   const auto lanes = static_cast<std::size_t>(results.lanes);
   if (results.status[in_lane] != static_cast<int>(RunStatus::kDone)) {
-    const auto status = static_cast<CaseStatus>(results.status[in_lane]);
+    const auto status = static_cast<RunStatus>(results.status[in_lane]);
     fail(rows, row, status, results.failure_time[in_lane],
-         kStatusReasons[static_cast<std::size_t>(status)]);
+         kRunStatuses[static_cast<std::size_t>(status)].reason);
     return;
   }
   const std::vector<int>& kept = request.history.channels;
@@ -208,8 +193,8 @@ void CaseSimulator::record(const LaneResults& results, int lane, ShardRows& rows
   if (!request.snapshot.on) return;
   rows.event_time[row] = results.event_time[in_lane];
   if (std::isnan(rows.event_time[row])) {
-    fail(rows, row, CaseStatus::kNoEvent, plan_.make_case(rows.case_id[row]).maneuver.duration,
-         kStatusReasons[static_cast<std::size_t>(CaseStatus::kNoEvent)]);
+    fail(rows, row, RunStatus::kNoEvent, plan_.make_case(rows.case_id[row]).maneuver.duration,
+         kRunStatuses[static_cast<std::size_t>(RunStatus::kNoEvent)].reason);
     return;
   }
   const std::vector<int>& channels = request.snapshot.channels;

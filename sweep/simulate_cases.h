@@ -8,25 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "io/shard.h"
+#include "io/store/shard.h"
 #include "sweep/plan.h"
 
 namespace strut {
-
-/// How a case ended; RunStatus and what can happen before and after the integration.
-enum class CaseStatus : std::int32_t {
-  kDone = 0,
-  kDiverged = 1,       // a state is no longer finite, or faster than any car
-  kOutOfTravel = 2,    // a corner left the travel its loops were closed over
-  kStalled = 3,        // steps cut short by contact events, one upon the other, get nowhere
-  kNoEquilibrium = 4,  // loops that cannot be closed, springs that cannot carry the car
-  kNoEvent = 5,        // the car never met the snapshot's line
-  kImpossible = 6,     // values that exclude each other, as flanks longer than their bump
-};
-inline constexpr int kCaseStatusCount = 7;
-
-/// "done", "diverged", ...: the words of status, journal and documentation.
-const char* get_case_status_name(std::int32_t status);
 
 /// "0 done, 1 diverged, ..."
 std::string describe_case_status();

@@ -4,7 +4,7 @@
 #include <ctime>
 #include <limits>
 
-#include "io/input_error.h"
+#include "base/error/input_error.h"
 #include "sweep/shard_store.h"
 #include "sweep/simulate_cases.h"
 
@@ -32,9 +32,10 @@ double calc_rate(const Journal& journal) {
 /// Cases of an entry that failed in a way that a smaller step may mend.
 std::int64_t count_mendable(const JournalEntry& entry) {
   std::int64_t count = 0;
-  for (std::int32_t status = 0; status < kCaseStatusCount; ++status) {
-    const auto failures = entry.failures.find(get_case_status_name(status));
-    if (may_retry(status) && failures != entry.failures.end()) count += failures->second;
+  for (const RunStatusInfo& info : kRunStatuses) {
+    const auto failures = entry.failures.find(info.name);
+    if (may_retry(static_cast<std::int32_t>(info.status)) && failures != entry.failures.end())
+      count += failures->second;
   }
   return count;
 }

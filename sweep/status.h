@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "io/claims.h"
-#include "io/data_digest.h"
+#include "io/store/claims.h"
+#include "io/store/data_digest.h"
 #include "sweep/folder.h"
 
 namespace strut {

@@ -1,6 +1,6 @@
 #include "sweep/step_count.h"
 
-#include "io/config.h"
+#include "io/format/config.h"
 
 namespace strut {
 

@@ -7,8 +7,8 @@
 #include <map>
 #include <numeric>
 
-#include "io/input_error.h"
-#include "model/math/permutation.h"
+#include "base/error/input_error.h"
+#include "base/math/permutation.h"
 #include "sweep/shard_store.h"
 #include "sweep/simulate_cases.h"
 

@@ -1,9 +1,9 @@
 #include "train/train_network.h"
 
-#include "io/config.h"
-#include "io/nearest_name.h"
-#include "io/shard_layout.h"
-#include "train/interval.h"
+#include "base/text/nearest_name.h"
+#include "io/format/config.h"
+#include "io/store/shard_layout.h"
+#include "train/model/interval.h"
 #include "train/window/rows.h"
 
 namespace strut {

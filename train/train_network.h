@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "train/checkpoint.h"
-#include "train/dataset_source.h"
-#include "train/growing_sample.h"
-#include "train/model_file.h"
-#include "train/network_problem.h"
+#include "train/data/dataset_source.h"
+#include "train/model/checkpoint.h"
+#include "train/model/model_file.h"
+#include "train/network/growing_sample.h"
+#include "train/network/network_problem.h"
 #include "train/window/records.h"
 
 namespace strut {

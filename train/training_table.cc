@@ -4,8 +4,8 @@
 #include <mutex>
 #include <numeric>
 
-#include "io/config.h"
-#include "model/parallel/team.h"
+#include "base/parallel/team.h"
+#include "io/format/config.h"
 
 namespace strut {
 namespace {

@@ -1,4 +1,4 @@
-# strut_add_build_info(TARGET) adds jobs/build_info.h's definition to TARGET.
+# strut_add_build_info(TARGET) adds base/text/build_info.h's definition to TARGET.
 #
 # The commit is asked for at every build, not only when CMake configures; the generated source is
 # written only when something in it changed, so an unchanged checkout compiles and links nothing.

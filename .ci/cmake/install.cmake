@@ -26,10 +26,10 @@ install(CODE "file(CREATE_LINK ${strut_examples_link}
 
 # Headers that need libraries which only our sources are given stay here.
 set(strut_inner_headers
-  model/parallel/team model/math/xsimd_backend model/kernel/run_cases model/integrate/sundials
-  train/block_layers io/hdf5_calls io/parse_toml)
+  base/math/matrix_map base/math/xsimd_backend base/parallel/team model/kernel/run_cases
+  model/integrate/sundials train/network/block_layers io/format/hdf5_calls io/format/parse_toml)
 list(JOIN strut_inner_headers "|" strut_inner_headers)
-set(strut_rooms model kernel io sweep train diagnose)
+set(strut_rooms base model kernel io model_files estimate sweep train diagnose)
 foreach(room IN LISTS strut_rooms)
   set_target_properties(strut_${room} PROPERTIES EXPORT_NAME ${room})
   target_compile_features(strut_${room} INTERFACE cxx_std_20)
@@ -38,14 +38,13 @@ foreach(room IN LISTS strut_rooms)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${room})  # the kernel's headers are within the model's
     install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/strut
       FILES_MATCHING PATTERN *.h
-      REGEX "/parallel$" EXCLUDE
       REGEX "/(${strut_inner_headers})\\.h$" EXCLUDE)
   endif()
 endforeach()
 
 # Matrices of Eigen are allocated here and freed there, and of its inline functions the linker keeps
 # one of each: both sides must agree on threads, on alignment, which Eigen takes from -march and which
-# model/math/eigen_abi.h compares, and on the heap, which Eigen takes otherwise for -fsanitize=address.
+# base/math/eigen_abi.h compares, and on the heap, which Eigen takes otherwise for -fsanitize=address.
 separate_arguments(strut_flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
 get_target_property(strut_eigen_folders Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 list(TRANSFORM strut_eigen_folders PREPEND -I)
@@ -59,7 +58,7 @@ execute_process(
 if(NOT strut_preprocessed MATCHES "strut_alignment ([0-9]+) ([0-9]+) ([01])")
   message(FATAL_ERROR "Eigen/Core does not tell its alignment")
 endif()
-foreach(room IN ITEMS sweep diagnose)
+foreach(room IN ITEMS estimate diagnose)
   target_compile_definitions(strut_${room} INTERFACE
     $<INSTALL_INTERFACE:EIGEN_DONT_PARALLELIZE>
     $<INSTALL_INTERFACE:EIGEN_MALLOC_ALREADY_ALIGNED=${CMAKE_MATCH_3}>

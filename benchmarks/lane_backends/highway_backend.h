@@ -7,7 +7,7 @@
 // Without a guard of its own against being read before highway.h; not to be sorted above it.
 #include <hwy/contrib/math/math-inl.h>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
 
 namespace strut {
 

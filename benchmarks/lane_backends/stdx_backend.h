@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <experimental/simd>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
 
 namespace strut {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
 
 #ifdef __AVX512F__
 #define STRUT_VECTOR_BYTES 64

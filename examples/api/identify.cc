@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <exception>
 
-#include "diagnose/fit.h"
-#include "io/measurement.h"
-#include "sweep/read_maneuver.h"
-#include "sweep/read_vehicle.h"
-#include "train/identifier.h"
+#include "estimate/fit.h"
+#include "io/store/measurement.h"
+#include "model_files/read_maneuver.h"
+#include "model_files/read_vehicle.h"
+#include "train/model/identifier.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <exception>
 #include <thread>
 
-#include "io/dataset.h"
+#include "io/store/dataset.h"
 #include "sweep/run.h"
 
 namespace {

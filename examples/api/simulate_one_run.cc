@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "sweep/parameters.h"
-#include "sweep/read_maneuver.h"
-#include "sweep/read_vehicle.h"
+#include "model_files/parameters.h"
+#include "model_files/read_maneuver.h"
+#include "model_files/read_vehicle.h"
 #include "sweep/simulate_case.h"
 
 namespace {

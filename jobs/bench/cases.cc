@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "jobs/machine.h"
-#include "jobs/run_file.h"
-#include "sweep/parameters.h"
+#include "jobs/case/run_file.h"
+#include "jobs/cli/machine.h"
+#include "model_files/parameters.h"
 
 namespace strut {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "jobs/load_case.h"
+#include "jobs/case/load_case.h"
 
 namespace strut {
 

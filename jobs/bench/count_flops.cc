@@ -1,6 +1,6 @@
 #include "jobs/bench/count_flops.h"
 
-#include "model/multibody/dynamics.h"
+#include "model/car/dynamics.h"
 
 namespace strut {
 

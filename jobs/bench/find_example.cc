@@ -2,7 +2,7 @@
 
 #include <system_error>
 
-#include "io/input_error.h"
+#include "base/error/input_error.h"
 
 namespace strut {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <ostream>
 
-#include "jobs/machine.h"
+#include "jobs/cli/machine.h"
 #include "sweep/run.h"
 
 namespace strut {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/json.h"
 #include "model/kernel/simulation.h"
+#include "report/json.h"
 
 namespace strut {
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <ostream>
 
-#include "io/config.h"
-#include "io/input_error.h"
+#include "base/error/input_error.h"
+#include "io/format/config.h"
 
 namespace strut {
 namespace {

@@ -10,8 +10,8 @@
 #include "jobs/bench/cases.h"
 #include "jobs/bench/count_flops.h"
 #include "jobs/bench/pipeline.h"
-#include "jobs/machine.h"
-#include "jobs/read_json.h"
+#include "jobs/cli/machine.h"
+#include "report/read_json.h"
 
 namespace strut {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/baseline.h"
-#include "io/csv.h"
-#include "jobs/report/chart.h"
+#include "diagnose/baseline/baseline.h"
+#include "io/format/csv.h"
+#include "report/chart.h"
 
 namespace strut {
 

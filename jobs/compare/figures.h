@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/compare.h"
-#include "jobs/report/chart.h"
+#include "diagnose/compare/compare.h"
+#include "report/chart.h"
 
 namespace strut {
 

@@ -1,7 +1,7 @@
 #include "jobs/compare/folder.h"
 
+#include "jobs/cli/output_file.h"
 #include "jobs/compare/curves.h"
-#include "jobs/output_file.h"
 
 namespace strut {
 

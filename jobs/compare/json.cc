@@ -1,7 +1,7 @@
 #include "jobs/compare/json.h"
 
+#include "base/math/normal.h"
 #include "jobs/compare/tables.h"
-#include "train/interval.h"
 
 namespace strut {
 namespace {

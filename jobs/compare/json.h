@@ -1,8 +1,8 @@
 // compare.json: keys in docs/diagnosis.md.
 #pragma once
 
-#include "diagnose/compare.h"
-#include "jobs/json.h"
+#include "diagnose/compare/compare.h"
+#include "report/json.h"
 
 namespace strut {
 

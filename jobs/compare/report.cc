@@ -4,8 +4,8 @@
 
 #include "jobs/compare/figures.h"
 #include "jobs/compare/tables.h"
-#include "jobs/report/figures.h"
-#include "jobs/report/page_file.h"
+#include "report/figures.h"
+#include "report/page_file.h"
 
 namespace strut {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/compare.h"
+#include "diagnose/compare/compare.h"
 #include "jobs/compare/folder.h"
 
 namespace strut {

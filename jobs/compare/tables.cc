@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/csv.h"
+#include "base/math/normal.h"
+#include "io/format/csv.h"
 #include "jobs/compare/curves.h"
-#include "train/interval.h"
 
 namespace strut {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/compare.h"
+#include "diagnose/compare/compare.h"
 #include "jobs/compare/curves.h"
 #include "jobs/compare/folder.h"
-#include "jobs/report/html.h"
+#include "report/html.h"
 
 namespace strut {
 

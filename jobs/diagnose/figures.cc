@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "diagnose/model_states.h"
+#include "diagnose/baseline/model_states.h"
 #include "jobs/compare/figures.h"
 #include "jobs/diagnose/force_map.h"
 #include "jobs/diagnose/tables.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/diagnosis.h"
-#include "jobs/report/chart.h"
+#include "diagnose/decide/diagnosis.h"
+#include "report/chart.h"
 
 namespace strut {
 

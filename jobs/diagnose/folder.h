@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "diagnose/campaign_data.h"
-#include "jobs/arguments.h"
-#include "jobs/report/content.h"
-#include "jobs/report/page_file.h"
+#include "diagnose/campaign/campaign_data.h"
+#include "jobs/cli/arguments.h"
+#include "report/content.h"
+#include "report/page_file.h"
 
 namespace strut {
 
@@ -15,7 +15,7 @@ struct DiagnoseFolder : PageFolder {
   std::filesystem::path extended_model() const { return root / "extended.toml"; }
 };
 
-/// The folder of --output, as find_output_folder() (jobs/output_file.h) gives it.
+/// The folder of --output, as find_output_folder() (jobs/cli/output_file.h) gives it.
 DiagnoseFolder find_diagnose_folder(const Arguments& arguments, const CampaignData& data);
 
 }  // namespace strut

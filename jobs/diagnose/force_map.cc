@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnose/spread.h"
+#include "diagnose/campaign/spread.h"
 #include "jobs/compare/curves.h"
-#include "jobs/report/html.h"
+#include "report/html.h"
 
 namespace strut {
 namespace {

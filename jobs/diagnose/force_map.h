@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "diagnose/diagnosis.h"
-#include "io/csv.h"
-#include "jobs/report/chart.h"
+#include "diagnose/decide/diagnosis.h"
+#include "io/format/csv.h"
+#include "report/chart.h"
 
 namespace strut {
 

@@ -1,8 +1,8 @@
 // verdict.json: keys in docs/diagnosis.md.
 #pragma once
 
-#include "diagnose/diagnosis.h"
-#include "jobs/json.h"
+#include "diagnose/decide/diagnosis.h"
+#include "report/json.h"
 
 namespace strut {
 

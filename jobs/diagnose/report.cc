@@ -2,8 +2,8 @@
 
 #include "jobs/diagnose/figures.h"
 #include "jobs/diagnose/tables.h"
-#include "jobs/report/figures.h"
-#include "jobs/report/page_file.h"
+#include "report/figures.h"
+#include "report/page_file.h"
 
 namespace strut {
 namespace {

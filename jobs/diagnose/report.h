@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/diagnosis.h"
+#include "diagnose/decide/diagnosis.h"
 #include "jobs/diagnose/folder.h"
 
 namespace strut {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/diagnosis.h"
+#include "diagnose/decide/diagnosis.h"
 #include "jobs/compare/curves.h"
 #include "jobs/diagnose/folder.h"
-#include "jobs/report/html.h"
+#include "report/html.h"
 
 namespace strut {
 

@@ -13,13 +13,13 @@
 #include <cstdio>
 #include <cstring>
 
-#include "io/config.h"
-#include "io/folder.h"
-#include "io/input_error.h"
-#include "io/sweep_folder.h"
-#include "jobs/dispatch/file_system.h"
-#include "jobs/interrupt.h"
-#include "jobs/progress.h"
+#include "base/error/input_error.h"
+#include "cluster/file_system.h"
+#include "io/file/folder.h"
+#include "io/format/config.h"
+#include "io/store/sweep_folder.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/progress.h"
 
 namespace strut {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "jobs/doctor/finding.h"
+#include "base/error/finding.h"
 
 namespace strut {
 

@@ -5,20 +5,20 @@
 #include <iostream>
 #include <optional>
 
-#include "diagnose/fit.h"
-#include "io/measurement.h"
-#include "io/nearest_name.h"
-#include "io/parse_number.h"
-#include "jobs/command.h"
+#include "base/text/nearest_name.h"
+#include "base/text/parse_number.h"
+#include "estimate/fit.h"
+#include "io/store/measurement.h"
+#include "jobs/case/load_case.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/lists.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
 #include "jobs/identify/fit_report.h"
-#include "jobs/lists.h"
-#include "jobs/load_case.h"
-#include "jobs/messages.h"
-#include "jobs/output_file.h"
-#include "jobs/progress.h"
-#include "sweep/find_channel.h"
-#include "sweep/parameters.h"
-#include "sweep/read_rig.h"
+#include "model_files/find_channel.h"
+#include "model_files/parameters.h"
+#include "model_files/read_rig.h"
 
 namespace strut {
 namespace {

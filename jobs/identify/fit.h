@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 
 namespace strut {
 

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "io/config.h"
-#include "jobs/messages.h"
-#include "train/interval.h"
+#include "base/math/normal.h"
+#include "io/format/config.h"
+#include "jobs/cli/messages.h"
 
 namespace strut {
 namespace {

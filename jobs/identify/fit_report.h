@@ -1,7 +1,7 @@
 // What a fit found, printed and as JSON.
 #pragma once
 
-#include "diagnose/fit.h"
+#include "estimate/fit.h"
 #include "jobs/identify/result.h"
 
 namespace strut {

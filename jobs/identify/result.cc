@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <iostream>
 
-#include "io/config.h"
-#include "io/csv.h"
-#include "jobs/command.h"
-#include "jobs/messages.h"
-#include "jobs/output_file.h"
-#include "jobs/progress.h"
-#include "jobs/standard_output.h"
+#include "io/format/config.h"
+#include "io/format/csv.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/standard_output.h"
 
 namespace strut {
 namespace {

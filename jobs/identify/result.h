@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/arguments.h"
-#include "jobs/json.h"
+#include "jobs/cli/arguments.h"
+#include "report/json.h"
 
 namespace strut {
 

@@ -5,11 +5,12 @@
 #include <iostream>
 #include <span>
 
-#include "io/measurement.h"
-#include "io/nearest_name.h"
-#include "io/shard_layout.h"
-#include "sweep/parameters.h"
-#include "train/interval.h"
+#include "base/math/normal.h"
+#include "base/text/nearest_name.h"
+#include "io/store/measurement.h"
+#include "io/store/shard_layout.h"
+#include "model_files/parameters.h"
+#include "train/model/interval.h"
 
 namespace strut {
 namespace {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "jobs/arguments.h"
+#include "jobs/cli/arguments.h"
 #include "jobs/identify/result.h"
-#include "train/identifier.h"
-#include "train/model_file.h"
+#include "train/model/identifier.h"
+#include "train/model/model_file.h"
 
 namespace strut {
 

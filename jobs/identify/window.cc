@@ -5,10 +5,11 @@
 #include <functional>
 #include <span>
 
-#include "io/config.h"
-#include "io/shard_layout.h"
-#include "train/interval.h"
-#include "train/window/shift.h"
+#include "base/math/normal.h"
+#include "io/format/config.h"
+#include "io/store/shard_layout.h"
+#include "train/data/shift.h"
+#include "train/model/interval.h"
 
 namespace strut {
 namespace {

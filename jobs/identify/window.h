@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "io/measurement.h"
-#include "jobs/arguments.h"
+#include "io/store/measurement.h"
+#include "jobs/cli/arguments.h"
 #include "jobs/identify/result.h"
-#include "train/identifier.h"
+#include "train/model/identifier.h"
 
 namespace strut {
 

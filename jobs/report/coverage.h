@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/dataset.h"
-#include "jobs/report/chart.h"
+#include "io/store/dataset.h"
+#include "report/chart.h"
 #include "sweep/plan.h"
 
 namespace strut {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "io/input_error.h"
-#include "jobs/design_report.h"
+#include "base/error/input_error.h"
+#include "jobs/design/design_report.h"
 
 namespace strut {
 namespace {
@@ -16,8 +16,8 @@ DesignReport calc_report(const SweepRequest& request) {
   report.channels = request.snapshot.channels;
   SensitivityOptions options;
   options.integrate = make_accurate(request.integrate);
-  report.sensitivity = calc_sensitivity(make_base_point(request, {}, {}), request.grid.axes(),
-                                        request.snapshot.offset, options);
+  report.sensitivity = calc_sensitivity(make_base_point(request.base, request.grid, {}, {}),
+                                        request.grid.axes(), request.snapshot.offset, options);
   report.design = calc_design(report.sensitivity, report.channels, report.noise);
   return report;
 }

@@ -2,7 +2,7 @@
 // part of a sweep's report that `strut design` prints in full.
 #pragma once
 
-#include "jobs/report/figures.h"
+#include "report/figures.h"
 #include "sweep/request.h"
 
 namespace strut {

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/atomic_file.h"
-#include "io/dataset.h"
-#include "jobs/progress.h"
+#include "base/math/random.h"
+#include "io/file/atomic_file.h"
+#include "io/store/dataset.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/unsealed.h"
 #include "jobs/report/coverage.h"
-#include "jobs/report/figures.h"
-#include "jobs/report/html.h"
 #include "jobs/report/sensitivities.h"
-#include "jobs/unsealed.h"
-#include "model/math/random.h"
+#include "report/figures.h"
+#include "report/html.h"
 #include "sweep/folder.h"
 #include "sweep/status.h"
 

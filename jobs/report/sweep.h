@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/sweep_folder.h"
+#include "io/store/sweep_folder.h"
 
 namespace strut {
 

@@ -1,9 +1,9 @@
 #include "jobs/simulate/kinematics.h"
 
-#include "io/atomic_file.h"
-#include "io/config.h"
-#include "jobs/interrupt.h"
-#include "model/vehicle/kinematics.h"
+#include "io/file/atomic_file.h"
+#include "io/format/config.h"
+#include "jobs/cli/interrupt.h"
+#include "model/car/kinematics.h"
 
 namespace strut {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "jobs/load_case.h"
+#include "jobs/case/load_case.h"
 
 namespace strut {
 

@@ -3,14 +3,14 @@
 #include <chrono>
 #include <cstdio>
 
-#include "jobs/command.h"
-#include "jobs/messages.h"
-#include "jobs/progress.h"
-#include "jobs/run_file.h"
-#include "model/effects/read_out.h"
-#include "model/integrate/rig_system.h"
-#include "sweep/parameters.h"
-#include "sweep/read_rig.h"
+#include "jobs/case/run_file.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/progress.h"
+#include "model/rig/rig_system.h"
+#include "model/sensor/read_out.h"
+#include "model_files/parameters.h"
+#include "model_files/read_rig.h"
 
 namespace strut {
 namespace {

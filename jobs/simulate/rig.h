@@ -1,9 +1,9 @@
 // `strut simulate` on a rig instead of a car: same files out, no snapshot.
 #pragma once
 
-#include "jobs/arguments.h"
-#include "jobs/simulate/options.h"
-#include "model/vehicle/rigs.h"
+#include "jobs/case/options.h"
+#include "jobs/cli/arguments.h"
+#include "model/rig/rigs.h"
 
 namespace strut {
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "io/config.h"
-#include "jobs/report/figures.h"
-#include "jobs/report/page_file.h"
+#include "io/format/config.h"
 #include "jobs/simulate/motion.h"
+#include "report/figures.h"
+#include "report/page_file.h"
 
 namespace strut {
 namespace {

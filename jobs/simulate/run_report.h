@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/run_file.h"
-#include "model/vehicle/case.h"
+#include "jobs/case/run_file.h"
+#include "model/car/case.h"
 
 namespace strut {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/config.h"
+#include "io/format/config.h"
 
 namespace strut {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/config.h"
+#include "io/format/config.h"
+#include "jobs/cli/unsealed.h"
 #include "jobs/study/bars.h"
-#include "jobs/unsealed.h"
-#include "train/evaluate.h"
+#include "train/model/evaluate.h"
 
 namespace strut {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/report/chart.h"
 #include "jobs/study/results.h"
+#include "report/chart.h"
 
 namespace strut {
 

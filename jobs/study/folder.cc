@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "io/atomic_file.h"
-#include "io/config.h"
-#include "io/toml_text.h"
-#include "jobs/unsealed.h"
-#include "sweep/design.h"
+#include "estimate/design.h"
+#include "io/file/atomic_file.h"
+#include "io/format/config.h"
+#include "io/format/toml_text.h"
+#include "jobs/cli/unsealed.h"
 #include "sweep/facts.h"
 #include "sweep/folder.h"
 #include "sweep/freeze_inputs.h"
@@ -114,8 +114,8 @@ std::string make_vehicle(const SweepFolder& base, const std::string& preload) {
 double find_best_offset(const SweepRequest& request) {
   SensitivityOptions options;
   options.integrate = make_accurate(request.integrate);
-  const Sensitivity s = calc_sensitivity(make_base_point(request, {}, {}), request.grid.axes(),
-                                         request.snapshot.offset, options);
+  const Sensitivity s = calc_sensitivity(make_base_point(request.base, request.grid, {}, {}),
+                                         request.grid.axes(), request.snapshot.offset, options);
   const Design design = calc_design(s, request.snapshot.channels, make_default_noise());
   return s.instants[design.best.front().instants.front()].offset;
 }

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/sweep_folder.h"
+#include "io/store/sweep_folder.h"
 #include "jobs/study/request.h"
 #include "sweep/plan.h"
 

@@ -1,7 +1,7 @@
 // A study's results as JSON and CSV.
 #include <cmath>
 
-#include "io/config.h"
+#include "io/format/config.h"
 #include "jobs/study/results.h"
 
 namespace strut {

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "diagnose/fit.h"
-#include "jobs/machine.h"
+#include "base/parallel/team.h"
+#include "estimate/design.h"
+#include "estimate/fit.h"
+#include "jobs/cli/machine.h"
 #include "jobs/study/noise_limits_file.h"
 #include "jobs/study/noise_records.h"
-#include "model/parallel/team.h"
-#include "sweep/design.h"
-#include "sweep/find_channel.h"
-#include "sweep/parameters.h"
+#include "model_files/find_channel.h"
+#include "model_files/parameters.h"
 
 namespace strut {
 namespace {

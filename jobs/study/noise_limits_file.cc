@@ -1,8 +1,8 @@
 #include "jobs/study/noise_limits_file.h"
 
-#include "io/config.h"
-#include "io/csv.h"
-#include "sweep/parameters.h"
+#include "io/format/config.h"
+#include "io/format/csv.h"
+#include "model_files/parameters.h"
 
 namespace strut {
 namespace {

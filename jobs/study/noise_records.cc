@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <string>
 
-#include "diagnose/linearize.h"
-#include "sweep/design.h"
-#include "sweep/parameters.h"
-#include "train/split.h"
+#include "estimate/design.h"
+#include "estimate/linearize.h"
+#include "model_files/parameters.h"
+#include "train/data/split.h"
 #include "train/window/records.h"
 
 namespace strut {
@@ -26,7 +26,7 @@ std::vector<std::int64_t> choose_cases(const NoiseStudyRequest& request, const S
 
 /// `values`: of the axes.
 Case make_setup(const SweepRequest& sweep, std::span<const double> values) {
-  Case setup = make_base_point(sweep, {}, {});
+  Case setup = make_base_point(sweep.base, sweep.grid, {}, {});
   for (std::size_t a = 0; a < values.size(); ++a) {
     set_parameter(setup, sweep.grid.axes()[a].name, values[a]);
   }
@@ -102,7 +102,7 @@ MeasuredRun draw_record(const NoiseStudyRequest& request, const NoiseStudyData& 
   for (double& time : run.times) time -= draw.calc_hit_time();
   const Eigen::VectorXd residuals = simulate_readings(run, list_axes(data.window).front());
   run.times = times;
-  run.setup = make_base_point(data.window, {}, {});
+  run.setup = make_base_point(data.window.base, data.window.grid, {}, {});
   Eigen::Index next = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     for (MeasuredChannel& c : run.channels) c.values[i] = c.sigma * residuals(next++);

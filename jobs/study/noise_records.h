@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "diagnose/measured_run.h"
+#include "estimate/measured_run.h"
 #include "jobs/study/noise_trainings.h"
 
 namespace strut {

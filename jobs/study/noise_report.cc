@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/config.h"
+#include "io/format/config.h"
 #include "jobs/study/noise_figure.h"
 
 namespace strut {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/report/figures.h"
 #include "jobs/study/noise_study.h"
+#include "report/figures.h"
 
 namespace strut {
 

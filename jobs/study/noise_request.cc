@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "io/nearest_name.h"
+#include "base/text/nearest_name.h"
+#include "estimate/sensor_noise.h"
 #include "sweep/plan.h"
-#include "sweep/sensor_noise.h"
 
 namespace strut {
 namespace {

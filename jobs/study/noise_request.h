@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "io/config.h"
+#include "io/format/config.h"
 #include "sweep/request.h"
-#include "train/noise.h"
+#include "train/data/noise.h"
 #include "train/window/records.h"
 
 namespace strut {
@@ -15,7 +15,7 @@ namespace strut {
 struct NoiseStudyRequest {
   std::filesystem::path sweep;  // of the histories, `window_sweep`
   WindowChoice window;
-  std::vector<double> scales;  // of the default noise (sweep/sensor_noise.h), ascending
+  std::vector<double> scales;  // of the default noise (estimate/sensor_noise.h), ascending
   int copies = 8;           // noisy copies of each case that a network trains on and is judged by
   int fits = 40;            // records to which the simulation is fitted, at each scale
   double hit_time = 0.005;  // s, 1 sigma, of a window's records

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "jobs/cli/unsealed.h"
 #include "jobs/study/noise_limits.h"
-#include "jobs/unsealed.h"
-#include "sweep/find_channel.h"
-#include "train/evaluate.h"
+#include "model_files/find_channel.h"
+#include "train/model/evaluate.h"
 
 namespace strut {
 namespace {

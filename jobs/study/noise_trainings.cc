@@ -1,6 +1,6 @@
 #include "jobs/study/noise_trainings.h"
 
-#include "io/config.h"
+#include "io/format/config.h"
 #include "sweep/plan.h"
 
 namespace strut {

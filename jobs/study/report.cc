@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "io/atomic_file.h"
-#include "io/config.h"
-#include "io/nearest_name.h"
-#include "jobs/progress.h"
-#include "jobs/report/figures.h"
+#include "base/text/nearest_name.h"
+#include "io/file/atomic_file.h"
+#include "io/format/config.h"
+#include "jobs/cli/progress.h"
 #include "jobs/study/figures.h"
 #include "jobs/study/noise_report.h"
 #include "jobs/study/tables.h"
+#include "report/figures.h"
 #include "sweep/folder.h"
 
 namespace strut {

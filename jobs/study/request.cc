@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "io/config.h"
-#include "io/nearest_name.h"
+#include "base/text/nearest_name.h"
+#include "io/format/config.h"
 #include "sweep/plan.h"
-#include "train/network.h"
+#include "train/network/network.h"
 
 namespace strut {
 namespace {

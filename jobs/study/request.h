@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "base/least_squares/levenberg_marquardt.h"
 #include "jobs/study/noise_request.h"
-#include "train/dataset_source.h"
-#include "train/levenberg_marquardt.h"
-#include "train/metrics.h"
+#include "train/data/dataset_source.h"
+#include "train/data/metrics.h"
 
 namespace strut {
 

@@ -7,11 +7,11 @@
 #include <memory>
 #include <stdexcept>
 
-#include "jobs/report/html.h"
+#include "jobs/cli/unsealed.h"
 #include "jobs/study/trainings.h"
-#include "jobs/unsealed.h"
+#include "report/html.h"
 #include "sweep/folder.h"
-#include "train/evaluate.h"
+#include "train/model/evaluate.h"
 
 namespace strut {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "jobs/json.h"
 #include "jobs/study/folder.h"
 #include "jobs/study/noise_study.h"
-#include "train/metrics.h"
-#include "train/model_file.h"
+#include "report/json.h"
+#include "train/data/metrics.h"
+#include "train/model/model_file.h"
 
 namespace strut {
 

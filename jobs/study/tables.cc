@@ -1,7 +1,7 @@
 #include "jobs/study/tables.h"
 
-#include "io/config.h"
-#include "jobs/progress.h"
+#include "io/format/config.h"
+#include "jobs/cli/progress.h"
 
 namespace strut {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "jobs/report/html.h"
 #include "jobs/study/results.h"
+#include "report/html.h"
 
 namespace strut {
 

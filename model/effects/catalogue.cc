@@ -5,15 +5,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/names/corners.h"
 #include "model/effects/tables.h"
-#include "model/vehicle/model_error.h"
+#include "model/error/model_error.h"
 
 namespace strut {
 namespace {
-
-const std::array<std::string, 2> kAxlePlaces = {"front", "rear"};
-const std::array<std::string, 4> kCornerPlaces = {"front_left", "front_right", "rear_left",
-                                                  "rear_right"};
 
 std::vector<EffectInfo> make_effects() {
   std::vector<EffectInfo> effects = make_strut_effects();
@@ -24,10 +21,8 @@ std::vector<EffectInfo> make_effects() {
 
 /// "rear" for "rear_left" and "rear_right", "" for what is no corner.
 std::string find_axle_of(const std::string& place) {
-  for (std::size_t c = 0; c < kCornerPlaces.size(); ++c) {
-    if (kCornerPlaces[c] == place) return kAxlePlaces[c / 2];
-  }
-  return "";
+  const int corner = find_corner(place);
+  return corner < 0 ? "" : kAxleNames[static_cast<std::size_t>(axle_of(corner))];
 }
 
 template <class Settings>
@@ -152,10 +147,10 @@ std::vector<std::string> list_effect_places(const EffectInfo& effect, ModelKind 
   if (kind != ModelKind::kFullVehicle) return {""};
   std::vector<std::string> places;
   if ((effect.places & kOnAxle) != 0) {
-    places.insert(places.end(), kAxlePlaces.begin(), kAxlePlaces.end());
+    places.insert(places.end(), kAxleNames.begin(), kAxleNames.end());
   }
   if ((effect.places & kOnCorner) != 0) {
-    places.insert(places.end(), kCornerPlaces.begin(), kCornerPlaces.end());
+    places.insert(places.end(), kCornerNames.begin(), kCornerNames.end());
   }
   if ((effect.places & kOnBody) != 0) places.emplace_back("body");
   if ((effect.places & kOnRoad) != 0) places.emplace_back("road");
@@ -195,7 +190,7 @@ double get_effect_value(const EffectSettings& settings, const EffectInfo& effect
                         const std::string& place, std::size_t parameter) {
   // An axle reads as the mean of its two corners.
   std::vector<double> found;
-  for (const std::string& corner : kCornerPlaces) {
+  for (const char* corner : kCornerNames) {
     if (find_axle_of(corner) != place) continue;
     if (find_setting(settings, effect.name, corner) == settings.end()) continue;
     found.push_back(get_values(settings, effect, kind, corner).at(parameter));
@@ -214,7 +209,7 @@ void set_effect_value(EffectSettings& settings, const EffectInfo& effect, ModelK
   };
   // Corners with settings of their own first: once the axle says the same they are dropped.
   std::vector<std::string> corners;
-  for (const std::string& corner : kCornerPlaces) {
+  for (const char* corner : kCornerNames) {
     if (find_axle_of(corner) != place) continue;
     if (find_setting(settings, effect.name, corner) != settings.end()) corners.push_back(corner);
   }

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <sstream>
 
-#include "model/vehicle/model_error.h"
+#include "base/names/corners.h"
+#include "model/error/model_error.h"
 
 namespace strut {
 namespace {
-
-const std::vector<std::string> kCornerPlaces = {"front_left", "front_right", "rear_left",
-                                                "rear_right"};
 
 ModelError refuse(const ForceMap& map, const std::string& what) {
   return ModelError("force map" + (map.place.empty() ? "" : " at " + map.place) + ": " + what);
@@ -69,8 +67,11 @@ SplineAxis<double> make_axis(double low, double high, int count) {
 
 const std::vector<std::string>& list_force_map_places(ModelKind kind) {
   static const std::vector<std::string> of_rig = {""};
-  static const std::vector<std::string> of_car = {"front",       "rear",      "front_left",
-                                                  "front_right", "rear_left", "rear_right"};
+  static const std::vector<std::string> of_car = [] {
+    std::vector<std::string> places(kAxleNames.begin(), kAxleNames.end());
+    places.insert(places.end(), kCornerNames.begin(), kCornerNames.end());
+    return places;
+  }();
   return kind == ModelKind::kFullVehicle ? of_car : of_rig;
 }
 
@@ -132,7 +133,7 @@ std::array<std::shared_ptr<const ForceMapTable>, 4> make_corner_force_maps(const
   std::array<std::shared_ptr<const ForceMapTable>, 4> tables;
   std::array<const ForceMap*, 4> found{};
   for (std::size_t c = 0; c < tables.size() && !maps.empty(); ++c) {
-    found[c] = find_force_map(maps, kCornerPlaces[c]);
+    found[c] = find_force_map(maps, kCornerNames[c]);
     if (found[c] == nullptr) continue;
     const bool shared = c % 2 == 1 && found[c] == found[c - 1];
     tables[c] = shared ? tables[c - 1] : make_force_map_table(*found[c]);

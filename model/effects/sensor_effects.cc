@@ -1,6 +1,7 @@
 // Effects of sensors: what a reading differs by from the channel itself.
+#include "model/channel/car_channels.h"
+#include "model/channel/rig_channels.h"
 #include "model/effects/tables.h"
-#include "model/vehicle/rigs.h"
 
 namespace strut {
 namespace {

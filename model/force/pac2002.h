@@ -12,10 +12,10 @@
 // camber positive when the top leans to the right (right-hand rotation about x).
 #pragma once
 
+#include "base/math/bounded_trig.h"
+#include "base/math/lanes.h"
+#include "base/math/pair.h"
 #include "model/force/pac2002_coefficients.h"
-#include "model/math/bounded_trig.h"
-#include "model/math/lanes.h"
-#include "model/math/pair.h"
 
 namespace strut {
 

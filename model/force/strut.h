@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <tuple>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
 #include "model/multibody/corner.h"
 
 namespace strut {

@@ -1,8 +1,8 @@
 // One tire on the road: contact point, vertical spring-damper that lifts off, slips, PAC2002.
 #pragma once
 
+#include "base/math/spatial.h"
 #include "model/force/pac2002.h"
-#include "model/math/spatial.h"
 #include "model/scenario/road.h"
 
 namespace strut {

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
+#include "model/integrate/run_status.h"
 
 namespace strut {
 
 enum class Stepper { kRk4, kAbm4 };
-
-enum class RunStatus : int {
-  kDone = 0,
-  kDiverged = 1,     // a state is no longer finite, or faster than any car
-  kOutOfTravel = 2,  // a corner left the travel its loops were closed over
-  kStalled = 3,      // steps cut short by contact events, one upon the other, get nowhere
-};
 
 struct StepOptions {
   Stepper stepper = Stepper::kRk4;

@@ -17,7 +17,7 @@
 
 #include <array>
 
-#include "model/integrate/exponential.h"
+#include "base/math/exponential.h"
 
 namespace strut {
 

@@ -1,8 +1,8 @@
 // The simulation for one instruction set: compiled once for each, with STRUT_ISA naming it.
 
-#include "model/integrate/rig_system.h"
+#include "base/math/xsimd_backend.h"
 #include "model/kernel/run_cases.h"
-#include "model/math/xsimd_backend.h"
+#include "model/rig/rig_system.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Which cases are cheap to run one after the other.
 #pragma once
 
-#include "model/vehicle/case.h"
+#include "model/car/case.h"
 
 namespace strut {
 

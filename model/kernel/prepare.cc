@@ -1,9 +1,9 @@
 #include <sstream>
 
-#include "model/effects/sensors.h"
+#include "model/car/assemble_effects.h"
 #include "model/kernel/mechanism.h"
 #include "model/kernel/simulation.h"
-#include "model/vehicle/assemble_effects.h"
+#include "model/sensor/sensors.h"
 
 namespace strut {
 namespace {

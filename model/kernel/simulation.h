@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "model/integrate/car_system.h"
-#include "model/vehicle/assemble.h"
-#include "model/vehicle/case.h"
-#include "model/vehicle/rigs.h"
-#include "model/vehicle/trim.h"
+#include "model/car/assemble.h"
+#include "model/car/car_system.h"
+#include "model/car/case.h"
+#include "model/car/trim.h"
+#include "model/rig/rigs.h"
 
 namespace strut {
 
@@ -86,5 +86,14 @@ struct ReferenceOptions {
 };
 LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options,
                       const SamplePlan& plan);
+
+enum class Solver { kLanes, kCvode };
+
+/// Who integrates, and how.
+struct SolverOptions {
+  Solver solver = Solver::kLanes;
+  IntegrateOptions options;    // of the lanes
+  ReferenceOptions reference;  // of CVODE
+};
 
 }  // namespace strut

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "model/math/spatial.h"
+#include "base/math/spatial.h"
 
 namespace strut {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
 
 namespace strut {
 

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/math/lanes.h"
+#include "base/math/lanes.h"
 
 namespace strut {
 

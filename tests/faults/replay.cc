@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "tests/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace strut::test {
 

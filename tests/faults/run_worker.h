@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/run_program.h"
+#include "tests/jobs/run_program.h"
 
 namespace strut::test {
 

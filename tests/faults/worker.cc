@@ -19,11 +19,11 @@
 #include <thread>
 #include <vector>
 
-#include "io/atomic_file.h"
-#include "io/claims.h"
-#include "io/input_error.h"
-#include "io/journal.h"
-#include "io/publish.h"
+#include "base/error/input_error.h"
+#include "io/file/atomic_file.h"
+#include "io/file/publish.h"
+#include "io/store/claims.h"
+#include "io/store/journal.h"
 #include "tests/faults/worker_data.h"
 
 namespace strut::test {

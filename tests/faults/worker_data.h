@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "io/journal.h"
+#include "io/store/journal.h"
 
 namespace strut::test {
 

@@ -1,8 +1,8 @@
 // Files that single commands keep: studies, reports, submissions.
-#include "jobs/dispatch/submission.h"
-#include "jobs/dispatch/task_record.h"
-#include "jobs/report/page_file.h"
+#include "cluster/submission.h"
+#include "cluster/task_record.h"
 #include "jobs/study/request.h"
+#include "report/page_file.h"
 #include "tests/fuzz/format.h"
 
 namespace strut::fuzz {

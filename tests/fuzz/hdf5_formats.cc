@@ -1,15 +1,15 @@
 // Files in HDF5: shards, merged files, plans, networks, measurements.
 #include <span>
 
-#include "io/dataset.h"
-#include "io/measurement.h"
-#include "io/shard_layout.h"
+#include "io/store/dataset.h"
+#include "io/store/measurement.h"
+#include "io/store/shard_layout.h"
 #include "sweep/folder.h"
 #include "tests/fuzz/format.h"
-#include "train/checkpoint.h"
-#include "train/dataset_source.h"
-#include "train/identifier.h"
-#include "train/model_file.h"
+#include "train/data/dataset_source.h"
+#include "train/model/checkpoint.h"
+#include "train/model/identifier.h"
+#include "train/model/model_file.h"
 
 namespace strut::fuzz {
 namespace {

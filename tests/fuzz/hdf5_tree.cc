@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "io/compress.h"
-#include "io/hdf5.h"
-#include "io/sha256.h"
+#include "io/file/compress.h"
+#include "io/file/sha256.h"
+#include "io/format/hdf5.h"
 
 namespace strut::fuzz {
 namespace {

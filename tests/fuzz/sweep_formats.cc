@@ -1,6 +1,6 @@
 // What runners leave in a sweep folder beside its shards.
-#include "io/claims.h"
-#include "io/journal.h"
+#include "io/store/claims.h"
+#include "io/store/journal.h"
 #include "sweep/folder.h"
 #include "sweep/status.h"
 #include "tests/fuzz/format.h"

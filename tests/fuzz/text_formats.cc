@@ -3,19 +3,19 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "diagnose/campaign_data.h"
-#include "io/csv.h"
-#include "io/measurement.h"
-#include "io/toml_text.h"
+#include "diagnose/campaign/campaign_data.h"
+#include "estimate/sensor_noise.h"
+#include "io/format/csv.h"
+#include "io/format/toml_text.h"
+#include "io/store/measurement.h"
 #include "model/kernel/simulation.h"
-#include "sweep/named_files.h"
-#include "sweep/parameters.h"
+#include "model_files/named_files.h"
+#include "model_files/parameters.h"
+#include "model_files/read_maneuver.h"
+#include "model_files/read_rig.h"
+#include "model_files/read_tire.h"
+#include "model_files/read_vehicle.h"
 #include "sweep/plan.h"
-#include "sweep/read_maneuver.h"
-#include "sweep/read_rig.h"
-#include "sweep/read_tire.h"
-#include "sweep/read_vehicle.h"
-#include "sweep/sensor_noise.h"
 #include "tests/fuzz/format.h"
 
 namespace strut::fuzz {

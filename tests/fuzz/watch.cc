@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "io/input_error.h"
+#include "base/error/input_error.h"
 #include "tests/fuzz/hdf5_tree.h"
 
 namespace strut::fuzz {

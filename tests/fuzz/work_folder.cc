@@ -3,16 +3,16 @@
 #include <cstdlib>
 #include <span>
 
-#include "io/atomic_file.h"
-#include "io/heartbeat.h"
-#include "io/journal.h"
+#include "io/file/atomic_file.h"
+#include "io/store/heartbeat.h"
+#include "io/store/journal.h"
 #include "sweep/folder.h"
 #include "sweep/merge.h"
 #include "sweep/shard_store.h"
 #include "tests/fuzz/format.h"
-#include "train/checkpoint.h"
-#include "train/model_file.h"
-#include "train/network.h"
+#include "train/model/checkpoint.h"
+#include "train/model/model_file.h"
+#include "train/network/network.h"
 
 namespace strut::fuzz {
 namespace {

@@ -10,8 +10,8 @@
 #include "tests/hidden/ablation.h"
 #include "tests/hidden/campaign_files.h"
 #include "tests/hidden/verdicts.h"
-#include "tests/run_program.h"
-#include "tests/tolerance.h"
+#include "tests/jobs/run_program.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 namespace {

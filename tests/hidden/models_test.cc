@@ -10,7 +10,7 @@
 #include "tests/hidden/dormand_prince.h"
 #include "tests/hidden/faults.h"
 #include "tests/hidden/rigs.h"
-#include "tests/tolerance.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 namespace {

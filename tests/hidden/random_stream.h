@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "model/math/random.h"
+#include "base/math/random.h"
 
 namespace strut::hidden {
 

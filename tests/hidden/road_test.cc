@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-#include "tests/tolerance.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 

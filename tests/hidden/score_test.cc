@@ -14,8 +14,8 @@
 #include "tests/hidden/limits.h"
 #include "tests/hidden/report.h"
 #include "tests/hidden/sha256.h"
-#include "tests/temporary_folder.h"
-#include "tests/tolerance.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 namespace {

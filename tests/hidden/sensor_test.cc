@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/tolerance.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 namespace {

@@ -13,8 +13,8 @@
 #include "tests/hidden/campaign_files.h"
 #include "tests/hidden/random_stream.h"
 #include "tests/hidden/sha256.h"
-#include "tests/run_program.h"
-#include "tests/tolerance.h"
+#include "tests/jobs/run_program.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "tests/hidden/kit.h"
-#include "tests/run_program.h"
-#include "tests/tolerance.h"
+#include "tests/jobs/run_program.h"
+#include "tests/support/tolerance.h"
 
 namespace strut::hidden {
 namespace {

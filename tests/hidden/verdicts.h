@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/parse_json.h"
+#include "tests/jobs/parse_json.h"
 
 namespace strut::hidden {
 

@@ -12,7 +12,7 @@ import re
 import sys
 import tempfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from run_commands import check, run
 
 # Nothing but the prefix named may lead to the libraries.
@@ -61,7 +61,9 @@ def check_interface(build, source):
         check("-std=gnu++20" in command or "-std=c++20" in command, f"not C++20: {command}")
         check(not re.search(r" -(W|fsanitize|m|fno-|fopenmp|O)", command), f"flags leak: {command}")
         for word in ("EIGEN_DONT_PARALLELIZE", "EIGEN_MALLOC_ALREADY_ALIGNED="):
-            check(f" -D{word}" in command, f"not told how to use Eigen: {command}")
+            # The other programs include no header with Eigen.
+            if re.search("identify|every_header", command):
+                check(f" -D{word}" in command, f"not told how to use Eigen: {command}")
 
 
 def check_other_alignment(project, folder, prefix, cache):

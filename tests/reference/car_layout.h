@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "model/vehicle/spec.h"
+#include "model/car/spec.h"
 #include "tests/reference/rigid_bodies.h"
 
 namespace strut::reference {

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "model/car/spec.h"
 #include "model/scenario/maneuver.h"
-#include "model/vehicle/spec.h"
 #include "tests/reference/car_forces.h"
 #include "tests/reference/car_layout.h"
 

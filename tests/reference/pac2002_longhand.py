@@ -1,6 +1,6 @@
 """PAC2002 written out as printed (Pacejka, Tyre and Vehicle Dynamics, 2nd ed., 4.3.2; Adams/Tire
 help): angles by atan and cos, forces multiplied by the load at once, no identities. Prints the tables
-of tests/pac2002_test.cc, the second with every scale factor other than one:  python3 tests/reference/pac2002_longhand.py examples/tires/paper_sedan.tir
+of tests/model/pac2002_test.cc, the second with every scale factor other than one:  python3 tests/reference/pac2002_longhand.py examples/tires/paper_sedan.tir
 """
 
 import sys

@@ -4,10 +4,10 @@
 #include <functional>
 #include <vector>
 
+#include "model/car/spec.h"
 #include "model/force/pac2002.h"
 #include "model/scenario/maneuver.h"
 #include "model/scenario/road.h"
-#include "model/vehicle/spec.h"
 
 namespace strut::reference {
 

@@ -1,7 +1,7 @@
 // Vehicles made in code, for tests that need a car without reading a file.
 #pragma once
 
-#include "model/vehicle/spec.h"
+#include "model/car/spec.h"
 
 namespace strut::reference {
 

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <vector>
 
-#include "io/config.h"
-#include "train/identifier.h"
-#include "train/network.h"
+#include "io/format/config.h"
+#include "train/model/identifier.h"
+#include "train/network/network.h"
 
 namespace strut {
 namespace {

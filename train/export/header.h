@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "train/model_file.h"
+#include "train/model/model_file.h"
 
 namespace strut {
 

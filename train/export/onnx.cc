@@ -3,11 +3,11 @@
 #include <bit>
 #include <cstring>
 
-#include "io/config.h"
-#include "io/nearest_name.h"
-#include "io/shard_layout.h"
+#include "base/text/nearest_name.h"
+#include "io/format/config.h"
+#include "io/store/shard_layout.h"
 #include "train/export/protobuf_message.h"
-#include "train/network.h"
+#include "train/network/network.h"
 
 namespace strut {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/named_texts.h"
-#include "train/model_file.h"
+#include "io/format/named_texts.h"
+#include "train/model/model_file.h"
 
 namespace strut {
 

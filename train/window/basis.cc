@@ -6,8 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "io/config.h"
-#include "io/input_error.h"
+#include "base/error/input_error.h"
+#include "base/math/normal.h"
+#include "io/format/config.h"
 
 namespace strut {
 namespace {

@@ -1,7 +1,7 @@
 // The directions in which the records of a sweep differ.
 #pragma once
 
-#include "train/split.h"
+#include "train/data/split.h"
 #include "train/window/records.h"
 
 namespace strut {

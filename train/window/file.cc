@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/shard_layout.h"
-#include "train/training_file.h"
-#include "train/window/transform.h"
+#include "io/store/shard_layout.h"
+#include "train/data/training_file.h"
+#include "train/data/transform.h"
 
 namespace strut {
 namespace {

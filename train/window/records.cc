@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/config.h"
-#include "io/input_error.h"
-#include "train/window/shift.h"
+#include "base/error/input_error.h"
+#include "io/format/config.h"
+#include "train/data/shift.h"
 
 namespace strut {
 namespace {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "io/dataset.h"
-#include "io/row_store.h"
-#include "train/dataset_source.h"
-#include "train/window/transform.h"
+#include "io/file/row_store.h"
+#include "io/store/dataset.h"
+#include "train/data/dataset_source.h"
+#include "train/data/transform.h"
 
 namespace strut {
 

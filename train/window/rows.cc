@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "io/config.h"
-#include "io/input_error.h"
-#include "io/shard_layout.h"
-#include "model/parallel/team.h"
+#include "base/error/input_error.h"
+#include "base/parallel/team.h"
+#include "io/format/config.h"
+#include "io/store/shard_layout.h"
 
 namespace strut {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "train/dataset_source.h"
+#include "train/data/dataset_source.h"
 #include "train/window/basis.h"
 
 namespace strut {

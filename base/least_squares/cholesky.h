@@ -1,0 +1,30 @@
+// Parts of a Cholesky factorization, compiled once per instruction set (cholesky_isa.cc) and chosen
+// at run time.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace strut {
+
+struct CholeskyKernel {
+  const char* isa;  // "baseline", "avx2", "avx512"
+
+  // A = L L', lower triangle by columns, `lead` numbers from one to the next.
+  bool (*factor_diagonal)(double* a, std::size_t n, std::size_t lead);
+  /// b = b L^-T, b being rows x n.
+  void (*solve_panel)(const double* l, std::size_t n, double* b, std::size_t rows,
+                      std::size_t lead);
+  /// c -= a b', a being rows x depth, b columns x depth.
+  void (*update_panel)(const double* a, const double* b, double* c, std::size_t rows,
+                       std::size_t columns, std::size_t depth, std::size_t lead);
+  /// x = A^-1 x.
+  void (*solve)(const double* l, std::size_t n, double* x);
+};
+
+/// Kernels that this processor can run, widest first; never empty.
+const std::vector<CholeskyKernel>& list_cholesky_kernels();
+/// The widest.
+const CholeskyKernel& get_cholesky_kernel();
+
+}  // namespace strut

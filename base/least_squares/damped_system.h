@@ -1,0 +1,33 @@
+// (H + mu D) x = b by Cholesky, on some threads.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/least_squares/cholesky.h"
+
+namespace strut {
+
+/// Holds one factorization. It is cut into panels of fixed width, so results have the same bits on
+/// any number of threads.
+class DampedSystem {
+ public:
+  DampedSystem(std::size_t size, int threads, const CholeskyKernel& kernel);
+
+  /// Factors H + damping diag(scale); H by columns, lower triangle. False where that is not
+  /// positive definite in floating point.
+  bool factor(const std::vector<double>& h, const std::vector<double>& scale, double damping);
+
+  /// x = (H + mu D)^-1 x, after a factorization that succeeded.
+  void solve(std::vector<double>& x) const;
+
+ private:
+  void copy(const std::vector<double>& h, const std::vector<double>& scale, double damping);
+
+  std::size_t size_;
+  int threads_;
+  const CholeskyKernel* kernel_;
+  std::vector<double> lower_;
+};
+
+}  // namespace strut

@@ -1,0 +1,170 @@
+// Levenberg-Marquardt: minimize e'e by steps v with (H + mu D) v = -J'e, H = J'J.
+//
+// K. Levenberg (1944), D. W. Marquardt (1963); the damping rules and the acceleration are cited at
+// the options that choose them.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/least_squares/damped_system.h"
+#include "base/least_squares/least_squares.h"
+
+namespace strut {
+
+enum class DampingRule {
+  /// By the ratio of actual to predicted decrease: after a step mu max(1/3, 1 - (2 ratio - 1)^3),
+  /// after a failed one mu nu with nu = 2, 4, 8, ... H. B. Nielsen, IMM-REP-1999-05, Technical
+  /// University of Denmark.
+  kGainRatio,
+  /// As MATLAB documents for trainlm: mu * damping_increase until the loss falls, then
+  /// mu * damping_decrease.
+  kTrainlm,
+};
+
+enum class DampingScale {
+  kIdentity,         // D = I (Levenberg, trainlm): for networks, whose weights are alike
+  kDiagonal,         // D = diag(H) (Marquardt): parameters of different unit
+  kLargestDiagonal,  // D = largest diag(H) so far (J. J. More, 1978): shorter steps off plateaus
+};
+
+struct LevenbergMarquardtOptions {
+  DampingRule rule = DampingRule::kGainRatio;
+  DampingScale scale = DampingScale::kIdentity;
+
+  /// Add the second-order term of the path (M. K. Transtrum, J. P. Sethna, arXiv 1201.5885) to a
+  /// step where the problem has second derivatives: half the iterations for one more back
+  /// substitution and one pass. Only with kGainRatio; trainlm has none.
+  bool accelerate = true;
+  /// Largest 2 |a| / |v| of a step v + a; beyond, the step is no better known than its correction
+  /// and is not tried. Transtrum and Sethna's choice.
+  double max_acceleration = 0.75;
+
+  /// First mu; 0: the rule's own. kGainRatio: relative to the largest element of diag(H) (to D with
+  /// the other scales), by itself 0.1, within Nielsen's 1e-3 to 1 for starts that are not known to
+  /// be good. kTrainlm: as it is, by itself trainlm's 1e-3.
+  double first_damping = 0.0;
+  double damping_increase = 10.0;  // kTrainlm alone, its default
+  double damping_decrease = 0.1;   // kTrainlm alone, its default
+  /// mu beyond which no step can help any more: trainlm's default (with kDiagonal relative to D).
+  double max_damping = 1e10;
+
+  int epochs = 1000;                                         // accepted steps, trainlm's default
+  double seconds = std::numeric_limits<double>::infinity();  // s; ends after the epoch at hand
+  double goal = 0.0;           // of e'e / residual_count(), trainlm's default
+  double min_gradient = 1e-7;  // of |2 J'e / residual_count()|, trainlm's default
+  int max_failures = 6;        // epochs without a new validation minimum, trainlm's default
+
+  int threads = 1;  // of the factorization; no result depends on it
+
+  /// Throws InputError naming the field, its value and what is allowed.
+  void validate() const;
+};
+
+enum class StopReason {
+  kNone,
+  kEpochs,
+  kTime,
+  kGoal,
+  kGradient,
+  kDamping,
+  kValidation,
+  kNotFinite
+};
+/// "epochs", "validation failures", ...
+const char* get_name(StopReason reason);
+
+/// What one epoch was about: before its step.
+struct EpochRecord {
+  int epoch = 0;
+  double loss = 0.0;        // e'e / residual_count()
+  double validation = 0.0;  // the same of the validation rows; NaN without
+  double gradient = 0.0;    // |2 J'e / residual_count()|
+  double damping = 0.0;     // mu with which its first step is tried
+};
+
+/// Everything that a training is between two epochs: stored and restored, it goes on as if it had
+/// not stopped, bit for bit.
+struct LevenbergMarquardtState {
+  std::vector<double> weights;
+  int epoch = 0;                 // steps taken
+  double damping = 0.0;          // mu; 0: not chosen yet
+  double growth = 2.0;           // nu of Nielsen's rule
+  std::vector<double> scale;     // D; empty: not chosen yet
+  double validation = 0.0;       // at `weights`; NaN without validation
+  double best_validation = 0.0;  // smallest so far
+  int best_epoch = 0;            // where that was
+  std::vector<double> best_weights;
+  int failures = 0;      // epochs since
+  long trials = 0;       // factorizations so far
+  double seconds = 0.0;  // s, time spent so far
+  StopReason stop = StopReason::kNone;
+};
+
+struct TrainingSummary {
+  StopReason reason = StopReason::kNone;
+  /// At the validation minimum; without validation rows where the training stopped.
+  std::vector<double> weights;
+  EpochRecord last;              // the epoch at which it stopped
+  int best_epoch = 0;            // of `weights`
+  double best_validation = 0.0;  // NaN without
+  long trials = 0;               // factorizations
+  double seconds = 0.0;          // s
+
+  std::string make_line() const;
+  std::string make_report() const;
+};
+
+/// Called with each epoch's record and the state of before its step.
+using EpochCallback = std::function<void(const EpochRecord&, const LevenbergMarquardtState&)>;
+
+class LevenbergMarquardt {
+ public:
+  /// `validation` may be null. Both problems must outlive this. Throws InputError for bad options.
+  LevenbergMarquardt(LeastSquaresProblem& problem, LeastSquaresProblem* validation,
+                     const LevenbergMarquardtOptions& options,
+                     const CholeskyKernel& kernel = get_cholesky_kernel());
+
+  /// Begins at these weights, one for each of the problem's.
+  void start(const std::vector<double>& weights);
+  /// Goes on from a state of the same problem and options.
+  void restore(const LevenbergMarquardtState& state);
+
+  /// Runs one epoch. False once it has stopped; state().stop says why.
+  bool step();
+  /// Steps until it stops.
+  TrainingSummary run(const EpochCallback& callback = {});
+
+  const LevenbergMarquardtState& state() const { return state_; }
+  const EpochRecord& last_record() const { return record_; }
+  /// Decrease of e'e that the last step's linear model predicted.
+  double last_prediction() const { return prediction_; }
+  TrainingSummary summarize() const;
+
+ private:
+  void begin_epoch();
+  StopReason check_stops(double seconds) const;
+  void update_scale();
+  bool find_step();
+  bool calc_step(double* predicted);
+  bool accelerate();
+  void accept(double loss, double predicted);
+  void reject();
+  void update_validation();
+
+  LeastSquaresProblem* problem_;
+  LeastSquaresProblem* validation_;
+  LevenbergMarquardtOptions options_;
+  DampedSystem system_;
+  LevenbergMarquardtState state_;
+  EpochRecord record_;
+  double loss_ = 0.0;  // e'e at the weights
+  double prediction_ = 0.0;
+  std::vector<double> h_, gradient_, velocity_, acceleration_, trial_;
+  EpochCallback callback_;
+};
+
+}  // namespace strut

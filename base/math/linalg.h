@@ -1,0 +1,63 @@
+// Small dense algebra over lanes: the 6 x 6 spatial system of a floating body.
+#pragma once
+
+#include <array>
+
+#include "base/math/spatial.h"
+
+namespace strut {
+
+/// Symmetric 6 x 6 matrix, lower triangle by rows.
+template <class T>
+struct SymmetricMatrix6 {
+  std::array<T, 21> lower;
+  static constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
+};
+
+/// [m I, -S~; S~, J]: inertia of a body of mass m, first moment S, inertia J about the origin.
+template <class T>
+SymmetricMatrix6<T> make_spatial_inertia(const T& mass, const Vec3<T>& moment,
+                                         const Sym3<T>& inertia) {
+  const T zero(0.0);
+  const Vec3<T>& s = moment;
+  const Sym3<T>& j = inertia;
+  return {{mass,                          //
+           zero, mass,                    //
+           zero, zero, mass,              //
+           zero, -s.z, s.y,  j.xx,        //
+           s.z,  zero, -s.x, j.xy, j.yy,  //
+           -s.y, s.x,  zero, j.xz, j.yz, j.zz}};
+}
+
+/// a += scale c c^T.
+template <class T>
+void add_rank_one(SymmetricMatrix6<T>& a, const std::array<T, 6>& c, const T& scale) {
+  for (int row = 0; row < 6; ++row) {
+    const T scaled = scale * c[row];
+    for (int column = 0; column <= row; ++column) a.lower[a.at(row, column)] += scaled * c[column];
+  }
+}
+
+/// Solves a x = b for symmetric positive definite a by L D L^T; x replaces b, factors replace a.
+template <class T>
+void solve_ldlt(SymmetricMatrix6<T>& a, std::array<T, 6>& b) {
+  std::array<T, 6> inverse_pivot;
+  for (int k = 0; k < 6; ++k) {
+    inverse_pivot[k] = T(1.0) / a.lower[a.at(k, k)];
+    for (int row = k + 1; row < 6; ++row) {
+      const T factor = a.lower[a.at(row, k)] * inverse_pivot[k];
+      for (int column = k + 1; column <= row; ++column) {
+        a.lower[a.at(row, column)] -= factor * a.lower[a.at(column, k)];
+      }
+      b[row] -= factor * b[k];
+    }
+  }
+  for (int k = 5; k >= 0; --k) {
+    b[k] *= inverse_pivot[k];
+    for (int row = k + 1; row < 6; ++row) {
+      b[k] -= a.lower[a.at(row, k)] * inverse_pivot[k] * b[row];
+    }
+  }
+}
+
+}  // namespace strut

@@ -1,0 +1,30 @@
+// The normal distribution: random numbers and intervals.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+#include "base/math/random.h"
+
+namespace strut {
+
+/// Half width of the interval that holds 95 % of a normal distribution, in standard deviations.
+inline constexpr double kNormal95 = 1.959963984540054;
+
+/// Two independent standard normal numbers.
+inline std::pair<double, double> calc_normal_pair(std::uint64_t seed, std::uint64_t stream,
+                                                  std::uint64_t counter) {
+  const double u = calc_uniform(seed, stream, 2 * counter);
+  const double angle = 2.0 * std::numbers::pi * calc_uniform(seed, stream, 2 * counter + 1);
+  const double radius = std::sqrt(-2.0 * std::log1p(-u));
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// Standard normal number of a place, by the polar form of G. E. P. Box, M. E. Muller (1958).
+inline double calc_normal(std::uint64_t seed, std::uint64_t stream, std::uint64_t counter) {
+  return calc_normal_pair(seed, stream, counter).first;
+}
+
+}  // namespace strut

@@ -1,0 +1,110 @@
+#include "diagnose/baseline/baseline.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error/input_error.h"
+#include "estimate/search_start.h"
+#include "model_files/parameters.h"
+
+namespace strut {
+namespace {
+
+void shift_readings(std::vector<MeasuredChannel>& channels, const Unknown& bias, double value) {
+  for (MeasuredChannel& c : channels) {
+    if (c.channel != bias.channel) continue;
+    for (double& reading : c.values) reading -= value;
+  }
+}
+
+/// Shared biases back on what is simulated, so that it can be compared with the readings.
+void add_shared_biases(const SharedValues& shared, RunCurves& curves) {
+  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
+    const Unknown& u = shared.unknowns[i];
+    if (u.kind != UnknownKind::kBias) continue;
+    for (double& v : curves.channel[static_cast<std::size_t>(u.channel)]) v += shared.values[i];
+  }
+}
+
+void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& evaluation) {
+  const std::vector<MeasuredChannel>& channels = data.channels(run);
+  evaluation.residual.reserve(channels.size());
+  for (const MeasuredChannel& c : channels) {
+    const std::vector<double>& simulated =
+        evaluation.curves.channel[static_cast<std::size_t>(c.channel)];
+    std::vector<double> residual(c.values.size());
+    for (std::size_t t = 0; t < residual.size(); ++t) residual[t] = c.values[t] - simulated[t];
+    evaluation.residual.push_back(std::move(residual));
+  }
+}
+
+}  // namespace
+
+CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared) {
+  CampaignData one = take_run(data, run);
+  if (data.is_rig()) {
+    one.rigs[0] = set_rig_unknowns(one.rigs[0], shared.unknowns, shared.values);
+  } else {
+    set_parameters(one.cars[0].setup, shared.unknowns, shared.values);
+  }
+  std::vector<MeasuredChannel>& channels =
+      data.is_rig() ? one.rigs[0].channels : one.cars[0].channels;
+  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
+    const Unknown& u = shared.unknowns[i];
+    if (u.kind == UnknownKind::kBias) shift_readings(channels, u, shared.values[i]);
+  }
+  return one;
+}
+
+double Baseline::calc_sigma(std::size_t i) const { return fit.widened.sigma[i]; }
+
+Baseline calibrate_baseline(const CampaignData& data, int threads, const FitOptions& options) {
+  Baseline baseline;
+  baseline.runs = data.list_runs(RunUse::kFit);
+  baseline.nominal.unknowns = make_free_unknowns(data, baseline.runs);
+  baseline.calibrated.unknowns = baseline.nominal.unknowns;
+  // A prior may begin the search elsewhere than the model's file.
+  for (const Unknown& u : baseline.nominal.unknowns) {
+    baseline.nominal.values.push_back(get_nominal(data, u));
+  }
+  baseline.calibrated.values = baseline.nominal.values;
+  if (baseline.nominal.unknowns.empty()) return baseline;
+  std::vector<Unknown> unknowns = baseline.nominal.unknowns;
+  for (Unknown& u : make_run_unknowns(data, baseline.runs, unknowns)) {
+    unknowns.push_back(std::move(u));
+  }
+  const auto model = make_reading_model(data, baseline.runs, std::move(unknowns), threads);
+  FitOptions chosen = options;
+  if (data.is_rig()) chosen.start = search_start(*model);
+  baseline.fit = fit_readings(*model, chosen);
+  baseline.is_fitted = true;
+  const auto shared = static_cast<std::ptrdiff_t>(baseline.shared_count());
+  baseline.calibrated.values.assign(baseline.fit.values.begin(),
+                                    baseline.fit.values.begin() + shared);
+  return baseline;
+}
+
+RunEvaluation evaluate_run(const CampaignData& data, std::size_t run, const SharedValues& shared,
+                           int threads) {
+  RunEvaluation evaluation;
+  const CampaignData one = pin_run(data, run, shared);
+  evaluation.unknowns = make_run_unknowns(one, {0}, shared.unknowns);
+  evaluation.values = list_starts(evaluation.unknowns);
+  if (!evaluation.unknowns.empty()) {
+    const auto model = make_reading_model(one, {0}, evaluation.unknowns, threads);
+    try {
+      evaluation.values = fit_readings(*model).values;
+    } catch (const InputError& e) {
+      evaluation.failure = e.what();
+      return evaluation;
+    }
+  }
+  evaluation.curves = simulate_run(one, 0, evaluation.unknowns, evaluation.values);
+  evaluation.failure = evaluation.curves.failure;
+  if (!evaluation.failure.empty()) return evaluation;
+  add_shared_biases(shared, evaluation.curves);
+  fill_residual(data, run, evaluation);
+  return evaluation;
+}
+
+}  // namespace strut

@@ -1,0 +1,172 @@
+#include "diagnose/baseline/residuals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <unsupported/Eigen/FFT>
+
+#include "diagnose/campaign/spread.h"
+#include "io/format/config.h"
+
+namespace strut {
+namespace {
+
+/// The readings on an even clock of as many samples, gaps and uneven intervals interpolated
+/// linearly, the mean taken off.
+std::vector<double> make_even(std::span<const double> times, std::span<const double> values) {
+  std::vector<double> t, v;
+  t.reserve(times.size());
+  v.reserve(times.size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    t.push_back(times[i]);
+    v.push_back(values[i]);
+  }
+  if (t.size() < 2) return {};
+  std::vector<double> even(t.size());
+  const double mean = calc_mean(v);
+  const double interval = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < even.size(); ++i) {
+    const double at = t.front() + interval * static_cast<double>(i);
+    while (k + 2 < t.size() && t[k + 1] <= at) ++k;
+    const double share = (at - t[k]) / (t[k + 1] - t[k]);
+    even[i] = v[k] + share * (v[k + 1] - v[k]) - mean;
+  }
+  return even;
+}
+
+/// Mean square of `values` [even, every `interval` s] in each of the bands.
+std::array<double, kBands.size()> calc_band_powers(const std::vector<double>& values,
+                                                   double interval) {
+  std::array<double, kBands.size()> powers{};
+  if (values.size() < 2) return powers;
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> spectrum;
+  fft.fwd(spectrum, values);
+  const std::size_t n = values.size();
+  const double norm = 1.0 / (static_cast<double>(n) * static_cast<double>(n));
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto cycles = static_cast<double>(std::min(k, n - k));
+    const double frequency = cycles / (static_cast<double>(n) * interval);
+    for (std::size_t b = 0; b < kBands.size(); ++b) {
+      if (frequency < kBands[b].from || frequency >= kBands[b].to) continue;
+      powers[b] += norm * std::norm(spectrum[k]);
+    }
+  }
+  return powers;
+}
+
+double calc_interval(std::span<const double> times) {
+  return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+/// Readings that count as one, for neighbors that correlate by `rho`: an autoregressive process of
+/// first order has (1 + rho) / (1 - rho).
+double calc_correlation_length(double rho) {
+  const double r = std::clamp(rho, 0.0, 0.999);
+  return (1.0 + r) / (1.0 - r);
+}
+
+void fill_signs(std::span<const double> state, std::span<const double> residual,
+                StateResidual& result) {
+  std::array<std::vector<double>, 2> sides;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (!std::isfinite(state[i]) || !std::isfinite(residual[i]) || state[i] == 0.0) continue;
+    sides[state[i] > 0.0 ? 1 : 0].push_back(residual[i]);
+  }
+  result.mean_negative = calc_mean(sides[0]);
+  result.mean_positive = calc_mean(sides[1]);
+  const double length = calc_correlation_length(calc_neighbor_correlation(residual));
+  double variance = 0.0;
+  for (const std::vector<double>& side : sides) {
+    if (side.empty()) continue;
+    const double spread = calc_spread(side);
+    variance += spread * spread * length / static_cast<double>(side.size());
+  }
+  result.difference_sigma = std::sqrt(variance);
+}
+
+}  // namespace
+
+std::string describe(const FrequencyBand& band) {
+  const bool is_open = band.to > 1e6;
+  if (band.from == 0.0 && is_open) return "all frequencies";
+  if (band.from == 0.0) return "< " + format_rounded(band.to) + " Hz";
+  if (is_open) return "> " + format_rounded(band.from) + " Hz";
+  return format_rounded(band.from) + "-" + format_rounded(band.to) + " Hz";
+}
+
+std::vector<WindowResidual> calc_window_residuals(std::span<const double> times,
+                                                  std::span<const double> residual,
+                                                  double measured_spread,
+                                                  const std::vector<TimeWindow>& windows) {
+  std::vector<WindowResidual> results;
+  results.reserve(windows.size());
+  for (const TimeWindow& window : windows) {
+    const auto first = std::lower_bound(times.begin(), times.end(), window.from) - times.begin();
+    const auto last = std::lower_bound(times.begin(), times.end(), window.to) - times.begin();
+    const auto part = residual.subspan(static_cast<std::size_t>(first),
+                                       static_cast<std::size_t>(std::max(first, last) - first));
+    const double rms = calc_rms(part);
+    results.push_back(
+        {window, count_readings(part), rms, measured_spread > 0.0 ? rms / measured_spread : 0.0});
+  }
+  return results;
+}
+
+std::vector<BandResidual> calc_band_residuals(std::span<const double> times,
+                                              std::span<const double> residual,
+                                              std::span<const double> measured, double sigma) {
+  const double interval = calc_interval(times), nyquist = 0.5 / interval;
+  const auto left = calc_band_powers(make_even(times, residual), interval);
+  const auto whole = calc_band_powers(make_even(times, measured), interval);
+  std::vector<BandResidual> results;
+  results.reserve(kBands.size());
+  for (std::size_t b = 0; b < kBands.size(); ++b) {
+    const double width = std::max(0.0, std::min(kBands[b].to, nyquist) - kBands[b].from);
+    results.push_back(
+        {kBands[b], std::sqrt(left[b]), std::sqrt(whole[b]), sigma * std::sqrt(width / nyquist)});
+  }
+  return results;
+}
+
+StateResidual calc_state_residual(const std::string& name, const std::string& unit,
+                                  std::span<const double> state, std::span<const double> residual) {
+  StateResidual result{name, unit, {}, 0.0, 0.0, 0.0, 0.0};
+  const double low = calc_quantile(state, 0.005), high = calc_quantile(state, 0.995);
+  if (!(high > low)) return result;
+  const double width = (high - low) / static_cast<double>(kStateBins);
+  std::array<std::vector<double>, kStateBins> members;
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    if (!std::isfinite(state[i]) || !std::isfinite(residual[i])) continue;
+    const double at =
+        std::clamp((state[i] - low) / width, 0.0, static_cast<double>(kStateBins) - 0.5);
+    members[static_cast<std::size_t>(at)].push_back(residual[i]);
+  }
+  double explained = 0.0, total = 0.0;
+  result.bins.reserve(kStateBins);
+  for (std::size_t b = 0; b < kStateBins; ++b) {
+    const double mean = calc_mean(members[b]), rms = calc_rms(members[b]);
+    const auto count = static_cast<double>(members[b].size());
+    result.bins.push_back(
+        {low + (static_cast<double>(b) + 0.5) * width, members[b].size(), mean, rms});
+    explained += count * mean * mean;
+    total += count * rms * rms;
+  }
+  result.explained = total > 0.0 ? explained / total : 0.0;
+  fill_signs(state, residual, result);
+  return result;
+}
+
+double calc_neighbor_correlation(std::span<const double> residual) {
+  double products = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i + 1 < residual.size(); ++i) {
+    if (!std::isfinite(residual[i]) || !std::isfinite(residual[i + 1])) continue;
+    products += residual[i] * residual[i + 1];
+    squares += 0.5 * (residual[i] * residual[i] + residual[i + 1] * residual[i + 1]);
+  }
+  return squares > 0.0 ? products / squares : 0.0;
+}
+
+}  // namespace strut

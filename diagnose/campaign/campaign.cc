@@ -1,0 +1,229 @@
+#include "diagnose/campaign/campaign.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/text/nearest_name.h"
+#include "diagnose/campaign/units.h"
+#include "io/format/config.h"
+#include "model/channel/car_channels.h"
+#include "model_files/read_rig.h"
+
+namespace strut {
+namespace {
+
+const std::vector<std::string> kRoles = {"input", "output"};  // ColumnRole
+const std::vector<std::string> kUses = {"fit", "hold_out"};   // RunUse
+constexpr char kTime[] = "time";
+constexpr char kHitTime[] = "hit_time";
+
+/// What a run may say about its own maneuver.
+const std::vector<std::string> kManeuverKeys = {"speed",       "drive_torque", "bump_distance",
+                                                "bump_height", "bump_length",  kHitTime};
+
+bool is_rig_input(const std::optional<RigKind>& rig, const std::string& channel) {
+  if (!rig) return false;
+  const std::vector<RigInputInfo>& inputs = list_rig_inputs(*rig);
+  return std::any_of(inputs.begin(), inputs.end(),
+                     [&](const RigInputInfo& input) { return input.name == channel; });
+}
+
+const ChannelInfo& find_channel_info(const Table& columns, const std::optional<RigKind>& rig,
+                                     const std::string& channel) {
+  std::vector<std::string> names;
+  for (const ChannelInfo& info : list_channels(rig)) {
+    if (info.name == channel) return info;
+    names.push_back(info.name);
+  }
+  const std::string nearest = suggest_name(channel, names);
+  throw columns.error(channel,
+                      "no channel of this model" +
+                          (nearest.empty() ? "; channels: " + join_names(names) : nearest));
+}
+
+ColumnRole read_role(const Table& table, const std::optional<RigKind>& rig,
+                     const std::string& channel) {
+  const bool drives = is_rig_input(rig, channel);
+  const auto role = static_cast<ColumnRole>(table.choice_or("role", drives ? 0 : 1, kRoles));
+  if (role == ColumnRole::kInput && !drives) {
+    std::vector<std::string> names;
+    if (rig) {
+      for (const RigInputInfo& input : list_rig_inputs(*rig)) names.push_back(input.name);
+    }
+    throw table.error(
+        "role", "'" + channel + "' drives no such model; inputs: " +
+                    (names.empty() ? "none, a car is driven by its maneuver" : join_names(names)));
+  }
+  if (role == ColumnRole::kOutput && drives) {
+    throw table.error("role", "'" + channel + "' is what drives the model; must be \"input\"");
+  }
+  return role;
+}
+
+/// "[mean, sigma]"
+Prior read_prior(const Table& table, const std::string& key) {
+  const std::vector<double> numbers = table.numbers(key);
+  if (numbers.size() != 2 || !(numbers[1] > 0.0)) {
+    throw table.error(key, "must be [mean, 1 sigma], sigma > 0");
+  }
+  return {numbers[0], numbers[1]};
+}
+
+/// A number: known exactly; [mean, sigma]: with its uncertainty.
+Prior read_known(const Table& table, const std::string& key) {
+  try {
+    return {table.number(key), 0.0};
+  } catch (const InputError&) {
+    return read_prior(table, key);
+  }
+}
+
+/// What is known of an input. The command of an actuator is not what it does, neither in scale nor
+/// in sign, unless the campaign says so.
+void read_input(const Table& table, CampaignColumn& c) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  if (c.channel == "actuator_force") c.gain.sigma = kUnknown;
+  if (table.has("gain")) c.gain = read_known(table, "gain");
+  if (table.has("smooth")) c.smooth = table.number("smooth", at_least(0.0, "s"));
+}
+
+CampaignColumn read_column(const Table& columns, const std::string& channel,
+                           const std::optional<RigKind>& rig) {
+  CampaignColumn c;
+  c.channel = channel;
+  c.si = find_channel_info(columns, rig, channel).unit;
+  const Table table = columns.table(channel);
+  c.column = table.text_or("column", channel);
+  c.unit = table.text_or("unit", "");
+  try {
+    find_unit_scale(c.unit, c.si);
+  } catch (const InputError& e) {
+    throw table.error("unit", e.what());
+  }
+  c.sign = table.number_or("sign", 1.0);
+  c.has_sign = table.has("sign");
+  if (c.sign != 1.0 && c.sign != -1.0) throw table.error("sign", "must be 1 or -1");
+  c.scale = table.number_or("scale", 1.0);
+  if (c.scale == 0.0) throw table.error("scale", "must not be 0");
+  c.offset = table.number_or("offset", 0.0);
+  if (channel == kTime) return c;
+  c.role = read_role(table, rig, channel);
+  c.optional = table.boolean_or("optional", false);
+  if (c.role == ColumnRole::kInput) read_input(table, c);
+  if (table.has("noise")) c.noise = table.number("noise", above(0.0, c.si));
+  return c;
+}
+
+void read_columns(const Table& root, Campaign& campaign) {
+  const Table columns = root.table("columns");
+  bool any_output = false;
+  for (const std::string& channel : columns.keys()) {
+    CampaignColumn c = read_column(columns, channel, campaign.rig);
+    any_output = any_output || (channel != kTime && c.role == ColumnRole::kOutput);
+    (channel == kTime ? campaign.time : campaign.columns.emplace_back()) = std::move(c);
+  }
+  if (campaign.time.channel.empty()) throw columns.error(kTime, "is missing");
+  if (!any_output) throw columns.error("no channel to compare; every one is an input");
+}
+
+void read_fit(const Table& root, CampaignFit& fit) {
+  const auto table = root.find_table("fit");
+  if (!table) return;
+  if (table->has("free")) fit.free = table->texts("free");
+  if (const auto fix = table->find_table("fix")) {
+    for (const std::string& name : fix->keys()) fit.fix.emplace_back(name, fix->number(name));
+  }
+  if (const auto prior = table->find_table("prior")) {
+    for (const std::string& name : prior->keys()) {
+      if (std::find(fit.free.begin(), fit.free.end(), name) == fit.free.end()) {
+        throw prior->error(
+            name, "is not free; free: " + join_names(fit.free) + suggest_name(name, fit.free));
+      }
+      fit.prior.emplace_back(name, read_prior(*prior, name));
+    }
+  }
+  for (const auto& [name, value] : fit.fix) {
+    if (std::find(fit.free.begin(), fit.free.end(), name) != fit.free.end()) {
+      throw table->error("fix", "'" + name + "' is free, too; must be one of both");
+    }
+  }
+}
+
+CampaignRun read_run(const Table& table, const Campaign& campaign) {
+  CampaignRun run;
+  run.name = table.text("file");
+  run.file = table.file("file");
+  run.use = static_cast<RunUse>(table.choice("use", kUses));
+  if (!campaign.rig) {
+    run.maneuver = table.file("maneuver");
+    for (const std::string& key : kManeuverKeys) {
+      if (table.has(key)) run.known[key] = read_known(table, key);
+    }
+  }
+  if (table.has("window")) {
+    const std::vector<double> window = table.numbers("window");
+    if (window.size() != 2 || !(window[0] < window[1])) {
+      throw table.error("window", "must be [from, to] in s, from < to");
+    }
+    run.window = {window[0], window[1]};
+  }
+  return run;
+}
+
+void read_runs(const Table& root, Campaign& campaign) {
+  for (const Table& table : root.tables("run")) {
+    campaign.runs.push_back(read_run(table, campaign));
+    const auto same = [&](const CampaignRun& r) {
+      return r.file == campaign.runs.back().file && r.window == campaign.runs.back().window;
+    };
+    if (std::count_if(campaign.runs.begin(), campaign.runs.end(), same) > 1) {
+      throw table.error("file", "stands there twice; a run is for fitting or held out, not both");
+    }
+  }
+  for (const RunUse use : {RunUse::kFit, RunUse::kHoldOut}) {
+    if (campaign.count(use) > 0) continue;
+    throw root.error("run", use == RunUse::kFit
+                                ? "every run is held out; at least one must have use = \"fit\""
+                                : "every run is for fitting and none held out, so nothing could "
+                                  "tell a better model from a more flexible one; at least one "
+                                  "must have use = \"hold_out\"");
+  }
+}
+
+}  // namespace
+
+const char* get_name(RunUse use) { return kUses[static_cast<std::size_t>(use)].c_str(); }
+
+std::size_t Campaign::count(RunUse use) const {
+  return static_cast<std::size_t>(std::count_if(
+      runs.begin(), runs.end(), [use](const CampaignRun& run) { return run.use == use; }));
+}
+
+std::vector<std::filesystem::path> Campaign::list_files() const {
+  std::vector<std::filesystem::path> files = {path, model};
+  for (const CampaignRun& run : runs) {
+    files.push_back(run.file);
+    if (!rig) files.push_back(run.maneuver);
+  }
+  return files;
+}
+
+const std::vector<ChannelInfo>& list_channels(const std::optional<RigKind>& rig) {
+  return rig ? list_rig_channels(*rig) : list_car_channels();
+}
+
+Campaign read_campaign(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  Campaign campaign;
+  campaign.path = path;
+  campaign.model = root.file("model");
+  campaign.rig = find_rig_kind(campaign.model);
+  read_columns(root, campaign);
+  read_fit(root, campaign.fit);
+  read_runs(root, campaign);
+  document.check_all_read();
+  return campaign;
+}
+
+}  // namespace strut

@@ -1,0 +1,72 @@
+// A campaign with everything its files say: runs in SI that a model can be fitted to.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diagnose/campaign/campaign.h"
+#include "diagnose/campaign/measured_table.h"
+#include "diagnose/campaign/noise_model.h"
+#include "diagnose/campaign/rig_readings.h"
+#include "estimate/measured_run.h"
+#include "estimate/reading_model.h"
+
+namespace strut {
+
+struct CampaignData {
+  Campaign campaign;
+  std::vector<MeasuredTable> tables;  // one a run
+  std::vector<MeasuredRun> cars;      // one a run, or empty
+  std::vector<RigRun> rigs;           // one a run, or empty
+  std::vector<NoiseEstimate> noise;   // one a column of the campaign; inputs have none
+  std::vector<std::string> notes;     // for the user
+
+  bool is_rig() const { return campaign.rig.has_value(); }
+  std::size_t run_count() const { return campaign.runs.size(); }
+  const std::vector<MeasuredChannel>& channels(std::size_t run) const {
+    return is_rig() ? rigs[run].channels : cars[run].channels;
+  }
+  /// s on the clock of readings and simulation (a car's: measured time).
+  const std::vector<double>& times(std::size_t run) const {
+    return is_rig() ? rigs[run].times : cars[run].times;
+  }
+  const ChannelInfo& info(int channel) const {
+    return list_channels(campaign.rig)[static_cast<std::size_t>(channel)];
+  }
+  const NoiseEstimate& find_noise(int channel) const;
+  /// Numbers of the runs for this use.
+  std::vector<std::size_t> list_runs(RunUse use) const;
+};
+
+/// The campaign of one of its runs.
+CampaignData take_run(const CampaignData& data, std::size_t run);
+
+/// Whether a run's wheels meet more than a road's roughness; those of rigs always do.
+bool meets_bump(const CampaignData& data, std::size_t run);
+
+/// Reads the campaign, its model with what `[fit] fix` sets, and every run. Throws InputError for
+/// whatever campaign.h, measured_table.h and check_campaign_data.h refuse.
+CampaignData read_campaign_data(const std::filesystem::path& path);
+
+/// What `[fit] free` names, with its priors, and the gains of inputs that are not known exactly:
+/// the same for all of `runs`.
+std::vector<Unknown> make_free_unknowns(const CampaignData& data,
+                                        const std::vector<std::size_t>& runs);
+
+/// What an unknown that all runs share is in the model's file.
+double get_nominal(const CampaignData& data, const Unknown& unknown);
+
+/// What is unknown about each of `runs` alone: of a car hit time, speed, what the campaign gives
+/// with an uncertainty, and biases; of a rig where it starts, and biases. Unknown::run counts
+/// within `runs`. What is in `chosen` is left out.
+std::vector<Unknown> make_run_unknowns(const CampaignData& data,
+                                       const std::vector<std::size_t>& runs,
+                                       const std::vector<Unknown>& chosen);
+
+/// The readings of `runs` against their simulation.
+std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
+                                                 const std::vector<std::size_t>& runs,
+                                                 std::vector<Unknown> unknowns, int threads = 1);
+
+}  // namespace strut

@@ -1,0 +1,85 @@
+#include "diagnose/campaign/local_cubic.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diagnose/campaign/spread.h"
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kLeast = 6;  // readings of a cubic's four numbers
+
+}  // namespace
+
+SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const double> values,
+                             double half_width, CurveEnds ends) {
+  const std::vector<double> none(times.size(), std::numeric_limits<double>::quiet_NaN());
+  SmoothCurve curve{none, none, none};
+  const double reach = half_width * (1.0 + 1e-9);
+  std::size_t first = 0, last = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    // At an end the window stays a whole one and its cubic is read off its middle.
+    const double middle =
+        std::max(times.front() + half_width, std::min(times[i], times.back() - half_width));
+    if (ends == CurveEnds::kNone && std::abs(middle - times[i]) > 1e-3 * half_width) continue;
+    while (first < i && times[first] < middle - reach) ++first;
+    while (last < times.size() && times[last] <= middle + reach) ++last;
+    Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d moment = Eigen::Vector4d::Zero();
+    std::size_t count = 0;
+    for (std::size_t k = first; k < last; ++k) {
+      if (!std::isfinite(values[k])) continue;
+      const double s = (times[k] - times[i]) / half_width;
+      const Eigen::Vector4d powers(1.0, s, s * s, s * s * s);
+      gram += powers * powers.transpose();
+      moment += values[k] * powers;
+      ++count;
+    }
+    if (count < kLeast) continue;
+    const Eigen::Vector4d cubic = gram.ldlt().solve(moment);
+    curve.value[i] = cubic(0);
+    curve.rate[i] = cubic(1) / half_width;
+    curve.second_rate[i] = 2.0 * cubic(2) / (half_width * half_width);
+  }
+  return curve;
+}
+
+double choose_half_width(std::span<const double> times, std::span<const double> values,
+                         double sigma) {
+  constexpr double kMost = 1.7;  // of the noise's rms
+  // Leverage of the middle of 2 m + 1 even readings in a cubic: what noise leaves there.
+  const auto calc_left = [](double m) {
+    const double n = 2.0 * m + 1.0;
+    return std::sqrt(1.0 - 3.0 * (3.0 * n * n - 7.0) / (4.0 * n * (n * n - 4.0)));
+  };
+  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  double best = 0.0;
+  for (const int m : {3, 4, 6, 8, 12, 16, 24, 32}) {
+    const double half_width = m * interval;
+    if (half_width * 4.0 > times.back() - times.front()) break;
+    const SmoothCurve curve = calc_local_cubic(times, values, half_width);
+    std::vector<double> left(values.size());
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] = values[i] - curve.value[i];
+    if (calc_rms(left) > kMost * sigma * calc_left(m)) break;
+    best = half_width;
+  }
+  return best;
+}
+
+double calc_second_rate_gain(double half_width, double interval) {
+  const auto m = static_cast<int>(std::floor(half_width / interval + 1e-9));
+  double n = 0.0, second = 0.0, fourth = 0.0;
+  for (int k = -m; k <= m; ++k) {
+    const double s = k * interval;
+    n += 1.0;
+    second += s * s;
+    fourth += s * s * s * s;
+  }
+  // Variance of the quadratic's coefficient, whose basis shares only the constant with it.
+  return 2.0 / std::sqrt(fourth - second * second / n);
+}
+
+}  // namespace strut

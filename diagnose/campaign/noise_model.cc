@@ -1,0 +1,86 @@
+#include "diagnose/campaign/noise_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kBlock = 64, kOrder = 4;
+constexpr double kWeights[kOrder + 1] = {1.0, -4.0, 6.0, -4.0, 1.0};
+constexpr double kGain = 70.0;  // sum of their squares
+/// Neighboring differences are correlated, 0.8, 0.4, 0.114, 0.014: a block of 64 has so many
+/// degrees of freedom.
+constexpr double kFreedom = static_cast<double>(kBlock) / 2.63;
+/// Median of a chi-square of so many degrees over its mean (E. B. Wilson, M. M. Hilferty, 1931).
+constexpr double kCube = 1.0 - 2.0 / (9.0 * kFreedom), kMedianShare = kCube * kCube * kCube;
+
+/// Squares of the differences that no missing sample touches.
+std::vector<double> calc_squares(std::span<const double> values) {
+  std::vector<double> squares;
+  squares.reserve(values.size());
+  for (std::size_t i = 0; i + kOrder < values.size(); ++i) {
+    double d = 0.0;
+    for (std::size_t k = 0; k <= kOrder; ++k) d += kWeights[k] * values[i + k];
+    if (std::isfinite(d)) squares.push_back(d * d);
+  }
+  return squares;
+}
+
+double calc_median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<double> calc_block_means(const std::vector<double>& squares) {
+  std::vector<double> means;
+  means.reserve(squares.size() / kBlock + 1);
+  const std::size_t block = std::min(kBlock, squares.size());
+  for (std::size_t i = 0; block > 0 && i + block <= squares.size(); i += block) {
+    double sum = 0.0;
+    for (std::size_t k = i; k < i + block; ++k) sum += squares[k];
+    means.push_back(sum / static_cast<double>(block));
+  }
+  return means;
+}
+
+/// The smallest difference between two different readings; 0 where all are equal.
+double find_quantum(std::span<const double> values) {
+  std::vector<double> levels;
+  levels.reserve(values.size());
+  for (const double v : values) {
+    if (std::isfinite(v)) levels.push_back(v);
+  }
+  std::sort(levels.begin(), levels.end());
+  if (levels.empty()) return 0.0;
+  // Readings equal up to rounding are one level.
+  const double same = 1e-9 * (levels.back() - levels.front());
+  double quantum = 0.0;
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    const double step = levels[i] - levels[i - 1];
+    if (step > same && (quantum == 0.0 || step < quantum)) quantum = step;
+  }
+  return quantum;
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(std::span<const double> values) {
+  NoiseEstimate estimate;
+  const std::vector<double> means = calc_block_means(calc_squares(values));
+  estimate.quantum = find_quantum(values);
+  const double rounding = estimate.quantum / std::sqrt(12.0);
+  if (!means.empty()) estimate.sigma = std::sqrt(calc_median(means) / (kMedianShare * kGain));
+  // A median of m blocks spreads 1.25 / sqrt(m) times as much as one.
+  const double blocks = std::max(1.0, static_cast<double>(means.size()));
+  estimate.uncertainty = 0.5 * 1.25 * std::sqrt(2.0 / (kFreedom * blocks));
+  if (estimate.sigma < rounding) {
+    estimate.sigma = rounding;
+    estimate.source = NoiseSource::kQuantized;
+  }
+  return estimate;
+}
+
+}  // namespace strut

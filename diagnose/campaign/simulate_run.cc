@@ -1,0 +1,112 @@
+#include "diagnose/campaign/simulate_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimate/linearize.h"
+#include "estimate/sampled_curve.h"
+#include "io/format/config.h"
+#include "model/channel/car_channels.h"
+#include "model/error/model_error.h"
+#include "model/sensor/sensors.h"
+#include "model_files/parameters.h"
+
+namespace strut {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool is_of_this_run(const Unknown& u) { return u.run == kEveryRun || u.run == 0; }
+
+/// s by which simulated time is ahead of measured time.
+double find_hit_time_value(const std::vector<Unknown>& unknowns,
+                           const std::vector<double>& values) {
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    if (unknowns[i].kind == UnknownKind::kHitTime && is_of_this_run(unknowns[i])) return values[i];
+  }
+  return 0.0;
+}
+
+/// Interpolates what the sensors of every channel of a car read at the run's times.
+void read_history(const LaneRun& simulated, const EffectSettings& effects,
+                  const std::vector<double>& times, double hit_time, double step,
+                  RunCurves& curves) {
+  curves.channel.assign(CarChannel::kCount, std::vector<double>(times.size(), kNan));
+  for (std::size_t c = 0; c < curves.channel.size(); ++c) {
+    const std::vector<double> series = read_sensor(effects, list_car_channels()[c].name, step,
+                                                   simulated.get_series(static_cast<int>(c)));
+    for (std::size_t t = 0; t < times.size(); ++t) {
+      const double at = (times[t] + hit_time) / step, index = std::floor(at);
+      if (index < static_cast<double>(kCurveMargin)) continue;
+      const auto i = static_cast<std::size_t>(index);
+      if (i + 1 + kCurveMargin >= series.size()) continue;
+      const auto get = [&](std::size_t sample) { return series[sample]; };
+      curves.channel[c][t] = interpolate_curve(get, i, at - index, step).value;
+    }
+  }
+}
+
+/// The car in the run, with the maneuver as long as the readings need.
+Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+               const std::vector<double>& values, double hit_time) {
+  Case c = run.setup;
+  set_parameters(c, unknowns, values, 0);
+  constexpr double kMargin = 0.02;  // s
+  const Range& allowed = find_parameter("duration").allowed;
+  const double last = std::min(run.times.back() + hit_time + kMargin, c.maneuver.duration);
+  c.maneuver.duration = std::clamp(last, allowed.low, allowed.high);
+  return c;
+}
+
+RunCurves simulate_car(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                       const std::vector<double>& values) {
+  RunCurves curves;
+  const double hit_time = find_hit_time_value(unknowns, values);
+  const LinearizeOptions options;
+  SamplePlan plan;
+  plan.interval = 1.0 / options.rate;
+  plan.snapshot = false;
+  try {
+    CasePreparer preparer;
+    const Case c = make_case(run, unknowns, values, hit_time);
+    const std::vector<PreparedCase> cases = {preparer.prepare(c)};
+    const LaneRun simulated = run_prepared(cases, options.integrate, plan).front();
+    if (simulated.status() != RunStatus::kDone) {
+      curves.failure = run.name + ": the simulation fails: " + get_name(simulated.status());
+      return curves;
+    }
+    read_history(simulated, c.vehicle.effects, run.times, hit_time, plan.interval, curves);
+  } catch (const ModelError& e) {
+    curves.failure = run.name + ": " + e.what();
+  } catch (const std::invalid_argument& e) {  // the road's
+    curves.failure = run.name + ": " + e.what();
+  }
+  return curves;
+}
+
+}  // namespace
+
+RunCurves simulate_run(const CampaignData& data, std::size_t run,
+                       const std::vector<Unknown>& unknowns, const std::vector<double>& values) {
+  RunCurves curves;
+  if (data.is_rig()) {
+    RigCurves rig = simulate_rig_run(data.rigs[run], 0, unknowns, values);
+    curves = {std::move(rig.failure), std::move(rig.channel)};
+  } else {
+    curves = simulate_car(data.cars[run], unknowns, values);
+  }
+  if (!curves.failure.empty()) return curves;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    if (u.kind != UnknownKind::kBias || !is_of_this_run(u)) continue;
+    for (double& value : curves.channel[static_cast<std::size_t>(u.channel)]) value += values[i];
+  }
+  return curves;
+}
+
+RunCurves simulate_nominal(const CampaignData& data, std::size_t run) {
+  return simulate_run(data, run, {}, {});
+}
+
+}  // namespace strut

@@ -1,0 +1,66 @@
+#include "base/error/input_error.h"
+#include "diagnose/decide/diagnosis.h"
+#include "io/format/config.h"
+#include "model_files/parameters.h"
+#include "model_files/read_effects.h"
+#include "model_files/read_fitted.h"
+#include "model_files/read_force_maps.h"
+#include "model_files/read_rig.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether a shared unknown is the model's own, no effect and no gain of an input.
+bool is_of_model(const CampaignData& data, const Unknown& u) {
+  if (u.kind != UnknownKind::kParameter) return false;
+  if (data.is_rig()) return !find_rig_parameter(data.rigs[0].setup.kind, u.name).is_effect;
+  if (find_parameter(u.name).is_effect) return false;
+  Case c = data.cars[0].setup;
+  const ManeuverSpec before = c.maneuver;
+  const ParameterInfo& info = find_parameter(u.name);
+  const double value = info.get(c);
+  info.set(c, value == info.allowed.high ? info.allowed.low : info.allowed.high);
+  return c.maneuver == before;
+}
+
+/// Names the tire file of a car as it is seen from `folder`.
+std::string move_tire_file(const std::string& text, const fs::path& model, const fs::path& folder) {
+  const Document document(model);
+  const fs::path tire = document.root().table("tire").file("file");
+  std::error_code error;
+  const fs::path moved = fs::relative(fs::absolute(tire), fs::absolute(folder), error);
+  const fs::path named = fs::relative(fs::absolute(tire), fs::absolute(model).parent_path(), error);
+  if (error) return text;
+  std::string changed = text;
+  for (const std::string& old : {named.generic_string(), tire.generic_string()}) {
+    const std::size_t at = changed.find("\"" + old + "\"");
+    if (at == std::string::npos) continue;
+    changed.replace(at, old.size() + 2, "\"" + moved.generic_string() + "\"");
+    return changed;
+  }
+  return changed;
+}
+
+}  // namespace
+
+std::string make_extended_model(const CampaignData& data, const Diagnosis& diagnosis,
+                                const fs::path& folder) {
+  const SharedValues shared = diagnosis.selection.extended.shared();
+  FittedValues fitted;
+  // What the campaign fixes belongs to the model that was fitted.
+  for (const auto& [name, value] : data.campaign.fit.fix) fitted.emplace_back(name, value);
+  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
+    if (is_of_model(data, shared.unknowns[i])) {
+      fitted.emplace_back(shared.unknowns[i].name, shared.values[i]);
+    }
+  }
+  std::string text = read_text_file(data.campaign.model);
+  if (!data.is_rig()) text = move_tire_file(text, data.campaign.model, folder);
+  const ModelKind kind = get_model_kind(data);
+  text = replace_effects(replace_fitted(text, fitted), list_effects_on(data, shared), kind);
+  return diagnosis.force ? replace_force_maps(text, list_force_maps_on(data, shared), kind) : text;
+}
+
+}  // namespace strut

@@ -1,0 +1,139 @@
+#include "diagnose/decide/next_measurement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "io/format/config.h"
+
+namespace strut {
+namespace {
+
+/// A run that could be made.
+struct Proposal {
+  std::string description;
+  CampaignData data;  // of that run alone
+};
+
+void add_car_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
+  constexpr double kKilometersPerHour = 3.6;
+  for (const double factor : {0.5, 0.75, 1.5, 2.0}) {
+    CampaignData one = take_run(data, run);
+    ManeuverSpec& m = one.cars[0].setup.maneuver;
+    if (m.road.shape == BumpShape::kNone) return;
+    // The bump is met at the same time.
+    m.speed *= factor;
+    m.bump_distance *= factor;
+    menu.push_back({"repeat " + data.campaign.runs[run].name + " at " +
+                        format_rounded(std::round(kKilometersPerHour * m.speed)) + " km/h",
+                    std::move(one)});
+  }
+  for (const double factor : {0.5, 1.5}) {
+    CampaignData one = take_run(data, run);
+    RoadSpec& road = one.cars[0].setup.maneuver.road;
+    road.height *= factor;
+    menu.push_back({"repeat " + data.campaign.runs[run].name + " over a bump of " +
+                        format_rounded(std::round(1e3 * road.height)) + " mm",
+                    std::move(one)});
+  }
+}
+
+void add_rig_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
+  for (const double factor : {0.3, 2.0, 4.0}) {
+    CampaignData one = take_run(data, run);
+    for (InputSignal& input : one.rigs[0].inputs) {
+      if (input.channel == "temperature") continue;
+      scale_signal(input, factor);
+    }
+    menu.push_back({"repeat " + data.campaign.runs[run].name + " at " + format_rounded(factor) +
+                        " times its amplitude",
+                    std::move(one)});
+  }
+}
+
+const Candidate* find_candidate(const SelectRound& round, const Cause& cause) {
+  const auto found =
+      std::find_if(round.candidates.begin(), round.candidates.end(), [&](const Candidate& c) {
+        return c.hypothesis.effect == cause.effect && c.hypothesis.place == cause.place;
+      });
+  return found == round.candidates.end() ? nullptr : &*found;
+}
+
+/// The shared values of the model with either of two hypotheses.
+struct Rivals {
+  SharedValues a, b;
+};
+
+/// As one round fitted both: those of two rounds differ by the causes that were there already, too.
+std::optional<Rivals> find_rivals(const Selection& selection, const Cause& a, const Cause& b) {
+  for (const SelectRound& round : selection.rounds) {
+    const Candidate *first = find_candidate(round, a), *second = find_candidate(round, b);
+    if (first != nullptr && second != nullptr) return Rivals{first->shared, second->shared};
+  }
+  return std::nullopt;
+}
+
+/// Sum over the readings of the squared difference of two models over the sensors' noise.
+double calc_difference(const CampaignData& one, const SharedValues& a, const SharedValues& b) {
+  const RunCurves first = simulate_run(one, 0, a.unknowns, a.values);
+  const RunCurves second = simulate_run(one, 0, b.unknowns, b.values);
+  if (!first.failure.empty() || !second.failure.empty()) return 0.0;
+  double sum = 0.0;
+  for (const MeasuredChannel& c : one.channels(0)) {
+    const auto at = static_cast<std::size_t>(c.channel);
+    for (std::size_t t = 0; t < first.channel[at].size(); ++t) {
+      const double d = (first.channel[at][t] - second.channel[at][t]) / c.sigma;
+      if (std::isfinite(d)) sum += d * d;
+    }
+  }
+  return sum;
+}
+
+/// Where there is no group to be told apart.
+std::string propose_alone(const Selection& selection) {
+  if (!selection.causes.empty()) {
+    return "repeat one of the runs held out at another speed or amplitude: the name should stay, "
+           "and "
+           "its parameters";
+  }
+  if (selection.is_left) {
+    return "repeat a run at half and at twice its amplitude, and once more as it was: what has no "
+           "name is then seen to grow with the motion, to stay as it is, or to be gone";
+  }
+  return "none is needed to judge these runs; larger bumps or amplitudes would show effects that "
+         "are hidden here";
+}
+
+}  // namespace
+
+std::string propose_measurement(const CampaignData& data, const Selection& selection,
+                                const std::vector<Cause>& group) {
+  if (group.size() < 2) return propose_alone(selection);
+  const std::optional<Rivals> rivals = find_rivals(selection, group[0], group[1]);
+  const std::string pair = describe_effect(group[0].effect, group[0].place) + " from " +
+                           describe_effect(group[1].effect, group[1].place);
+  if (!rivals) return "separate " + pair;
+  const auto& [a, b] = *rivals;
+  std::vector<Proposal> menu;
+  double already = 0.0;
+  for (const std::size_t r : data.list_runs(RunUse::kFit)) {
+    already = std::max(already, calc_difference(take_run(data, r), a, b));
+    data.is_rig() ? add_rig_proposals(data, r, menu) : add_car_proposals(data, r, menu);
+  }
+  double most = already;
+  std::string best;
+  for (const Proposal& proposal : menu) {
+    const double difference = calc_difference(proposal.data, a, b);
+    if (difference <= most) continue;
+    most = difference;
+    best = proposal.description;
+  }
+  if (best.empty()) {
+    return "no other speed, bump or amplitude separates " + pair +
+           " better than these runs; it takes another sensor";
+  }
+  return best + ": separates " + pair + " (" + format_rounded(std::sqrt(most)) +
+         " standard deviations, " + format_rounded(std::sqrt(already)) + " in the runs there are)";
+}
+
+}  // namespace strut

@@ -1,0 +1,26 @@
+#include "diagnose/decide/probability.h"
+
+#include <algorithm>
+
+namespace strut {
+
+std::vector<double> calc_log_odds(const SelectRound& round, const ProbabilityOptions& options) {
+  std::vector<double> odds;
+  odds.reserve(round.candidates.size());
+  if (round.candidates.empty()) return odds;
+  const double most = round.candidates.front().gain / round.misfit;
+  const double temperature = 1.0 + options.form_error * std::max(0.0, most);
+  for (const Candidate& c : round.candidates) {
+    double value = 0.5 * (c.gain / round.misfit - most) / temperature;
+    for (const HypothesisParameter& p : c.hypothesis.parameters) {
+      if (!p.switches) value -= options.shape_cost;
+    }
+    if (is_corner(c.hypothesis.place)) value -= options.corner_cost;
+    odds.push_back(value);
+  }
+  const double best = *std::max_element(odds.begin(), odds.end());
+  for (double& value : odds) value -= best;
+  return odds;
+}
+
+}  // namespace strut

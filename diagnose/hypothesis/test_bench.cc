@@ -1,0 +1,180 @@
+#include "diagnose/hypothesis/test_bench.h"
+
+#include <Eigen/Cholesky>
+#include <utility>
+
+#include "base/error/input_error.h"
+
+namespace strut {
+namespace {
+
+using Index = Eigen::Index;
+
+Index as_index(std::size_t i) { return static_cast<Index>(i); }
+
+/// Products less what `count` of the unknowns from `begin` on can take (their Schur complement).
+Eigen::MatrixXd eliminate(const Eigen::MatrixXd& products, Index begin, Index count) {
+  const Index rest = products.rows() - begin - count;
+  Eigen::MatrixXd kept(begin + rest, begin + rest), mixed(count, begin + rest);
+  kept.topLeftCorner(begin, begin) = products.topLeftCorner(begin, begin);
+  kept.topRightCorner(begin, rest) = products.topRightCorner(begin, rest);
+  kept.bottomLeftCorner(rest, begin) = products.bottomLeftCorner(rest, begin);
+  kept.bottomRightCorner(rest, rest) = products.bottomRightCorner(rest, rest);
+  if (count == 0) return kept;
+  mixed.leftCols(begin) = products.block(begin, 0, count, begin);
+  mixed.rightCols(rest) = products.block(begin, begin + count, count, rest);
+  const Eigen::MatrixXd own = products.block(begin, begin, count, count);
+  // Unknowns of which the readings say nothing leave zeros.
+  Eigen::LDLT<Eigen::MatrixXd> factor(own + 1e-12 * own.diagonal().maxCoeff() *
+                                                Eigen::MatrixXd::Identity(count, count));
+  kept.noalias() -= mixed.transpose() * factor.solve(mixed);
+  return kept;
+}
+
+}  // namespace
+
+TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threads)
+    : data_(data),
+      runs_(fit.runs),
+      unknowns_(fit.fit.unknowns),
+      values_(fit.fit.values),
+      shared_count_(fit.shared_count),
+      threads_(threads) {
+  const auto model = make_reading_model(data_, runs_, unknowns_, threads_);
+  whitener_ = std::make_unique<Whitener>(*model, fit.spectra);
+  const WhitenedModel whitened(*model, *whitener_);
+  std::shared_ptr<const Linearization> given = fit.linearization;
+  if (!given) given = std::make_shared<const Linearization>(model->linearize(values_));
+  if (!given->failure.empty()) throw InputError(given->failure);
+  Linearization at = whitener_->apply(*given);
+  normal_ = calc_normal_equations(whitened, at).information;
+  residual_ = std::move(at.residual);
+  jacobian_ = std::move(at.jacobian);
+  Eigen::MatrixXd regular = normal_;
+  regular.diagonal().array() *= 1.0 + 1e-12;
+  regular.diagonal().array() += 1e-12;
+  regular_normal_.compute(regular);
+  simulations_ += model->simulation_count();
+}
+
+std::unique_ptr<ReadingModel> TestBench::make_model(const std::vector<Unknown>& added,
+                                                    int threads) const {
+  std::vector<Unknown> all = unknowns_;
+  all.insert(all.end(), added.begin(), added.end());
+  return make_reading_model(data_, runs_, std::move(all), threads);
+}
+
+Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Unknown>& added,
+                                            const std::vector<std::vector<double>>& points) {
+  const auto model = make_model(added, threads_);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(residual_.size(), as_index(points.size()));
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t begin = 0; begin < points.size(); begin += kAtOnce) {
+    const std::size_t end = std::min(begin + kAtOnce, points.size());
+    std::vector<std::vector<double>> all(end - begin, values_);
+    for (std::size_t i = begin; i < end; ++i) {
+      all[i - begin].insert(all[i - begin].end(), points[i].begin(), points[i].end());
+    }
+    const std::vector<Evaluation> evaluations = model->evaluate(all);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Evaluation& e = evaluations[i - begin];
+      if (!e.failure.empty()) continue;  // no such size: a column of zeros is no hypothesis
+      columns.col(as_index(i)) = whitener_->apply(e.residual) - residual_;
+    }
+  }
+  simulations_ += model->simulation_count();
+  return columns;
+}
+
+Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypotheses,
+                                            std::vector<HypothesisTrial>& trials) {
+  std::vector<Unknown> added;
+  for (const Hypothesis& h : hypotheses) {
+    for (Unknown& u : make_unknowns(data_, h)) added.push_back(std::move(u));
+  }
+  const std::vector<double> neutral = list_starts(added);
+  std::vector<std::vector<double>> points;
+  std::size_t first = 0;
+  for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+    const Hypothesis& hypothesis = hypotheses[h];
+    for (std::size_t b = 0; b < hypothesis.beginnings.size(); ++b) {
+      HypothesisTrial trial{h, b, {}, {}};
+      for (std::size_t j = 0; j < hypothesis.parameters.size(); ++j) {
+        if (!hypothesis.parameters[j].switches) continue;
+        std::vector<double> point = neutral;
+        for (std::size_t i = 0; i < hypothesis.parameters.size(); ++i) {
+          const bool set = i == j || !hypothesis.parameters[i].switches;
+          if (set) point[first + i] = hypothesis.beginnings[b][i];
+        }
+        trial.columns.push_back(points.size());
+        trial.parameters.push_back(j);
+        points.push_back(std::move(point));
+      }
+      trials.push_back(std::move(trial));
+    }
+    first += hypothesis.parameters.size();
+  }
+  return simulate_columns(added, points);
+}
+
+Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
+  Evidence evidence;
+  evidence.shared = shared_count_;
+  const Eigen::MatrixXd columns = simulate_columns(hypotheses, evidence.trials);
+  const auto rows = residual_.size();
+  // By run: the shared unknowns, its own, the columns, the residual.
+  const auto shared = as_index(shared_count_), count = columns.cols();
+  const auto add_products = [&](Index begin, Index length, const std::vector<Index>& own) {
+    const auto width = shared + as_index(own.size()) + count + 1;
+    Eigen::MatrixXd all(length, width);
+    all.leftCols(shared) = jacobian_.block(begin, 0, length, shared);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      all.col(shared + as_index(i)) = jacobian_.col(own[i]).segment(begin, length);
+    }
+    all.middleCols(shared + as_index(own.size()), count) = columns.middleRows(begin, length);
+    all.col(width - 1) = residual_.segment(begin, length);
+    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(width, width);
+    products.selfadjointView<Eigen::Lower>().rankUpdate(all.transpose());
+    products = products.selfadjointView<Eigen::Lower>();
+    return products;
+  };
+  const auto whitened = as_index(whitener_->whitened_count());
+  std::vector<Index> all_own;
+  for (Index i = shared; i < jacobian_.cols(); ++i) all_own.push_back(i);
+  // Priors of a run's own unknowns belong to the run.
+  Eigen::MatrixXd priors = add_products(whitened, rows - whitened, all_own);
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    std::vector<Index> own;
+    for (std::size_t i = shared_count_; i < unknowns_.size(); ++i) {
+      if (unknowns_[i].run == static_cast<int>(r)) own.push_back(as_index(i));
+    }
+    const auto begin = as_index(whitener_->run_begin()[r]);
+    const auto length = as_index(whitener_->run_begin()[r + 1]) - begin;
+    Eigen::MatrixXd products = add_products(begin, length, own);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const Index at = shared + as_index(i);
+      products(at, at) += priors(own[i], own[i]);
+      const Index last = priors.rows() - 1;
+      products(at, products.cols() - 1) += priors(own[i], last);
+      products(products.rows() - 1, at) += priors(last, own[i]);
+    }
+    evidence.products.push_back(eliminate(products, shared, as_index(own.size())));
+  }
+  // What is left of the priors: those of shared unknowns.
+  Eigen::MatrixXd of_shared = Eigen::MatrixXd::Zero(shared + count + 1, shared + count + 1);
+  of_shared.topLeftCorner(shared, shared) = priors.topLeftCorner(shared, shared);
+  of_shared.topRightCorner(shared, 1) = priors.topRightCorner(shared, 1);
+  of_shared.bottomLeftCorner(1, shared) = priors.bottomLeftCorner(1, shared);
+  evidence.products.push_back(of_shared);
+  return evidence;
+}
+
+HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
+                             const std::vector<double>& beginning) const {
+  const std::vector<Unknown> own = make_unknowns(data_, hypothesis);
+  const SearchGround ground{data_.is_rig(), unknowns_, values_, *whitener_,
+                            residual_,      jacobian_, normal_, regular_normal_};
+  return search_hypothesis(ground, *make_model(own, 1), hypothesis, own, beginning);
+}
+
+}  // namespace strut

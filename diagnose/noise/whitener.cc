@@ -1,0 +1,259 @@
+#include "diagnose/noise/whitener.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <unsupported/Eigen/FFT>
+#include <utility>
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
+
+/// Over sigma^2.
+Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index frequency) {
+  const auto channels = static_cast<Eigen::Index>(spectrum.sigma.size());
+  Eigen::MatrixXcd covariance = Eigen::MatrixXcd::Identity(channels, channels);
+  const auto at = static_cast<std::size_t>(frequency);
+  if (at >= spectrum.common.size()) return covariance;
+  const Eigen::VectorXd sigma = Eigen::Map<const Eigen::VectorXd>(spectrum.sigma.data(), channels);
+  const Eigen::VectorXd scale = std::sqrt(spectrum.level) * sigma.cwiseInverse();
+  const Eigen::MatrixXcd common = scale.asDiagonal() * spectrum.common[at] * scale.asDiagonal();
+  covariance += common;
+  const double response_error = spectrum.response_error;
+  covariance.diagonal() += response_error * response_error * common.diagonal();
+  return covariance;
+}
+
+}  // namespace
+
+Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra,
+                   const WhitenerOptions& options)
+    : spectra_(std::move(spectra)), reading_count_(model.reading_count()) {
+  for (std::size_t r = 0; r < spectra_.size(); ++r) {
+    const NoiseSpectrum& spectrum = spectra_[r];
+    const std::size_t channels = spectrum.sigma.size();
+    Run run;
+    run.fade = make_fade(spectrum.samples, spectrum.fades);
+    run.rows.assign(channels, std::vector<std::size_t>(spectrum.samples, kMissing));
+    double power = 0.0;
+    for (std::size_t k = 0; k < reading_count_; ++k) {
+      const ReadingPlace& place = model.readings()[k];
+      if (place.run != r || place.time >= spectrum.samples) continue;
+      run.rows[place.channel][place.time] = k;
+      power += run.fade[place.time] * run.fade[place.time];
+    }
+    run.share = power / static_cast<double>(channels * spectrum.samples);
+    run_begin_.push_back(places_.size());
+    const double step = 1.0 / (static_cast<double>(spectrum.samples) * spectrum.interval);
+    if (spectrum.fades) run.first = static_cast<Eigen::Index>(std::ceil(options.lowest / step));
+    for (auto k = static_cast<std::size_t>(run.first); k <= spectrum.samples / 2; ++k) {
+      if (step * static_cast<double>(k) > options.highest) break;
+      const double excess = spectrum.excess[find_noise_band(step * static_cast<double>(k))];
+      const Eigen::LLT<Eigen::MatrixXcd> factor(
+          excess * calc_covariance(spectrum, static_cast<Eigen::Index>(k)));
+      run.factor.emplace_back(factor.matrixL());
+      const bool is_real = k == 0 || 2 * k == spectrum.samples;
+      for (std::size_t c = 0; c < channels; ++c) {
+        const auto at = static_cast<Eigen::Index>(c);
+        const int parts = is_real ? 1 : 2;
+        run.log_determinant += parts * std::log(run.factor.back()(at, at).real());
+        places_.insert(places_.end(), static_cast<std::size_t>(parts), {r, k, c});
+      }
+    }
+    runs_.push_back(std::move(run));
+  }
+  run_begin_.push_back(places_.size());
+}
+
+double Whitener::get_frequency(const ReadingPlace& place) const {
+  const NoiseSpectrum& s = spectra_[place.run];
+  return static_cast<double>(place.time) / (static_cast<double>(s.samples) * s.interval);
+}
+
+Eigen::VectorXcd Whitener::get_sensor_direction(const ReadingPlace& place,
+                                                std::size_t channel) const {
+  const Run& run = runs_[place.run];
+  const auto k = static_cast<std::size_t>(static_cast<Eigen::Index>(place.time) - run.first);
+  const Eigen::Index count = run.factor[k].rows();
+  return run.factor[k].triangularView<Eigen::Lower>().solve(
+      Eigen::VectorXcd(Eigen::VectorXcd::Unit(count, static_cast<Eigen::Index>(channel))));
+}
+
+double Whitener::calc_log_likelihood(const Eigen::VectorXd& whitened, std::size_t run) const {
+  const auto begin = static_cast<Eigen::Index>(run_begin_[run]);
+  const auto count = static_cast<Eigen::Index>(run_begin_[run + 1]) - begin;
+  return -0.5 * whitened.segment(begin, count).squaredNorm() - runs_[run].log_determinant;
+}
+
+void Whitener::apply_run(std::size_t r, const Eigen::VectorXd& column,
+                         Eigen::Ref<Eigen::VectorXd> out) const {
+  const Run& run = runs_[r];
+  const std::size_t channels = run.rows.size(), count = run.fade.size();
+  const auto kept = static_cast<Eigen::Index>(run.factor.size());
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  fft.SetFlag(Eigen::FFT<double>::Unscaled);
+  Eigen::MatrixXcd spectrum(static_cast<Eigen::Index>(channels), kept);
+  std::vector<double> series(count);
+  std::vector<std::complex<double>> transform;
+  for (std::size_t c = 0; c < channels; ++c) {
+    bool is_zero = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t row = run.rows[c][i];
+      series[i] = row == kMissing ? 0.0 : run.fade[i] * column(static_cast<Eigen::Index>(row));
+      is_zero = is_zero && series[i] == 0.0;
+    }
+    const auto at = static_cast<Eigen::Index>(c);
+    if (is_zero) {
+      spectrum.row(at).setZero();
+      continue;
+    }
+    fft.fwd(transform, series);
+    const double scale = 1.0 / std::sqrt(static_cast<double>(count));
+    for (Eigen::Index k = 0; k < kept; ++k) {
+      spectrum(at, k) = scale * transform[static_cast<std::size_t>(run.first + k)];
+    }
+  }
+  Eigen::Index row = 0;
+  for (Eigen::Index k = 0; k < kept; ++k) {
+    const Eigen::VectorXcd w =
+        run.factor[static_cast<std::size_t>(k)].triangularView<Eigen::Lower>().solve(
+            spectrum.col(k));
+    const Eigen::Index frequency = run.first + k;
+    const bool is_real = frequency == 0 || 2 * frequency == static_cast<Eigen::Index>(count);
+    for (Eigen::Index c = 0; c < w.size(); ++c) {
+      if (is_real) {
+        out(row++) = w(c).real();
+      } else {
+        out(row++) = std::sqrt(2.0) * w(c).real();
+        out(row++) = std::sqrt(2.0) * w(c).imag();
+      }
+    }
+  }
+}
+
+Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns) const {
+  const auto readings = static_cast<Eigen::Index>(reading_count_);
+  const auto whitened = static_cast<Eigen::Index>(places_.size());
+  const Eigen::Index priors = columns.rows() - readings;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(whitened + priors, columns.cols());
+  out.bottomRows(priors) = columns.bottomRows(priors);
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    const Eigen::VectorXd column = columns.col(i);
+    for (std::size_t r = 0; r < runs_.size(); ++r) {
+      const bool is_there = std::any_of(
+          runs_[r].rows.begin(), runs_[r].rows.end(), [&](const std::vector<std::size_t>& rows) {
+            return std::any_of(rows.begin(), rows.end(), [&](std::size_t row) {
+              return row != kMissing && column(static_cast<Eigen::Index>(row)) != 0.0;
+            });
+          });
+      if (!is_there) continue;
+      const auto begin = static_cast<Eigen::Index>(run_begin_[r]);
+      const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
+      apply_run(r, column, out.col(i).segment(begin, count));
+    }
+  }
+  return out;
+}
+
+Linearization Whitener::apply(const Linearization& at) const {
+  return {"", apply(at.residual), apply(at.jacobian)};
+}
+
+WhitenedModel::WhitenedModel(ReadingModel& model, const Whitener& whitener)
+    : ReadingModel(model.unknowns()), model_(model), whitener_(whitener) {
+  readings_ = whitener.places();
+  channels_ = model.channels();
+  prior_count_ = model.prior_count();
+  outside_count_ = model.outside_count();
+}
+
+Linearization WhitenedModel::linearize(const std::vector<double>& values) {
+  Linearization at = model_.linearize(values);
+  simulation_count_ = model_.simulation_count();
+  return at.failure.empty() ? whitener_.apply(at) : at;
+}
+
+std::vector<Evaluation> WhitenedModel::evaluate(const std::vector<std::vector<double>>& points) {
+  std::vector<Evaluation> evaluations = model_.evaluate(points);
+  simulation_count_ = model_.simulation_count();
+  for (Evaluation& e : evaluations) {
+    if (e.failure.empty()) e.residual = whitener_.apply(e.residual);
+  }
+  return evaluations;
+}
+
+std::vector<double> WhitenedModel::align(const std::vector<double>& values) {
+  return model_.align(values);
+}
+
+void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
+                  std::vector<NoiseSpectrum>& spectra) {
+  constexpr double kEnough = 200.0;
+  const std::size_t runs = whitener.spectra().size(), bands = kNoiseBands.size();
+  // The last row is of all runs together.
+  std::vector<std::vector<double>> sums(runs + 1, std::vector<double>(bands, 0.0)), counts = sums;
+  for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {
+    const ReadingPlace& place = whitener.places()[i];
+    const std::size_t band = find_noise_band(whitener.get_frequency(place));
+    const double w = whitened(static_cast<Eigen::Index>(i));
+    for (const std::size_t r : {place.run, runs}) {
+      sums[r][band] += w * w * whitener.spectra()[place.run].excess[band];
+      counts[r][band] += whitener.get_share(place.run);
+    }
+  }
+  for (std::size_t r = 0; r < runs; ++r) {
+    for (std::size_t b = 0; b < bands; ++b) {
+      const std::size_t from = counts[r][b] >= kEnough ? r : runs;
+      spectra[r].excess[b] =
+          counts[from][b] > 0.0 ? std::max(1.0, sums[from][b] / counts[from][b]) : 1.0;
+    }
+  }
+}
+
+Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
+                        const std::vector<bool>& is_level, const Eigen::VectorXd& residual) {
+  constexpr double kLowest = 1e-7, kHighest = 1e-3, kPerDecade = 4.0;
+  // Where the car answers to the road; what a tire passes on of shorter waves is less certain, and
+  // there would be more of them.
+  WhitenerOptions felt;
+  felt.highest = 15.0;
+  std::vector<Roughness> tried = {{0.0, 0.02}};
+  for (const double error : {0.02, 0.1}) {
+    for (double level = kLowest; level < kHighest; level *= std::pow(10.0, 1.0 / kPerDecade)) {
+      tried.push_back({level, error});
+    }
+  }
+  // By run, the roughness under which its residual is most likely.
+  std::vector<Roughness> best(spectra.size());
+  std::vector<double> most(spectra.size(), -std::numeric_limits<double>::infinity());
+  for (std::size_t r = 0; r < spectra.size(); ++r) {
+    if (!is_level[r]) continue;
+    for (const Roughness& roughness : tried) {
+      std::vector<NoiseSpectrum> at = spectra;
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        at[i].level = roughness.level;
+        at[i].response_error = roughness.response_error;
+        if (i != r) at[i].samples = 2;  // of the others nothing is asked
+      }
+      const Whitener whitener(model, at, felt);
+      const double likelihood = whitener.calc_log_likelihood(whitener.apply(residual), r);
+      if (likelihood <= most[r]) continue;
+      most[r] = likelihood;
+      best[r] = roughness;
+    }
+  }
+  std::vector<Roughness> quiet;
+  for (std::size_t r = 0; r < spectra.size(); ++r) {
+    if (is_level[r]) quiet.push_back(best[r]);
+  }
+  std::stable_sort(quiet.begin(), quiet.end(),
+                   [](const Roughness& a, const Roughness& b) { return a.level < b.level; });
+  return quiet[quiet.size() / 4];
+}
+
+}  // namespace strut

@@ -1,0 +1,41 @@
+// Where along the way, and with which sensors, measurements say most about the parameters.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/math/eigen_abi.h"
+#include "estimate/fisher.h"
+#include "estimate/sensitivity.h"
+#include "estimate/sensor_noise.h"
+
+namespace strut {
+
+/// Fisher information of one reading of `channels` at `instant`, noise independent between channels
+/// [1/%^2].
+Eigen::MatrixXd calc_information(const Sensitivity& s, const Instant& instant,
+                                 const std::vector<int>& channels, const SensorNoise& noise);
+
+/// The same at every instant of `s`.
+std::vector<Eigen::MatrixXd> calc_informations(const Sensitivity& s,
+                                               const std::vector<int>& channels,
+                                               const SensorNoise& noise);
+
+Eigen::MatrixXd sum_informations(const std::vector<Eigen::MatrixXd>& informations);
+
+struct InstantChoice {
+  std::vector<std::size_t> instants;  // ascending, all different
+  Eigen::MatrixXd information;        // their sum
+};
+
+/// The `count` instants with the least mean square bound (A-optimal): one is searched exhaustively;
+/// more are added greedily and exchanged one by one until no exchange helps, from several starts
+/// (V. V. Fedorov, Theory of Optimal Experiments, 1972). A local optimum, deterministic.
+InstantChoice choose_instants(const std::vector<Eigen::MatrixXd>& informations, int count);
+
+/// The channel of `candidates` outside of `channels` whose reading at `instant` lowers the mean
+/// square bound most; -1 where none is left.
+int choose_sensor(const Sensitivity& s, const Instant& instant, const std::vector<int>& channels,
+                  const std::vector<int>& candidates, const SensorNoise& noise);
+
+}  // namespace strut

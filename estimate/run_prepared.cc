@@ -1,0 +1,79 @@
+#include "estimate/run_prepared.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "base/parallel/team.h"
+
+namespace strut {
+namespace {
+
+using Group = std::vector<std::size_t>;
+
+/// Cases that share lanes, up to `width`, in order; every case in one group.
+std::vector<Group> group_cases(const std::vector<PreparedCase>& cases, Closure closure,
+                               std::size_t width) {
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto fits = [&](const Group& group) {
+      return group.size() < width && may_share_lanes(cases[group.front()], cases[i], closure);
+    };
+    const auto found = std::find_if(groups.begin(), groups.end(), fits);
+    if (found == groups.end()) {
+      groups.push_back({i});
+    } else {
+      found->push_back(i);
+    }
+  }
+  return groups;
+}
+
+LaneResults run_group(const std::vector<PreparedCase>& cases, const Group& group,
+                      const SolverOptions& integrate, const SamplePlan& plan) {
+  if (integrate.solver == Solver::kCvode) {
+    return run_cvode(cases[group.front()], integrate.reference, plan);
+  }
+  std::vector<const PreparedCase*> pointers;
+  pointers.reserve(group.size());
+  for (const std::size_t i : group) pointers.push_back(&cases[i]);
+  return list_kernels().front().run_lanes(pointers.data(), static_cast<int>(pointers.size()),
+                                          integrate.options, plan);
+}
+
+}  // namespace
+
+std::vector<double> LaneRun::get_series(int channel) const {
+  const std::vector<int>& recorded = results->recorded;
+  const auto lanes = static_cast<std::size_t>(results->lanes);
+  std::size_t row = CarChannel::kCount, column = static_cast<std::size_t>(channel);
+  if (!recorded.empty()) {
+    row = recorded.size();
+    column = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), channel) -
+                                      recorded.begin());
+    if (column == row) throw std::logic_error("history: a channel that was not recorded");
+  }
+  std::vector<double> series(static_cast<std::size_t>(results->sample_count));
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    series[i] = results->history[(i * row + column) * lanes + static_cast<std::size_t>(lane)];
+  }
+  return series;
+}
+
+std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,
+                                  const SolverOptions& integrate, const SamplePlan& plan,
+                                  int threads) {
+  const bool in_lanes = integrate.solver == Solver::kLanes;
+  const auto width = static_cast<std::size_t>(in_lanes ? list_kernels().front().lanes : 1);
+  const std::vector<Group> groups = group_cases(cases, integrate.options.closure, width);
+  std::vector<LaneRun> runs(cases.size());
+  share_items(threads, groups.size(), [&](std::size_t g, int /*thread*/) {
+    const auto results =
+        std::make_shared<const LaneResults>(run_group(cases, groups[g], integrate, plan));
+    for (std::size_t lane = 0; lane < groups[g].size(); ++lane) {
+      runs[groups[g][lane]] = {results, static_cast<int>(lane)};
+    }
+  });
+  return runs;
+}
+
+}  // namespace strut

@@ -1,0 +1,244 @@
+#include "estimate/sensitivity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "estimate/line_position.h"
+#include "estimate/run_prepared.h"
+#include "io/format/config.h"
+#include "model/channel/car_channels.h"
+#include "model_files/parameters.h"
+
+namespace strut {
+namespace {
+
+using C = CarChannel;
+using Channels = std::array<double, static_cast<std::size_t>(C::kCount)>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Runs are sampled at least this often, so that interpolating between samples costs nothing.
+constexpr double kLeastRate = 1000.0;  // 1/s
+
+/// One simulation, ready to be asked at any place.
+struct Trajectory : LaneRun {
+  std::vector<double> offsets;  // ascending
+};
+
+/// The cases of a Jacobian: the base, then per parameter +h, -h, +h/2, -h/2.
+constexpr std::size_t kRunsPerParameter = 4;
+std::size_t get_run(std::size_t parameter, std::size_t which) {
+  return 1 + parameter * kRunsPerParameter + which;
+}
+
+SensitivityParameter make_parameter(const Case& base, const Axis& axis, double relative_step) {
+  const ParameterInfo& info = find_parameter(axis.name);
+  SensitivityParameter p{axis.name, info.unit, info.get(base), 0.0, 0.0};
+  p.scale = std::max(std::abs(p.base), 0.5 * std::abs(axis.last() - axis.from));
+  if (p.scale == 0.0) p.scale = 1.0;
+  p.step = relative_step * p.scale;
+  return p;
+}
+
+/// The base, or the nearest value around which +-h is allowed.
+double calc_center(const SensitivityParameter& p) {
+  const Range& allowed = find_parameter(p.name).allowed;
+  return std::max(allowed.low + p.step, std::min(allowed.high - p.step, p.base));
+}
+
+struct Variant {
+  Case setup;
+  std::string label;  // for messages
+};
+
+std::vector<Variant> list_variants(const Case& base, const std::vector<SensitivityParameter>& ps) {
+  std::vector<Variant> variants{{base, "the base point"}};
+  variants.reserve(1 + kRunsPerParameter * ps.size());
+  for (const SensitivityParameter& p : ps) {
+    for (const double share : {1.0, -1.0, 0.5, -0.5}) {
+      const double value = calc_center(p) + share * p.step;
+      Variant v{base, p.name + " = " + format_number(value) + " " + p.unit};
+      set_parameter(v.setup, p.name, value);
+      variants.push_back(std::move(v));
+    }
+  }
+  return variants;
+}
+
+std::vector<PreparedCase> prepare_all(const std::vector<Variant>& variants, double offset) {
+  CasePreparer preparer;
+  std::vector<PreparedCase> prepared;
+  prepared.reserve(variants.size());
+  for (const Variant& v : variants) {
+    try {
+      prepared.push_back(preparer.prepare(v.setup, offset));
+    } catch (const ModelError& e) {
+      throw InputError(v.label + ": " + e.what());
+    } catch (const std::invalid_argument& e) {
+      throw InputError(v.label + ": " + e.what());
+    }
+  }
+  return prepared;
+}
+
+void check_run(const Trajectory& run, const std::string& label) {
+  const LaneResults& r = *run.results;
+  if (run.status() != RunStatus::kDone) {
+    throw InputError("the run at " + label +
+                     " failed at t = " + format_number(r.failure_time[at(run.lane)]) +
+                     " s; a design needs runs that get through: choose another base point");
+  }
+  if (std::isnan(r.event_time[at(run.lane)])) {
+    throw InputError("the run at " + label +
+                     " never meets the snapshot's line: a longer duration or another offset does");
+  }
+}
+
+/// Drops what comes after the wheels first stood still or rolled back.
+void keep_ascending(std::vector<double>& offsets) {
+  const auto end = std::adjacent_find(offsets.begin(), offsets.end(),
+                                      [](double a, double b) { return !(b > a); });
+  if (end != offsets.end()) offsets.erase(end + 1, offsets.end());
+}
+
+/// Channels where the run passes `offset`: cubic through the four nearest samples, with the place
+/// as the abscissa.
+void sample_at(const Trajectory& run, double offset, Channels& out) {
+  constexpr std::size_t kNodes = 4;
+  const auto above = std::upper_bound(run.offsets.begin(), run.offsets.end(), offset);
+  const auto index = static_cast<std::size_t>(above - run.offsets.begin());
+  const std::size_t last_first = run.offsets.size() - kNodes;
+  const std::size_t first = std::min(index < 2 ? 0 : index - 2, last_first);
+  out.fill(0.0);
+  for (std::size_t i = first; i < first + kNodes; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = first; j < first + kNodes; ++j) {
+      if (j == i) continue;
+      weight *= (offset - run.offsets[j]) / (run.offsets[i] - run.offsets[j]);
+    }
+    for (std::size_t c = 0; c < out.size(); ++c) out[c] += weight * run.get(i, c);
+  }
+}
+
+void get_snapshot(const Trajectory& run, Channels& out) {
+  const auto lanes = at(run.results->lanes);
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    out[c] = run.results->snapshot[c * lanes + at(run.lane)];
+  }
+}
+
+/// Both Jacobians, step h and h/2, of what `read` takes from each run.
+struct JacobianPair {
+  Instant coarse;
+  std::vector<double> fine;
+};
+
+template <class Read>
+JacobianPair calc_jacobians(const std::vector<SensitivityParameter>& parameters, double offset,
+                            const Read& read) {
+  const std::size_t count = parameters.size();
+  JacobianPair pair;
+  pair.coarse.jacobian.resize(C::kCount * count);
+  pair.fine.resize(C::kCount * count);
+  Channels base, values[kRunsPerParameter];
+  read(0, base);
+  pair.coarse.offset = offset;
+  pair.coarse.time = base[C::kTime];
+  for (std::size_t p = 0; p < count; ++p) {
+    for (std::size_t which = 0; which < kRunsPerParameter; ++which) {
+      read(get_run(p, which), values[which]);
+    }
+    const double step = parameters[p].step;
+    for (std::size_t c = 0; c < C::kCount; ++c) {
+      pair.coarse.jacobian[c * count + p] = (values[0][c] - values[1][c]) / (2.0 * step);
+      pair.fine[c * count + p] = (values[2][c] - values[3][c]) / step;
+    }
+  }
+  return pair;
+}
+
+/// Sums over the instants from which the error of each curve follows.
+struct ErrorSums {
+  std::vector<double> difference, size;
+
+  void add(const JacobianPair& pair) {
+    difference.resize(pair.fine.size());
+    size.resize(pair.fine.size());
+    for (std::size_t i = 0; i < pair.fine.size(); ++i) {
+      const double d = pair.coarse.jacobian[i] - pair.fine[i];
+      difference[i] += d * d;
+      size[i] += pair.coarse.jacobian[i] * pair.coarse.jacobian[i];
+    }
+  }
+};
+
+/// Fills Sensitivity::error and sets the curves that are nothing but rounding to zero.
+void judge_curves(const ErrorSums& sums, Sensitivity& s) {
+  constexpr double kNoise = 0.5;  // of a curve's rms: h and h/2 have nothing in common
+  s.error.assign(sums.size.size(), 0.0);
+  for (std::size_t i = 0; i < s.error.size(); ++i) {
+    const double ratio = std::sqrt(sums.difference[i] / sums.size[i]);
+    if (ratio <= kNoise) {
+      s.error[i] = 4.0 / 3.0 * ratio;
+      continue;
+    }
+    s.snapshot.jacobian[i] = 0.0;
+    for (Instant& instant : s.instants) instant.jacobian[i] = 0.0;
+  }
+}
+
+/// Samples of the base run between which every run has been and will be.
+void calc_instants(const std::vector<Trajectory>& runs, std::size_t stride, Sensitivity& s) {
+  double first = runs[0].offsets.front(), last = runs[0].offsets.back();
+  for (const Trajectory& run : runs) {
+    first = std::max(first, run.offsets.front());
+    last = std::min(last, run.offsets.back());
+  }
+  ErrorSums sums;
+  for (std::size_t i = 0; i < runs[0].offsets.size(); i += stride) {
+    const double offset = runs[0].offsets[i];
+    if (offset < first || offset > last) continue;
+    JacobianPair pair = calc_jacobians(s.parameters, offset, [&](std::size_t run, Channels& out) {
+      sample_at(runs[run], offset, out);
+    });
+    sums.add(pair);
+    s.instants.push_back(std::move(pair.coarse));
+  }
+  judge_curves(sums, s);
+}
+
+}  // namespace
+
+Sensitivity calc_sensitivity(const Case& base, const std::vector<Axis>& axes, double offset,
+                             const SensitivityOptions& options) {
+  Sensitivity s;
+  s.rate = options.rate;
+  s.parameters.reserve(axes.size());
+  for (const Axis& axis : axes) {
+    s.parameters.push_back(make_parameter(base, axis, options.relative_step));
+  }
+  const std::vector<Variant> variants = list_variants(base, s.parameters);
+  const std::vector<PreparedCase> cases = prepare_all(variants, offset);
+  const double stride = std::max(1.0, std::ceil(kLeastRate / options.rate));
+  SamplePlan plan;
+  plan.interval = 1.0 / (options.rate * stride);
+  std::vector<Trajectory> runs;
+  runs.reserve(cases.size());
+  for (LaneRun& run : run_prepared(cases, options.integrate, plan)) {
+    runs.push_back({std::move(run), {}});
+  }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    check_run(runs[i], variants[i].label);
+    runs[i].offsets = calc_line_positions(cases[i], *runs[i].results, runs[i].lane);
+    keep_ascending(runs[i].offsets);
+  }
+  s.snapshot = calc_jacobians(s.parameters, offset, [&](std::size_t run, Channels& out) {
+                 get_snapshot(runs[run], out);
+               }).coarse;
+  calc_instants(runs, static_cast<std::size_t>(stride), s);
+  return s;
+}
+
+}  // namespace strut

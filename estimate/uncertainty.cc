@@ -1,0 +1,83 @@
+#include "estimate/uncertainty.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "estimate/fisher.h"
+
+namespace strut {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Eigenvectors of the information that leave more than 100 % open.
+std::vector<NullDirection> find_null_directions(const Eigen::MatrixXd& information) {
+  // A nuisance known from its prior alone has 1 up to rounding.
+  constexpr double kLeast = 1.0 - 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  const double rounding = kLeastInformation * solver.eigenvalues().maxCoeff();
+  std::vector<NullDirection> found;
+  for (Eigen::Index k = 0; k < information.rows(); ++k) {
+    const double value = solver.eigenvalues()(k);
+    if (value >= kLeast) break;  // ascending
+    Eigen::VectorXd v = solver.eigenvectors().col(k);
+    Eigen::Index largest = 0;
+    v.cwiseAbs().maxCoeff(&largest);
+    if (v(largest) < 0.0) v = -v;
+    found.push_back(
+        {{v.data(), v.data() + v.size()}, value > rounding ? 1.0 / std::sqrt(value) : kInfinity});
+  }
+  return found;
+}
+
+}  // namespace
+
+double Uncertainty::calc_correlation(std::size_t i, std::size_t j) const {
+  const auto a = static_cast<Eigen::Index>(i), b = static_cast<Eigen::Index>(j);
+  const double product = covariance(a, a) * covariance(b, b);
+  return product > 0.0 ? covariance(a, b) / std::sqrt(product) : 0.0;
+}
+
+Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
+                             const std::vector<Unknown>& unknowns) {
+  const InformationInverse inverse = invert_information(information);
+  const auto n = static_cast<Eigen::Index>(unknowns.size());
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    scale(i) = inverse.free[at] ? 0.0 : unknowns[at].scale;
+  }
+  Uncertainty result;
+  result.covariance = scale.asDiagonal() * inverse.covariance * scale.asDiagonal();
+  result.sigma.reserve(unknowns.size());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    result.sigma.push_back(inverse.free[i] ? kInfinity : std::sqrt(result.covariance(at, at)));
+    result.identifiable.push_back(result.sigma[i] <= unknowns[i].scale * (1.0 + 1e-6));
+  }
+  result.null_directions = find_null_directions(information);
+  result.rank = static_cast<int>(unknowns.size() - result.null_directions.size());
+  return result;
+}
+
+std::string describe_direction(const NullDirection& direction,
+                               const std::vector<Unknown>& unknowns) {
+  constexpr double kLeastPart = 0.1;
+  std::string text;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const double part = direction.parts[i];
+    if (std::abs(part) < kLeastPart) continue;
+    char number[32];
+    std::snprintf(number, sizeof number, "%.2g ", std::abs(part));
+    text += text.empty() ? (part < 0.0 ? "-" : "") : (part < 0.0 ? " - " : " + ");
+    text += (std::abs(part) > 0.99 ? "" : std::string(number)) + unknowns[i].name;
+    if (unknowns[i].run != kEveryRun && unknowns[i].run > 0) {
+      text += " of run " + std::to_string(unknowns[i].run + 1);
+    }
+  }
+  return text;
+}
+
+}  // namespace strut

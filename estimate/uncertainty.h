@@ -1,0 +1,40 @@
+// What a Jacobian says about how well the unknowns are known.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "base/math/eigen_abi.h"
+#include "estimate/unknown.h"
+
+namespace strut {
+
+/// A combination of unknowns that the readings leave open.
+struct NullDirection {
+  std::vector<double> parts;  // of a unit vector, by unknowns in their scale
+  double sigma = 0.0;         // along it, in scales; infinite where nothing depends on it
+};
+
+struct Uncertainty {
+  /// (J'J)^-1 in the unknowns' own units; rows of unknowns that are not known at all are zero.
+  Eigen::MatrixXd covariance;
+  std::vector<double> sigma;       // sqrt of its diagonal; infinite where not known at all
+  std::vector<bool> identifiable;  // sigma within the unknown's own size
+  int rank = 0;                    // unknowns less the null directions
+  std::vector<NullDirection> null_directions;  // sigma above 100 %, worst first
+
+  double calc_correlation(std::size_t i, std::size_t j) const;
+};
+
+/// Of unknowns whose scaled Jacobian (linearize.h) has the information J'J. Independent Gaussian
+/// noise; at the true values the Cramer-Rao bound (S. M. Kay, Estimation Theory, 1993, eq. 3.31;
+/// with priors the Bayesian one of H. L. Van Trees, 1968, section 2.4.3).
+Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
+                             const std::vector<Unknown>& unknowns);
+
+/// "front_stiffness - 0.98 rear_stiffness": the parts above a tenth.
+std::string describe_direction(const NullDirection& direction,
+                               const std::vector<Unknown>& unknowns);
+
+}  // namespace strut

@@ -1,0 +1,99 @@
+// What a fit is to find: parameters of car and maneuver, and the nuisances of every measurement.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimate/measured_run.h"
+#include "model/effects/force_map.h"
+
+namespace strut {
+
+enum class UnknownKind {
+  kParameter,     // of model_files/parameters.h
+  kHitTime,       // s: simulated time minus the time of the measuring clock
+  kBias,          // what is to be added to a simulated channel, in its unit
+  kInputGain,     // of a rig: what its measured input is to be multiplied by
+  kInitialState,  // of a rig: offset of its start from rest [m], [m/s]
+  kForceMap,      // how many times its part is in the force map of a strut
+};
+
+/// What is known beforehand: a Gaussian; sigma infinite: nothing.
+struct Prior {
+  double mean = 0.0;
+  double sigma = std::numeric_limits<double>::infinity();
+
+  bool informs() const { return sigma < std::numeric_limits<double>::infinity(); }
+};
+
+inline constexpr int kEveryRun = -1;
+
+struct Unknown {
+  UnknownKind kind = UnknownKind::kParameter;
+  std::string name;     // "front_stiffness", "hit_time", "imu_rate_y_bias"
+  std::string unit;     // "1" if none
+  int run = kEveryRun;  // of which run, counted from 0; or one value for all
+  /// kBias: the model's channel; kInputGain: of list_rig_inputs; kInitialState: RigCoordinate,
+  /// its velocity kRigCoordinates later.
+  int channel = 0;
+  double start = 0.0;  // where the search begins
+  double scale = 1.0;  // 100 % of it: its size, or the sigma of its prior where it starts from 0
+  double low = 0.0, high = 0.0;  // bounds
+  Prior prior;
+  std::shared_ptr<const ForceMap> part{};  // of kForceMap
+};
+
+/// Whether it changes what is simulated for a car in a maneuver, not only how that is read.
+inline bool is_of_simulation(const Unknown& u) {
+  return u.kind == UnknownKind::kParameter || u.kind == UnknownKind::kForceMap;
+}
+
+/// A parameter, bounded by what is plausible, starting at the value of the run's setup (kEveryRun:
+/// of the first). Throws InputError with the nearest known name, or where it cannot be fitted.
+Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name,
+                       int run = kEveryRun);
+
+/// Bounds mean +- kHitTimeReach sigma. sigma > 0.
+Unknown make_hit_time(int run, const Prior& prior);
+inline constexpr double kHitTimeReach = 5.0;
+
+/// Without bounds. sigma > 0, may be infinite.
+Unknown make_bias(int run, int channel, const Prior& prior);
+
+/// 1 sigma of what is not known about each run; 0: known.
+struct NuisanceSigmas {
+  double hit_time = 0.005;  // s, a trigger at one frame of a 100 Hz bus
+  double speed = 0.2;       // m/s, a wheel speed sensor and the tire's effective radius
+  SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
+};
+
+/// How many times a part is in the map at its place: begins at 0, without bounds.
+Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
+                         const Prior& prior);
+
+/// Adds `factor` times a part to the map at its place; where there is none the map is that alone.
+/// Throws ModelError where the map there has another grid.
+void add_map_part(ForceMaps& maps, const ForceMap& part, double factor);
+
+/// Hit time, speed and biases of every run, as far as their sigma is not 0; the speed only where no
+/// unknown of `chosen` is the speed.
+std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
+                                    const NuisanceSigmas& sigmas,
+                                    const std::vector<Unknown>& chosen = {});
+
+/// Where the search of each begins.
+std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
+
+/// Sets the parameters and force maps among the unknowns that belong to a run: to all of them, or
+/// to that alone.
+/// Throws what set_parameter throws.
+void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
+                    const std::vector<double>& values, int run = kEveryRun);
+
+/// Throws InputError where one is named twice, belongs to no run, starts out of its bounds, or has
+/// a prior whose sigma is not positive.
+void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count);
+
+}  // namespace strut

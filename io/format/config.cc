@@ -1,0 +1,422 @@
+#include "io/format/config.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/text/nearest_name.h"
+#include "base/text/shorten.h"
+#include "io/file/file_sync.h"
+#include "io/format/parse_toml.h"
+
+namespace strut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Unknown keys that one message lists.
+constexpr std::size_t kMaxUnread = 20;
+
+const toml::node& as_node(const void* node) { return *static_cast<const toml::node*>(node); }
+
+std::string describe_type(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::boolean:
+      return "true or false";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    default:
+      return "a date or time";
+  }
+}
+
+// The value as written, or its type where the text would be long.
+std::string describe_value(const toml::node& node) {
+  if (const auto* value = node.as_floating_point()) return format_number(value->get());
+  if (const auto* value = node.as_integer()) return std::to_string(value->get());
+  if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
+  if (const auto* value = node.as_string()) return "\"" + shorten(value->get()) + "\"";
+  const auto* array = node.as_array();
+  if (array == nullptr || array->size() > 6 || array->is_array_of_tables()) {
+    return "(" + describe_type(node) + ")";
+  }
+  std::string text;
+  for (const toml::node& item : *array) text += (text.empty() ? "" : ", ") + describe_value(item);
+  return "[" + text + "]";
+}
+
+}  // namespace
+
+std::string read_text_file(const fs::path& path, std::size_t max_bytes) {
+  std::error_code error;  // reading tells it
+  if (const auto size = fs::file_size(path, error); !error && size > max_bytes) {
+    throw InputError(path.string() + ": " + std::to_string(size) + " bytes; at most " +
+                     std::to_string(max_bytes) + " are allowed");
+  }
+  auto text = read_if_present(path);
+  if (!text) throw InputError(path.string() + ": file not found");
+  return *std::move(text);
+}
+
+bool Range::contains(double value) const {
+  return std::isfinite(value) && value <= high && (open_low ? value > low : value >= low);
+}
+
+std::string Range::describe() const {
+  const std::string suffix = unit.empty() ? "" : " " + unit;
+  if (std::isfinite(low) && std::isfinite(high)) {
+    return std::string("must lie in ") + (open_low ? "(" : "[") + format_number(low) + ", " +
+           format_number(high) + "]" + suffix;
+  }
+  if (std::isfinite(low)) {
+    return std::string("must be ") + (open_low ? "> " : ">= ") + format_number(low) + suffix;
+  }
+  if (std::isfinite(high)) return "must be <= " + format_number(high) + suffix;
+  return "must be a finite number" + (unit.empty() ? "" : " of " + unit);
+}
+
+Range between(double low, double high, const std::string& unit) { return {low, high, false, unit}; }
+
+Range at_least(double low, const std::string& unit) { return {.low = low, .unit = unit}; }
+
+Range above(double low, const std::string& unit) {
+  return {.low = low, .open_low = true, .unit = unit};
+}
+
+Range any_number(const std::string& unit) { return {.unit = unit}; }
+
+std::string format_number(double value) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+std::string format_rounded(double value) {
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                    std::chars_format::general, 6);
+  return {buffer.data(), result.ptr};
+}
+
+struct Table::Source {
+  fs::path path;
+  toml::table root;
+  std::map<std::string, std::set<std::string>> asked;  // table name -> keys somebody asked for
+
+  std::string at(const toml::node& node) const {
+    return path.string() + ":" + std::to_string(node.source().begin.line) + ": ";
+  }
+
+  std::vector<std::string> known_keys(const std::string& table_name) const {
+    const auto found = asked.find(table_name);
+    if (found == asked.end()) return {};
+    return {found->second.begin(), found->second.end()};
+  }
+
+  // The keys of a table that nobody has asked for.
+  std::vector<std::string> unread_keys(const toml::table& table, const std::string& name) const {
+    const auto found = asked.find(name);
+    std::vector<std::string> unread;
+    for (const auto& [key, value] : table) {
+      const std::string text(key.str());
+      if (found == asked.end() || found->second.count(text) == 0) unread.push_back(text);
+    }
+    return unread;
+  }
+
+  /// A line for each key that nobody asked for; beyond kMaxUnread, empty ones.
+  void add_unread(const toml::table& table, const std::string& name,
+                  std::vector<std::string>& unread) const;
+  void add_unread_inside(const toml::node& node, const std::string& name,
+                         std::vector<std::string>& unread) const;
+};
+
+void Table::Source::add_unread(const toml::table& table, const std::string& name,
+                               std::vector<std::string>& unread) const {
+  const std::string prefix = name.empty() ? "" : name + ".";
+  for (const std::string& key : unread_keys(table, name)) {
+    if (unread.size() >= kMaxUnread) {
+      unread.emplace_back();  // counts
+      continue;
+    }
+    unread.push_back(at(*table.get(key)) + "unknown key '" + shorten(prefix + key) + "'" +
+                     suggest_name(key, known_keys(name)));
+  }
+  for (const auto& [key, value] : table) {
+    const auto found = asked.find(name);
+    if (found == asked.end() || found->second.count(std::string(key.str())) == 0) continue;
+    add_unread_inside(value, prefix + std::string(key.str()), unread);
+  }
+}
+
+void Table::Source::add_unread_inside(const toml::node& node, const std::string& name,
+                                      std::vector<std::string>& unread) const {
+  if (const toml::table* table = node.as_table()) return add_unread(*table, name, unread);
+  const toml::array* array = node.as_array();
+  if (array == nullptr) return;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const toml::table* item = array->get(i)->as_table();
+    if (item != nullptr) add_unread(*item, name + "[" + std::to_string(i + 1) + "]", unread);
+  }
+}
+
+Table::Table(std::shared_ptr<Source> source, const void* node, std::string name)
+    : source_(std::move(source)), node_(node), name_(std::move(name)) {
+  source_->asked[name_];
+}
+
+std::string Table::full_name(const std::string& key) const {
+  return name_.empty() ? key : name_ + "." + key;
+}
+
+const void* Table::find(const std::string& key) const {
+  source_->asked[name_].insert(key);
+  return as_node(node_).as_table()->get(key);
+}
+
+const void* Table::require(const std::string& key) const {
+  const void* node = find(key);
+  if (node != nullptr) return node;
+  std::string what = "missing key '" + full_name(key) + "'";
+  // A required key is often missing because it is misspelled; say so now, the check of unread keys
+  // is never reached.
+  const auto unread = source_->unread_keys(*as_node(node_).as_table(), name_);
+  const std::string misspelled = nearest_name(key, unread);
+  if (!misspelled.empty()) what += "; is '" + misspelled + "' meant to be it?";
+  throw InputError(source_->at(as_node(node_)) + what);
+}
+
+InputError Table::error(const std::string& key, const std::string& what) const {
+  const void* node = find(key);
+  if (node == nullptr) {
+    return InputError(source_->at(as_node(node_)) + full_name(key) + ": " + what);
+  }
+  return InputError(source_->at(as_node(node)) + full_name(key) + " = " +
+                    describe_value(as_node(node)) + ": " + what);
+}
+
+InputError Table::error(const std::string& what) const {
+  if (name_.empty()) return InputError(source_->path.string() + ": " + what);
+  return InputError(source_->at(as_node(node_)) + "[" + name_ + "]: " + what);
+}
+
+InputError Table::wrong_type(const std::string& key, const void* node,
+                             const std::string& wanted) const {
+  return InputError(source_->at(as_node(node)) + full_name(key) + " = " +
+                    describe_value(as_node(node)) + ": must be " + wanted);
+}
+
+double Table::checked_number(const std::string& key, const void* node, const Range& range) const {
+  if (!as_node(node).is_number()) throw wrong_type(key, node, "a number");
+  const double value = as_node(node).value<double>().value_or(std::nan(""));
+  if (range.contains(value)) return value;
+  const std::string allowed =
+      std::isfinite(value) ? range.describe() : "must be a finite number; " + range.describe();
+  throw InputError(source_->at(as_node(node)) + full_name(key) + " = " +
+                   describe_value(as_node(node)) + ": " + allowed);
+}
+
+bool Table::has(const std::string& key) const { return find(key) != nullptr; }
+
+double Table::number(const std::string& key, const Range& range) const {
+  return checked_number(key, require(key), range);
+}
+
+double Table::number_or(const std::string& key, double fallback, const Range& range) const {
+  return has(key) ? number(key, range) : fallback;
+}
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::pair<toml::source_position, std::string>> found;
+  for (const auto& [key, value] : *as_node(node_).as_table()) {
+    found.emplace_back(key.source().begin, std::string(key.str()));
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> names;
+  names.reserve(found.size());
+  for (auto& [position, name] : found) names.push_back(std::move(name));
+  return names;
+}
+
+std::int64_t Table::integer(const std::string& key, std::int64_t low, std::int64_t high) const {
+  const void* node = require(key);
+  const auto* value = as_node(node).as_integer();
+  if (value == nullptr) throw wrong_type(key, node, "a whole number");
+  if (value->get() >= low && value->get() <= high) return value->get();
+  throw error(key, "must lie in [" + std::to_string(low) + ", " + std::to_string(high) + "]");
+}
+
+std::int64_t Table::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
+                               std::int64_t high) const {
+  return has(key) ? integer(key, low, high) : fallback;
+}
+
+bool Table::boolean_or(const std::string& key, bool fallback) const {
+  const void* node = find(key);
+  if (node == nullptr) return fallback;
+  const auto* value = as_node(node).as_boolean();
+  if (value == nullptr) throw wrong_type(key, node, "true or false");
+  return value->get();
+}
+
+std::string Table::text(const std::string& key) const {
+  const void* node = require(key);
+  const auto* value = as_node(node).as_string();
+  if (value == nullptr) throw wrong_type(key, node, "a text in quotes");
+  return value->get();
+}
+
+std::string Table::text_or(const std::string& key, const std::string& fallback) const {
+  return has(key) ? text(key) : fallback;
+}
+
+bool Table::is_text(const std::string& key) const {
+  const void* node = find(key);
+  return node != nullptr && as_node(node).is_string();
+}
+
+std::vector<std::string> Table::texts(const std::string& key) const {
+  const void* node = require(key);
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr) throw wrong_type(key, node, "an array of texts");
+  std::vector<std::string> values;
+  values.reserve(array->size());
+  for (const toml::node& item : *array) {
+    const auto* value = item.as_string();
+    if (value == nullptr) throw wrong_type(key, node, "an array of texts");
+    values.push_back(value->get());
+  }
+  return values;
+}
+
+std::vector<double> Table::checked_numbers(const std::string& key, const void* node,
+                                           const Range& range) const {
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr) throw wrong_type(key, node, "an array of numbers");
+  std::vector<double> values;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    values.push_back(checked_number(key + "[" + std::to_string(i + 1) + "]", array->get(i), range));
+  }
+  return values;
+}
+
+std::vector<double> Table::numbers(const std::string& key, const Range& range) const {
+  return checked_numbers(key, require(key), range);
+}
+
+std::vector<std::vector<double>> Table::rows(const std::string& key, const Range& range) const {
+  const void* node = require(key);
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr || array->empty())
+    throw wrong_type(key, node, "an array of rows of numbers");
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    const std::string row = key + "[" + std::to_string(i + 1) + "]";
+    rows.push_back(checked_numbers(row, array->get(i), range));
+    const std::size_t wanted = std::max<std::size_t>(rows.front().size(), 1);
+    if (rows.back().size() == wanted) continue;
+    throw wrong_type(row, array->get(i), "an array of " + std::to_string(wanted) + " numbers");
+  }
+  return rows;
+}
+
+std::array<double, 3> Table::vector(const std::string& key, const Range& range) const {
+  const void* node = require(key);
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr || array->size() != 3) {
+    throw wrong_type(key, node, "an array of three numbers");
+  }
+  const std::vector<double> values = numbers(key, range);
+  return {values[0], values[1], values[2]};
+}
+
+std::array<double, 3> Table::vector_or(const std::string& key,
+                                       const std::array<double, 3>& fallback,
+                                       const Range& range) const {
+  return has(key) ? vector(key, range) : fallback;
+}
+
+int Table::choice(const std::string& key, const std::vector<std::string>& names) const {
+  const std::string name = text(key);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return static_cast<int>(i);
+  }
+  throw error(key, "must be one of " + join_names(names) + suggest_name(name, names));
+}
+
+int Table::choice_or(const std::string& key, int fallback,
+                     const std::vector<std::string>& names) const {
+  return has(key) ? choice(key, names) : fallback;
+}
+
+fs::path Table::file(const std::string& key) const {
+  const fs::path named = text(key);
+  fs::path path = (source_->path.parent_path() / named).lexically_normal();
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  if (fs::is_regular_file(status)) return path;
+  const std::string what = fs::exists(status)                          ? "not a file"
+                           : status.type() == fs::file_type::not_found ? "file not found"
+                                                                       : code.message();
+  throw error(key, what + ": " + shorten(path.string(), 4 * kMaxQuoted));
+}
+
+Table Table::table(const std::string& key) const {
+  const void* node = require(key);
+  if (!as_node(node).is_table()) throw wrong_type(key, node, "a table");
+  return {source_, node, full_name(key)};
+}
+
+std::optional<Table> Table::find_table(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  return table(key);
+}
+
+std::vector<Table> Table::tables(const std::string& key) const {
+  const void* node = require(key);
+  const toml::array* array = as_node(node).as_array();
+  if (array == nullptr || !array->is_array_of_tables()) {
+    throw wrong_type(key, node, "an array of tables, [[" + full_name(key) + "]]");
+  }
+  std::vector<Table> found;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    found.push_back({source_, array->get(i), full_name(key) + "[" + std::to_string(i + 1) + "]"});
+  }
+  return found;
+}
+
+Document::Document(const fs::path& path) : source_(std::make_shared<Table::Source>()) {
+  source_->path = path;
+  source_->root = parse_toml(path, read_toml_text(path));
+}
+
+Table Document::root() const {
+  return {source_, static_cast<const toml::node*>(&source_->root), ""};
+}
+
+const fs::path& Document::path() const { return source_->path; }
+
+void Document::check_all_read() const {
+  std::vector<std::string> unread;
+  source_->add_unread(source_->root, "", unread);
+  if (unread.empty()) return;
+  std::string message = unread.front();
+  const std::size_t shown = std::min(unread.size(), kMaxUnread);
+  for (std::size_t i = 1; i < shown; ++i) message += "\n" + unread[i];
+  if (shown < unread.size()) {
+    message += "\nand " + std::to_string(unread.size() - shown) + " more unknown keys";
+  }
+  throw InputError(message);
+}
+
+}  // namespace strut

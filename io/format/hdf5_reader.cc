@@ -1,0 +1,242 @@
+#include <algorithm>
+
+#include "io/format/hdf5_calls.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+using hdf5::check;
+using hdf5::checked;
+
+std::string first_or_empty(const std::vector<std::string>& texts) {
+  return texts.empty() ? "" : texts.front();
+}
+
+Hdf5Label get_label(const fs::path& path, const std::string& name, hid_t dataset) {
+  const auto read = [&](const char* key) { return hdf5::read_texts_of(path, dataset, name, key); };
+  return {first_or_empty(read("unit")), first_or_empty(read("description")), read("names"),
+          read("units"), read("descriptions")};
+}
+
+std::vector<std::size_t> get_shape(const fs::path& path, const std::string& name, hid_t dataset) {
+  const Hdf5Handle space =
+      checked<InputError>(H5Dget_space(dataset), H5Sclose, path, name, "shape cannot be read");
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  check<InputError>(rank == 1 || rank == 2, path, name, "must have one or two dimensions");
+  std::vector<hsize_t> sizes(static_cast<std::size_t>(rank));
+  check<InputError>(H5Sget_simple_extent_dims(space.id(), sizes.data(), nullptr) == rank, path,
+                    name, "shape cannot be read");
+  return {sizes.begin(), sizes.end()};
+}
+
+// Elements of a dataset. A damaged header may claim any number; the stored bytes bound what is
+// believed. Deflate packs at most 1032 to 1.
+std::size_t count_elements(const fs::path& path, const std::string& name, hid_t dataset,
+                           const std::vector<std::size_t>& shape) {
+  constexpr std::size_t kMost = std::size_t{1} << 48;
+  const Hdf5Handle creation =
+      checked<InputError>(H5Dget_create_plist(dataset), H5Pclose, path, name, "damaged");
+  const Hdf5Handle type =
+      checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
+  const std::size_t element = H5Tget_size(type.id());
+  check<InputError>(element > 0, path, name, "damaged");
+  std::size_t bytes = element;
+  for (const std::size_t size : shape) {
+    check<InputError>(size == 0 || bytes <= kMost / size, path, name, "damaged: data missing");
+    bytes *= size;
+  }
+  const std::size_t packed = H5Pget_nfilters(creation.id()) == 0 ? 1 : 1040;
+  const bool present = H5Dget_storage_size(dataset) >= bytes / packed;
+  check<InputError>(present, path, name, "damaged: data missing");
+  return bytes / element;
+}
+
+void require_class(const fs::path& path, const std::string& name, hid_t dataset, bool integer,
+                   bool real) {
+  const Hdf5Handle type =
+      checked<InputError>(H5Dget_type(dataset), H5Tclose, path, name, "damaged");
+  const H5T_class_t kind = H5Tget_class(type.id());
+  check<InputError>((integer && kind == H5T_INTEGER) || (real && kind == H5T_FLOAT), path, name,
+                    real ? "must hold numbers" : "must hold integers");
+}
+
+struct RowRange {
+  std::size_t first = 0, count = 0;
+};
+
+template <class T>
+std::vector<T> read_range(const fs::path& path, const std::string& name, hid_t dataset,
+                          const RowRange& range) {
+  std::vector<std::size_t> shape = get_shape(path, name, dataset);
+  const std::size_t total = count_elements(path, name, dataset, shape);
+  const bool inside =
+      range.count > 0 && range.first <= shape.front() && range.count <= shape.front() - range.first;
+  check<InputError>(inside, path, name,
+                    "has " + std::to_string(shape.front()) + " rows, asked for " +
+                        std::to_string(range.first) + " to " +
+                        std::to_string(range.first + range.count));
+  const Hdf5Handle stored =
+      hdf5::select_rows<InputError>(path, name, shape, range.first, range.count);
+  std::vector<T> values(total / shape.front() * range.count);
+  shape.front() = range.count;
+  const Hdf5Handle memory = hdf5::select_rows<InputError>(path, name, shape, 0, range.count);
+  const hid_t type = hdf5_type<T> == Hdf5Type::kDouble ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+  check<InputError>(
+      H5Dread(dataset, type, memory.id(), stored.id(), H5P_DEFAULT, values.data()) >= 0, path, name,
+      "damaged");
+  return values;
+}
+
+}  // namespace
+
+Hdf5Reader::Hdf5Reader(const fs::path& path) : path_(path) {
+  hdf5::prepare_library();
+  open_regular_file(path);  // the library would wait for a pipe's other end
+  check<InputError>(H5Fis_hdf5(path.c_str()) > 0, path, "", "not an HDF5 file");
+  file_ = checked<InputError>(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, path,
+                              "", "damaged or not readable");
+}
+
+Hdf5Reader::Hdf5Reader(const fs::path& path, std::span<const std::byte> image) : path_(path) {
+  hdf5::prepare_library();
+  const Hdf5Handle access =
+      checked<InputError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "", "cannot be read");
+  // The library copies the image; it takes no const pointer.
+  const bool good =
+      H5Pset_fapl_core(access.id(), image.size(), false) >= 0 &&
+      H5Pset_file_image(access.id(), const_cast<std::byte*>(image.data()), image.size()) >= 0;
+  check<InputError>(good, path, "", "cannot be read");
+  file_ =
+      checked<InputError>(H5Fopen(hdf5::make_memory_name().c_str(), H5F_ACC_RDONLY, access.id()),
+                          H5Fclose, path, "", "damaged, or not an HDF5 file");
+}
+
+Hdf5Reader::Hdf5Reader(const fs::path& path, const SealKind& kind)
+    : Hdf5Reader(is_sealed(path) ? Hdf5Reader(path, read_sealed(path, kind).bytes)
+                                 : open_unsealed(path)) {}
+
+Hdf5Reader Hdf5Reader::open_unsealed(const fs::path& path) {
+  refuse_global_heap(path);
+  return Hdf5Reader(path);
+}
+
+bool Hdf5Reader::has(const std::string& name) const {
+  // H5Lexists needs every group on the way to exist.
+  for (std::size_t slash = name.find('/', 1);; slash = name.find('/', slash + 1)) {
+    if (H5Lexists(file_.id(), name.substr(0, slash).c_str(), hdf5::stay_in_file()) <= 0) {
+      H5Eclear2(H5E_DEFAULT);
+      return false;
+    }
+    if (slash == std::string::npos) return true;
+  }
+}
+
+Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
+  check<InputError>(has(name), path_, name, "no such dataset");
+  Hdf5Handle dataset = checked<InputError>(H5Dopen2(file_.id(), name.c_str(), hdf5::stay_in_file()),
+                                           H5Dclose, path_, name, "not a dataset of this file");
+  const Hdf5Handle creation =
+      checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
+  const bool lies_elsewhere =
+      H5Pget_layout(creation.id()) == H5D_VIRTUAL || H5Pget_external_count(creation.id()) > 0;
+  check<InputError>(!lies_elsewhere, path_, name, kViewFault);
+  return dataset;
+}
+
+Hdf5Dataset Hdf5Reader::read(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  Hdf5Dataset data;
+  data.shape = get_shape(path_, name, dataset.id());
+  require_class(path_, name, dataset.id(), true, true);
+  data.values.resize(count_elements(path_, name, dataset.id(), data.shape));
+  check<InputError>(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                            data.values.data()) >= 0,
+                    path_, name, "damaged");
+  data.label = get_label(path_, name, dataset.id());
+  return data;
+}
+
+Hdf5Dataset Hdf5Reader::read_rows(const std::string& name, std::size_t first,
+                                  std::size_t count) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  require_class(path_, name, dataset.id(), true, true);
+  Hdf5Dataset data;
+  data.values = read_range<double>(path_, name, dataset.id(), {first, count});
+  data.shape = get_shape(path_, name, dataset.id());
+  data.shape.front() = count;
+  data.label = get_label(path_, name, dataset.id());
+  return data;
+}
+
+std::vector<std::int64_t> Hdf5Reader::read_integer_rows(const std::string& name, std::size_t first,
+                                                        std::size_t count) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  require_class(path_, name, dataset.id(), true, false);
+  return read_range<std::int64_t>(path_, name, dataset.id(), {first, count});
+}
+
+std::vector<std::int64_t> Hdf5Reader::read_integers(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  require_class(path_, name, dataset.id(), true, false);
+  const auto shape = get_shape(path_, name, dataset.id());
+  std::vector<std::int64_t> values(count_elements(path_, name, dataset.id(), shape));
+  check<InputError>(
+      H5Dread(dataset.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
+      path_, name, "damaged");
+  return values;
+}
+
+std::size_t Hdf5Reader::read_text_length(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  const Hdf5Handle stored =
+      checked<InputError>(H5Dget_type(dataset.id()), H5Tclose, path_, name, "damaged");
+  return hdf5::get_text_length(path_, name, stored.id());
+}
+
+std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
+  const std::size_t length = read_text_length(name);
+  const Hdf5Handle dataset = open_dataset(name);
+  const std::size_t count =
+      count_elements(path_, name, dataset.id(), get_shape(path_, name, dataset.id()));
+  const Hdf5Handle type = hdf5::make_type(path_, Hdf5Type::kText, length);
+  std::vector<char> raw(count * length);
+  check<InputError>(
+      H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, raw.data()) >= 0, path_, name,
+      "damaged");
+  return hdf5::unpack_texts(raw, length);
+}
+
+Hdf5Label Hdf5Reader::read_label(const std::string& name) const {
+  return get_label(path_, name, open_dataset(name).id());
+}
+
+std::vector<std::size_t> Hdf5Reader::read_shape(const std::string& name) const {
+  return get_shape(path_, name, open_dataset(name).id());
+}
+
+std::size_t Hdf5Reader::read_chunk_rows(const std::string& name) const {
+  const Hdf5Handle dataset = open_dataset(name);
+  const auto shape = get_shape(path_, name, dataset.id());
+  const Hdf5Handle creation =
+      checked<InputError>(H5Dget_create_plist(dataset.id()), H5Pclose, path_, name, "damaged");
+  if (H5Pget_layout(creation.id()) != H5D_CHUNKED) return shape.front();
+  std::vector<hsize_t> sizes(shape.size());
+  check<InputError>(H5Pget_chunk(creation.id(), static_cast<int>(sizes.size()), sizes.data()) >= 0,
+                    path_, name, "damaged");
+  return sizes.front();
+}
+
+std::vector<std::string> Hdf5Reader::list(const std::string& group) const {
+  std::vector<std::string> names;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+    return 0;
+  };
+  const herr_t status = H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC,
+                                           nullptr, add, &names, hdf5::stay_in_file());
+  check<InputError>(status >= 0, path_, group, "no such group");
+  return names;
+}
+
+}  // namespace strut

@@ -1,0 +1,47 @@
+// The journal of a sweep folder: one checksummed line a finished shard. A cache: what it says can
+// be read from the shards at any time, so a torn or missing line costs time, never data.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "io/file/folder.h"
+
+namespace strut {
+
+struct JournalEntry {
+  std::string file;  // "shards/000042.h5", relative to the folder
+  std::int64_t cases = 0;
+  std::map<std::string, std::int64_t> failures;  // reason -> cases
+  std::uint64_t bytes = 0;
+  std::string sha256;     // of the seal
+  std::string digest;     // DataDigest::state()
+  double seconds = 0.0;   // of simulation, summed over threads
+  std::int64_t time = 0;  // s since 1970, for people and rates only
+  std::string runner;
+  bool duplicate = false;  // somebody else's file was there first: the work was done twice
+};
+
+/// Appends one line with one write(2) to a file opened with O_APPEND, and flushes it: writers on
+/// one host lose nothing to each other; on a network file system, which may not know O_APPEND, they
+/// may lose a line. A line that an earlier crash left without end is ended first. Throws
+/// EnvironmentError; InputError where a link or pipe stands in the journal's place.
+///
+///     file=shards/000042.h5 cases=512 failures=diverged:3 bytes=... ... check=0123456789abcdef
+///
+/// Values are percent-encoded; `check` is the first 16 digits of the SHA-256 of all before it.
+void append_journal(const Folder& folder, const std::string& journal, const JournalEntry& entry);
+
+struct Journal {
+  std::vector<JournalEntry> entries;  // in the order of the file
+  std::size_t bad_lines = 0;          // torn or changed; what else is whole in them is an entry
+};
+
+/// An absent file is an empty journal. Throws an EnvironmentError where a present one cannot be
+/// read.
+Journal read_journal(const std::filesystem::path& journal);
+
+}  // namespace strut

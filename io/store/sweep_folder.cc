@@ -1,0 +1,103 @@
+#include "io/store/sweep_folder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <system_error>
+
+#include "base/error/input_error.h"
+#include "base/text/parse_number.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+ShardSeal get_seal(const Shard& shard) {
+  return {.plan_hash = shard.provenance.plan_hash, .shard = shard.provenance.shard, .sha256 = {}};
+}
+
+/// Throws InputError unless `overlay` can be a retry of some cases of `shard`.
+void require_retry(const fs::path& file, const Shard& shard, const Shard& overlay) {
+  std::string fault =
+      find_misplacement(get_seal(overlay), shard.provenance.plan_hash, shard.provenance.shard);
+  if (fault.empty() && overlay.schema != shard.schema) fault = "has other columns than its shard";
+  if (const std::int64_t twice = find_repeated(overlay.rows.case_id); fault.empty() && twice >= 0) {
+    fault = "holds case " + std::to_string(twice) + " twice";
+  }
+  if (!fault.empty()) throw InputError(file.string() + ": " + fault + "; " + kShardSeal.remedy);
+}
+
+}  // namespace
+
+std::string SweepFolder::name() const {
+  const fs::path whole = fs::absolute(root).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
+std::string SweepFolder::shard_name(std::int64_t shard) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(shard));
+  return name;
+}
+
+std::int64_t SweepFolder::parse_shard_name(const std::string& name) {
+  const auto shard = parse_number<std::int64_t>(name);
+  return shard && name == shard_name(*shard) ? *shard : -1;
+}
+
+std::vector<std::int64_t> list_shards(const SweepFolder& folder) {
+  std::vector<std::int64_t> shards;
+  std::error_code error;
+  for (fs::directory_iterator file(folder.shards(), error), end; !error && file != end;
+       file.increment(error)) {
+    const fs::path& path = file->path();
+    const std::int64_t shard = SweepFolder::parse_shard_name(path.stem().string());
+    if (shard >= 0 && path == folder.shard(shard)) shards.push_back(shard);
+  }
+  if (error) throw EnvironmentError(folder.shards().string() + ": " + error.message());
+  std::sort(shards.begin(), shards.end());
+  return shards;
+}
+
+int count_retries(const SweepFolder& folder, std::int64_t shard) {
+  int rounds = 0;
+  while (fs::exists(folder.retry(shard, rounds))) ++rounds;
+  return rounds;
+}
+
+SweepExtent read_sweep_extent(const SweepFolder& folder) {
+  const Hdf5Reader plan(folder.plan(), kPlanSeal);
+  return read_sweep_extent(folder.plan(), plan);
+}
+
+void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts) {
+  ShardRows& rows = shard.rows;
+  const std::int64_t number = shard.provenance.shard;
+  std::map<std::int64_t, std::size_t> row_of;
+  for (std::size_t row = 0; row < rows.size(); ++row) row_of[rows.case_id[row]] = row;
+  const int rounds = count_retries(folder, number);
+  for (int round = 0; round < rounds; ++round) {
+    const fs::path file = folder.retry(number, round);
+    const Shard overlay = read_shard(file, parts);
+    require_retry(file, shard, overlay);
+    for (std::size_t row = 0; row < overlay.rows.size(); ++row) {
+      const auto found = row_of.find(overlay.rows.case_id[row]);
+      if (found == row_of.end()) {
+        throw InputError(file.string() + ": case " + std::to_string(overlay.rows.case_id[row]) +
+                         " is not in shard " + std::to_string(number) + "; " + kShardSeal.remedy);
+      }
+      rows.set_row(found->second, overlay.rows, row);
+    }
+  }
+}
+
+Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
+                        ShardParts parts) {
+  Shard mended = read_shard(folder.shard(shard), parts);
+  require_shard(folder.shard(shard), extent, shard, get_seal(mended), mended.rows.case_id);
+  apply_retries(folder, mended, parts);
+  return mended;
+}
+
+}  // namespace strut

@@ -1,0 +1,42 @@
+// What `strut simulate` writes: all channels over time, the snapshot, and where they come from.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "jobs/case/load_case.h"
+
+namespace strut {
+
+enum class RunFormat { kCsv, kHdf5 };
+
+/// By the name's end: .csv, .h5 or .hdf5. Throws InputError.
+RunFormat find_run_format(const std::filesystem::path& path);
+
+/// A number that went into a run.
+struct RunParameter {
+  std::string name, unit, description;
+  double value;
+};
+
+/// A finished run of a car or a rig.
+struct RunRecord {
+  const std::vector<ChannelInfo>* channels = nullptr;
+  LaneResults results;  // one lane, with history of all channels
+  std::vector<RunParameter> parameters;
+  /// How it was made, as (name, text) in the order of the file.
+  std::vector<std::pair<std::string, std::string>> provenance;
+};
+
+/// Version, commit, compiler and instruction set of this program, and the files of the run.
+std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source);
+
+/// CSV: one column a channel. HDF5: datasets /history/CHANNEL, /snapshot/CHANNEL (one value each,
+/// none where the snapshot's line was not reached), /snapshot/event_time, /parameters/NAME, and the
+/// provenance as attributes of the file. The file appears whole or not at all. Throws
+/// EnvironmentError.
+void write_run(const std::filesystem::path& path, RunFormat format, const RunRecord& run);
+
+}  // namespace strut

@@ -1,0 +1,174 @@
+#include "jobs/cli/messages.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <iostream>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+#include "base/text/quote_word.h"
+#include "base/text/shorten.h"
+#include "base/text/utf8.h"
+#include "jobs/cli/interrupt.h"
+#include "jobs/cli/machine.h"
+#include "jobs/cli/progress.h"
+#include "jobs/cli/terminal.h"
+
+namespace strut {
+namespace {
+
+constexpr const char* kEraseLine = "\r\033[K";
+
+std::atomic<Loudness> loudness{Loudness::kNormal};
+/// Of standard error; what it holds back is the line shown there last.
+std::mutex mutex;
+std::string live_line;
+std::vector<std::string> next_lines;
+
+/// Most of a message: a file whose content it quotes may hold anything.
+constexpr std::size_t kMaxBytes = 8000, kMaxLineBytes = 4000, kMaxLines = 24;
+
+/// `text`, which may quote files and names that others made, as a terminal may show it: bounded,
+/// without control characters.
+std::string make_shown(const std::string& text) {
+  std::string shown;
+  const std::string escaped = escape_controls(shorten(text, kMaxBytes));
+  std::size_t begin = 0, lines = 0;
+  for (; begin <= escaped.size() && lines < kMaxLines; ++lines) {
+    const std::size_t end = std::min(escaped.find('\n', begin), escaped.size());
+    const std::string_view line = std::string_view(escaped).substr(begin, end - begin);
+    shown += (lines == 0 ? "" : "\n") + shorten(line, kMaxLineBytes);
+    begin = end + 1;
+  }
+  if (begin <= escaped.size()) shown += "\n...";
+  return shorten(shown, kMaxBytes);
+}
+
+std::string paint(const std::string& text, Style style) {
+  const std::string shown = make_shown(text);
+  return shows_colors(STDERR_FILENO) ? get_sequence(style) + shown + kPlainSequence : shown;
+}
+
+std::string make_next_line(const std::string& line, const std::string& why) {
+  return paint("next:", Style::kBold) + " " + make_shown(line) +
+         (why.empty() ? "" : paint("  # " + why, Style::kDim));
+}
+
+std::string make_error(const std::string& text) {
+  return paint("strut:", Style::kRed) + " " + make_shown(text);
+}
+
+std::string join_quoted(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + quote_if_needed(word);
+  return line;
+}
+
+/// A command line of the command under way.
+std::vector<std::string> name_command(const Arguments& arguments,
+                                      const std::vector<std::string>& words) {
+  std::vector<std::string> line = {"strut", arguments.command()};
+  line.insert(line.end(), words.begin(), words.end());
+  return line;
+}
+
+/// `line`: made of texts that may be shown.
+void say(const std::string& line) {
+  // Data before the message, though one stream is buffered and the other is not.
+  std::cout.flush();
+  const std::lock_guard lock(mutex);
+  std::cerr << (live_line.empty() ? "" : kEraseLine) << line << "\n" << live_line << std::flush;
+}
+
+}  // namespace
+
+void set_loudness(Loudness value) { loudness = value; }
+
+Loudness get_loudness() { return loudness; }
+
+void tell_error(const std::string& text) { say(make_error(text)); }
+
+void tell_note(const std::string& text) {
+  if (loudness != Loudness::kQuiet) say("strut: " + make_shown(text));
+}
+
+void tell_notes(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) tell_note(text);
+}
+
+void tell_detail(const std::string& text) {
+  if (loudness == Loudness::kVerbose) say(paint("strut: " + text, Style::kDim));
+}
+
+void tell_next_line(const std::string& line, const std::string& why) {
+  if (loudness == Loudness::kQuiet) return;
+  const std::lock_guard lock(mutex);
+  next_lines.push_back(make_next_line(line, why));
+}
+
+void say_next() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard lock(mutex);
+    lines.swap(next_lines);
+  }
+  for (const std::string& line : lines) say(line);
+}
+
+void tell_next(const std::vector<std::string>& words, const std::string& why) {
+  tell_next_line(join_quoted(words), why);
+}
+
+void tell_next_again(const Arguments& arguments, const std::string& why,
+                     const std::vector<std::string>& added) {
+  std::vector<std::string> words = arguments.words();
+  words.insert(words.end(), added.begin(), added.end());
+  tell_next(name_command(arguments, words), why);
+}
+
+void tell_next_with_setting(const Arguments& arguments, const std::string& setting,
+                            const std::string& why) {
+  tell_next(name_command(arguments, arguments.words_with_setting(setting)), why);
+}
+
+void tell_next_of_failed(const std::string& root, std::int64_t failed) {
+  tell_next({"strut", "verify", root},
+            format_count(failed) + (failed == 1 ? " case stays failed" : " cases stay failed") +
+                "; strut train leaves out what failed");
+}
+
+void tell_next_page(const std::string& file) { tell_next({"xdg-open", file}); }
+
+void prepare_interrupt(const Arguments& arguments, const std::string& what) {
+  std::string text = is_live_terminal(STDERR_FILENO) ? kEraseLine : "";
+  text += make_error("interrupted") + "\n";
+  if (loudness != Loudness::kQuiet) {
+    const std::vector<std::string> line = name_command(arguments, arguments.words());
+    text += make_next_line(join_quoted(line), what) + "\n";
+  }
+  set_last_words(text);
+}
+
+Stage::Stage(std::string name) : name_(std::move(name)), start_(now()) {}
+
+Stage::~Stage() { tell_detail(name_ + ": " + format_duration(now() - start_)); }
+
+void show_line(const std::string& text) { say(make_shown(text)); }
+
+void show_live_line(const std::string& text) {
+  const std::lock_guard lock(mutex);
+  live_line = make_shown(text);
+  std::cerr << kEraseLine << live_line << std::flush;
+}
+
+void erase_live_line() {
+  const std::lock_guard lock(mutex);
+  if (live_line.empty()) return;
+  live_line.clear();
+  std::cerr << kEraseLine << std::flush;
+}
+
+}  // namespace strut

@@ -1,0 +1,37 @@
+#include "jobs/cli/unsealed.h"
+
+#include <set>
+
+#include "io/store/sweep_folder.h"
+#include "jobs/cli/messages.h"
+
+namespace strut {
+
+namespace fs = std::filesystem;
+
+void note_unsealed(const fs::path& file, const SealKind& kind) {
+  static std::set<fs::path> told;
+  if (is_sealed(file) || !told.insert(file).second) return;
+  tell_note(file.string() +
+            ": has no seal, as an earlier version wrote it: not every damage to it "
+            "can be found; " +
+            kind.sealing);
+}
+
+void note_unsealed_data(const std::vector<std::string>& paths) {
+  for (const fs::path path : paths) {
+    if (fs::is_directory(path)) {
+      note_unsealed(SweepFolder{path}.plan(), kPlanSeal);
+    } else {
+      note_unsealed(path, kMergedSeal);
+    }
+  }
+}
+
+Model load_model(const fs::path& file) {
+  Model model = read_model(file);
+  note_unsealed(file, kModelSeal);
+  return model;
+}
+
+}  // namespace strut

@@ -1,0 +1,198 @@
+// The car as a system that simulate.h can run.
+#pragma once
+
+#include "model/car/channels.h"
+#include "model/car/closures.h"
+#include "model/car/dynamics.h"
+#include "model/integrate/simulate.h"
+
+namespace strut {
+
+/// Largest loop error a step may leave [m].
+inline constexpr double kClosureTolerance = 1e-10;
+/// Behind the bump, until thrown wheels are back on the road and their hop fades, steps stay fine
+/// for this long [s] (docs/design/0004-integrators.md).
+inline constexpr double kSettlingTime = 0.2;
+
+/// Wheel spin against slip: integrated with the exponential formulas, or like everything else.
+enum class SpinTreatment { kExponential, kExplicit };
+
+/// The closure is reached through two function pointers, so that integrators are compiled once for
+/// all closures.
+template <class T>
+class CarSystem {
+ public:
+  static constexpr int kCapacity = StateIndex::kCount;
+  using Mask = MaskOf<T>;
+
+  template <class Closure>
+  CarSystem(const Vehicle<T>& vehicle, const Closure& closure, SpinTreatment spin,
+            const T& trigger_x)
+      : vehicle_(vehicle),
+        closure_(&closure),
+        derivative_(&call_derivative<Closure>),
+        place_wheel_(&call_place_wheel<Closure>),
+        center_acceleration_(&call_center_acceleration<Closure>),
+        stiff_(spin == SpinTreatment::kExponential),
+        has_kinks_(vehicle.road.segment_count > 1),
+        trigger_x_(trigger_x) {
+    for (T& s : workspace_.segment) s = T(0.0);
+  }
+
+  int size() const {
+    if (vehicle_.effects.has_states()) return StateIndex::kCount;
+    return vehicle_.layout.relaxation ? StateIndex::kCountWithoutStruts
+                                      : StateIndex::kCountWithoutRelaxation;
+  }
+  /// The wheels' spins, then the states of the struts, if there are any.
+  int stiff_at(int i) const {
+    return i < kCorners ? StateIndex::kSpin + i : StateIndex::kStrut + (i - kCorners);
+  }
+  int stiff_count() const {
+    if (!stiff_) return 0;
+    return vehicle_.effects.has_states() ? kCorners + StateIndex::kStrutCount : kCorners;
+  }
+
+  /// Puts every wheel on the road segment under it.
+  void start(const T* x) {
+    if (!has_kinks_) return;
+    T dx[kCapacity];
+    derivative_(*this, x, dx);
+    for (int c = 0; c < kCorners; ++c) {
+      if (!vehicle_.layout.on_bump[c]) continue;
+      workspace_.segment[c] = find_segment(vehicle_.road, calc_wheel_x(x, c));
+    }
+  }
+
+  void calc_derivative(const T& /*t*/, const T* x, T* dx, T* decay) {
+    derivative_(*this, x, dx);
+    if (stiff_) {
+      for (int c = 0; c < kCorners; ++c) decay[c] = workspace_.spin_decay[c];
+      for (int i = kCorners; i < stiff_count(); ++i) {
+        decay[i] = workspace_.strut_decay[i - kCorners];
+      }
+    }
+    failed_ = (!is_finite(workspace_.acceleration.z + workspace_.acceleration.x +
+                          workspace_.angular_acceleration.y)) |
+              (workspace_.closure_error > T(kClosureTolerance)) |
+              (workspace_.travel_excess > T(0.0)) |
+              (abs(x[StateIndex::kVelocity]) > T(kAbsurdSpeed)) |
+              (abs(x[StateIndex::kVelocity + 2]) > T(kAbsurdSpeed));
+    largest_loop_error_ = max(largest_loop_error_, workspace_.closure_error);
+    update_trigger(x);
+    for (int c = 0; has_kinks_ && c < kCorners; ++c) kink_x_[c] = calc_wheel_x(x, c);
+  }
+
+  int guard_count() const { return has_kinks_ ? 2 * kCorners : kCorners; }
+  void get_guards(T* g) const {
+    for (int c = 0; c < kCorners; ++c) g[c] = workspace_.contact[c].unclamped_load;
+    for (int c = 0; has_kinks_ && c < kCorners; ++c) g[kCorners + c] = calc_kink_distance(c);
+  }
+  /// Guards and trigger at any state, without the dynamics: only the wheels are placed.
+  void calc_guards(const T& /*t*/, const T* x, T* g) {
+    workspace_.rotation = rotation_of(get_quaternion(x));
+    for (int c = 0; c < kCorners; ++c) {
+      place_wheel_(*this, c, x[StateIndex::kCorner + c]);
+      if (has_kinks_) kink_x_[c] = calc_wheel_x(x, c);
+    }
+    for (int axle = 0; axle < kAxles; ++axle) update_contacts(vehicle_, x, axle, workspace_);
+    update_trigger(x);
+    get_guards(g);
+  }
+  /// A passed kink moves the wheel on to the next road segment.
+  bool cross(int guard, Mask lanes) {
+    if (guard < kCorners) return false;
+    T& segment = workspace_.segment[guard - kCorners];
+    segment = select(lanes, segment + T(1.0), segment);
+    return true;
+  }
+
+  /// On the bump, about to reach it within a coarse step and a half, or still shaking from it.
+  Mask wants_fine_step(const T* x, const T& coarse_step) const {
+    const T& speed = x[StateIndex::kVelocity];
+    const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;
+    const T front = ahead + vehicle_.numbers.geometry[kFrontLeft].wheel_center.x;
+    const T rear = ahead + vehicle_.numbers.geometry[kRearLeft].wheel_center.x;
+    return (front > vehicle_.road.reach_begin - T(1.5) * coarse_step * speed) &
+           (rear < vehicle_.road.reach_end + T(kSettlingTime) * speed);
+  }
+
+  /// Mean forward position of the rear wheels that see the bump, from the trigger line [m].
+  T get_trigger() const { return wheel_x_ - trigger_x_; }
+
+  Mask has_failed() const { return failed_; }
+  RunStatus get_failure(int lane) const {
+    const bool finite = std::isfinite(get_lane(workspace_.acceleration.z, lane));
+    const bool open = get_lane(workspace_.closure_error, lane) > kClosureTolerance ||
+                      get_lane(workspace_.travel_excess, lane) > 0.0;
+    return finite && open ? RunStatus::kOutOfTravel : RunStatus::kDiverged;
+  }
+
+  /// Channels at the state of the last calc_derivative.
+  void observe(const T& t, const T* x, T* out) {
+    observe_body(vehicle_, t, x, workspace_, out);
+    for (int c = 0; c < kCorners; ++c) {
+      center_acceleration_(*this, c, x[StateIndex::kCorner + c]);
+      observe_corner(vehicle_, x, workspace_, c,
+                     out + CarChannel::kCornerBegin + c * CarChannel::kCornerChannels);
+    }
+  }
+
+  /// Largest loop error of any right-hand side so far [m]; zero with tables.
+  T get_largest_loop_error() const { return largest_loop_error_; }
+
+  const Workspace<T>& workspace() const { return workspace_; }
+  const Vehicle<T>& vehicle() const { return vehicle_; }
+
+ private:
+  template <class Closure>
+  static void call_derivative(CarSystem& self, const T* x, T* dx) {
+    strut::calc_derivative(self.vehicle_, *static_cast<const Closure*>(self.closure_),
+                           TireMode::kRolling, x, dx, self.workspace_);
+  }
+  template <class Closure>
+  static void call_place_wheel(CarSystem& self, int corner, const T& q) {
+    static_cast<const Closure*>(self.closure_)
+        ->place_wheel(corner, q, self.workspace_.motion[corner]);
+  }
+  template <class Closure>
+  static void call_center_acceleration(CarSystem& self, int corner, const T& q) {
+    static_cast<const Closure*>(self.closure_)
+        ->update_center_acceleration(corner, q, self.workspace_.motion[corner]);
+  }
+
+  /// World x of a wheel center.
+  T calc_wheel_x(const T* x, int corner) const {
+    return x[StateIndex::kPosition] + (workspace_.rotation * workspace_.motion[corner].center).x;
+  }
+  void update_trigger(const T* x) {
+    wheel_x_ = T(0.5) * (calc_wheel_x(x, trigger_left()) + calc_wheel_x(x, trigger_right()));
+  }
+  T calc_kink_distance(int corner) const {
+    if (!vehicle_.layout.on_bump[corner]) return T(-1.0);
+    return kink_x_[corner] - calc_segment_end(vehicle_.road, workspace_.segment[corner]);
+  }
+  int trigger_left() const {
+    return vehicle_.layout.on_bump[kRearLeft] || !vehicle_.layout.on_bump[kRearRight] ? kRearLeft
+                                                                                      : kRearRight;
+  }
+  int trigger_right() const {
+    return vehicle_.layout.on_bump[kRearRight] || !vehicle_.layout.on_bump[kRearLeft] ? kRearRight
+                                                                                      : kRearLeft;
+  }
+
+  const Vehicle<T>& vehicle_;
+  const void* closure_;
+  void (*derivative_)(CarSystem&, const T*, T*);
+  void (*place_wheel_)(CarSystem&, int, const T&);
+  void (*center_acceleration_)(CarSystem&, int, const T&);
+  bool stiff_, has_kinks_;
+  T trigger_x_;
+  Workspace<T> workspace_{};
+  Mask failed_{};
+  T largest_loop_error_{0.0};
+  T wheel_x_{};
+  std::array<T, kCorners> kink_x_{};
+};
+
+}  // namespace strut

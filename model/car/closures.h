@@ -1,0 +1,60 @@
+// The two sources of a corner's motion functions: Newton on the loops, or the table.
+//
+// A closure c offers
+//   c(corner, q, motion): all motion functions; returns the loop error left [m]
+//   c.place_wheel(corner, q, motion): wheel center and axis alone, for contact events
+//   c.update_center_acceleration(corner, q, motion): center_qq, for output, after c(...)
+#pragma once
+
+#include "model/car/vehicle.h"
+#include "model/multibody/corner_motion.h"
+#include "model/multibody/corner_table.h"
+
+namespace strut {
+
+/// Newton's one iteration from the predictor. Returns the loop error left [m].
+template <class T>
+struct NewtonClosure {
+  const VehicleLayout* layout;
+  const VehicleParameters<T>* numbers;
+
+  T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
+    const CornerTopology& topology = layout->corner[corner];
+    const auto close = topology.kind == SuspensionKind::kMacPherson
+                           ? &close_corner<kMacPhersonTree, T>
+                           : &close_corner<kMultilinkTree, T>;
+    return close(topology, layout->predictor[corner], numbers->geometry[corner],
+                 numbers->inertia[corner], q, motion);
+  }
+  void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
+    (*this)(corner, q, motion);
+  }
+  void update_center_acceleration(int, const T&, CornerMotion<T>&) const {}
+};
+
+/// Tables of one car (C = double, all lanes alike) or of one car a lane (C = T).
+template <class C>
+struct VehicleTables {
+  std::array<CornerCoefficients<C>, kCorners> corner;
+  std::array<CornerDegrees, kCorners> degree{};
+  double half_travel = 0.0;  // m, the fit holds for |q| up to here
+};
+
+template <class T, class C>
+struct TableClosure {
+  const VehicleTables<C>* tables;
+
+  /// A table has no loops left to err in.
+  T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
+    update_corner_motion(tables->corner[corner], tables->degree[corner], q, motion);
+    return T(0.0);
+  }
+  void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
+    update_wheel_place(tables->corner[corner], tables->degree[corner], q, motion);
+  }
+  void update_center_acceleration(int corner, const T& q, CornerMotion<T>& motion) const {
+    strut::update_center_acceleration(tables->corner[corner], tables->degree[corner], q, motion);
+  }
+};
+
+}  // namespace strut

@@ -1,0 +1,377 @@
+// Equations of motion of the car: 6 chassis, 4 corner and 4 spin accelerations.
+//
+// Each corner is a composite with one coordinate q; its kinetic energy relative to the chassis
+// frame has coefficients that depend on q alone (CornerMotion). With v, w the chassis-axes
+// velocity of the chassis origin and angular velocity, S, J the whole car's first moment and
+// inertia about it, and h = I_s s the wheel momenta along their axes u,
+//
+// clang-format off
+//   m dv/dt - S x dw/dt + sum S_q ddq  = F + m g - w x p - w x S_dot - sum S_qq dq^2
+//   S x dv/dt + J dw/dt + sum b ddq    = M + S x g - S_dot x v - J_dot w - v x p - w x l
+//                                        - sum (b_q dq^2 + h_dot u + h u_q dq)
+//   S_q.dv/dt + b.dw/dt + a ddq        = Q + S_q.g - a_q dq^2 / 2 + v.(w x S_q) + w.J_q w / 2
+//                                        + h u_q.w - h_dot (u.beta)
+//   I_s ds/dt                          = moment about the axis = h_dot
+// clang-format on
+//
+// with p, l linear and angular momentum and beta the upright's angular velocity per unit dq. The
+// spin of a wheel measured in inertial space does not couple, so 14 accelerations need one 6 x 6
+// solve. Derivation and the link to the paper's equations (1)-(3): docs/theory.md.
+#pragma once
+
+#include "base/math/linalg.h"
+#include "base/math/pair.h"
+#include "model/car/state.h"
+#include "model/car/vehicle.h"
+
+namespace strut {
+
+/// Everything the right-hand side finds on its way, by the stage that fills it.
+template <class T>
+struct Workspace {
+  // pose
+  Mat3<T> rotation;  // chassis to world
+  std::array<CornerMotion<T>, kCorners> motion;
+  T closure_error;  // m, largest over corners
+  T travel_excess;  // m, how far a corner is beyond its travel; negative inside
+  // tires
+  std::array<WheelMotion<T>, kCorners> wheel;
+  std::array<TireContact<T>, kCorners> contact;
+  std::array<TireSlipState<T>, kCorners> slip;
+  std::array<TireWrench<T>, kCorners> wrench;
+  std::array<T, kCorners> spin_moment;  // N m, tire and drive
+  std::array<T, kCorners> segment;      // road segment each wheel is on (input)
+  // struts
+  std::array<StrutForce<T>, kCorners> strut;
+  std::array<T, StateIndex::kStrutCount> strut_decay;  // 1/s, decay rates of the struts' states
+  // composite
+  Vec3<T> moment, moment_rate;
+  Sym3<T> inertia;
+  // accelerations
+  Vec3<T> acceleration, angular_acceleration;  // d/dt of the chassis-axes components
+  std::array<T, kCorners> corner_acceleration;
+  std::array<T, kCorners> spin_decay;  // 1/s, decay rate of spin against slip
+};
+
+/// Which forces act; statics have no rolling and hence no in-plane tire forces.
+enum class TireMode { kRolling, kFrictionless };
+
+/// Height and slope of the road under a wheel center at world x.
+template <class T>
+RoadPoint<T> find_road(const Vehicle<T>& vehicle, const T& world_x, int corner,
+                       const Workspace<T>& ws) {
+  if (!vehicle.layout.on_bump[corner]) return {T(0.0), T(0.0)};
+  return calc_road_point(vehicle.road, world_x, ws.segment[corner]);
+}
+
+/// A wheel's motion, in chassis axes.
+template <class T>
+WheelMotion<T> calc_wheel_motion(const T* x, int corner, const CornerMotion<T>& motion) {
+  using I = StateIndex;
+  const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
+  const T& rate = x[I::kCornerRate + corner];
+  return {motion.center, v + cross(w, motion.center) + rate * motion.center_q, motion.axis,
+          w + rate * motion.upright_rate, x[I::kSpin + corner]};
+}
+
+/// How much out-of-round wheels bring the road closer [m].
+template <class T>
+Pair<T> calc_runout(const Vehicle<T>& vehicle, const T* x, int axle) {
+  T offset[2];
+  for (int side = 0; side < 2; ++side) {
+    const int corner = 2 * axle + side;
+    const WheelRunout<T>& runout = vehicle.numbers.runout[corner];
+    offset[side] = runout.amplitude * cos(x[StateIndex::kWheelAngle + corner] + runout.phase);
+  }
+  return {offset[0], offset[1]};
+}
+
+/// Motion of both wheels of an axle and their contact with the road.
+template <class T>
+TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int axle,
+                                     Workspace<T>& ws) {
+  const int left = 2 * axle, right = left + 1;
+  const Vec3<T> position = get_vec3(x, StateIndex::kPosition);
+  RoadPoint<T> road[2];
+  Vec3<T> center[2];
+  for (int c = left; c <= right; ++c) {
+    ws.wheel[c] = calc_wheel_motion(x, c, ws.motion[c]);
+    center[c - left] = position + ws.rotation * ws.motion[c].center;
+    road[c - left] = find_road(vehicle, center[c - left].x, c, ws);
+  }
+  const Pair<T> slope(road[0].slope, road[1].slope);
+  Pair<T> clearance(center[0].z - road[0].height, center[1].z - road[1].height);
+  if (vehicle.layout.has_runout) clearance = clearance - calc_runout(vehicle, x, axle);
+  const Pair<T> normal_z = Pair<T>(1.0) / sqrt(Pair<T>(1.0) + slope * slope);
+  // The road's normal (-slope, 0, 1) in chassis axes.
+  const Vec3<T> forward{ws.rotation.x.x, ws.rotation.y.x, ws.rotation.z.x};
+  const Vec3<T> up{ws.rotation.x.z, ws.rotation.y.z, ws.rotation.z.z};
+  const Vec3<Pair<T>> normal{normal_z * (up.x - slope * forward.x),
+                             normal_z * (up.y - slope * forward.y),
+                             normal_z * (up.z - slope * forward.z)};
+  const TireContact<Pair<T>> contact = calc_tire_contact(
+      vehicle.numbers.tire[axle], vehicle.layout.contact, vehicle.layout.progressive_tire,
+      join_pair(ws.wheel[left], ws.wheel[right]), normal, normal_z, clearance);
+  split_pair(contact, ws.contact[left], ws.contact[right]);
+  return contact;
+}
+
+/// Forces on both tires of an axle.
+template <class T>
+void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle,
+                  const TireContact<Pair<T>>& contact, Workspace<T>& ws) {
+  const int left = 2 * axle, right = left + 1;
+  if (mode == TireMode::kFrictionless) {
+    for (int c = left; c <= right; ++c) {
+      ws.wrench[c] = {ws.contact[c].load * ws.contact[c].normal,
+                      {T(0.0), T(0.0), T(0.0)},
+                      T(0.0),
+                      T(0.0),
+                      T(0.0)};
+    }
+    return;
+  }
+  const VehicleParameters<T>& numbers = vehicle.numbers;
+  const WheelMotion<Pair<T>> wheel = join_pair(ws.wheel[left], ws.wheel[right]);
+  const TireSlipState<Pair<T>> slip =
+      calc_tire_slip(numbers.pacejka, numbers.tire[axle], wheel, contact);
+  Pair<T> kappa = slip.kappa, tan_alpha = slip.tan_alpha;
+  if (vehicle.layout.relaxation) {
+    kappa = {x[StateIndex::kKappa + left], x[StateIndex::kKappa + right]};
+    tan_alpha = {x[StateIndex::kTanAlpha + left], x[StateIndex::kTanAlpha + right]};
+  }
+  const Pair<T> side(T(1.0), T(-1.0));
+  split_pair(calc_tire_wrench(numbers.pacejka, vehicle.layout.tire_parts, wheel, contact, slip,
+                              kappa, tan_alpha, side),
+             ws.wrench[left], ws.wrench[right]);
+  split_pair(slip, ws.slip[left], ws.slip[right]);
+}
+
+/// Relaxation lengths vanish with the load; a tire off the road forgets its slip over this [m].
+inline constexpr double kShortestRelaxation = 0.05;
+
+/// First-order slip: length * d(slip)/dt = speed * (steady slip - slip).
+template <class T>
+void add_relaxation(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& ws, T* dx) {
+  using I = StateIndex;
+  for (int c = 0; c < kCorners; ++c) {
+    const TireSlipState<T>& slip = ws.slip[c];
+    const RelaxationLength<T> length = calc_relaxation_length(
+        vehicle.numbers.pacejka, ws.contact[c].load, dot(ws.wheel[c].axis, ws.contact[c].normal));
+    dx[I::kKappa + c] = slip.speed * (slip.kappa - x[I::kKappa + c]) /
+                        max(length.longitudinal, T(kShortestRelaxation));
+    dx[I::kTanAlpha + c] = slip.speed * (slip.tan_alpha - x[I::kTanAlpha + c]) /
+                           max(length.lateral, T(kShortestRelaxation));
+  }
+}
+
+/// Composite first moment and inertia of the whole car about the chassis origin.
+template <class T>
+void update_composite(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws) {
+  const RigidBody<T>& chassis = vehicle.numbers.chassis;
+  ws.moment = chassis.mass * chassis.center;
+  ws.inertia =
+      chassis.inertia + T(0.5) * chassis.mass * inertia_form(chassis.center, chassis.center);
+  ws.moment_rate = {T(0.0), T(0.0), T(0.0)};
+  for (int c = 0; c < kCorners; ++c) {
+    ws.moment += ws.motion[c].moment;
+    ws.inertia += ws.motion[c].inertia;
+    ws.moment_rate += x[StateIndex::kCornerRate + c] * ws.motion[c].moment_q;
+  }
+}
+
+/// Force and moment about the chassis origin; one generalized force a corner.
+template <class T>
+struct GeneralizedForce {
+  Vec3<T> force, moment;
+  std::array<T, kCorners> corner;
+};
+
+/// Aerodynamic lift of both axles on the chassis, upwards through the axles' wheel centers; returns
+/// its power [W].
+template <class T>
+T add_lift(const Vehicle<T>& vehicle, const Vec3<T>& v, const Vec3<T>& w, Vec3<T>& force,
+           Vec3<T>& moment) {
+  T power = T(0.0);
+  for (int axle = 0; axle < kAxles; ++axle) {
+    const T lift = vehicle.numbers.lift[axle] * v.x * v.x;
+    const T& place = vehicle.numbers.geometry[2 * axle].wheel_center.x;
+    force.z += lift;
+    moment.y -= place * lift;
+    power += lift * (v.z - place * w.y);
+  }
+  return power;
+}
+
+/// External and inertia forces: right sides of the equations at the top of this file. Returns the
+/// power of non-conservative forces [W].
+template <class T>
+T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, GeneralizedForce<T>& rhs) {
+  using I = StateIndex;
+  const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
+  const Vec3<T> gravity =
+      transpose_times(ws.rotation, Vec3<T>{T(0.0), T(0.0), -vehicle.numbers.gravity});
+
+  const Vec3<T> p = vehicle.numbers.mass * v + cross(w, ws.moment) + ws.moment_rate;
+  Vec3<T> l = cross(ws.moment, v) + ws.inertia * w;
+  Vec3<T> force = vehicle.numbers.mass * gravity - cross(w, ws.moment_rate);
+  Vec3<T> moment = cross(ws.moment, gravity) - cross(ws.moment_rate, v) - cross(v, p);
+  T power = T(0.0);
+
+  for (int c = 0; c < kCorners; ++c) {
+    const CornerMotion<T>& m = ws.motion[c];
+    const TireWrench<T>& tire = ws.wrench[c];
+    const T& rate = x[I::kCornerRate + c];
+    const T& spin = x[I::kSpin + c];
+    const T momentum = vehicle.numbers.inertia[c].spin_inertia * spin;
+    const T rate2 = rate * rate;
+    const Vec3<T> inertia_w = m.inertia_q * w;
+    l += rate * m.coupling + momentum * m.axis;
+
+    const Vec3<T> contact_point = m.center + ws.contact[c].arm;
+    const Vec3<T> arm_moment = cross(ws.contact[c].arm, tire.force) + tire.moment;
+    const T tire_spin_moment = dot(arm_moment, m.axis);
+    // The drive torque turns the wheel and is reacted by the chassis; the upright feels none of it.
+    const T& drive = vehicle.numbers.drive_torque[c];
+    ws.spin_moment[c] = tire_spin_moment + drive;
+
+    force += tire.force - rate2 * m.moment_qq;
+    moment += cross(contact_point, tire.force) + tire.moment - ws.spin_moment[c] * m.axis -
+              rate * inertia_w - rate2 * m.coupling_q - (momentum * rate) * m.axis_q;
+    const T upright_spin = dot(m.axis, m.upright_rate);
+    const T tire_on_corner = dot(tire.force, m.center_q) + dot(arm_moment, m.upright_rate);
+    rhs.corner[c] = tire_on_corner - tire_spin_moment * upright_spin + ws.strut[c].generalized +
+                    dot(m.moment_q, gravity + cross(v, w)) - T(0.5) * m.mass_q * rate2 +
+                    T(0.5) * dot(w, inertia_w) + momentum * dot(m.axis_q, w);
+
+    const T relative_spin = spin - upright_spin * rate - dot(m.axis, w);
+    power += ws.strut[c].power + dot(tire.force, v) + dot(cross(contact_point, tire.force), w) +
+             dot(tire.moment, w) + tire_on_corner * rate + tire_spin_moment * relative_spin +
+             drive * (spin - dot(m.axis, w));
+  }
+  if (vehicle.layout.has_lift) power += add_lift(vehicle, v, w, force, moment);
+  rhs.force = force - cross(w, p);
+  rhs.moment = moment - cross(w, l);
+  return power;
+}
+
+/// Eliminates the four corner accelerations, solves the 6 x 6 chassis block, substitutes back.
+template <class T>
+void solve_accelerations(const Vehicle<T>& vehicle, const GeneralizedForce<T>& rhs,
+                         Workspace<T>& ws) {
+  SymmetricMatrix6<T> a = make_spatial_inertia(vehicle.numbers.mass, ws.moment, ws.inertia);
+  std::array<T, 6> b{rhs.force.x,  rhs.force.y,  rhs.force.z,
+                     rhs.moment.x, rhs.moment.y, rhs.moment.z};
+  std::array<std::array<T, 6>, kCorners> coupling;
+  std::array<T, kCorners> inverse;
+  for (int c = 0; c < kCorners; ++c) {
+    const CornerMotion<T>& m = ws.motion[c];
+    coupling[c] = {m.moment_q.x, m.moment_q.y, m.moment_q.z,
+                   m.coupling.x, m.coupling.y, m.coupling.z};
+    inverse[c] = T(1.0) / m.mass;
+    add_rank_one(a, coupling[c], -inverse[c]);
+    const T scaled = rhs.corner[c] * inverse[c];
+    for (int i = 0; i < 6; ++i) b[i] -= coupling[c][i] * scaled;
+  }
+  solve_ldlt(a, b);
+  ws.acceleration = {b[0], b[1], b[2]};
+  ws.angular_acceleration = {b[3], b[4], b[5]};
+  for (int c = 0; c < kCorners; ++c) {
+    T r = rhs.corner[c];
+    for (int i = 0; i < 6; ++i) r -= coupling[c][i] * b[i];
+    ws.corner_acceleration[c] = r * inverse[c];
+  }
+}
+
+/// Rates of position, orientation and wheel angles.
+template <class T>
+void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
+  using I = StateIndex;
+  const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
+  set_vec3(dx, I::kPosition, ws.rotation * v);
+  const Quaternion<T> e = get_quaternion(x);
+  // The pull towards unit length vanishes at length one and bounds the drift of integration.
+  const T pull = T(1.0) - (e.w * e.w + e.x * e.x + e.y * e.y + e.z * e.z);
+  dx[I::kQuaternion] = T(-0.5) * (e.x * w.x + e.y * w.y + e.z * w.z) + pull * e.w;
+  dx[I::kQuaternion + 1] = T(0.5) * (e.w * w.x + e.y * w.z - e.z * w.y) + pull * e.x;
+  dx[I::kQuaternion + 2] = T(0.5) * (e.w * w.y + e.z * w.x - e.x * w.z) + pull * e.y;
+  dx[I::kQuaternion + 3] = T(0.5) * (e.w * w.z + e.x * w.y - e.y * w.x) + pull * e.z;
+  for (int c = 0; c < kCorners; ++c) {
+    const CornerMotion<T>& m = ws.motion[c];
+    const T& rate = x[I::kCornerRate + c];
+    dx[I::kCorner + c] = rate;
+    dx[I::kWheelAngle + c] = x[I::kSpin + c] - dot(m.axis, m.upright_rate) * rate - dot(m.axis, w);
+  }
+}
+
+/// What effects add to the struts' linear forces; the rates of their states, if they have any.
+template <class T>
+void update_strut_effects(const Vehicle<T>& vehicle, const T* x, T* dx, Workspace<T>& ws) {
+  using I = StateIndex;
+  StrutStates<T> states;
+  if (vehicle.effects.has_states()) {
+    states = {x + I::kStrut, dx + I::kStrut, ws.strut_decay.data()};
+    for (int i = I::kKappa; !vehicle.layout.relaxation && i < I::kStrut; ++i) dx[i] = T(0.0);
+  }
+  add_strut_effects<T, kCorners>(vehicle.effects, ws.motion, x + I::kCornerRate, T(0.0), states,
+                                 ws.strut);
+}
+
+/// dx/dt of the car at state x. `closure(corner, q, motion)` supplies the corner's motion functions
+/// and returns the loop error left [m] (closures.h). ws.segment is read, the rest of ws is written.
+template <class T, class Closure>
+void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode mode, const T* x,
+                     T* dx, Workspace<T>& ws) {
+  using I = StateIndex;
+  ws.rotation = rotation_of(get_quaternion(x));
+  ws.closure_error = T(0.0);
+  ws.travel_excess = T(-1.0);
+  for (int c = 0; c < kCorners; ++c) {
+    const T& q = x[I::kCorner + c];
+    ws.closure_error = max(ws.closure_error, closure(c, q, ws.motion[c]));
+    ws.travel_excess = max(ws.travel_excess, abs(q) - T(vehicle.layout.predictor[c].half_travel));
+  }
+  for (int axle = 0; axle < kAxles; ++axle) {
+    update_tires(vehicle, x, mode, axle, update_contacts(vehicle, x, axle, ws), ws);
+  }
+  add_strut_forces<T, kCorners>(vehicle.struts, ws.motion, x + I::kCornerRate, ws.strut);
+  if (vehicle.effects.count > 0) update_strut_effects(vehicle, x, dx, ws);
+  update_composite(vehicle, x, ws);
+  GeneralizedForce<T> rhs;
+  const T power = calc_forces(vehicle, x, ws, rhs);
+  solve_accelerations(vehicle, rhs, ws);
+
+  update_kinematic_rates(x, ws, dx);
+  set_vec3(dx, I::kVelocity, ws.acceleration);
+  set_vec3(dx, I::kAngularVelocity, ws.angular_acceleration);
+  for (int c = 0; c < kCorners; ++c) {
+    const T inverse = T(1.0) / vehicle.numbers.inertia[c].spin_inertia;
+    dx[I::kCornerRate + c] = ws.corner_acceleration[c];
+    dx[I::kSpin + c] = ws.spin_moment[c] * inverse;
+    ws.spin_decay[c] = vehicle.layout.relaxation ? T(0.0) : ws.wrench[c].spin_damping * inverse;
+  }
+  dx[I::kWork] = power;
+  if (vehicle.layout.relaxation) add_relaxation(vehicle, x, ws, dx);
+}
+
+/// Kinetic energy, potential energy of gravity (zero at world z = 0) and of springs [J].
+template <class T>
+T calc_energy(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& ws) {
+  using I = StateIndex;
+  const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
+  const Vec3<T> world_moment = ws.rotation * ws.moment;
+  T energy =
+      T(0.5) * vehicle.numbers.mass * dot(v, v) + dot(v, cross(w, ws.moment)) +
+      T(0.5) * dot(w, ws.inertia * w) +
+      vehicle.numbers.gravity * (vehicle.numbers.mass * x[I::kPosition + 2] + world_moment.z);
+  for (int c = 0; c < kCorners; ++c) {
+    const CornerMotion<T>& m = ws.motion[c];
+    const T& rate = x[I::kCornerRate + c];
+    const T& spin = x[I::kSpin + c];
+    energy += rate * (dot(v, m.moment_q) + dot(w, m.coupling)) + T(0.5) * m.mass * rate * rate +
+              T(0.5) * vehicle.numbers.inertia[c].spin_inertia * spin * spin + ws.strut[c].energy;
+  }
+  return energy;
+}
+
+}  // namespace strut

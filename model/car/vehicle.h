@@ -1,0 +1,58 @@
+// The car as the equations read it: topology common to a batch, numbers one per simulation.
+#pragma once
+
+#include "model/car/spec.h"
+#include "model/force/strut_effects.h"
+#include "model/force/tire_contact.h"
+#include "model/multibody/closure.h"
+#include "model/multibody/corner.h"
+
+namespace strut {
+
+/// Numbers of one car and maneuver: fields of T only, so that W of them pack into lanes.
+template <class T>
+struct VehicleParameters {
+  T mass;                // kg, whole car
+  RigidBody<T> chassis;  // about the chassis origin's axes
+  std::array<CornerGeometry<T>, kCorners> geometry;
+  std::array<CornerInertia<T>, kCorners> inertia;
+  std::array<LinearSpring<T>, kCorners> spring;
+  std::array<LinearDamper<T>, kCorners> damper;
+  std::array<StrutEffectNumbers<T>, kCorners> effects;
+  std::array<AntiRollBar<T>, kAxles> anti_roll_bar;
+  std::array<T, kCorners> drive_torque;             // N m, on each wheel
+  std::array<T, kLines * kCorners> nominal_length;  // m, lines at nominal trim
+  std::array<TireVertical<T>, kAxles> tire;
+  std::array<WheelRunout<T>, kCorners> runout;
+  std::array<T, kAxles> lift;  // N s^2/m^2, aerodynamic lift over speed squared
+  Pac2002<T> pacejka;
+  Vec3<T> imu;  // m, chassis axes
+  T gravity;    // m/s^2
+};
+
+/// What is common to all simulations of a batch.
+struct VehicleLayout {
+  std::array<CornerTopology, kCorners> corner;
+  std::array<ClosurePredictor, kCorners> predictor;
+  ContactKind contact = ContactKind::kEnvelope;
+  bool relaxation = false;
+  Pac2002Parts tire_parts;
+  std::array<bool, kCorners> on_bump{true, true, true, true};  // wheels that see the bump
+  std::array<unsigned, kCorners> strut_effects{};              // StrutEffectBits
+  std::array<bool, kAxles> has_anti_roll_bar{};
+  bool progressive_tire = false, has_runout = false, has_lift = false;
+};
+
+/// Force maps of the corners; null where there is none.
+using CornerForceMaps = std::array<std::shared_ptr<const ForceMapTable>, kCorners>;
+
+template <class T>
+struct Vehicle {
+  VehicleLayout layout;
+  VehicleParameters<T> numbers;
+  StrutElements<T> struts;
+  Road<T> road;
+  StrutEffects<T> effects{};
+};
+
+}  // namespace strut

@@ -1,0 +1,52 @@
+// What a simulation of the car reports: one list of names, units and meanings.
+#pragma once
+
+#include <vector>
+
+#include "base/names/corners.h"
+#include "model/channel/channel_info.h"
+
+namespace strut {
+
+/// Channel order: the body's, then kCornerChannels for each corner in Corner order.
+struct CarChannel {
+  enum : int {
+    kTime,
+    kBodyPositionZ,
+    kBodyVelocityZ,
+    kBodyAccelerationZ,
+    kPitchAngle,
+    kPitchRate,
+    kRollAngle,
+    kRollRate,
+    kForwardPosition,
+    kForwardSpeed,
+    kImuAccelerationX,
+    kImuAccelerationY,
+    kImuAccelerationZ,
+    kImuRateX,
+    kImuRateY,
+    kImuRateZ,
+    kCornerBegin,
+  };
+  enum : int {
+    kWheelPositionZ,
+    kWheelAccelerationZ,
+    kSuspensionDeflection,
+    kSuspensionVelocity,
+    kSpringForce,
+    kDamperForce,
+    kTireForceX,
+    kTireForceY,
+    kTireForceZ,
+    kTireDeflection,
+    kWheelSpeed,
+    kCornerChannels,
+  };
+  static constexpr int kCount = kCornerBegin + kCorners * kCornerChannels;
+};
+
+/// The car's channels in CarChannel order.
+const std::vector<ChannelInfo>& list_car_channels();
+
+}  // namespace strut

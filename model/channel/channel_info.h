@@ -1,0 +1,13 @@
+// What a table of channels holds.
+#pragma once
+
+#include <string>
+
+namespace strut {
+
+/// A reported quantity: ISO 8855 axes, SI units.
+struct ChannelInfo {
+  std::string name, unit, description;
+};
+
+}  // namespace strut

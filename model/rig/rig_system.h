@@ -1,0 +1,259 @@
+// A rig as a system that simulate.h can run; its equations stand at the head of vehicle/rigs.h.
+//
+// State: positions, then velocities, of quarter_car by RigCoordinate, of single_mass the mass's;
+// strut_rig has none, its inputs say everything. Behind them, where effects give the strut states,
+// its lagged force, its mount's and its joint's displacement.
+//
+// A kink of a piecewise linear input is no event: where the order of the integrator matters, let
+// samples fall on ends of steps, or interpolate by a spline.
+#pragma once
+
+#include <cmath>
+
+#include "model/integrate/simulate.h"
+#include "model/rig/rigs.h"
+
+namespace strut {
+
+/// Number of moving masses.
+constexpr int count_coordinates(RigKind kind) {
+  return kind == RigKind::kQuarterCar ? 2 : kind == RigKind::kSingleMass ? 1 : 0;
+}
+
+/// Everything the equations find on their way.
+template <class T>
+struct RigWorkspace {
+  std::array<SignalPoint<T>, kMaxRigInputs> input;  // in the order of list_rig_inputs
+  std::array<CornerMotion<T>, 1> motion;            // only its lines' length and length_q
+  std::array<StrutForce<T>, 1> strut;
+  T unclamped_load, tire_force;                 // N
+  std::array<T, kRigCoordinates> acceleration;  // m/s^2
+  std::array<T, kStatesPerStrut> strut_decay;   // 1/s
+};
+
+/// Temperature at which a damper has its nominal rate [K].
+inline constexpr double kReferenceTemperature = 293.15;
+
+template <class T>
+class RigSystem {
+ public:
+  static constexpr int kCapacity = 2 * kRigCoordinates + kStatesPerStrut;
+  using Mask = MaskOf<T>;
+
+  /// `inputs` from assign_rig_inputs. Rig and signals must outlive the system.
+  RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs)
+      : rig_(rig), inputs_(inputs), count_(count_coordinates(rig.layout.kind)) {}
+
+  int size() const { return 2 * count_ + stiff_count(); }
+  int stiff_at(int i) const { return 2 * count_ + i; }
+  int stiff_count() const { return rig_.effects.has_states() ? kStatesPerStrut : 0; }
+
+  /// At rest on the road's first position, plus the rig's own initial offsets; a strut with states
+  /// as if it had moved for long as it moves at the start.
+  std::array<T, kCapacity> make_start() {
+    std::array<T, kCapacity> x;
+    x.fill(T(0.0));
+    const bool on_road = rig_.layout.kind == RigKind::kQuarterCar && inputs_[0];
+    const T ground =
+        on_road ? rig_.numbers.road_gain * calc_signal(*inputs_[0], T(0.0)).value : T(0.0);
+    for (int i = 0; i < count_; ++i) {
+      x[at(i)] = ground + rig_.numbers.initial_position[at(i)];
+      x[at(count_ + i)] = rig_.numbers.initial_velocity[at(i)];
+    }
+    if (rig_.effects.has_states()) settle_strut(x.data());
+    return x;
+  }
+
+  void calc_derivative(const T& t, const T* x, T* dx, T* decay) {
+    update_inputs(t);
+    states_ = {};
+    if (rig_.effects.has_states()) {
+      states_ = {x + 2 * count_, dx + 2 * count_, ws_.strut_decay.data()};
+    }
+    failed_ = !is_finite(T(0.0));
+    switch (rig_.layout.kind) {
+      case RigKind::kQuarterCar:
+        accelerate_quarter_car(x);
+        break;
+      case RigKind::kStrutRig:
+        update_strut(-ws_.input[0].value, -ws_.input[0].rate);
+        break;
+      case RigKind::kSingleMass:
+        update_strut(x[0], x[1]);
+        ws_.acceleration[0] =
+            (ws_.input[0].value + ws_.strut[0].generalized) * (T(1.0) / rig_.numbers.mass[0]) -
+            rig_.numbers.gravity;
+        break;
+    }
+    for (int i = 0; i < count_; ++i) {
+      dx[i] = x[count_ + i];
+      dx[count_ + i] = ws_.acceleration[at(i)];
+      failed_ = failed_ | (!is_finite(dx[count_ + i])) | (abs(dx[i]) > T(kAbsurdSpeed));
+    }
+    for (int i = 0; i < stiff_count(); ++i) decay[i] = ws_.strut_decay[at(i)];
+  }
+
+  /// The tire's lift-off and touch-down.
+  int guard_count() const { return rig_.layout.unilateral_tire ? 1 : 0; }
+  void get_guards(T* g) const { g[0] = ws_.unclamped_load; }
+  void calc_guards(const T& t, const T* x, T* g) {
+    if (inputs_[0]) update_first_input(t);
+    update_tire(x);
+    get_guards(g);
+  }
+  bool cross(int /*guard*/, Mask /*lanes*/) { return false; }
+
+  /// A rig has no snapshot: never changes sign.
+  T get_trigger() const { return T(1.0); }
+  Mask has_failed() const { return failed_; }
+  RunStatus get_failure(int /*lane*/) const { return RunStatus::kDiverged; }
+
+  /// Channels at the state of the last calc_derivative.
+  void observe(const T& t, const T* x, T* out) const {
+    switch (rig_.layout.kind) {
+      case RigKind::kQuarterCar:
+        return observe_quarter_car(t, x, out);
+      case RigKind::kStrutRig:
+        return observe_strut_rig(t, out);
+      case RigKind::kSingleMass:
+        return observe_single_mass(t, x, out);
+    }
+  }
+
+  const RigWorkspace<T>& workspace() const { return ws_; }
+
+ private:
+  static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  /// The road is by a gain higher than its recording; other inputs are as recorded.
+  void update_first_input(const T& t) {
+    SignalPoint<T>& input = ws_.input[0];
+    input = calc_signal(*inputs_[0], t);
+    if (rig_.layout.kind != RigKind::kQuarterCar) return;
+    const T& gain = rig_.numbers.road_gain;
+    input = {gain * input.value, gain * input.rate, gain * input.second_rate};
+  }
+  void update_inputs(const T& t) {
+    ws_.input.fill({0.0, 0.0, 0.0});
+    if (inputs_[0]) update_first_input(t);
+    if (inputs_[1]) ws_.input[1] = calc_signal(*inputs_[1], t);
+  }
+
+  T get_temperature() const { return inputs_[1] ? ws_.input[1].value : rig_.numbers.temperature; }
+
+  void settle_strut(T* x) {
+    update_inputs(T(0.0));
+    const bool on_stand = rig_.layout.kind == RigKind::kStrutRig;
+    const T speed = on_stand      ? ws_.input[0].rate
+                    : count_ == 1 ? -x[1]
+                                  : x[2 + kUnsprung] - x[2 + kSprung];
+    const StrutEffectNumbers<T>& numbers = rig_.numbers.effects;
+    x[2 * count_] = x[2 * count_ + 1] = numbers.law.calc_rate(speed, calc_warming()) * speed;
+    x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
+  }
+
+  T calc_warming() const {
+    if (rig_.layout.kind != RigKind::kStrutRig) return T(0.0);
+    return get_temperature() - T(kReferenceTemperature);
+  }
+
+  /// Forces of the strut whose ends are `length` further apart than at rest.
+  void update_strut(const T& length, const T& rate) {
+    ws_.motion[0].length.fill(length);
+    ws_.motion[0].length_q.fill(T(1.0));
+    add_strut_forces<T, 1>(rig_.struts, ws_.motion, &rate, ws_.strut);
+    if (rig_.effects.count == 0) return;
+    add_strut_effects<T, 1>(rig_.effects, ws_.motion, &rate, calc_warming(), states_, ws_.strut);
+  }
+
+  void update_tire(const T* x) {
+    const RigParameters<T>& p = rig_.numbers;
+    const T deflection = p.static_deflection + ws_.input[0].value - x[kUnsprung];
+    const T rate = ws_.input[0].rate - x[2 + kUnsprung];
+    const bool unilateral = rig_.layout.unilateral_tire;
+    ws_.unclamped_load = unilateral ? calc_unclamped_load(p.tire, deflection, rate)
+                                    : p.tire.stiffness * deflection + p.tire.damping * rate;
+    if (rig_.layout.progressive_tire) {
+      ws_.unclamped_load += calc_progressive_load(p.tire, deflection);
+    }
+    ws_.tire_force = unilateral ? max(ws_.unclamped_load, T(0.0)) : ws_.unclamped_load;
+  }
+
+  void accelerate_quarter_car(const T* x) {
+    const RigParameters<T>& p = rig_.numbers;
+    update_strut(x[kSprung] - x[kUnsprung], x[2 + kSprung] - x[2 + kUnsprung]);
+    update_tire(x);
+    const T between = ws_.strut[0].generalized + ws_.input[1].value;
+    ws_.acceleration[kUnsprung] =
+        (ws_.tire_force - between) * (T(1.0) / p.mass[kUnsprung]) - p.gravity;
+    ws_.acceleration[kSprung] = between * (T(1.0) / p.mass[kSprung]) - p.gravity;
+  }
+
+  void observe_quarter_car(const T& t, const T* x, T* out) const {
+    using C = QuarterCarChannel;
+    out[C::kTime] = t;
+    out[C::kRoadPosition] = ws_.input[0].value;
+    out[C::kRoadVelocity] = ws_.input[0].rate;
+    out[C::kRoadAcceleration] = ws_.input[0].second_rate;
+    for (int i = 0; i < kRigCoordinates; ++i) {
+      out[C::kUnsprungPosition + i] = x[i];
+      out[C::kUnsprungVelocity + i] = x[2 + i];
+      out[C::kUnsprungAcceleration + i] = ws_.acceleration[at(i)];
+    }
+    out[C::kActuatorForce] = ws_.input[1].value;
+    out[C::kSpringForce] = ws_.strut[0].spring_force;
+    out[C::kDamperForce] = ws_.strut[0].damper_force;
+    out[C::kTireForce] = ws_.tire_force;
+  }
+
+  void observe_strut_rig(const T& t, T* out) const {
+    using C = StrutRigChannel;
+    out[C::kTime] = t;
+    out[C::kDisplacement] = ws_.input[0].value;
+    out[C::kVelocity] = ws_.input[0].rate;
+    out[C::kForce] = ws_.strut[0].generalized;
+    out[C::kSpringForce] = ws_.strut[0].spring_force;
+    out[C::kDamperForce] = ws_.strut[0].damper_force;
+    out[C::kTemperature] = get_temperature();
+  }
+
+  void observe_single_mass(const T& t, const T* x, T* out) const {
+    using C = SingleMassChannel;
+    out[C::kTime] = t;
+    out[C::kPosition] = x[0];
+    out[C::kVelocity] = x[1];
+    out[C::kAcceleration] = ws_.acceleration[0];
+    out[C::kForce] = ws_.input[0].value;
+    out[C::kSpringForce] = ws_.strut[0].spring_force;
+    out[C::kDamperForce] = ws_.strut[0].damper_force;
+  }
+
+  const Rig<T>& rig_;
+  std::array<const InputSignal*, kMaxRigInputs> inputs_;
+  int count_;
+  RigWorkspace<T> ws_{};
+  StrutStates<T> states_;
+  Mask failed_{};
+};
+
+/// Simulates kLaneCount<T> rigs of one kind under the same inputs for `plan.duration` [s]; the
+/// history holds list_rig_channels every `plan.interval` [s]. Throws ModelError as make_rig and
+/// assign_rig_inputs do.
+template <class T>
+LaneResults simulate_rigs(const RigSpec* const specs[], const std::vector<InputSignal>& inputs,
+                          const StepOptions& options, SamplePlan plan) {
+  const Rig<T> rig = make_rig<T>(specs);
+  RigSystem<T> system(rig, assign_rig_inputs(rig.layout.kind, inputs));
+  plan.snapshot = false;
+  plan.channel_count = static_cast<int>(list_rig_channels(rig.layout.kind).size());
+  return Simulation<T, RigSystem<T>>(system, options, plan).run(system.make_start());
+}
+
+/// The same for one rig in double: history[sample * channels + channel], failure in status[0].
+inline LaneResults simulate_rig(const RigSpec& spec, const std::vector<InputSignal>& inputs,
+                                const StepOptions& options, const SamplePlan& plan) {
+  const RigSpec* const specs[] = {&spec};
+  return simulate_rigs<double>(specs, inputs, options, plan);
+}
+
+}  // namespace strut

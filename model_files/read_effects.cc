@@ -1,0 +1,88 @@
+#include "model_files/read_effects.h"
+
+#include <algorithm>
+
+#include "base/text/nearest_name.h"
+#include "model_files/drop_tables.h"
+
+namespace strut {
+namespace {
+
+std::vector<std::string> list_effect_names(ModelKind kind) {
+  std::vector<std::string> names;
+  for (const EffectInfo& effect : list_effects()) {
+    if (!list_effect_places(effect, kind).empty()) names.push_back(effect.name);
+  }
+  return names;
+}
+
+const EffectInfo& read_name(const Table& table, ModelKind kind) {
+  const EffectInfo* effect = find_effect(table.text("name"));
+  if (effect != nullptr && list_effect_places(*effect, kind).empty()) {
+    throw table.error("name", "a " + get_model_kind_name(kind) + " does not have this effect");
+  }
+  if (effect != nullptr) return *effect;
+  const std::vector<std::string> names = list_effect_names(kind);
+  return *find_effect(names[static_cast<std::size_t>(table.choice("name", names))]);
+}
+
+EffectSetting read_effect(const Table& table, ModelKind kind) {
+  const EffectInfo& effect = read_name(table, kind);
+  const std::vector<std::string> places = list_effect_places(effect, kind);
+  const bool has_place = !(places.size() == 1 && places.front().empty());
+  EffectSetting setting{effect.name, "", {}};
+  if (has_place) setting.place = places[static_cast<std::size_t>(table.choice("place", places))];
+  for (const EffectParameter* p : list_effect_parameters(effect, kind)) {
+    const Range allowed = get_range(*p);
+    const bool needed = p->switches && list_effect_parameters(effect, kind).size() == 1;
+    setting.values.push_back(needed ? table.number(p->name, allowed)
+                                    : table.number_or(p->name, p->neutral, allowed));
+  }
+  return setting;
+}
+
+std::string write_effect(const EffectSetting& setting, ModelKind kind) {
+  std::string text = "[[effect]]\nname = \"" + setting.effect + "\"\n";
+  if (!setting.place.empty()) text += "place = \"" + setting.place + "\"\n";
+  const auto parameters = list_effect_parameters(*find_effect(setting.effect), kind);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    text += parameters[i]->name + " = " + format_number(setting.values[i]) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+Range get_range(const EffectParameter& parameter) {
+  return between(parameter.low, parameter.high, parameter.unit == "1" ? "" : parameter.unit);
+}
+
+EffectSettings read_effects(const Table& root, ModelKind kind) {
+  EffectSettings settings;
+  if (!root.has("effect")) return settings;
+  for (const Table& table : root.tables("effect")) {
+    settings.push_back(read_effect(table, kind));
+    const EffectSetting& last = settings.back();
+    const auto same = [&](const EffectSetting& s) {
+      return s.effect == last.effect && s.place == last.place;
+    };
+    if (std::count_if(settings.begin(), settings.end(), same) > 1) {
+      throw table.error("name", "is there twice" +
+                                    (last.place.empty() ? "" : " at \"" + last.place + "\"") +
+                                    "; allowed: once");
+    }
+  }
+  return settings;
+}
+
+std::string replace_effects(const std::string& text, const EffectSettings& settings,
+                            ModelKind kind) {
+  std::string changed = drop_tables(text, "effect");
+  if (!changed.empty() && changed.back() != '\n' && !settings.empty()) changed += '\n';
+  for (const EffectSetting& setting : settings) {
+    changed += (changed.empty() ? "" : "\n") + write_effect(setting, kind);
+  }
+  return changed;
+}
+
+}  // namespace strut

@@ -1,0 +1,86 @@
+#include "model_files/read_maneuver.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "io/format/config.h"
+#include "io/format/csv.h"
+#include "model_files/parameters.h"
+
+namespace strut {
+
+namespace {
+
+const std::vector<std::string> kShapes = {"none",   "arc",       "half_sine",
+                                          "cosine", "trapezoid", "table"};  // as in BumpShape
+const std::vector<std::string> kSides = {"both", "left", "right"};          // as in BumpSide
+const std::vector<std::string> kTrims = {"steady", "static"};               // as in TrimKind
+
+double read_parameter(const Table& table, const std::string& key, const std::string& parameter) {
+  return table.number(key, find_parameter(parameter).allowed);
+}
+
+void read_profile(const Table& bump, RoadSpec& road) {
+  const CsvTable csv = read_csv(bump.file("file"));
+  road.table_x = csv.column("position").values;
+  road.table_z = csv.column("height").values;
+  for (std::size_t i = 1; i < road.table_x.size(); ++i) {
+    if (road.table_x[i] > road.table_x[i - 1]) continue;
+    throw InputError(csv.path.string() + ":" + std::to_string(csv.lines[i]) +
+                     ": position = " + format_number(road.table_x[i]) + ": must be > " +
+                     format_number(road.table_x[i - 1]) + " m, the position before");
+  }
+  if (road.table_x.size() < 2) {
+    throw InputError(csv.path.string() + ": " + std::to_string(road.table_x.size()) +
+                     " rows: must be at least 3");
+  }
+  road.height = *std::max_element(road.table_z.begin(), road.table_z.end());
+  road.length = road.table_x.back() - road.table_x.front();
+}
+
+void read_shape(const Table& bump, RoadSpec& road) {
+  switch (road.shape) {
+    case BumpShape::kNone:
+      return;
+    case BumpShape::kTable:
+      return read_profile(bump, road);
+    case BumpShape::kTrapezoid:
+      road.ramp = read_parameter(bump, "ramp", "bump_ramp");
+      [[fallthrough]];
+    default:
+      road.height = read_parameter(bump, "height", "bump_height");
+      road.length = read_parameter(bump, "length", "bump_length");
+  }
+}
+
+void read_bump(const Table& bump, ManeuverSpec& maneuver) {
+  RoadSpec& road = maneuver.road;
+  road.shape = static_cast<BumpShape>(bump.choice("shape", kShapes));
+  read_shape(bump, road);
+  if (road.shape == BumpShape::kNone) return;
+  road.side = static_cast<BumpSide>(bump.choice_or("side", 0, kSides));
+  maneuver.bump_distance = read_parameter(bump, "distance", "bump_distance");
+  try {
+    validate(road);
+  } catch (const std::invalid_argument& e) {
+    throw bump.error(e.what());
+  }
+}
+
+}  // namespace
+
+ManeuverSpec read_maneuver(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  ManeuverSpec maneuver;
+  maneuver.speed = read_parameter(root, "speed", "speed");
+  maneuver.duration = read_parameter(root, "duration", "duration");
+  maneuver.drive_torque = read_parameter(root, "drive_torque", "drive_torque");
+  maneuver.gravity = root.number_or("gravity", maneuver.gravity, find_parameter("gravity").allowed);
+  maneuver.trim = static_cast<TrimKind>(root.choice_or("trim", 0, kTrims));
+  read_bump(root.table("bump"), maneuver);
+  document.check_all_read();
+  return maneuver;
+}
+
+}  // namespace strut

@@ -1,0 +1,222 @@
+#include "model_files/read_rig.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "base/text/nearest_name.h"
+#include "io/format/config.h"
+#include "io/format/csv.h"
+#include "model/rig/rig_system.h"
+#include "model_files/read_effects.h"
+#include "model_files/read_fitted.h"
+#include "model_files/read_force_maps.h"
+
+namespace strut {
+
+namespace {
+
+const std::vector<std::string> kContacts = {"bilateral", "unilateral"};
+const std::vector<std::string> kInterpolations = {"spline", "linear"};  // Interpolation
+const std::vector<std::string> kShapes = {"file", "sine", "chirp", "step", "bump"};
+enum Shape : int { kFile, kSine, kChirp, kStep, kBump };
+
+const Range kDuration = between(1e-3, 1e5, "s");
+/// Keeps a chirp's table below a gigabyte for any duration.
+const Range kFrequency{.low = 0.0, .high = 1000.0, .open_low = true, .unit = "Hz"};
+constexpr double kMostPeriods = 1e5;
+const Range kInitialPosition = between(-10.0, 10.0, "m");
+const Range kInitialVelocity = between(-100.0, 100.0, "m/s");
+
+Range get_range(const RigParameterInfo& info) {
+  return {.low = info.low, .high = info.high, .open_low = info.open_low, .unit = info.unit};
+}
+
+void add_effect_settings(RigKind kind, const EffectInfo& effect, const std::string& place,
+                         std::vector<RigParameter>& list) {
+  const ModelKind model = get_model_kind(kind);
+  const auto parameters = list_effect_parameters(effect, model);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EffectParameter& p = *parameters[i];
+    list.push_back({make_effect_parameter_name(effect, place, p, model), p.unit,
+                    p.description + "; effect " + effect.name, get_range(p), p.typical, true,
+                    [&effect, model, place, i](const RigSpec& spec) {
+                      return get_effect_value(spec.effects, effect, model, place, i);
+                    },
+                    [&effect, model, place, i](RigSpec& spec, double value) {
+                      set_effect_value(spec.effects, effect, model, place, i, value);
+                    }});
+  }
+}
+
+std::vector<RigParameter> make_settings(RigKind kind) {
+  std::vector<RigParameter> list;
+  for (const RigParameterInfo& info : list_rig_parameters(kind)) {
+    const auto field = info.field;
+    list.push_back({info.name, info.unit, info.description, get_range(info), 0.0, false,
+                    [field](const RigSpec& spec) { return spec.*field; },
+                    [field](RigSpec& spec, double value) { spec.*field = value; }});
+  }
+  for (const EffectInfo& effect : list_effects()) {
+    for (const std::string& place : list_effect_places(effect, get_model_kind(kind))) {
+      add_effect_settings(kind, effect, place, list);
+    }
+  }
+  return list;
+}
+
+void read_initial(const Table& root, RigSpec& spec) {
+  const int count = count_coordinates(spec.kind);
+  const auto initial = count > 0 ? root.find_table("initial") : std::nullopt;
+  if (!initial) return;
+  const std::array<std::string, kRigCoordinates> prefix = {count == 1 ? "" : "unsprung_",
+                                                           "sprung_"};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    spec.initial_position[i] = initial->number_or(prefix[i] + "position", 0.0, kInitialPosition);
+    spec.initial_velocity[i] = initial->number_or(prefix[i] + "velocity", 0.0, kInitialVelocity);
+  }
+}
+
+/// One column of a CSV file against its time column.
+InputSignal read_recording(const Table& table, const std::string& channel) {
+  const CsvTable csv = read_csv(table.file("file"));
+  const std::vector<double>& times = csv.column(table.text_or("time", "time")).values;
+  std::vector<double> values = csv.column(table.text_or("column", channel)).values;
+  const double scale = table.number_or("scale", 1.0), offset = table.number_or("offset", 0.0);
+  for (double& value : values) value = scale * value + offset;
+  const int interpolation = table.choice_or("interpolation", 0, kInterpolations);
+  return make_signal(channel, times, values, static_cast<Interpolation>(interpolation));
+}
+
+InputSignal read_waves(const Table& table, const std::string& channel, Shape shape,
+                       double duration) {
+  const double amplitude = table.number("amplitude");
+  const bool chirp = shape == kChirp;
+  const std::string begin_key = chirp ? "begin_frequency" : "frequency";
+  const double begin = table.number(begin_key, kFrequency);
+  const double end = chirp ? table.number("end_frequency", kFrequency) : begin;
+  if (duration * std::max(begin, end) > kMostPeriods) {
+    throw table.error(end > begin ? "end_frequency" : begin_key,
+                      "must be at most " + format_number(kMostPeriods / duration) + " Hz over " +
+                          format_number(duration) + " s");
+  }
+  return make_chirp(channel, amplitude, begin, end, duration);
+}
+
+InputSignal read_shape(const Table& table, const std::string& channel, Shape shape,
+                       double duration) {
+  if (shape == kFile) return read_recording(table, channel);
+  if (shape == kSine || shape == kChirp) return read_waves(table, channel, shape, duration);
+  const double height = table.number("height");
+  const double begin = table.number("begin", between(0.0, kDuration.high, "s"));
+  if (shape == kStep) {
+    return make_step(channel, height, begin, table.number("rise", between(1e-6, 1e3, "s")));
+  }
+  return make_bump(channel, height, begin, table.number("width", between(1e-6, 1e3, "s")));
+}
+
+/// `duration`: 0 where the file gives none, which only recordings allow.
+InputSignal read_input(const Table& table, const std::string& channel, double duration) {
+  const auto shape = static_cast<Shape>(table.choice("shape", kShapes));
+  if (shape != kFile && duration == 0.0) {
+    throw table.error("shape", "needs the maneuver's `duration`, which only files may replace");
+  }
+  try {
+    return read_shape(table, channel, shape, duration);
+  } catch (const std::invalid_argument& e) {
+    throw table.error(shape == kFile ? "file" : "shape", e.what());
+  }
+}
+
+}  // namespace
+
+std::optional<RigKind> find_rig_kind(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  if (!root.has("type")) return std::nullopt;
+  const std::vector<std::string>& kinds = list_rig_kinds();
+  const auto found = std::find(kinds.begin(), kinds.end(), root.text("type"));
+  if (found == kinds.end()) return std::nullopt;
+  return static_cast<RigKind>(found - kinds.begin());
+}
+
+RigSpec read_rig(const std::filesystem::path& path) {
+  const Document document(path);
+  const Table root = document.root();
+  RigSpec spec;
+  spec.kind = static_cast<RigKind>(root.choice("type", list_rig_kinds()));
+  spec.name = root.text_or("name", path.stem().string());
+  for (const RigParameterInfo& info : list_rig_parameters(spec.kind)) {
+    spec.*info.field = info.fallback ? root.number_or(info.name, *info.fallback, get_range(info))
+                                     : root.number(info.name, get_range(info));
+  }
+  if (spec.kind == RigKind::kQuarterCar) {
+    spec.unilateral_tire = root.choice("tire_contact", kContacts) == 1;
+  }
+  read_initial(root, spec);
+  read_fitted(root, spec);
+  spec.effects = read_effects(root, get_model_kind(spec.kind));
+  spec.force_maps = read_force_maps(root, get_model_kind(spec.kind));
+  document.check_all_read();
+  return spec;
+}
+
+const std::vector<RigParameter>& list_rig_settings(RigKind kind) {
+  static const std::array<std::vector<RigParameter>, 3> lists = {
+      make_settings(RigKind::kQuarterCar), make_settings(RigKind::kStrutRig),
+      make_settings(RigKind::kSingleMass)};
+  return lists[static_cast<std::size_t>(kind)];
+}
+
+const RigParameter& find_rig_parameter(RigKind kind, const std::string& name) {
+  std::vector<std::string> names, plain;
+  for (const RigParameter& parameter : list_rig_settings(kind)) {
+    if (parameter.name == name) return parameter;
+    names.push_back(parameter.name);
+    if (!parameter.is_effect) plain.push_back(parameter.name);
+  }
+  const std::string suggestion = suggest_name(name, names);
+  throw InputError("unknown parameter '" + name + "'" +
+                   (suggestion.empty() ? "; known: " + join_names(plain) +
+                                             ", and those of effects, docs/effects.md"
+                                       : suggestion));
+}
+
+void set_rig_parameter(RigSpec& spec, const std::string& name, double value) {
+  const RigParameter& parameter = find_rig_parameter(spec.kind, name);
+  if (!parameter.allowed.contains(value)) {
+    throw InputError(name + " = " + format_number(value) + ": " + parameter.allowed.describe());
+  }
+  parameter.set(spec, value);
+}
+
+RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {
+  const Document document(path);
+  const Table root = document.root();
+  RigManeuver maneuver;
+  if (root.has("duration")) maneuver.duration = root.number("duration", kDuration);
+  const double given = maneuver.duration;
+  if (const auto input = root.find_table("input")) {
+    for (const RigInputInfo& info : list_rig_inputs(kind)) {
+      const auto table = input->find_table(info.name);
+      if (!table) continue;
+      maneuver.inputs.push_back(read_input(*table, info.name, given));
+      if (given == 0.0) {
+        maneuver.duration = std::max(maneuver.duration, maneuver.inputs.back().end);
+      }
+    }
+  }
+  document.check_all_read();
+  if (maneuver.duration <= 0.0) maneuver.duration = root.number("duration", kDuration);
+  if (!kDuration.contains(maneuver.duration)) {
+    throw root.error("a recording of " + format_number(maneuver.duration) +
+                     " s: " + kDuration.describe());
+  }
+  try {
+    assign_rig_inputs(kind, maneuver.inputs);
+  } catch (const std::invalid_argument& e) {
+    throw InputError(path.string() + ": " + e.what());
+  }
+  return maneuver;
+}
+
+}  // namespace strut

@@ -1,0 +1,69 @@
+// A rig and what drives it, from their TOML files. How a program runs one:
+//
+//   if (const auto kind = find_rig_kind(vehicle_path)) {
+//     const RigSpec rig = read_rig(vehicle_path);
+//     const RigManeuver maneuver = read_rig_maneuver(maneuver_path, *kind);
+//     SamplePlan plan{.duration = maneuver.duration, .interval = 1e-3};
+//     const LaneResults run = simulate_rig(rig, maneuver.inputs, StepOptions{}, plan);
+//     // run.history[sample * channels + i]: list_rig_channels(*kind)[i]
+//   }
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/format/config.h"
+#include "model/rig/rigs.h"
+
+namespace strut {
+
+/// The rig that a vehicle file's `type` names; nothing where it names no rig, or nothing at all.
+/// Throws InputError where the file cannot be parsed.
+std::optional<RigKind> find_rig_kind(const std::filesystem::path& path);
+
+/// Reads a rig's file: `type`, `name`, the parameters of list_rig_parameters, for a quarter car
+/// `tire_contact` ("bilateral" or "unilateral"), and the table [initial] with offsets of the start
+/// from rest (`sprung_position`, ... or `position`, `velocity`), effects (read_effects.h) and a
+/// force map (read_force_maps.h). Throws InputError with file, line, key, value and what is
+/// allowed.
+RigSpec read_rig(const std::filesystem::path& path);
+
+/// A parameter of a kind of rig that settings and fits know by name.
+struct RigParameter {
+  std::string name, unit, description;
+  Range allowed;
+  double typical = 0.0;    // of an effect: an ordinary size in a car, else 0
+  bool is_effect = false;  // of the catalogue of effects
+  std::function<double(const RigSpec&)> get;
+  std::function<void(RigSpec&, double)> set;
+};
+
+/// Those of list_rig_parameters, then those of the effects that this kind of rig may have.
+const std::vector<RigParameter>& list_rig_settings(RigKind kind);
+
+/// Throws InputError with the nearest known name.
+const RigParameter& find_rig_parameter(RigKind kind, const std::string& name);
+
+/// Throws InputError with name, value and allowed range, or with the nearest known name.
+void set_rig_parameter(RigSpec& spec, const std::string& name, double value);
+
+/// Reads what drives a rig: `duration` [s] and, for each of list_rig_inputs that is driven, a table
+///
+///   [input.road_position]
+///   shape = "file"              # columns of a CSV file, interpolated between its own times
+///   file = "chirp_A1.csv"
+///   time = "t_s"                # name of its time column; default "time"
+///   column = "z_road_m"         # default: the input's name
+///   scale = 1.0                 # input = scale * column + offset: unit, sign, bias
+///   offset = 0.0
+///   interpolation = "spline"    # or "linear"
+///
+/// or shape = "sine" (amplitude, frequency), "chirp" (amplitude, begin_frequency, end_frequency),
+/// "step" (height, begin, rise), "bump" (height, begin, width). Without `duration` the longest of
+/// the files sets it. Throws InputError.
+RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind);
+
+}  // namespace strut

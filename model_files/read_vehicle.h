@@ -1,0 +1,18 @@
+// A full vehicle from its TOML file.
+#pragma once
+
+#include <filesystem>
+
+#include "model/car/spec.h"
+
+namespace strut {
+
+/// Reads a vehicle file of type "full_vehicle" (`examples/vehicles/paper_sedan.toml` shows every
+/// key) with its effects (read_effects.h), its force maps (read_force_maps.h) and the tire file it
+/// names. Throws InputError with file, line, key, value and what is allowed: unknown or missing
+/// keys, wrong types, values out of range, inertias that no body has, hardpoints that coincide.
+/// Whether the loops close and the springs carry the car is the model's question, see
+/// assemble_vehicle.
+VehicleSpec read_vehicle(const std::filesystem::path& path);
+
+}  // namespace strut

@@ -1,0 +1,100 @@
+#include "report/figures.h"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/text/build_info.h"
+#include "base/text/shorten.h"
+#include "io/file/atomic_file.h"
+#include "report/chart_csv.h"
+#include "report/gnuplot.h"
+#include "report/plotly.h"
+
+namespace strut {
+
+namespace {
+
+constexpr std::size_t kMaxChartBytes = std::size_t{256} << 20;
+
+void check_figure_name(const Folder& folder, const std::string& name) {
+  if (is_figure_name(name)) return;
+  throw InputError(
+      folder.path().string() +
+      ": a figure's name must be letters, digits, '_' and '-', as strut writes it; is '" +
+      shorten(name) + "'");
+}
+
+}  // namespace
+
+bool is_figure_name(const std::string& name) {
+  constexpr std::size_t kMaxLength = 200;
+  return !name.empty() && name.size() <= kMaxLength &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+}
+
+FigureDrawer::FigureDrawer(const Folder& root) : folder_(root.make_folder("figures")) {
+  if (!has_gnuplot()) {
+    note_ =
+        "gnuplot cannot be started, so there are no pictures of the charts as files (Debian: apt "
+        "install gnuplot-nox)";
+  }
+}
+
+ReportFigure FigureDrawer::draw(const Chart& chart) const {
+  check_figure_name(folder_, chart.name);
+  const std::string script = make_gnuplot(chart);
+  write_text_file(folder_, chart.name + ".json", make_plotly(chart).dump() + "\n");
+  write_text_file(folder_, chart.name + ".csv", make_chart_csv(chart));
+  write_text_file(folder_, chart.name + ".gp", script);
+  // One of other numbers must not stay where there is no gnuplot now.
+  folder_.remove(chart.name + ".svg");
+  if (note_.empty())
+    write_text_file(folder_, chart.name + ".svg", draw_picture(chart.name, script));
+  return read_again(chart.name, chart.caption);
+}
+
+void FigureDrawer::draw_all(const std::vector<Chart>& charts, ReportSection& section) const {
+  for (const Chart& chart : charts) section.figures.push_back(draw(chart));
+}
+
+std::string FigureDrawer::read_json_of(const std::string& name) const {
+  check_figure_name(folder_, name);
+  auto json = folder_.read_if_present(name + ".json", kMaxChartBytes);
+  if (!json) throw InputError(folder_.path_of(name + ".json").string() + ": file not found");
+  return *std::move(json);
+}
+
+ReportFigure FigureDrawer::read_again(const std::string& name, const std::string& caption) const {
+  ReportFigure figure{name, caption, read_json_of(name), {}};
+  const std::string link = folder_.path().filename().string() + "/" + name;
+  for (const char* end : {".svg", ".csv"}) {
+    if (folder_.open_file(name + end, O_RDONLY).is_open()) figure.files.push_back(link + end);
+  }
+  return figure;
+}
+
+ReportMotion FigureDrawer::draw_motion(const Json& scene, const std::string& name,
+                                       const std::string& caption) const {
+  write_text_file(folder_, name + ".json", scene.dump() + "\n");
+  return read_motion_again(name, caption);
+}
+
+ReportMotion FigureDrawer::read_motion_again(const std::string& name,
+                                             const std::string& caption) const {
+  return {name, caption, read_json_of(name)};
+}
+
+std::vector<std::string> FigureDrawer::list_notes() const {
+  return note_.empty() ? std::vector<std::string>{} : std::vector<std::string>{note_};
+}
+
+std::string make_report_footer() {
+  const BuildInfo& build = get_build_info();
+  return std::string("strut ") + build.version + " (" + build.commit + "), " + build.compiler +
+         ", " + build.build_type;
+}
+
+}  // namespace strut

@@ -1,0 +1,49 @@
+// Figures on their way into a report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/file/folder.h"
+#include "report/chart.h"
+#include "report/html.h"
+#include "report/json.h"
+
+namespace strut {
+
+/// Whether a name in a report's folder can be that of a table or figure: letters, digits, '_', '-',
+/// at most 200 of them. Others would lead elsewhere.
+bool is_figure_name(const std::string& name);
+
+/// Writes figures into the subfolder figures/ of a report's folder: NAME.json for the page,
+/// NAME.csv with the numbers, NAME.gp for whoever wants to draw them another way, and the picture
+/// NAME.svg by gnuplot. Without gnuplot there are no pictures, and list_notes() says so.
+class FigureDrawer {
+ public:
+  /// Throws InputError where figures/ is a link, EnvironmentError where it cannot be made.
+  explicit FigureDrawer(const Folder& root);
+
+  ReportFigure draw(const Chart& chart) const;
+  /// All of them, at the end of a section.
+  void draw_all(const std::vector<Chart>& charts, ReportSection& section) const;
+  /// A chart that was drawn into the folder before, as it lies there; nothing is drawn. Throws
+  /// InputError where the name is none, or its file is missing or a link.
+  ReportFigure read_again(const std::string& name, const std::string& caption) const;
+  /// A scene of make_motion() as NAME.json.
+  ReportMotion draw_motion(const Json& scene, const std::string& name,
+                           const std::string& caption) const;
+  ReportMotion read_motion_again(const std::string& name, const std::string& caption) const;
+  /// For the user: none where pictures are drawn.
+  std::vector<std::string> list_notes() const;
+
+ private:
+  std::string read_json_of(const std::string& name) const;
+
+  Folder folder_;
+  std::string note_;
+};
+
+/// Program, version, commit, compiler: the last line of every report.
+std::string make_report_footer();
+
+}  // namespace strut

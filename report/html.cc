@@ -1,0 +1,232 @@
+#include "report/html.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+#include "base/text/utf8.h"
+#include "embedded/texts.h"
+
+namespace strut {
+namespace {
+
+std::string replace_all(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// JSON has "<" in strings only, where it may be written otherwise: so nothing of them is a tag.
+std::string make_json_element(const std::string& json) {
+  return "<script type=\"application/json\">" + replace_all(json, "<", "\\u003c") + "</script>";
+}
+
+/// Longer texts of a cell may be broken.
+constexpr std::size_t kLongText = 40;
+
+/// Lines below the first stand smaller.
+std::string make_cell(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string::npos) return escape_html(text);
+  return escape_html(text.substr(0, end)) + "<br><small>" + escape_html(text.substr(end + 1)) +
+         "</small>";
+}
+
+std::string make_cells(const std::vector<std::string>& cells, const std::string& tag,
+                       std::size_t text_columns) {
+  std::string text = "<tr>";
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    std::string classes = c < text_columns ? "word" : "";
+    if (cells[c].size() > kLongText) classes += " long";
+    text += "<" + tag + (classes.empty() ? ">" : " class=\"" + classes + "\">") +
+            make_cell(cells[c]) + "</" + tag + ">";
+  }
+  return text + "</tr>\n";
+}
+
+std::string make_table(const ReportTable& table) {
+  std::string text = "<div class=\"wide\"><table>\n<caption>" + escape_html(table.caption) +
+                     "</caption>\n<thead>" + make_cells(table.header, "th", table.text_columns) +
+                     "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) text += make_cells(row, "td", table.text_columns);
+  text += "</tbody></table>\n";
+  for (const std::string& note : table.notes) {
+    text += "<p class=\"note\">" + escape_html(note) + "</p>\n";
+  }
+  return text + "</div>\n";
+}
+
+std::string make_paragraphs(const std::vector<std::string>& paragraphs) {
+  std::string text;
+  for (const std::string& p : paragraphs) text += "<p>" + escape_html(p) + "</p>\n";
+  return text;
+}
+
+std::string make_links(const std::vector<std::string>& files) {
+  std::string text;
+  for (const std::string& file : files) {
+    text += " <a href=\"" + escape_html(file) + "\">" +
+            escape_html(file.substr(file.find_last_of('.') + 1)) + "</a>";
+  }
+  return text;
+}
+
+std::string make_figure(const ReportFigure& figure) {
+  return "<figure id=\"figure-" + escape_html(figure.name) + "\">\n<div class=\"chart\">" +
+         make_json_element(figure.chart) +
+         "<noscript>The chart needs JavaScript; its numbers, and where gnuplot was there its " +
+         "picture, are linked below.</noscript></div><figcaption>" + escape_html(figure.caption) +
+         make_links(figure.files) + "</figcaption>\n</figure>\n";
+}
+
+std::string make_motion_figure(const ReportMotion& motion) {
+  return "<figure>\n<div class=\"motion\">" + make_json_element(motion.scene) +
+         "<noscript>The moving picture needs JavaScript.</noscript></div><figcaption>" +
+         escape_html(motion.caption) + "</figcaption>\n</figure>\n";
+}
+
+std::string make_contents(const std::vector<ReportSection>& sections) {
+  std::string text = "<nav><ul>\n";
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    text += "<li><a href=\"#part" + std::to_string(s + 1) + "\">" +
+            escape_html(sections[s].heading) + "</a></li>\n";
+  }
+  return text + "</ul></nav>\n";
+}
+
+std::string make_section(const ReportSection& section, const std::string& id) {
+  std::string text = section.motions.empty() ? "<section>" : "<section class=\"beside\">";
+  text += "\n<h2 id=\"" + id + "\">" + escape_html(section.heading) + "</h2>\n" +
+          make_paragraphs(section.paragraphs);
+  for (const ReportMotion& motion : section.motions) text += make_motion_figure(motion);
+  for (const ReportTable& table : section.tables) text += make_table(table);
+  for (const ReportFigure& figure : section.figures) text += make_figure(figure);
+  return text + "</section>\n";
+}
+
+/// What of a page needs scripts.
+struct Moving {
+  bool charts = false, charts_3d = false, motions = false;
+};
+
+Moving find_moving(const ReportPage& page) {
+  Moving found;
+  for (const ReportSection& section : page.sections) {
+    found.motions = found.motions || !section.motions.empty();
+    for (const ReportFigure& figure : section.figures) {
+      found.charts = true;
+      if (figure.is_3d()) found.charts_3d = true;
+    }
+  }
+  return found;
+}
+
+std::string make_script(std::string_view code) {
+  return "<script>\n" + std::string(code) + "\n</script>\n";
+}
+
+/// Both bundles of plotly.js name themselves Plotly, so the first steps aside.
+std::string make_scripts(const ReportPage& page) {
+  const Moving moving = find_moving(page);
+  std::string text;
+  if (moving.charts_3d) {
+    text += make_script(embedded::plotly_gl3d_min_js) +
+            make_script("window.PlotlyThreeD = window.Plotly;");
+  }
+  if (moving.charts) text += make_script(embedded::plotly_cartesian_min_js);
+  if (moving.charts) text += make_script(embedded::page_js);
+  if (moving.motions) return text + make_script(embedded::motion_js);
+  if (moving.charts) text += make_script("drawAll();");
+  return text;
+}
+
+std::string make_footer(const ReportPage& page) {
+  std::string text = "<footer>" + escape_html(page.footer);
+  if (find_moving(page).charts) {
+    text += "<details><summary>Charts by plotly.js, whose license is</summary><pre>" +
+            escape_html(std::string(embedded::LICENSE)) + "</pre></details>";
+  }
+  return text + "</footer>\n";
+}
+
+}  // namespace
+
+bool ReportFigure::is_3d() const { return chart.find("\"three_d\": true") != std::string::npos; }
+
+std::string print_number(const char* format, double value) {
+  if (std::isnan(value)) return "";
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string format_short(double value) { return print_number("%.4g", value); }
+
+std::string format_percent(double share) { return print_number("%.2f %%", 100.0 * share); }
+
+std::string escape_html(const std::string& text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : make_valid_utf8(text)) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string make_html(const ReportPage& page) {
+  std::string text =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      // Charts of a folder from elsewhere may name pictures and styles on a network.
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+      escape_html(page.title) + "</title>\n<style>\n" + std::string(embedded::page_css) +
+      "</style>\n</head>\n<body>\n<h1>" + escape_html(page.title) + "</h1>\n" +
+      make_paragraphs(page.lead) + make_contents(page.sections);
+  for (std::size_t s = 0; s < page.sections.size(); ++s) {
+    text += make_section(page.sections[s], "part" + std::to_string(s + 1));
+  }
+  return text + make_footer(page) + make_scripts(page) + "</body>\n</html>\n";
+}
+
+std::string make_text(const ReportTable& table) {
+  std::vector<std::size_t> widths(table.header.size(), 0);
+  const auto widen = [&](const std::vector<std::string>& row) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  };
+  widen(table.header);
+  for (const auto& row : table.rows) widen(row);
+  std::string text = table.caption + "\n";
+  const auto add = [&](const std::vector<std::string>& row) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string pad(widths[c] - row[c].size(), ' ');
+      line += (c == 0 ? "" : "  ") + (c < table.text_columns ? row[c] + pad : pad + row[c]);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  };
+  add(table.header);
+  for (const auto& row : table.rows) add(row);
+  for (const std::string& note : table.notes) text += note + "\n";
+  return text;
+}
+
+}  // namespace strut

@@ -1,0 +1,247 @@
+#include "report/page_file.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "base/error/input_error.h"
+#include "base/text/shorten.h"
+#include "io/file/atomic_file.h"
+#include "report/figures.h"
+#include "report/json.h"
+#include "report/read_json.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Tree = JsonTree;
+
+/// Of each element what `make` makes of it.
+template <class T, class Make>
+Json make_list(const std::vector<T>& elements, const Make& make) {
+  Json list = Json::array();
+  for (const T& element : elements) list.push(make(element));
+  return list;
+}
+
+Json make_table_json(const ReportTable& table) {
+  return Json::object()
+      .set("caption", table.caption)
+      .set("header", Json::texts(table.header))
+      .set("rows", make_list(table.rows, &Json::texts))
+      .set("notes", Json::texts(table.notes))
+      .set("text_columns", static_cast<long>(table.text_columns));
+}
+
+/// A figure or a motion, whose content stands in a file of its name.
+template <class T>
+Json make_named(const T& figure) {
+  return Json::object().set("name", figure.name).set("caption", figure.caption);
+}
+
+Json make_section_json(const ReportSection& section) {
+  return Json::object()
+      .set("heading", section.heading)
+      .set("paragraphs", Json::texts(section.paragraphs))
+      .set("tables", make_list(section.tables, &make_table_json))
+      .set("figures", make_list(section.figures, &make_named<ReportFigure>))
+      .set("motions", make_list(section.motions, &make_named<ReportMotion>));
+}
+
+Json make_page_json(const ReportPage& page) {
+  return Json::object()
+      .set("of", page.of)
+      .set("title", page.title)
+      .set("lead", Json::texts(page.lead))
+      .set("sections", make_list(page.sections, &make_section_json))
+      .set("tables", Json::texts(page.tables))
+      .set("footer", page.footer);
+}
+
+/// The elements of a list, each read by `read`.
+template <class Read>
+auto read_list(const Tree& tree, const char* key, const Read& read) {
+  std::vector<decltype(read(tree))> list;
+  for (const auto& [name, element] : tree.get_child(key)) list.push_back(read(element));
+  return list;
+}
+
+std::string read_text(const Tree& tree) { return tree.data(); }
+
+std::vector<std::string> read_row(const Tree& tree) {
+  std::vector<std::string> row;
+  for (const auto& [name, element] : tree) row.push_back(element.data());
+  return row;
+}
+
+ReportTable read_table(const Tree& tree) {
+  return {tree.get<std::string>("caption"), read_list(tree, "header", &read_text),
+          read_list(tree, "rows", &read_row), read_list(tree, "notes", &read_text),
+          tree.get<std::size_t>("text_columns")};
+}
+
+/// Names of the figures and tables of comparisons, diagnoses and simulated runs, but those of one
+/// recording, which are run_NUMBER_...: nothing else is removed for what a report.json says.
+constexpr std::array<const char*, 9> kNames = {"channels",      "curves", "force_law",
+                                               "force_map",     "gain",   "motion",
+                                               "probabilities", "states", "balance"};
+
+bool is_page_name(const std::string& name) {
+  constexpr std::string_view kRun = "run_";
+  const std::size_t end = name.find_first_not_of("0123456789", kRun.size());
+  const bool is_of_run =
+      name.starts_with(kRun) && end != std::string::npos && end > kRun.size() && name[end] == '_';
+  return is_figure_name(name) &&
+         (is_of_run || std::find(kNames.begin(), kNames.end(), name) != kNames.end());
+}
+
+/// What a page is written of, a later one can remove.
+void check_names(const ReportPage& page) {
+  const auto check = [](const std::string& name) {
+    if (!is_page_name(name)) throw std::logic_error("report: '" + name + "' is not in kNames");
+  };
+  for (const std::string& table : page.tables) check(table);
+  for (const ReportSection& section : page.sections) {
+    for (const ReportFigure& figure : section.figures) check(figure.name);
+    for (const ReportMotion& motion : section.motions) check(motion.name);
+  }
+}
+
+/// The files that the folder's page names.
+std::vector<fs::path> list_files(const PageFolder& folder, const Tree& page) {
+  std::vector<fs::path> files;
+  for (const std::string& name : read_list(page, "tables", &read_text)) {
+    if (is_page_name(name)) files.push_back(folder.table(name));
+  }
+  const auto add_figures = [&](const Tree& list, const std::vector<const char*>& ends) {
+    for (const auto& [key, figure] : list) {
+      const auto name = figure.get<std::string>("name");
+      for (const char* end : ends) {
+        if (is_page_name(name)) files.push_back(folder.figures() / (name + end));
+      }
+    }
+  };
+  for (const auto& [key, section] : page.get_child("sections")) {
+    add_figures(section.get_child("figures"), {".csv", ".gp", ".json", ".svg"});
+    add_figures(section.get_child("motions"), {".json"});
+  }
+  return files;
+}
+
+/// What an earlier command left in a folder.
+struct EarlierPage {
+  std::string of;               // "": there is no page of ours
+  std::vector<fs::path> files;  // beside it
+};
+
+EarlierPage read_earlier_page(const PageFolder& folder) {
+  try {
+    if (!fs::exists(folder.page())) return {};
+    const Tree page = read_json(folder.page());
+    return {page.get<std::string>("of"), list_files(folder, page)};
+  } catch (const boost::property_tree::ptree_error&) {
+    return {};
+  }
+}
+
+/// Each figure stands in a page once: a small file could else name a large one without end.
+void refuse_repeated(const PageFolder& folder, const Tree& page) {
+  std::set<std::string> names;
+  for (const auto& [key, section] : page.get_child("sections")) {
+    for (const char* list : {"figures", "motions"}) {
+      for (const auto& [index, figure] : section.get_child(list)) {
+        const auto name = figure.get<std::string>("name");
+        if (!names.insert(name).second) {
+          throw InputError(folder.page().string() + ": figure '" + shorten(name) +
+                           "': named twice; must be as strut wrote it");
+        }
+      }
+    }
+  }
+}
+
+ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
+  ReportPage page;
+  page.of = tree.get<std::string>("of");
+  page.title = tree.get<std::string>("title");
+  page.lead = read_list(tree, "lead", &read_text);
+  page.footer = tree.get<std::string>("footer");
+  page.tables = read_list(tree, "tables", &read_text);
+  page.sections = read_list(tree, "sections", [&](const Tree& section) {
+    return ReportSection{section.get<std::string>("heading"),
+                         read_list(section, "paragraphs", &read_text),
+                         read_list(section, "tables", &read_table),
+                         read_list(section, "figures",
+                                   [&](const Tree& figure) {
+                                     return drawer.read_again(figure.get<std::string>("name"),
+                                                              figure.get<std::string>("caption"));
+                                   }),
+                         read_list(section, "motions", [&](const Tree& motion) {
+                           return drawer.read_motion_again(motion.get<std::string>("name"),
+                                                           motion.get<std::string>("caption"));
+                         })};
+  });
+  return page;
+}
+
+}  // namespace
+
+void check_page_folder(const std::string& option, const PageFolder& folder,
+                       const FolderContent& content, const std::vector<fs::path>& files) {
+  // Links are refused before anything is calculated, and before an earlier page is removed.
+  if (fs::exists(folder.root))
+    Folder(folder.root).find_folder(folder.figures().filename().string());
+  const std::string start = "--" + option + " = " + folder.root.string() + ": holds ";
+  const FolderContent* other = find_content(folder.root);
+  if (other != nullptr && other != &content && other != &kRunContent) {
+    throw InputError(start + "a " + other->name + " (" + other->file + "); must be another folder");
+  }
+  const std::string of = read_earlier_page(folder).of;
+  if (of == content.name) return;  // all such files are its own
+  if (!of.empty()) throw InputError(start + "the report of a " + of + "; must be another folder");
+  std::vector<fs::path> written = files;
+  written.insert(written.end(), {folder.report(), folder.page()});
+  if (fs::exists(folder.figures()) && !fs::is_empty(folder.figures())) {
+    written.push_back(folder.figures());
+  }
+  for (const fs::path& file : written) {
+    if (fs::exists(file)) {
+      throw InputError(start + file.filename().string() + ", which is not of an earlier " +
+                       content.name + "; must be another folder");
+    }
+  }
+}
+
+void clear_page_folder(const PageFolder& folder, const std::filesystem::path& marker) {
+  folder.make();
+  const EarlierPage earlier = read_earlier_page(folder);
+  remove_file_inside(folder.root, marker);
+  for (const fs::path& file : earlier.files) remove_file_inside(folder.root, file);
+  remove_file_inside(folder.root, folder.report());
+  remove_file_inside(folder.root, folder.page());
+}
+
+void write_page(const PageFolder& folder, const ReportPage& page) {
+  check_names(page);
+  folder.make();
+  write_text_file_inside(folder.root, folder.page(), make_page_json(page).dump() + "\n");
+  write_text_file_inside(folder.root, folder.report(), make_html(page));
+}
+
+void write_page_again(const PageFolder& folder) {
+  try {
+    const Tree tree = read_json(folder.page());
+    refuse_repeated(folder, tree);
+    const FigureDrawer drawer(Folder(folder.root));
+    write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));
+  } catch (const boost::property_tree::ptree_error& e) {
+    throw InputError(folder.page().string() + ": " + e.what() +
+                     "; must be as strut compare, diagnose or simulate wrote it");
+  }
+}
+
+}  // namespace strut

@@ -1,0 +1,14 @@
+// Charts for plotly.js, which draws them on a page.
+#pragma once
+
+#include "report/chart.h"
+#include "report/json.h"
+
+namespace strut {
+
+/// {"name", "height" [px], "three_d", "data", "layout"}: plotly.js's traces and layout. Colors of
+/// the page's text are the word "ink", which the page replaces as it is light or dark. Numbers have
+/// seven digits, more than is seen.
+Json make_plotly(const Chart& chart);
+
+}  // namespace strut

@@ -1,0 +1,70 @@
+// The judge of models: runs held out, by one noise for all.
+#include "diagnose/noise/hold_out.h"
+
+#include <catch2/catch.hpp>
+
+#include "diagnose/noise/whitened_fit.h"
+#include "tests/support/campaign_files.h"
+#include "tests/support/tolerance.h"
+
+namespace strut {
+namespace {
+
+struct Judged {
+  CampaignData data;
+  WhitenedFit base;
+};
+
+/// Two runs of a quarter car, the first fitted.
+Judged fit_base() {
+  const test::TemporaryFolder folder;
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  test::write_two_runs(folder, truth);
+  CampaignData data = read_campaign_data(test::write_campaign(folder));
+  const Baseline baseline = calibrate_baseline(data);
+  WhitenedFit base =
+      fit_whitened(data, baseline.runs, measure_noise(data, baseline), baseline.fit.unknowns,
+                   baseline.fit.values, baseline.shared_count(), 1);
+  return {std::move(data), std::move(base)};
+}
+
+TEST_CASE("A model that lacks nothing leaves noise on the runs held out, a wrong one more",
+          "[unit]") {
+  const Judged j = fit_base();
+  const HoldOutJudge judge(j.data, j.base, 1);
+  SharedValues shared = j.base.shared();
+  const HoldOutRun right = judge.judge(shared).front();
+  REQUIRE(right.failure.empty());
+  CHECK(right.run == 1);
+  CHECK(right.chi2 == Approx(right.expected).epsilon(test::tolerance(0.1)));
+  shared.values[1] *= 1.02;
+  const HoldOutRun wrong = judge.judge(shared).front();
+  CHECK(wrong.chi2 > 1.2 * right.chi2);
+  // By one noise the odds are those of chi2 alone.
+  CHECK(wrong.log_likelihood - right.log_likelihood ==
+        Approx(0.5 * (right.chi2 - wrong.chi2)).epsilon(test::tolerance(1e-12)));
+}
+
+TEST_CASE("Runs held out have the noise of those that were fitted", "[unit]") {
+  Judged j = fit_base();
+  const std::size_t band = find_noise_band(5.0);
+  j.base.spectra.front().excess[band] = 3.0;
+  j.base.spectra.front().level = 0.7;
+  j.base.spectra.front().response_error = 0.1;
+  const HoldOutJudge judge(j.data, j.base, 1);
+  CHECK(judge.get_noise(0).excess[band] == 3.0);
+  CHECK(judge.get_noise(0).level == 0.7);
+  CHECK(judge.get_noise(0).response_error == 0.1);
+}
+
+TEST_CASE("A run held out that a model cannot do says so, and is no end of a diagnosis", "[unit]") {
+  const Judged j = fit_base();
+  SharedValues shared = j.base.shared();
+  shared.values[1] = -1e9;
+  const std::vector<HoldOutRun> judged = HoldOutJudge(j.data, j.base, 1).judge(shared);
+  CHECK_FALSE(judged.front().failure.empty());
+}
+
+}  // namespace
+}  // namespace strut

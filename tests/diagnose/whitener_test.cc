@@ -1,0 +1,182 @@
+// Whitened readings: numbers of variance 1, whatever the noise of the channels has in common.
+#include "diagnose/noise/whitener.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "tests/support/campaign_files.h"
+#include "tests/support/tolerance.h"
+
+namespace strut {
+namespace {
+
+constexpr std::size_t kSamples = 240, kChannels = 3;
+constexpr double kInterval = 0.01;  // s
+
+/// Readings that are the unknown itself, a constant in every channel.
+class ConstantModel : public ReadingModel {
+ public:
+  /// `kept`: of the last channel only every so-manieth sample was read.
+  explicit ConstantModel(std::size_t runs, std::size_t kept = 1) : ReadingModel({Unknown{}}) {
+    unknowns_.front().name = "constant";
+    for (std::size_t r = 0; r < runs; ++r) {
+      channels_.push_back({0, 1, 2});
+      for (std::size_t t = 0; t < kSamples; ++t) {
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          if (c + 1 < kChannels || t % kept == 0) readings_.push_back({r, t, c});
+        }
+      }
+    }
+  }
+  Linearization linearize(const std::vector<double>& values) override {
+    Linearization at;
+    const auto rows = static_cast<Eigen::Index>(reading_count());
+    at.residual = Eigen::VectorXd::Constant(rows, values.front());
+    at.jacobian = Eigen::MatrixXd::Ones(rows, 1);
+    return at;
+  }
+  using ReadingModel::evaluate;
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override {
+    std::vector<Evaluation> evaluations;
+    evaluations.reserve(points.size());
+    for (const std::vector<double>& p : points) evaluations.push_back({"", linearize(p).residual});
+    return evaluations;
+  }
+};
+
+/// What one source does to a channel: late by the channel's number of samples, and weighed.
+double get_weight(std::size_t channel) { return 3.0 + 2.0 * static_cast<double>(channel); }
+
+NoiseSpectrum make_spectrum() {
+  NoiseSpectrum s;
+  s.samples = kSamples;
+  s.interval = kInterval;
+  s.sigma = {1.0, 1.0, 1.0};
+  s.response_error = 0.0;
+  Eigen::MatrixXcd source(kChannels, kSamples / 2 + 1);
+  for (Eigen::Index k = 0; k < source.cols(); ++k) {
+    for (Eigen::Index c = 0; c < source.rows(); ++c) {
+      const double phase = -2.0 * std::numbers::pi * static_cast<double>(k * c) / kSamples;
+      source(c, k) = std::polar(get_weight(static_cast<std::size_t>(c)), phase);
+    }
+  }
+  for (Eigen::Index k = 0; k < source.cols(); ++k) {
+    s.common.emplace_back(source.col(k) * source.col(k).adjoint());
+  }
+  return s;
+}
+
+/// Sensor noise and the source's, drawn over time; periodic, as the transform has it.
+Eigen::VectorXd draw_noise(std::size_t runs) {
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(runs * kSamples * kChannels));
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < runs; ++r) {
+    for (std::size_t t = 0; t < kSamples; ++t) {
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const std::size_t earlier = (t + kSamples - c) % kSamples;
+        noise(row++) = test::calc_test_normal(r, c, t) +
+                       get_weight(c) * test::calc_test_normal(r, 99, earlier);
+      }
+    }
+  }
+  return noise;
+}
+
+TEST_CASE("Whitened noise has variance one in every channel, whatever its source", "[unit]") {
+  constexpr std::size_t kRuns = 40;
+  const ConstantModel model(kRuns);
+  const Whitener whitener(model, std::vector<NoiseSpectrum>(kRuns, make_spectrum()));
+  REQUIRE(whitener.whitened_count() == kRuns * kSamples * kChannels);
+  const Eigen::VectorXd whitened = whitener.apply(draw_noise(kRuns));
+  std::vector<double> squares(kChannels, 0.0), counts(kChannels, 0.0);
+  for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {
+    const double w = whitened(static_cast<Eigen::Index>(i));
+    squares[whitener.places()[i].channel] += w * w;
+    ++counts[whitener.places()[i].channel];
+  }
+  // 9600 numbers a channel: 1 sigma of the mean square is 1.4 %.
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    CHECK(squares[c] / counts[c] == Approx(1.0).margin(test::tolerance(0.06)));
+  }
+}
+
+TEST_CASE("Without sources whitening keeps every sum of squares", "[unit]") {
+  const ConstantModel model(2);
+  std::vector<NoiseSpectrum> spectra(2, make_spectrum());
+  for (NoiseSpectrum& s : spectra) s.common.clear();
+  const Whitener whitener(model, spectra);
+  const Eigen::VectorXd noise = draw_noise(2);
+  const Eigen::VectorXd whitened = whitener.apply(noise);
+  CHECK(whitened.squaredNorm() == Approx(noise.squaredNorm()).epsilon(test::tolerance(1e-12)));
+  CHECK(whitener.calc_log_likelihood(whitened, 0) + whitener.calc_log_likelihood(whitened, 1) ==
+        Approx(-0.5 * noise.squaredNorm()).epsilon(test::tolerance(1e-12)));
+}
+
+TEST_CASE("What all channels see of a source weighs little, the rest as much as sensors allow",
+          "[unit]") {
+  const ConstantModel model(1);
+  const Whitener whitener(model, {make_spectrum()});
+  // As the source moves the channels, and across it.
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(kSamples * kChannels, 2);
+  for (std::size_t t = 0; t < kSamples; ++t) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      const double phase = 2.0 * std::numbers::pi * 10.0 *
+                           (static_cast<double>(t) - static_cast<double>(c)) / kSamples;
+      const auto row = static_cast<Eigen::Index>(t * kChannels + c);
+      columns(row, 0) = get_weight(c) * std::cos(phase);
+      if (c < 2) columns(row, 1) = (c == 0 ? get_weight(1) : -get_weight(0)) * std::cos(phase);
+    }
+  }
+  const Eigen::MatrixXd whitened = whitener.apply(columns);
+  const double power = 9.0 + 25.0 + 49.0;
+  CHECK(whitened.col(0).squaredNorm() ==
+        Approx(columns.col(0).squaredNorm() / (1.0 + power)).epsilon(test::tolerance(1e-9)));
+  CHECK(whitened.col(1).squaredNorm() ==
+        Approx(columns.col(1).squaredNorm()).epsilon(test::tolerance(1e-9)));
+}
+
+TEST_CASE("Noise that a spectrum does not know is counted by run and band", "[unit]") {
+  constexpr std::size_t kRuns = 2;
+  const ConstantModel model(kRuns);
+  std::vector<NoiseSpectrum> spectra(kRuns, make_spectrum());
+  for (NoiseSpectrum& s : spectra) s.common.clear();
+  const Whitener whitener(model, spectra);
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(kRuns * kSamples * kChannels));
+  for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    const bool second = i >= noise.size() / 2;
+    noise(i) = (second ? 3.0 : 1.0) * test::calc_test_normal(5, 0, static_cast<std::uint64_t>(i));
+  }
+  count_excess(whitener, whitener.apply(noise), spectra);
+  const std::size_t band = find_noise_band(30.0);
+  CHECK(spectra[0].excess[band] == Approx(1.0).margin(test::tolerance(0.2)));
+  CHECK(spectra[1].excess[band] == Approx(9.0).margin(test::tolerance(1.8)));
+}
+
+TEST_CASE("Missing readings are no noise that is smaller than it should be", "[unit]") {
+  constexpr std::size_t kRuns = 20;
+  const ConstantModel model(kRuns, 5);
+  std::vector<NoiseSpectrum> spectra(kRuns, make_spectrum());
+  for (NoiseSpectrum& s : spectra) s.common.clear();
+  const Whitener whitener(model, spectra);
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(model.reading_count()));
+  for (Eigen::Index i = 0; i < noise.size(); ++i) {
+    noise(i) = test::calc_test_normal(6, 0, static_cast<std::uint64_t>(i));
+  }
+  CHECK(whitener.get_share(0) == Approx((2.0 + 0.2) / 3.0).epsilon(test::tolerance(1e-12)));
+  const double mean =
+      whitener.apply(noise).squaredNorm() / static_cast<double>(whitener.whitened_count());
+  CHECK(mean == Approx(whitener.get_share(0)).epsilon(test::tolerance(0.05)));
+}
+
+TEST_CASE("Quick lengths are even and of small factors", "[unit]") {
+  CHECK(find_quick_length(1500) == 1500);
+  CHECK(find_quick_length(1501) == 1500);
+  CHECK(find_quick_length(1999) == 1944);
+  CHECK(find_quick_length(2) == 2);
+}
+
+}  // namespace
+}  // namespace strut

@@ -1,0 +1,93 @@
+#include "io/file/file_seal.h"
+
+#include <catch2/catch.hpp>
+
+#include "io/file/sha256.h"
+#include "io/format/hdf5.h"
+#include "io/format/hdf5_stream.h"
+#include "tests/support/flip_bits.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::TemporaryFolder;
+namespace fs = std::filesystem;
+
+const SealLabel kLabel = {kMergedSeal, {{"plan", std::string(64, 'a')}}};
+
+fs::path write_streamed(const TemporaryFolder& folder) {
+  Hdf5StreamWriter file(folder / "streamed.h5", kLabel);
+  file.create("/x", Hdf5Type::kDouble, {3}, {"m", "", {}});
+  file.append("/x", std::vector<double>{1.0, 2.0, 3.0});
+  file.commit();
+  return folder / "streamed.h5";
+}
+
+TEST_CASE("A seal is the text that the documents describe", "[io][reference]") {
+  const TemporaryFolder folder;
+  const std::string text = test::read_text(write_streamed(folder));
+  const std::string lines = "strut merged seal 1\nplan " + std::string(64, 'a') + "\nsize " +
+                            std::to_string(text.size()) + "\nsha256 " +
+                            to_hex(calc_sha256(text.substr(kSealBytes))) + "\n";
+  std::string seal = lines + "seal " + to_hex(calc_sha256(lines)) + "\n";
+  seal.resize(kSealBytes, '\0');
+  CHECK(text.substr(0, kSealBytes) == seal);
+}
+
+TEST_CASE("A file sealed in memory and one sealed on disk are read alike", "[io]") {
+  const TemporaryFolder folder;
+  Hdf5Writer writer(folder / "written.h5", {.seal = kLabel});
+  writer.write("/x", std::vector<double>{1.0, 2.0, 3.0}, {"m", "", {}});
+  writer.commit();
+  for (const fs::path& path : {folder / "written.h5", write_streamed(folder)}) {
+    INFO(path);
+    CHECK(is_sealed(path));
+    CHECK(find_seal_kind(path) == "merged");
+    const SealedBytes sealed = read_sealed(path, kMergedSeal);
+    CHECK(sealed.seal.get("plan") == std::string(64, 'a'));
+    CHECK(sealed.seal.get("shard").empty());
+    CHECK(sealed.bytes.size() == fs::file_size(path));
+    CHECK(check_sealed_file(path, kMergedSeal).fault.empty());
+    CHECK(Hdf5Reader(path, kMergedSeal).read("/x").values == std::vector<double>{1.0, 2.0, 3.0});
+    CHECK(Hdf5Reader(path).read("/x").values.size() == 3);  // as other tools do
+  }
+}
+
+TEST_CASE("Every flipped bit of a sealed file is found with reason and remedy", "[io][property]") {
+  const TemporaryFolder folder;
+  const fs::path path = write_streamed(folder);
+  const std::string remedy = "`strut merge DIR -o FILE --force` makes it anew";
+  CHECK(test::count_missed_flips(
+            path, [&] { Hdf5Reader(path, kMergedSeal); }, remedy) == 0);
+  const auto check = [&] { require_sound(path, check_sealed_file(path, kMergedSeal)); };
+  CHECK(test::count_missed_flips(path, check, remedy) == 0);
+}
+
+TEST_CASE("A sealed file of another kind, cut short or extended is refused", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path path = write_streamed(folder);
+  CHECK_THROWS_WITH(Hdf5Reader(path, kModelSeal),
+                    Contains("streamed.h5: no model file of strut, but sealed as merged"));
+  const std::uintmax_t size = fs::file_size(path);
+  for (const std::uintmax_t other :
+       {std::uintmax_t{0}, std::uintmax_t{511}, std::uintmax_t{512}, size - 1, size + 1}) {
+    INFO(other);
+    write_streamed(folder);
+    fs::resize_file(path, other);
+    CHECK_THROWS_WITH(Hdf5Reader(path, kMergedSeal), Contains("streamed.h5: damaged"));
+    if (other <= 512) continue;  // no seal left that could tell, or nothing behind it
+    CHECK_THROWS_WITH(
+        Hdf5Reader(path, kMergedSeal),
+        Contains("has " + std::to_string(other) + " bytes, was " + std::to_string(size)));
+  }
+}
+
+TEST_CASE("A seal whose lines do not fit is a mistake of the program", "[unit]") {
+  std::vector<std::byte> image(1024);
+  CHECK_THROWS_AS(seal_image({kPlanSeal, {{"plan", std::string(400, 'a')}}}, image),
+                  std::logic_error);
+}
+
+}  // namespace
+}  // namespace strut

@@ -1,0 +1,418 @@
+// Charts in their three forms, pages that show them, and a car in motion.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <tuple>
+
+#include "io/file/atomic_file.h"
+#include "jobs/simulate/motion.h"
+#include "report/chart_csv.h"
+#include "report/figures.h"
+#include "report/gnuplot.h"
+#include "report/plotly.h"
+#include "tests/jobs/check_page.h"
+#include "tests/jobs/parse_json.h"
+#include "tests/jobs/run_program.h"
+#include "tests/support/tolerance.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::TemporaryFolder;
+namespace fs = std::filesystem;
+
+const double kNan = std::nan("");
+
+/// A chart with a series of every kind but those of three dimensions, and names that need care.
+Chart make_plain_chart() {
+  Chart chart{"plain", {}, 2};
+  chart.caption = "Every <kind>";
+  chart.panels = {
+      {{"x [m]"},
+       {"y's \"label\" [N]"},
+       {{"line", SeriesKind::kLine, 1, {0.0, 1.0, 2.0}, {0.1, kNan, -2e-9}},
+        {"dashed", SeriesKind::kDashedLine, kInk, {0.0, 2.0}, {1.0, 2.0}},
+        {"band", SeriesKind::kBand, 6, {0.0, 1.0}, {}, {0.0, 0.1}, {1.0, 1.1}}},
+       "Title </script>"},
+      {{"", false, {"a", "b's"}, {0.5, 2.5}},
+       {"log", true},
+       {{"bars", SeriesKind::kBars, 3, {1.0, 2.0}, {10.0, 20.0}, {5.0, 15.0}, {20.0, 30.0}},
+        {"line", SeriesKind::kPoints, 1, {1.0, 2.0}, {12.0, 2.0}}}},
+      {{"", false, {"one"}},
+       {"boxes", true},
+       {{"", SeriesKind::kBoxes, 1, {1.0, 1.0, 1.0, 1.0}, {1.0, 2.0, 3.0, 400.0}}}},
+      {{"nothing"}, {""}, {{"empty", SeriesKind::kLinePoints, 2}}},
+      {{"x"}, {"no logarithm", true}, {{"zero", SeriesKind::kBars, 4, {1.0, 2.0}, {0.0, 0.0}}}}};
+  return chart;
+}
+
+Chart make_deep_chart() {
+  ChartSeries points{"points", SeriesKind::kPoints3d, 2, {1.0, 2.0, 3.0}, {4.0, 5.0, 7.0}};
+  points.z = {0.1, 0.2, 0.4};
+  points.marker = Marker::kCross;
+  return {"deep", {{{"a"}, {"b"}, {points}, "deep", {"c"}}}};
+}
+
+std::string add_script(std::string page, const std::string& script) {
+  return page.insert(page.rfind("</body>"), "<script>" + script + "</script>\n");
+}
+
+/// Complains of a picture of the car that its motion denies; y of a picture points down. check_page
+/// counts the paragraph as a motion, which is drawn when the script has come to its end.
+constexpr const char* kCheckMotion = R"(</script><p class="motion"></p><script>
+const waiting = setInterval(() => {
+  const root = document.querySelector("div.motion[data-motion]");
+  if (!root) return;
+  clearInterval(waiting);
+  const scene = JSON.parse(root.querySelector("script").textContent);
+  const [slider, scale] = [root.querySelector("input"), root.querySelector("select")];
+  const expect = (holds, ...words) => holds || console.error(slider.value, scale.value, ...words);
+  const isNear = (a, b, width) => Math.abs(a - b) < width;
+  const readPoints = (shape) => shape.getAttribute("points").trim().split(" ").map((p) => p.split(",").map(Number));
+  const readCircle = (circle) => ["cx", "cy", "r"].map((key) => Number(circle.getAttribute(key)));
+  const isDashed = (shape) => shape.hasAttribute("stroke-dasharray");
+  const read = (at = root) => {
+    const rims = [...at.querySelectorAll("circle")].filter((circle) => readCircle(circle)[2] > 0.2);
+    const [road, ...springs] = [...at.querySelectorAll("polyline")];
+    return {wheels: rims.map(readCircle), dashed: [road, ...rims].map(isDashed), road: readPoints(road),
+            springs: springs.map(readPoints), body: readPoints(at.querySelector("polygon"))};
+  };
+  const show = (frame, times) => {
+    scale.value = times;
+    scale.dispatchEvent(new Event("change"));
+    slider.value = frame;
+    slider.dispatchEvent(new Event("input"));
+    return read();
+  };
+  const measure = (spring) => Math.hypot(...spring.at(-1).map((value, axis) => value - spring[0][axis]));
+
+  const first = read(), start = Number(slider.value);
+  expect(first.wheels.length === 4 && first.springs.length === 4, "shapes");
+  expect(JSON.stringify(first.dashed) === "[false,true,false,true,false]", "left wheels are beyond", first.dashed);
+  expect(scene.time[start] >= scene.snapshot_time && scene.time[start - 1] < scene.snapshot_time, "instant");
+  // As many frames as there are samples, a thousand a second.
+  expect(scene.time[start] - scene.time[start - 1] < 1.001e-3, "frames are dense about the bump");
+  // The snapshot is taken with the rear wheels on the bump's top: within a frame, 20 mm of way.
+  const top = first.road.reduce((a, b) => b[1] < a[1] ? b : a);
+  const rear = Math.min(...first.wheels.map(([x]) => x));
+  expect(isNear(rear, top[0], 0.025), "rear wheels are on the bump", rear, top);
+  for (const [x, y, r] of first.wheels) {
+    const ground = isNear(x, rear, 0.01) ? top[1] : 0;
+    expect(y + r > ground && y + r < ground + 0.05, "tires are pressed into the road", x, y + r, ground);
+  }
+
+  const down = scene.pitch.indexOf(Math.max(...scene.pitch));
+  expect(scene.pitch[down] > 0.005, "pitch");
+  const dive = show(down, 1).body;
+  const slope = (dive.at(-1)[1] - dive[0][1]) / (dive.at(-1)[0] - dive[0][0]);
+  expect(isNear(slope, Math.tan(scene.pitch[down]), 1e-4), "nose down", slope, scene.pitch[down]);
+
+  // Enlarged about the first instant; lines are drawn to a tenth of a millimeter.
+  const enlarge = (values, times) => values[0] + times * (values[down] - values[0]);
+  for (const times of [1, 3, 10]) {
+    const shown = show(down, times);
+    for (let corner = 0; corner < 4; ++corner) {
+      const axle = corner < 2 ? scene.front : scene.rear;
+      const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
+      expect(isNear(shown.wheels[corner][1], -enlarge(scene.wheel_height[corner], times), 1e-9), "wheel", corner);
+      expect(isNear(measure(shown.springs[corner]), length - enlarge(scene.deflection[corner], times), 3e-4), "spring", corner);
+    }
+  }
+
+  // A travel that enlarged would be longer than the spring: it stays below its mount.
+  const deep = document.createElement("div");
+  const text = document.createElement("script");
+  text.type = "application/json";
+  const far = scene.deflection.map((values) => values.map((value, frame) => value + (frame === start ? 0.2 : 0)));
+  text.textContent = JSON.stringify({...scene, deflection: far});
+  deep.append(text);
+  new MotionView(deep);
+  const choice = deep.querySelector("select");
+  choice.value = 10;
+  choice.dispatchEvent(new Event("change"));
+  for (const spring of read(deep).springs) expect(spring[0][1] < spring.at(-1)[1], "springs hang below their mounts");
+
+  document.querySelector("p.motion").dataset.motion = "drawn";
+}, 50);
+)";
+
+TEST_CASE("Every series of a chart becomes a trace with its numbers", "[unit]") {
+  const auto json = test::parse_json(make_plotly(make_plain_chart()).dump());
+  const auto& data = json.get_child("data");
+  REQUIRE(data.size() == 8);
+  auto trace = data.begin();
+  CHECK(trace->second.get<std::string>("yaxis") == "y");
+  auto y = trace->second.get_child("y").begin();
+  CHECK((y++)->second.data() == "0.1");
+  CHECK((y++)->second.data() == "null");  // a gap
+  CHECK(std::stod((y++)->second.data()) == -2e-9);
+  std::advance(trace, 3);
+  CHECK(trace->second.get<std::string>("type") == "bar");
+  CHECK(trace->second.get<std::string>("xaxis") == "x2");
+  CHECK(trace->second.get_child("error_y.array").begin()->second.data() == "10");
+  CHECK(trace->second.get_child("error_y.arrayminus").begin()->second.data() == "5");
+  ++trace;
+  CHECK(trace->second.get<std::string>("name") == "line");
+  CHECK(trace->second.get<std::string>("showlegend") == "false");  // it is there already
+  CHECK(json.get<std::string>("layout.yaxis2.type") == "log");
+  CHECK(json.get<std::string>("three_d") == "false");
+}
+
+TEST_CASE("Panels of a chart lie inside it and apart from each other", "[unit]") {
+  Chart chart = make_plain_chart();
+  chart.width = 620;
+  for (std::size_t p = 0; p < chart.panels.size(); ++p) {
+    const PanelPlace a = calc_place(chart, p);
+    CHECK(0.0 < a.left);
+    CHECK(a.left < a.right);
+    CHECK(a.right < 1.0);
+    CHECK(0.0 < a.bottom);
+    CHECK(a.bottom < a.top);
+    CHECK(a.top < 1.0);
+    for (std::size_t q = 0; q < p; ++q) {
+      const PanelPlace b = calc_place(chart, q);
+      CHECK((b.right < a.left || a.right < b.left || a.top < b.bottom || b.top < a.bottom));
+    }
+  }
+}
+
+TEST_CASE("A chart's numbers read back from its table", "[unit]") {
+  std::istringstream table(make_chart_csv(make_plain_chart()));
+  std::string line;
+  std::getline(table, line);
+  CHECK(line == "panel,series,category,x,y,low,high");
+  std::vector<std::string> lines;
+  while (std::getline(table, line)) lines.push_back(line);
+  REQUIRE(lines.size() == 3 + 2 + 2 + 2 + 2 + 4 + 2);
+  const std::string panel = "\"Title </script>: y's \"\"label\"\" [N] over x [m]\"";
+  CHECK(lines[0] == panel + ",\"line\",\"\",0,0.1,,");
+  CHECK(lines[1] == panel + ",\"line\",\"\",1,,,");
+  CHECK(lines[2] == panel + ",\"line\",\"\",2,-2e-09,,");
+  CHECK(lines[6] == panel + ",\"band\",\"\",1,,0.1,1.1");
+  CHECK(lines[8] == "\"log\",\"bars\",\"b's\",2,20,15,30");
+}
+
+TEST_CASE("A curve of few points keeps its peaks and its gaps", "[unit]") {
+  std::vector<double> x, y;
+  for (int i = 0; i < 10000; ++i) {
+    x.push_back(0.01 * i);
+    y.push_back(std::sin(0.001 * i));
+  }
+  y[4321] = 7.0;
+  y[8642] = -7.0;
+  y[5000] = kNan;
+  const ChartSeries curve = make_curve("c", SeriesKind::kLine, 1, x, y, 500);
+  CHECK(curve.x.size() == curve.y.size());
+  CHECK(curve.x.size() > 400);
+  CHECK(curve.x.size() <= 501);  // and the gap
+  CHECK(std::is_sorted(curve.x.begin(), curve.x.end()));
+  std::map<double, double> points;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) points[curve.x[i]] = curve.y[i];
+  CHECK(points.at(x[4321]) == 7.0);
+  CHECK(points.at(x[8642]) == -7.0);
+  CHECK(std::isnan(points.at(x[5000])));
+  for (const auto& [place, value] : points) {
+    CHECK((std::isnan(value) || value == y[static_cast<std::size_t>(std::lround(place / 0.01))]));
+  }
+  const ChartSeries whole = make_curve("c", SeriesKind::kLine, 1, {0, 1, 2}, {3, 5, 4}, 500);
+  CHECK(whole.y == std::vector<double>{3, 5, 4});
+}
+
+TEST_CASE("gnuplot draws every kind of series", "[io]") {
+  if (!has_gnuplot()) {
+    WARN("gnuplot is not there; not checked");
+    return;
+  }
+  for (const Chart& chart : {make_plain_chart(), make_deep_chart()}) {
+    const std::string picture = draw_picture(chart.name, make_gnuplot(chart));
+    CHECK_THAT(picture, Contains("</svg>"));
+    for (const ChartSeries* entry : chart.list_legend()) {
+      CHECK_THAT(picture, Contains(">" + entry->name + "<"));
+    }
+  }
+}
+
+TEST_CASE("A picture that gnuplot cannot draw is told with gnuplot's words", "[io]") {
+  if (!has_gnuplot()) {
+    WARN("gnuplot is not there; not checked");
+    return;
+  }
+  CHECK_THROWS_WITH(draw_picture("broken", "set terminal svg\nplot nonsense(\n"),
+                    Contains("picture broken: gnuplot failed"));
+}
+
+TEST_CASE("gnuplot runs nothing that a name says", "[io]") {
+  if (!has_gnuplot()) {
+    WARN("gnuplot is not there; not checked");
+    return;
+  }
+  const TemporaryFolder folder;
+  const std::string touch = "touch " + (folder / "PWNED").string();
+  for (const std::string& name :
+       {"`" + touch + "`", "'.system(\"" + touch + "\").'", "\nsystem(\"" + touch + "\")\n",
+        "' noenhanced\n!" + touch + "\nset title '", "@touch \\\n" + touch, "END\n!" + touch,
+        "\"`" + touch + "`\"", "\r\v!" + touch}) {
+    CAPTURE(name);
+    Chart chart = make_plain_chart();
+    chart.caption = name;
+    for (ChartPanel& panel : chart.panels) {
+      panel.title = panel.about = panel.x.label = panel.y.label = name;
+      for (std::string& category : panel.x.categories) category = name;
+      for (ChartSeries& series : panel.series) series.name = name;
+    }
+    CHECK_THAT(draw_picture(chart.name, make_gnuplot(chart)), Contains("</svg>"));
+    CHECK(folder.file_count() == 0);
+  }
+}
+
+TEST_CASE("A page shows charts of all kinds, flat and deep, and fetches nothing", "[io]") {
+  const TemporaryFolder folder;
+  const FigureDrawer drawer(Folder(folder / ""));
+  ReportSection section{"Charts </section>"};
+  drawer.draw_all({make_plain_chart(), make_deep_chart()}, section);
+  const ReportPage page{"Charts", {"Two of them."}, {section}, make_report_footer()};
+  const std::string text = make_html(page);
+  write_text_file(folder / "page.html", text);
+  test::check_page(folder / "page.html", 2);
+  CHECK_THAT(text, Contains("Every &lt;kind&gt;") && Contains("Title \\u003c/script>"));
+  CHECK_THAT(text,
+             Contains("href=\"figures/plain.csv\"") && Contains("Permission is hereby granted"));
+  for (const char* name : {"plain.csv", "deep.csv", "plain.json", "deep.gp"}) {
+    CHECK(fs::exists(folder / ("figures/" + std::string(name))));
+  }
+}
+
+TEST_CASE("The button of a chart saves its numbers", "[io]") {
+  const TemporaryFolder folder;
+  const FigureDrawer drawer(Folder(folder / ""));
+  ReportSection section{"Charts"};
+  Chart chart = make_plain_chart();
+  chart.panels.resize(2);
+  chart.panels[0].title = "";  // its tag is no end of the script below
+  drawer.draw_all({chart}, section);
+  std::string text = make_html({"Charts", {}, {section}, ""});
+  // A page that complains where its function says anything else.
+  text = add_script(text, R"(
+const wanted = ["panel,series,category,x,y,z,below,above",
+                '"y\'s ""label"" [N] over x [m]","line","",0,0.1,,,', '"y\'s ""label"" [N] over x [m]","line","",1,,,,'];
+const last = ['"log","bars","b\'s",2,20,,5,10', '"log","line","a",1,12,,,', '"log","line","b\'s",2,2,,,', ""];
+const lines = makeCsv()" + make_plotly(chart).dump() +
+                              R"().split("\n");
+if (JSON.stringify(lines.slice(0, 3)) !== JSON.stringify(wanted)) console.error(lines.slice(0, 3));
+if (JSON.stringify(lines.slice(-4)) !== JSON.stringify(last)) console.error(lines.slice(-4));
+)");
+  write_text_file(folder / "page.html", text);
+  test::check_page(folder / "page.html", 1);
+}
+
+TEST_CASE("A page without charts carries no library", "[unit]") {
+  const std::string text = make_html({"Words", {"Only words."}, {{"One"}}, "footer"});
+  CHECK_THAT(text, !Contains("<script") && !Contains("plotly"));
+  CHECK(text.size() < 10000);
+}
+
+std::string make_simulate_command(const std::string& maneuver, const fs::path& run,
+                                  const fs::path& report) {
+  return "simulate examples/vehicles/paper_sedan.toml examples/maneuvers/" + maneuver +
+         ".toml -o " + run.string() + " --report " + report.string();
+}
+
+TEST_CASE("A simulated run's report shows the car in motion beside its curves", "[io]") {
+  const TemporaryFolder folder;
+  const std::string out = folder / "report";
+  const test::Outcome run =
+      test::run_program(make_simulate_command("bump_20mps", folder / "run.csv", out));
+  REQUIRE(run.code == 0);
+
+  const auto scene = test::parse_json(test::read_text(out + "/figures/motion.json"));
+  const auto list = [&](const char* key) {
+    std::vector<double> values;
+    for (const auto& [name, value] : scene.get_child(key))
+      values.push_back(std::stod(value.data()));
+    return values;
+  };
+  // Table 1 of the paper has the distances in millimeters.
+  CHECK(list("front.wheel")[0] - list("rear.wheel")[0] ==
+        Approx(0.7209 + 2.0791).margin(test::tolerance(1e-4)));
+  // The car starts with its torque on, which lifts the nose by a few millimeters; wheels stay.
+  const double wheel =
+      std::stod(scene.get_child("wheel_height").front().second.front().second.data());
+  CHECK(wheel == Approx(scene.get<double>("nominal_height") + list("front.wheel")[1])
+                     .margin(test::tolerance(2e-3)));
+  CHECK(list("time").size() == list("height").size());
+
+  const std::string before = test::read_text(out + "/report.html");
+  fs::remove(out + "/report.html");
+  CHECK(test::run_program("report " + out).code == 0);
+  CHECK(test::read_text(out + "/report.html") == before);
+
+  write_text_file(folder / "page.html", add_script(before, kCheckMotion));
+  test::check_page(folder / "page.html", 1);
+}
+
+TEST_CASE("A run beside its report is no part of it", "[io]") {
+  const TemporaryFolder folder;
+  const std::string simulate = make_simulate_command("one_sided", folder / "run.csv", folder / "");
+  REQUIRE(test::run_program(simulate).code == 0);
+  CHECK_THAT(test::read_text(folder / "report.html"),
+             Contains("over a bump of 50 mm under the left wheels."));
+  CHECK_THAT(test::read_text(folder / "figures/motion.json"), Contains("\"road_side\": \"left\""));
+  CHECK_THAT(test::read_text(folder / "figures/curves.csv"),
+             Contains("\"height [m] over time [s]\""));
+  const std::string run = test::read_text(folder / "run.csv");
+  fs::remove(folder / "figures/motion.json");
+  folder.write("figures/motion.svg", "<svg/>\n");
+  folder.write("figures/curves.svg", "of other numbers\n");
+
+  const test::Outcome again = test::run_shell("PATH=" + std::string(folder / "nothing") +
+                                              " " STRUT_PROGRAM " " + simulate + " --force");
+  REQUIRE(again.code == 0);
+  CHECK_THAT(again.messages, Contains("gnuplot cannot be started"));
+  CHECK(test::read_text(folder / "run.csv") == run);
+  CHECK(test::read_text(folder / "figures/motion.svg") == "<svg/>\n");
+  CHECK_FALSE(fs::exists(folder / "figures/curves.svg"));
+  CHECK(fs::exists(folder / "figures/motion.json"));
+
+  const test::Outcome among = test::run_program(
+      make_simulate_command("one_sided", folder / "figures/curves.csv", folder / ""));
+  CHECK(among.code == 2);
+  CHECK_THAT(among.messages, Contains("among the figures of --report"));
+}
+
+TEST_CASE("A run's report replaces no page but an earlier run's", "[io]") {
+  const TemporaryFolder folder;
+  const std::string simulate = make_simulate_command("bump_20mps", folder / "run.csv", folder / "");
+  for (const char* name : {"report.html", "report.json"}) {
+    folder.write(name, "[1, 2]\n");
+    const test::Outcome outcome = test::run_program(simulate);
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.messages, Contains(std::string("holds ") + name) &&
+                                     Contains("not of an earlier simulated run"));
+    CHECK(test::read_text(folder / name) == "[1, 2]\n");
+    fs::remove(folder / name);
+  }
+  CHECK_FALSE(fs::exists(folder / "run.csv"));
+}
+
+TEST_CASE("The motion's road is the maneuver's, however its table is spaced", "[unit]") {
+  RoadSpec cleat;
+  cleat.shape = BumpShape::kTable;
+  for (int i = 0; i <= 4000; ++i) {  // 20 mm high, 60 mm long, of a survey of 40 m
+    const double x = -20.0 + 0.01 * i, beyond = std::abs(x - 3.05);
+    cleat.table_x.push_back(x);
+    cleat.table_z.push_back(beyond < 0.03 ? 0.02 * (1.0 - beyond / 0.03) : 0.0);
+  }
+  double high = 0.0, at = 0.0;
+  for (const auto& [x, z] : list_profile(cleat)) {
+    if (z > high) std::tie(high, at) = std::pair(z, x);
+    CHECK(std::abs(z - calc_profile_height(cleat, x)) < 1e-12);
+  }
+  CHECK(high == Approx(0.02).epsilon(0.05));
+  CHECK(at == Approx(3.05).margin(0.005));
+}
+
+}  // namespace
+}  // namespace strut

@@ -1,0 +1,125 @@
+#include "train/data/transform.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "base/error/input_error.h"
+#include "train/data/shift.h"
+
+namespace strut {
+namespace {
+
+using ConstMap = Eigen::Map<const Eigen::ArrayXd>;
+using MutableMap = Eigen::Map<Eigen::ArrayXd>;
+
+ConstMap map_values(const double* first, std::size_t count) {
+  return {first, static_cast<Eigen::Index>(count)};
+}
+
+/// Squared distance of a record's window at `begin` from the reference, without the reference's own
+/// square, which is the same everywhere.
+double calc_distance(const WindowTransform& transform, const RecordView& record,
+                     std::size_t begin) {
+  const std::size_t n = transform.grid.samples;
+  double distance = 0.0;
+  for (std::size_t c = 0; c < transform.channels.size(); ++c) {
+    const ConstMap y = map_values(record.channel(c).data() + begin, n);
+    const ConstMap reference = map_values(transform.reference.data() + c * n, n);
+    // Of the differences from the first sample, which leaves more digits than y itself does.
+    const auto x = y - y(0);
+    const double sum = x.sum(), squares = x.square().sum(), product = (x * reference).sum();
+    const double sigma = transform.noise.sigma[c];
+    const double spread = squares - sum * sum / static_cast<double>(n);
+    distance += spread / (sigma * sigma) - 2.0 * product / sigma;
+  }
+  return distance;
+}
+
+void whiten(double sigma, double bias, std::span<double> window) {
+  MutableMap y(window.data(), static_cast<Eigen::Index>(window.size()));
+  const auto n = static_cast<double>(window.size());
+  const double q = 1.0 - 1.0 / std::sqrt(1.0 + n * (bias / sigma) * (bias / sigma));
+  const double mean = y.mean();
+  y = (y - q * mean) / sigma;
+}
+
+}  // namespace
+
+std::size_t WindowGrid::margin() const { return lags > 0 ? lags + ShiftStencil::kBefore : 0; }
+
+WindowPlace find_place(const WindowTransform& transform, const RecordView& record) {
+  const WindowGrid& grid = transform.grid;
+  const std::size_t needed = grid.samples + (grid.lags > 0 ? 2 * ShiftStencil::kBefore + 2 : 0);
+  if (record.samples < needed) {
+    throw InputError("a record of " + std::to_string(record.samples) +
+                     " samples; the window takes " + std::to_string(needed));
+  }
+  if (transform.reference.empty()) return {0.0, true};
+  const std::size_t first = ShiftStencil::kBefore;
+  const std::size_t last = record.samples - grid.samples - ShiftStencil::kBefore;
+  std::vector<double> distances;
+  distances.reserve(last - first + 1);
+  for (std::size_t begin = first; begin <= last; ++begin) {
+    distances.push_back(calc_distance(transform, record, begin));
+  }
+  const auto least = std::min_element(distances.begin(), distances.end());
+  const auto begin = static_cast<double>(first) + static_cast<double>(least - distances.begin());
+  if (least == distances.begin() || least + 1 == distances.end()) return {begin, false};
+  const double before = *(least - 1), here = *least, after = *(least + 1);
+  const double curvature = before - 2.0 * here + after;
+  return {begin + (curvature > 0.0 ? 0.5 * (before - after) / curvature : 0.0), true};
+}
+
+void read_white_window(const WindowTransform& transform, const RecordView& record, double begin,
+                       std::span<double> window) {
+  const std::size_t n = transform.grid.samples;
+  for (std::size_t c = 0; c < transform.channels.size(); ++c) {
+    const std::span<double> to = window.subspan(c * n, n);
+    if (transform.grid.lags > 0) {
+      read_shifted(record.channel(c), begin, to);
+    } else {
+      std::copy_n(record.channel(c).begin(), n, to.begin());
+    }
+    whiten(transform.noise.sigma[c], transform.noise.bias[c], to);
+  }
+}
+
+WindowReading project_window(const WindowTransform& transform, std::span<double> window,
+                             std::span<double> components) {
+  const std::size_t size = transform.window_size();
+  MutableMap x(window.data(), static_cast<Eigen::Index>(size));
+  x -= map_values(transform.mean.data(), size);
+  double left = x.square().sum();
+  for (std::size_t k = 0; k < transform.components(); ++k) {
+    components[k] = (map_values(transform.basis.data() + k * size, size) * x).sum();
+    left -= components[k] * components[k];
+  }
+  const auto free = static_cast<double>(size - transform.components());
+  return {{}, std::max(left, 0.0) / std::max(free, 1.0)};
+}
+
+WindowReading read_components(const WindowTransform& transform, const RecordView& record,
+                              std::span<double> components) {
+  const WindowPlace place = find_place(transform, record);
+  std::vector<double> window(transform.window_size());
+  read_white_window(transform, record, place.begin, window);
+  WindowReading reading = project_window(transform, window, components);
+  reading.place = place;
+  if (transform.grid.lags > 0) {
+    reading.leftover /= calc_shift_gain(place.begin - std::floor(place.begin));
+  }
+  return reading;
+}
+
+std::vector<ColumnInfo> list_components(std::size_t count) {
+  std::vector<ColumnInfo> columns;
+  columns.reserve(count);
+  for (std::size_t k = 1; k <= count; ++k) {
+    columns.push_back({"component_" + std::to_string(k), "1",
+                       "coordinate of the window along a direction; unit of the noise"});
+  }
+  return columns;
+}
+
+}  // namespace strut
