@@ -14,13 +14,13 @@
 #include <sstream>
 
 #include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "cluster/file_system.h"
 #include "cluster/record_file.h"
 #include "cluster/submission.h"
 #include "io/file/run_child.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

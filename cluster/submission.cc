@@ -6,11 +6,13 @@
 #include <random>
 #include <sstream>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "cluster/record_file.h"
 #include "io/file/atomic_file.h"
-#include "io/format/config.h"
+#include "io/format/toml_document.h"
 #include "io/format/toml_text.h"
 
 namespace strut {

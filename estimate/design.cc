@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
 #include "model_files/parameters.h"
 
 namespace strut {

@@ -8,6 +8,7 @@
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
+#include "base/text/format_number.h"
 #include "estimate/run_readings.h"
 #include "model/channel/car_channels.h"
 #include "model/effects/catalogue.h"

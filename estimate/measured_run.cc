@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error/input_error.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 
 namespace strut {
 namespace {

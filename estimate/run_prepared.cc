@@ -1,8 +1,8 @@
 #include "estimate/run_prepared.h"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "base/error/check.h"
 #include "base/parallel/team.h"
 
 namespace strut {
@@ -50,7 +50,7 @@ std::vector<double> LaneRun::get_series(int channel) const {
     row = recorded.size();
     column = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), channel) -
                                       recorded.begin());
-    if (column == row) throw std::logic_error("history: a channel that was not recorded");
+    STRUT_CHECK(column != row, "history: a channel that was not recorded");
   }
   std::vector<double> series(static_cast<std::size_t>(results->sample_count));
   for (std::size_t i = 0; i < series.size(); ++i) {

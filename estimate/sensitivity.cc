@@ -5,9 +5,11 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "estimate/line_position.h"
 #include "estimate/run_prepared.h"
-#include "io/format/config.h"
 #include "model/channel/car_channels.h"
 #include "model_files/parameters.h"
 

@@ -2,7 +2,9 @@
 
 #include <span>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "model_files/find_channel.h"
 #include "model_files/parameters.h"
 

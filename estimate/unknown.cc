@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error/input_error.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "model/channel/car_channels.h"
 #include "model/error/model_error.h"
 #include "model_files/parameters.h"

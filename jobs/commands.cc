@@ -11,6 +11,7 @@
 #include "jobs/evaluate.h"
 #include "jobs/export.h"
 #include "jobs/identify.h"
+#include "jobs/list.h"
 #include "jobs/man_page.h"
 #include "jobs/merge.h"
 #include "jobs/plan.h"
@@ -57,6 +58,7 @@ const std::vector<Command>& list_commands() {
        &describe_study, &run_study},
       {"report", "one HTML file about a study, sweep, comparison, diagnosis or run",
        &describe_report, &run_report},
+      {"list", "what can be set, recorded and switched on", &describe_list, &run_list},
       {"bench", "measure how fast this machine simulates, and how exactly", &describe_bench,
        &run_bench},
       {"completion", "what makes a shell complete these commands and their options",

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "base/text/format_number.h"
 #include "io/file/atomic_file.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"

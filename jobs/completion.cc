@@ -8,6 +8,7 @@
 #include "base/text/quote_word.h"
 #include "jobs/cli/messages.h"
 #include "jobs/commands.h"
+#include "model_files/parameters.h"
 
 namespace strut {
 namespace {
@@ -18,6 +19,11 @@ constexpr const char* kFunctions = R"bash(
 # The words of an answer that begin with the current one.
 _strut_words() {
   mapfile -t COMPREPLY < <(compgen -W "$*" -- "$current")
+}
+
+_strut_settings() {
+  compopt -o nospace 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -S = -W "$_strut_parameters" -- "$current")
 }
 
 _strut_folders() {
@@ -113,6 +119,8 @@ std::string make_action(const ArgumentValue& value) {
       return "";
     case ArgumentValue::Kind::kChoice:
       return "_strut_words " + quote_word(join(value.words));
+    case ArgumentValue::Kind::kSetting:
+      return "_strut_settings";
     case ArgumentValue::Kind::kFolder:
       return "_strut_folders";
     case ArgumentValue::Kind::kFile:
@@ -207,10 +215,12 @@ std::string make_bash_completion() {
   std::vector<std::string> names;
   for (const Command& command : list_commands()) names.emplace_back(command.name);
   names.emplace_back("help");
+  std::vector<std::string> parameters;
+  for (const ParameterInfo& parameter : list_parameters()) parameters.push_back(parameter.name);
   return "# Completion of strut " + std::string(get_build_info().version) +
          " for bash, made by `strut completion bash`.\n\n_strut_commands=" +
-         quote_word(join(names)) + "\n\n" + make_option_lists() + make_values() + make_operands() +
-         (kFunctions + 1);
+         quote_word(join(names)) + "\n_strut_parameters=" + quote_word(join(parameters)) + "\n\n" +
+         make_option_lists() + make_values() + make_operands() + (kFunctions + 1);
 }
 
 }  // namespace strut

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "base/text/format_number.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
@@ -96,7 +97,8 @@ Arguments describe_design() {
       "      --noise pitch_rate=0.002 --csv sensitivity.csv --json");
   arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
   arguments.add_option("at", "NAME=VALUE,...", "base point; axes not named: their middle");
-  arguments.add_list("set", "NAME=VALUE", "any parameter at the base point, repeatable");
+  arguments.add_list("set", ArgumentValue::setting(),
+                     "any parameter at the base point, repeatable");
   arguments.add_option("channels", "NAME,...", "what is measured (default: the snapshot's)");
   arguments.add_list("noise", "CHANNEL=SIGMA",
                      "1 sigma of a sensor's white noise per sample, repeatable");

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <system_error>
 
+#include "base/text/format_number.h"
 #include "jobs/case/run_file.h"
 #include "jobs/case/step_check.h"
 #include "jobs/cli/arguments.h"
@@ -300,7 +301,7 @@ Arguments describe_simulate() {
                        "wheel spin: exponential (default), stable at any speed; or explicit");
   arguments.add_switch("no-events", "do not end steps where a wheel lifts off or meets a kink");
   arguments.add_option("rate", "HZ", "samples a second in FILE (default 1000)");
-  arguments.add_list("set", "NAME=VALUE",
+  arguments.add_list("set", ArgumentValue::setting(),
                      "change a parameter, e.g. front_stiffness=38000; may be "
                      "repeated");
   arguments.add_option("report", ArgumentValue::folder("DIR"),

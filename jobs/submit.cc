@@ -6,13 +6,14 @@
 #include <iterator>
 #include <optional>
 
+#include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
 #include "base/text/quote_word.h"
+#include "base/text/range.h"
 #include "cluster/follow.h"
 #include "cluster/scripts.h"
 #include "cluster/slurm.h"
 #include "io/file/atomic_file.h"
-#include "io/format/config.h"
 #include "io/store/claims.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/command.h"

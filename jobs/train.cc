@@ -10,6 +10,7 @@
 
 #include "base/text/build_info.h"
 #include "base/text/parse_number.h"
+#include "base/text/range.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"

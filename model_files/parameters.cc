@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
+#include "base/text/range.h"
 #include "model/effects/catalogue.h"
 #include "model_files/read_effects.h"
 
@@ -29,8 +31,9 @@ template <class Field>
 void add_number(Parameters& list, const std::string& name, double default_value,
                 const Range& allowed, const std::string& description, const std::string& source,
                 Field field) {
-  list.push_back({name, allowed.unit.empty() ? "1" : allowed.unit, default_value, allowed,
-                  description, source, [field](const Case& c) { return field(c); },
+  list.push_back({{name, allowed.unit.empty() ? "1" : allowed.unit, default_value, allowed,
+                   description, source},
+                  [field](const Case& c) { return field(c); },
                   [field](Case& c, double value) { field(c) = value; }});
 }
 
@@ -91,8 +94,8 @@ void add_sensor_and_steering(Parameters& list) {
       "steering rack to the left, fixed during a run", kStrutChoice,
       [](auto& c) -> auto& { return c.vehicle.rack_position; });
   // What the front wheels do not drive the rear wheels do.
-  list.push_back({"front_drive_share", "1", 1.0, between(0.0, 1.0),
-                  "share of the drive torque on the front wheels", kPaperText,
+  list.push_back({{"front_drive_share", "1", 1.0, between(0.0, 1.0),
+                   "share of the drive torque on the front wheels", kPaperText},
                   [](const Case& c) { return c.vehicle.suspension[kFront].drive_share; },
                   [](Case& c, double value) {
                     c.vehicle.suspension[kFront].drive_share = value;
@@ -132,8 +135,8 @@ void add_axles(Parameters& list) {
 void add_strut(Parameters& list, const std::string& name, std::array<double, kAxles> defaults,
                const Range& allowed, const std::string& description, double StrutSpec::*field) {
   for (std::size_t axle = 0; axle < kAxles; ++axle) {
-    list.push_back({std::string(kAxleNames[axle]) + "_" + name, allowed.unit, defaults[axle],
-                    allowed, description + ", both corners of the " + kAxleWords[axle], kTable1,
+    list.push_back({{std::string(kAxleNames[axle]) + "_" + name, allowed.unit, defaults[axle],
+                     allowed, description + ", both corners of the " + kAxleWords[axle], kTable1},
                     [axle, field](const Case& c) {
                       const auto& strut = c.vehicle.suspension[axle].strut;
                       return 0.5 * (strut[0].*field + strut[1].*field);
@@ -161,12 +164,13 @@ void add_struts(Parameters& list) {
 
 void add_tire(Parameters& list) {
   // The free radius stands in the contact and among the coefficients of the in-plane forces.
-  list.push_back({"tire_radius", "m", 0.4673, between(0.1, 2.0, "m"), "free radius of a tire",
-                  kTable1, [](const Case& c) { return c.vehicle.tire.unloaded_radius; },
-                  [](Case& c, double value) {
-                    c.vehicle.tire.unloaded_radius = value;
-                    c.vehicle.pacejka.UNLOADED_RADIUS = value;
-                  }});
+  list.push_back(
+      {{"tire_radius", "m", 0.4673, between(0.1, 2.0, "m"), "free radius of a tire", kTable1},
+       [](const Case& c) { return c.vehicle.tire.unloaded_radius; },
+       [](Case& c, double value) {
+         c.vehicle.tire.unloaded_radius = value;
+         c.vehicle.pacejka.UNLOADED_RADIUS = value;
+       }});
   add_number(
       list, "tire_stiffness", 200000.0, between(1e4, 1e7, "N/m"), "vertical stiffness of a tire",
       kTireFile, [](auto& c) -> auto& { return c.vehicle.tire.stiffness; });
@@ -234,9 +238,7 @@ void add_effect(Parameters& list, const EffectInfo& effect, const std::string& p
     const auto set = [&effect, place, i](Case& c, double value) {
       set_effect_value(c.vehicle.effects, effect, kCar, place, i, value);
     };
-    list.push_back({make_effect_parameter_name(effect, place, p, kCar), p.unit, p.neutral,
-                    get_range(p), p.description + "; effect " + effect.name + ", " + place,
-                    effect.source, get, set, p.typical, true});
+    list.push_back({make_effect_parameter(effect, place, p, kCar), get, set});
   }
 }
 
@@ -247,7 +249,9 @@ Parameters make_parameters() {
   add_axles(list);
   add_struts(list);
   add_tire(list);
+  const std::size_t vehicle = list.size();
   add_maneuver(list);
+  for (std::size_t i = vehicle; i < list.size(); ++i) list[i].is_maneuver = true;
   for (const EffectInfo& effect : list_effects()) {
     for (const std::string& place : list_effect_places(effect, ModelKind::kFullVehicle)) {
       add_effect(list, effect, place);

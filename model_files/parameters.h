@@ -11,24 +11,17 @@
 #include <utility>
 #include <vector>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
 #include "model/car/case.h"
+#include "model_files/parameter.h"
 
 namespace strut {
 
-struct ParameterInfo {
-  std::string name;
-  std::string unit;            // "1" if none
-  double default_value = 0.0;  // of examples/vehicles/paper_sedan.toml, maneuvers/bump_20mps.toml
-  Range allowed;               // the plausible range; a value outside of it is an input error
-  std::string description;
-  std::string source;  // of the default value
+/// Defaults: of examples/vehicles/paper_sedan.toml and examples/maneuvers/bump_20mps.toml.
+struct ParameterInfo : Parameter {
   /// A parameter of an axle reads as the mean of its two corners.
   std::function<double(const Case&)> get;
   std::function<void(Case&, double)> set;
-  /// Of an effect of the catalogue: an ordinary size, the scale of a search from 0; else 0.
-  double typical = 0.0;
-  bool is_effect = false;
 };
 
 /// All parameters in a fixed order: whole car, axles, corners, tire, maneuver, effects.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "model_files/drop_tables.h"
 
@@ -55,6 +56,21 @@ std::string write_effect(const EffectSetting& setting, ModelKind kind) {
 
 Range get_range(const EffectParameter& parameter) {
   return between(parameter.low, parameter.high, parameter.unit == "1" ? "" : parameter.unit);
+}
+
+Parameter make_effect_parameter(const EffectInfo& effect, const std::string& place,
+                                const EffectParameter& parameter, ModelKind kind) {
+  Parameter p;
+  p.name = make_effect_parameter_name(effect, place, parameter, kind);
+  p.unit = parameter.unit;
+  p.default_value = parameter.neutral;
+  p.allowed = get_range(parameter);
+  p.description =
+      parameter.description + "; effect " + effect.name + (place.empty() ? "" : ", " + place);
+  p.source = effect.source;
+  p.typical = parameter.typical;
+  p.is_effect = true;
+  return p;
 }
 
 EffectSettings read_effects(const Table& root, ModelKind kind) {

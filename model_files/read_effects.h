@@ -8,8 +8,10 @@
 
 #include <string>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "io/format/toml_document.h"
 #include "model/effects/catalogue.h"
+#include "model_files/parameter.h"
 
 namespace strut {
 
@@ -21,6 +23,10 @@ EffectSettings read_effects(const Table& root, ModelKind kind);
 
 /// The plausible range.
 Range get_range(const EffectParameter& parameter);
+
+/// A parameter of an effect at a place, as settings and fits know it.
+Parameter make_effect_parameter(const EffectInfo& effect, const std::string& place,
+                                const EffectParameter& parameter, ModelKind kind);
 
 /// `text`, that of a vehicle or rig file, with its tables [[effect]] replaced by these; all else as
 /// it stands. Reads back as exactly these settings. Throws InputError where the text writes its

@@ -1,5 +1,6 @@
 #include "model_files/read_fitted.h"
 
+#include "base/text/format_number.h"
 #include "model_files/drop_tables.h"
 #include "model_files/parameters.h"
 #include "model_files/read_rig.h"

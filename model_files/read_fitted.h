@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "io/format/toml_document.h"
 #include "model/car/spec.h"
 #include "model/rig/rigs.h"
 

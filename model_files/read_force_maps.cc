@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "model_files/drop_tables.h"
 
 namespace strut {

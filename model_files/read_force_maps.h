@@ -11,7 +11,8 @@
 
 #include <string>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "io/format/toml_document.h"
 #include "model/effects/force_map.h"
 
 namespace strut {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "io/format/csv.h"
+#include "io/format/toml_document.h"
 #include "model_files/parameters.h"
 
 namespace strut {

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
+#include "base/text/range.h"
 #include "io/format/csv.h"
+#include "io/format/toml_document.h"
 #include "model/rig/rig_system.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
@@ -37,8 +40,7 @@ void add_effect_settings(RigKind kind, const EffectInfo& effect, const std::stri
   const auto parameters = list_effect_parameters(effect, model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
-    list.push_back({make_effect_parameter_name(effect, place, p, model), p.unit,
-                    p.description + "; effect " + effect.name, get_range(p), p.typical, true,
+    list.push_back({make_effect_parameter(effect, place, p, model),
                     [&effect, model, place, i](const RigSpec& spec) {
                       return get_effect_value(spec.effects, effect, model, place, i);
                     },
@@ -52,9 +54,15 @@ std::vector<RigParameter> make_settings(RigKind kind) {
   std::vector<RigParameter> list;
   for (const RigParameterInfo& info : list_rig_parameters(kind)) {
     const auto field = info.field;
-    list.push_back({info.name, info.unit, info.description, get_range(info), 0.0, false,
-                    [field](const RigSpec& spec) { return spec.*field; },
-                    [field](RigSpec& spec, double value) { spec.*field = value; }});
+    RigParameter parameter;
+    parameter.name = info.name;
+    parameter.unit = info.unit;
+    parameter.default_value = info.fallback;
+    parameter.allowed = get_range(info);
+    parameter.description = info.description;
+    parameter.get = [field](const RigSpec& spec) { return spec.*field; };
+    parameter.set = [field](RigSpec& spec, double value) { spec.*field = value; };
+    list.push_back(std::move(parameter));
   }
   for (const EffectInfo& effect : list_effects()) {
     for (const std::string& place : list_effect_places(effect, get_model_kind(kind))) {

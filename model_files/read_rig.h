@@ -15,8 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
 #include "model/rig/rigs.h"
+#include "model_files/parameter.h"
 
 namespace strut {
 
@@ -32,11 +33,7 @@ std::optional<RigKind> find_rig_kind(const std::filesystem::path& path);
 RigSpec read_rig(const std::filesystem::path& path);
 
 /// A parameter of a kind of rig that settings and fits know by name.
-struct RigParameter {
-  std::string name, unit, description;
-  Range allowed;
-  double typical = 0.0;    // of an effect: an ordinary size in a car, else 0
-  bool is_effect = false;  // of the catalogue of effects
+struct RigParameter : Parameter {
   std::function<double(const RigSpec&)> get;
   std::function<void(RigSpec&, double)> set;
 };

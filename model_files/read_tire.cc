@@ -8,8 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
+#include "base/text/range.h"
 #include "io/format/tir.h"
 
 namespace strut {

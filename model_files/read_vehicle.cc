@@ -2,7 +2,10 @@
 
 #include <cmath>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
+#include "io/format/toml_document.h"
 #include "model/rig/rigs.h"
 #include "model_files/parameters.h"
 #include "model_files/read_effects.h"

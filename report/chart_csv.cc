@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 
 namespace strut {
 namespace {

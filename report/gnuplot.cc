@@ -5,8 +5,9 @@
 #include <limits>
 
 #include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "io/file/run_child.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

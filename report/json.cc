@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/text/format_number.h"
 #include "base/text/utf8.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <stdexcept>
 #include <string_view>
 
+#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "base/text/shorten.h"
 #include "io/file/atomic_file.h"
@@ -102,7 +102,7 @@ bool is_page_name(const std::string& name) {
 /// What a page is written of, a later one can remove.
 void check_names(const ReportPage& page) {
   const auto check = [](const std::string& name) {
-    if (!is_page_name(name)) throw std::logic_error("report: '" + name + "' is not in kNames");
+    STRUT_CHECK(is_page_name(name), "report: '" + name + "' is not in kNames");
   };
   for (const std::string& table : page.tables) check(table);
   for (const ReportSection& section : page.sections) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "base/text/format_number.h"
 #include "io/file/file_bytes.h"
 #include "io/file/sha256.h"
-#include "io/format/config.h"
 #include "io/format/toml_text.h"
 #include "model_files/named_files.h"
 #include "sweep/choices.h"

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "io/file/atomic_file.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
 #include "io/format/toml_text.h"
 #include "model_files/named_files.h"
 

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
+#include "base/text/range.h"
+#include "io/format/toml_document.h"
 #include "model_files/find_channel.h"
 #include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"

@@ -1,6 +1,6 @@
 #include "sweep/step_count.h"
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 
 namespace strut {
 

@@ -1,7 +1,8 @@
 #include "train/train_network.h"
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
 #include "io/store/shard_layout.h"
 #include "train/model/interval.h"
 #include "train/window/rows.h"

@@ -4,8 +4,9 @@
 #include <mutex>
 #include <numeric>
 
+#include "base/error/input_error.h"
 #include "base/parallel/team.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 
 namespace strut {
 namespace {

@@ -5,8 +5,8 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
+#include "base/text/format_number.h"
 #include "diagnose/campaign/spread.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
+#include "base/text/range.h"
 #include "diagnose/campaign/units.h"
-#include "io/format/config.h"
+#include "io/format/toml_document.h"
 #include "model/channel/car_channels.h"
 #include "model_files/read_rig.h"
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/error/check.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "diagnose/campaign/check_campaign_data.h"
 #include "diagnose/campaign/local_cubic.h"
 #include "diagnose/campaign/spread.h"
 #include "estimate/linearize.h"
-#include "io/format/config.h"
 #include "model/error/model_error.h"
 #include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"
@@ -279,7 +281,7 @@ const NoiseEstimate& CampaignData::find_noise(int channel) const {
   for (std::size_t i = 0; i < noise.size(); ++i) {
     if (campaign.columns[i].channel == info(channel).name) return noise[i];
   }
-  throw std::logic_error("find_noise: no column for " + info(channel).name);
+  throw CheckError("find_noise: no column for " + info(channel).name);
 }
 
 std::vector<std::size_t> CampaignData::list_runs(RunUse use) const {

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "diagnose/campaign/campaign_data.h"
 #include "diagnose/campaign/simulate_run.h"
 #include "diagnose/campaign/spread.h"
 #include "diagnose/campaign/units.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

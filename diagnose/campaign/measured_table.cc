@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "diagnose/campaign/units.h"
-#include "io/format/config.h"
 #include "io/store/measurement.h"
 
 namespace strut {

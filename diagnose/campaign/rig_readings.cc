@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
 #include "diagnose/campaign/local_cubic.h"
 #include "diagnose/campaign/spread.h"
 #include "estimate/run_readings.h"
 #include "estimate/sampled_curve.h"
-#include "io/format/config.h"
 #include "model/rig/rig_system.h"
 #include "model_files/read_rig.h"
 

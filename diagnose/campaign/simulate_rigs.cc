@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error/input_error.h"
 #include "base/parallel/team.h"
+#include "base/text/format_number.h"
 #include "estimate/sampled_curve.h"
-#include "io/format/config.h"
 #include "model/effects/strut_numbers.h"
 #include "model/error/model_error.h"
 #include "model/kernel/simulation.h"

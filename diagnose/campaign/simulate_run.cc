@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/text/range.h"
 #include "estimate/linearize.h"
 #include "estimate/sampled_curve.h"
-#include "io/format/config.h"
 #include "model/channel/car_channels.h"
 #include "model/error/model_error.h"
 #include "model/sensor/sensors.h"

@@ -6,7 +6,6 @@
 
 #include "diagnose/baseline/model_states.h"
 #include "diagnose/campaign/spread.h"
-#include "io/format/config.h"
 #include "model_files/parameters.h"
 
 namespace strut {

@@ -5,11 +5,11 @@
 #include <numeric>
 
 #include "base/math/normal.h"
+#include "base/text/format_number.h"
 #include "diagnose/decide/gain.h"
 #include "diagnose/decide/next_measurement.h"
 #include "diagnose/decide/probability.h"
 #include "diagnose/discrepancy/leftover.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

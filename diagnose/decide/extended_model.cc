@@ -1,6 +1,7 @@
 #include "base/error/input_error.h"
 #include "diagnose/decide/diagnosis.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
+#include "io/format/toml_document.h"
 #include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 
 namespace strut {
 namespace {

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "diagnose/campaign/spread.h"
 #include "diagnose/discrepancy/map_axis.h"
-#include "io/format/config.h"
 
 namespace strut {
 namespace {

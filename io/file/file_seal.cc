@@ -9,8 +9,8 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
 
+#include "base/error/check.h"
 #include "io/file/file_bytes.h"
 #include "io/file/file_sync.h"
 #include "io/file/sha256.h"
@@ -30,7 +30,7 @@ std::string render(const FileSeal& seal) {
   text += std::string(kSize) + " " + std::to_string(seal.size) + "\n" + kSha256 + " " +
           seal.sha256 + "\n";
   text += std::string(kSeal) + " " + to_hex(calc_sha256(text)) + "\n";
-  if (text.size() > kSealBytes) throw std::logic_error("a seal of more than 512 bytes: " + text);
+  STRUT_CHECK(text.size() <= kSealBytes, "a seal of more than 512 bytes: " + text);
   text.resize(kSealBytes, '\0');
   return text;
 }

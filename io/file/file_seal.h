@@ -106,7 +106,7 @@ bool is_sealed(const std::filesystem::path& path);
 /// over other files alone, and the HDF5 library may crash where a bit of it is flipped.
 void refuse_global_heap(const std::filesystem::path& path);
 
-/// Overwrites the first kSealBytes bytes of a file's image. Throws std::logic_error where the lines
+/// Overwrites the first kSealBytes bytes of a file's image. Throws CheckError where the lines
 /// do not fit.
 void seal_image(const SealLabel& label, std::span<std::byte> image);
 /// The same of a file on disk, which messages call `shown`. Throws EnvironmentError.

@@ -5,10 +5,10 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "base/error/check.h"
 #include "base/error/input_error.h"
 
 namespace strut {
@@ -51,7 +51,7 @@ void RowStore::spill() {
 }
 
 void RowStore::append(std::span<const double> rows) {
-  if (rows.size() % columns_ != 0) throw std::logic_error("a row store takes whole rows");
+  STRUT_CHECK(rows.size() % columns_ == 0, "a row store takes whole rows");
   recent_.insert(recent_.end(), rows.begin(), rows.end());
   row_count_ += rows.size() / columns_;
   const std::size_t limit = file_.is_open() ? kLeastMemory : options_.memory;
@@ -59,9 +59,7 @@ void RowStore::append(std::span<const double> rows) {
 }
 
 void RowStore::read(std::size_t first, std::size_t count, double* rows) const {
-  if (first > row_count_ || count > row_count_ - first) {
-    throw std::logic_error("a row store has no such rows");
-  }
+  STRUT_CHECK(first <= row_count_ && count <= row_count_ - first, "a row store has no such rows");
   const std::size_t row = columns_ * sizeof(double);
   const std::size_t filed = first < filed_ ? std::min(count, filed_ - first) : 0;
   if (filed > 0) {

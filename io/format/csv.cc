@@ -10,9 +10,9 @@
 #include <fstream>
 #include <limits>
 #include <set>
-#include <stdexcept>
 #include <string_view>
 
+#include "base/error/check.h"
 #include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "base/text/shorten.h"
@@ -62,9 +62,8 @@ void append_number(std::string& line, double value) {
 
 void check_columns(const std::vector<CsvColumn>& columns) {
   for (const CsvColumn& column : columns) {
-    if (column.values.size() != columns.front().values.size()) {
-      throw std::logic_error("write_csv: column '" + column.name + "' has another length");
-    }
+    STRUT_CHECK(column.values.size() == columns.front().values.size(),
+                "write_csv: column '" + column.name + "' has another length");
   }
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <stdexcept>
 #include <utility>
 
+#include "base/error/check.h"
 #include "io/format/hdf5_calls.h"
 
 namespace strut {
@@ -158,9 +158,7 @@ void Hdf5Writer::write(const std::string& name, std::span<const double> values, 
                        const Hdf5Label& label) {
   const bool fits = columns > 0 && values.size() % columns == 0;
   const bool named = label.names.empty() || label.names.size() == columns;
-  if (!fits || !named) {
-    throw std::logic_error(name + ": values, columns and names do not fit each other");
-  }
+  STRUT_CHECK(fits && named, name + ": values, columns and names do not fit each other");
   hdf5::write_dataset(sink_, name, Hdf5Type::kDouble, 0, {values.size() / columns, columns},
                       values.data(), label);
 }
@@ -200,7 +198,7 @@ std::vector<std::byte> Hdf5Writer::image() {
   check<EnvironmentError>(good && memory_->closed, sink_.shown, "", "cannot be written");
   const auto* const begin = static_cast<const std::byte*>(memory_->data);
   const std::uint64_t end = read_end_of_file(begin + (seal_ ? kSealBytes : 0));
-  if (end > memory_->size) throw std::logic_error("an HDF5 file ends behind its memory");
+  STRUT_CHECK(end <= memory_->size, "an HDF5 file ends behind its memory");
   std::vector<std::byte> bytes(begin, begin + end);
   memory_.reset();
   if (seal_) seal_image(*seal_, bytes);
@@ -208,7 +206,7 @@ std::vector<std::byte> Hdf5Writer::image() {
 }
 
 void Hdf5Writer::commit() {
-  if (!target_) throw std::logic_error("a file in memory has no name to be written under");
+  STRUT_CHECK(target_, "a file in memory has no name to be written under");
   target_->write(image());
   target_->commit();
 }

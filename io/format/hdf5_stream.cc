@@ -1,8 +1,8 @@
 #include "io/format/hdf5_stream.h"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "base/error/check.h"
 #include "io/file/compress.h"
 #include "io/format/hdf5_calls.h"
 
@@ -43,9 +43,8 @@ void Hdf5StreamWriter::append(const std::string& name, std::span<const std::byte
   Stream& stream = streams_.at(name);
   const std::size_t chunk_bytes = stream.chunk_rows * stream.row_bytes;
   const std::size_t rows = (stream.pending.size() + bytes.size()) / stream.row_bytes;
-  if (bytes.size() % stream.row_bytes != 0 || stream.written_rows + rows > stream.rows) {
-    throw std::logic_error(name + ": rows do not fit the dataset");
-  }
+  STRUT_CHECK(bytes.size() % stream.row_bytes == 0 && stream.written_rows + rows <= stream.rows,
+              name + ": rows do not fit the dataset");
   while (!bytes.empty()) {
     const std::size_t taken = std::min(bytes.size(), chunk_bytes - stream.pending.size());
     const auto part = bytes.first(taken);
@@ -87,7 +86,7 @@ void Hdf5StreamWriter::write_attribute_list(const std::string& object, const std
 void Hdf5StreamWriter::commit() {
   for (auto& [name, stream] : streams_) {
     if (!stream.pending.empty()) write_chunk(name, stream);
-    if (stream.written_rows != stream.rows) throw std::logic_error(name + ": rows are missing");
+    STRUT_CHECK(stream.written_rows == stream.rows, name + ": rows are missing");
     hdf5::close_dataset(sink_, name, stream.dataset);
   }
   const bool flushed = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0;

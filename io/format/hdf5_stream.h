@@ -27,7 +27,7 @@ class Hdf5StreamWriter {
   void create(const std::string& name, Hdf5Type type, const std::vector<std::size_t>& shape,
               const Hdf5Label& label, std::size_t text_length = 0);
   /// The next rows of a dataset made by `create`: whole rows, in the type it was made with, texts
-  /// padded to its length. Throws std::logic_error where they do not fit.
+  /// padded to its length. Throws CheckError where they do not fit.
   void append(const std::string& name, std::span<const std::byte> bytes);
   template <class T>
   void append(const std::string& name, const std::vector<T>& values) {
@@ -40,7 +40,7 @@ class Hdf5StreamWriter {
   void write_attribute_list(const std::string& object, const std::string& key,
                             const std::vector<std::string>& values);
 
-  /// Reads the file once more, for its seal. Throws std::logic_error where a dataset lacks rows.
+  /// Reads the file once more, for its seal. Throws CheckError where a dataset lacks rows.
   void commit();
 
  private:

@@ -5,7 +5,7 @@
 
 #include "base/error/input_error.h"
 #include "base/text/shorten.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
 
 namespace strut {
 namespace {

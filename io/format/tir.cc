@@ -5,9 +5,10 @@
 #include <cmath>
 #include <map>
 
+#include "base/error/input_error.h"
 #include "base/text/parse_number.h"
 #include "base/text/shorten.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
 
 namespace strut {
 namespace {

@@ -6,7 +6,8 @@
 #include <sstream>
 #include <string_view>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "io/format/parse_toml.h"
 
 namespace strut {

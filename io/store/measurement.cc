@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
+#include "base/error/check.h"
 #include "base/text/nearest_name.h"
 #include "io/format/hdf5.h"
 
@@ -135,7 +135,7 @@ const CsvColumn* Measurement::find(const std::string& name) const {
 
 const std::vector<double>& Measurement::values(const std::string& name) const {
   const CsvColumn* column = find(name);
-  if (column == nullptr) throw std::logic_error("Measurement: no column " + name);
+  STRUT_CHECK(column != nullptr, "Measurement: no column " + name);
   return column->values;
 }
 

@@ -80,7 +80,7 @@ struct CompressedShard {
   std::string status_meaning;
 };
 
-/// Thread-safe. Throws std::logic_error where the rows are not of the schema.
+/// Thread-safe. Throws CheckError where the rows are not of the schema.
 CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows);
 
 /// The bytes of the shard's file: equal arguments, equal bytes.

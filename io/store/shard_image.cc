@@ -1,9 +1,9 @@
 // Rows to the bytes of a shard's file: compression, then HDF5.
 #include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
+#include "base/error/check.h"
 #include "io/file/compress.h"
 #include "io/store/shard_layout.h"
 
@@ -31,9 +31,8 @@ Hdf5Chunks make_chunks(const ShardColumn& column, std::size_t rows, Hdf5Type typ
                        std::size_t text_length, std::span<const std::byte> bytes) {
   const std::size_t element = get_element_size(type, text_length);
   const std::size_t row_bytes = std::max<std::size_t>(column.columns, 1) * element;
-  if (bytes.size() != rows * row_bytes) {
-    throw std::logic_error("shard: " + column.name + " does not fit its schema");
-  }
+  STRUT_CHECK(bytes.size() == rows * row_bytes,
+              "shard: " + column.name + " does not fit its schema");
   Hdf5Chunks chunks{.name = column.name,
                     .type = type,
                     .shape = {rows},
@@ -49,9 +48,8 @@ Hdf5Chunks make_chunks(const ShardColumn& column, std::size_t rows, Hdf5Type typ
 }  // namespace
 
 CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows) {
-  if (rows.history.size() != schema.history.size()) {
-    throw std::logic_error("shard: histories do not fit their schema");
-  }
+  STRUT_CHECK(rows.history.size() == schema.history.size(),
+              "shard: histories do not fit their schema");
   CompressedShard shard;
   visit_shard_columns(schema, rows, [&](const ShardColumn& column, const auto& values) {
     using Values = std::decay_t<decltype(values)>;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/text/format_number.h"
 #include "jobs/case/run_file.h"
 #include "jobs/cli/machine.h"
 #include "model_files/parameters.h"

@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "base/error/input_error.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
 
 namespace strut {
 namespace {

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "jobs/cli/output_file.h"
 #include "sweep/step_count.h"
 

@@ -6,7 +6,8 @@
 #include <atomic>
 #include <ctime>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "jobs/case/load_case.h"
 #include "jobs/case/step_check.h"
 #include "sweep/simulate_cases.h"

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "model/kernel/stability.h"
 
 namespace strut {

@@ -64,6 +64,12 @@ ArgumentValue ArgumentValue::path(const char* name, std::vector<std::string> end
   return value;
 }
 
+ArgumentValue ArgumentValue::setting() {
+  ArgumentValue value("NAME=VALUE");
+  value.kind = Kind::kSetting;
+  return value;
+}
+
 ArgumentValue ArgumentValue::one_of(std::vector<std::string> words) {
   const std::string name = join_words(words);
   return one_of(name.c_str(), std::move(words));

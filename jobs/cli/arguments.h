@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/range.h"
 
 namespace strut {
 
 /// What stands on a command line where the help says FILE, NAME or the like.
 struct ArgumentValue {
-  enum class Kind { kText, kChoice, kFile, kFolder, kPath };
+  enum class Kind { kText, kChoice, kFile, kFolder, kPath, kSetting };
 
   ArgumentValue(const char* text_name) : name(text_name) {}  // NOLINT: most values are plain text
   /// A file; `endings`: "toml", as far as one is expected.
@@ -21,6 +22,8 @@ struct ArgumentValue {
   static ArgumentValue folder(const char* name);
   /// Either.
   static ArgumentValue path(const char* name, std::vector<std::string> endings = {});
+  /// "NAME=VALUE" of a parameter.
+  static ArgumentValue setting();
   /// One of `words`, which are its name in the help.
   static ArgumentValue one_of(std::vector<std::string> words);
   /// The same under another name, for words that differ between machines.

@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 
 namespace strut {
 namespace {

@@ -14,9 +14,9 @@
 #include <cstring>
 
 #include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "cluster/file_system.h"
 #include "io/file/folder.h"
-#include "io/format/config.h"
 #include "io/store/sweep_folder.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/progress.h"

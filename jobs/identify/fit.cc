@@ -5,6 +5,7 @@
 #include <iostream>
 #include <optional>
 
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "estimate/fit.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/math/normal.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "jobs/cli/messages.h"
 
 namespace strut {

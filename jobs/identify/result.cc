@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "io/format/csv.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"

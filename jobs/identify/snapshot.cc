@@ -6,7 +6,9 @@
 #include <span>
 
 #include "base/math/normal.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
+#include "base/text/range.h"
 #include "io/store/measurement.h"
 #include "io/store/shard_layout.h"
 #include "model_files/parameters.h"

@@ -5,8 +5,10 @@
 #include <functional>
 #include <span>
 
+#include "base/error/input_error.h"
 #include "base/math/normal.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "io/store/shard_layout.h"
 #include "train/data/shift.h"
 #include "train/model/interval.h"

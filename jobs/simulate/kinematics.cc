@@ -1,7 +1,8 @@
 #include "jobs/simulate/kinematics.h"
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "io/file/atomic_file.h"
-#include "io/format/config.h"
 #include "jobs/cli/interrupt.h"
 #include "model/car/kinematics.h"
 

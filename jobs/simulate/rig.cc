@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "base/text/format_number.h"
 #include "jobs/case/run_file.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"

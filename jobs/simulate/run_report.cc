@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "io/format/config.h"
 #include "jobs/simulate/motion.h"
 #include "report/figures.h"
 #include "report/page_file.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/format/config.h"
-
 namespace strut {
 namespace {
 

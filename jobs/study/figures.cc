@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/format/config.h"
 #include "jobs/cli/unsealed.h"
 #include "jobs/study/bars.h"
 #include "train/model/evaluate.h"

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "estimate/design.h"
 #include "io/file/atomic_file.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
 #include "io/format/toml_text.h"
 #include "jobs/cli/unsealed.h"
 #include "sweep/facts.h"

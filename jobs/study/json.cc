@@ -1,7 +1,7 @@
 // A study's results as JSON and CSV.
 #include <cmath>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "jobs/study/results.h"
 
 namespace strut {

@@ -1,5 +1,5 @@
 // A noise study as JSON and CSV.
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "jobs/study/noise_study.h"
 
 namespace strut {

@@ -1,6 +1,8 @@
 #include "jobs/study/noise_limits_file.h"
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "io/format/csv.h"
 #include "model_files/parameters.h"
 

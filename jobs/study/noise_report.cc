@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "jobs/study/noise_figure.h"
 
 namespace strut {

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/format/config.h"
+#include "base/error/input_error.h"
+#include "io/format/toml_document.h"
 #include "sweep/request.h"
 #include "train/data/noise.h"
 #include "train/window/records.h"

@@ -1,6 +1,6 @@
 #include "jobs/study/noise_trainings.h"
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "sweep/plan.h"
 
 namespace strut {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "io/file/atomic_file.h"
-#include "io/format/config.h"
 #include "jobs/cli/progress.h"
 #include "jobs/study/figures.h"
 #include "jobs/study/noise_report.h"

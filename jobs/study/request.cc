@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
+#include "base/text/range.h"
+#include "io/format/toml_document.h"
 #include "sweep/plan.h"
 #include "train/network/network.h"
 

@@ -1,6 +1,6 @@
 #include "jobs/study/tables.h"
 
-#include "io/format/config.h"
+#include "io/format/toml_document.h"
 #include "jobs/cli/progress.h"
 
 namespace strut {

@@ -1,13 +1,13 @@
 #include "model/effects/strut_numbers.h"
 
-#include <stdexcept>
+#include "base/error/check.h"
 
 namespace strut {
 
 double EffectValues::get(const char* effect, const char* parameter,
                          const std::string& place) const {
   const EffectInfo* info = find_effect(effect);
-  if (info == nullptr) throw std::logic_error(std::string(effect) + ": no such effect");
+  STRUT_CHECK(info != nullptr, std::string(effect) + ": no such effect");
   const auto here = list_effect_parameters(*info, kind);
   for (std::size_t i = 0; i < here.size(); ++i) {
     if (here[i]->name == parameter) return get_effect_value(settings, *info, kind, place, i);
@@ -15,7 +15,7 @@ double EffectValues::get(const char* effect, const char* parameter,
   for (const EffectParameter& p : info->parameters) {
     if (p.name == parameter) return p.neutral;
   }
-  throw std::logic_error(std::string(effect) + ": has no parameter " + parameter);
+  throw CheckError(std::string(effect) + ": has no parameter " + parameter);
 }
 
 StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,

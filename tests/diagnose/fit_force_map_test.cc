@@ -9,6 +9,8 @@
 #include "diagnose/discrepancy/map_axis.h"
 #include "diagnose/discrepancy/map_prior.h"
 #include "diagnose/discrepancy/map_shape.h"
+#include "io/file/read_text_file.h"
+#include "io/format/toml_document.h"
 #include "model_files/read_force_maps.h"
 #include "model_files/read_rig.h"
 #include "tests/support/campaign_files.h"

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/text/range.h"
+
 namespace strut::fuzz {
 namespace {
 

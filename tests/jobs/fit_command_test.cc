@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "io/format/csv.h"
 #include "tests/jobs/check_hint.h"
 #include "tests/jobs/parse_json.h"

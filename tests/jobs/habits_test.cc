@@ -9,6 +9,7 @@
 #include "jobs/commands.h"
 #include "jobs/completion.h"
 #include "jobs/man_page.h"
+#include "model_files/parameters.h"
 #include "tests/jobs/check_hint.h"
 #include "tests/jobs/program_sweep.h"
 #include "tests/jobs/run_program.h"
@@ -125,6 +126,11 @@ void make_completion_files(const TemporaryFolder& folder) {
 Words list_offers(const ArgumentValue& value) {
   if (value.kind == ArgumentValue::Kind::kText) return {};
   if (value.kind == ArgumentValue::Kind::kChoice) return {value.words.begin(), value.words.end()};
+  if (value.kind == ArgumentValue::Kind::kSetting) {
+    Words settings;
+    for (const ParameterInfo& parameter : list_parameters()) settings.insert(parameter.name + "=");
+    return settings;
+  }
   Words offers = {"a folder"};
   if (value.kind == ArgumentValue::Kind::kFolder) return offers;
   for (const std::string name : {"car.toml", "run.csv", "model.h5", "notes.txt"}) {

@@ -4,11 +4,12 @@
 #include <chrono>
 #include <functional>
 
+#include "base/error/input_error.h"
 #include "base/text/shorten.h"
 #include "base/text/utf8.h"
-#include "io/format/config.h"
 #include "io/format/csv.h"
 #include "io/format/tir.h"
+#include "io/format/toml_document.h"
 #include "report/json.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"

@@ -4,7 +4,8 @@
 #include <limits>
 
 #include "base/math/normal.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "io/format/csv.h"
 #include "io/format/hdf5.h"
 #include "jobs/identify/snapshot.h"

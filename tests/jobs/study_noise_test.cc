@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "io/format/csv.h"
 #include "tests/jobs/study_files.h"
 

@@ -24,8 +24,8 @@ Case read_paper_case() {
 // A value within the range that differs from the default by an ordinary amount.
 double choose_other_value(const ParameterInfo& parameter) {
   const Range& r = parameter.allowed;
-  const double inside = parameter.default_value + 0.01 * (r.high - r.low);
-  return inside <= r.high ? inside : parameter.default_value - 0.01 * (r.high - r.low);
+  const double inside = *parameter.default_value + 0.01 * (r.high - r.low);
+  return inside <= r.high ? inside : *parameter.default_value - 0.01 * (r.high - r.low);
 }
 
 TEST_CASE("The default of every parameter is what the paper's files say", "[io]") {
@@ -47,7 +47,7 @@ TEST_CASE("Every parameter has one name, a unit, a range around its default and 
     CHECK_FALSE(parameter.unit.empty());
     CHECK_FALSE(parameter.description.empty());
     CHECK_FALSE(parameter.source.empty());
-    CHECK(parameter.allowed.contains(parameter.default_value));
+    CHECK(parameter.allowed.contains(*parameter.default_value));
     CHECK(std::isfinite(parameter.allowed.low));
     CHECK(std::isfinite(parameter.allowed.high));
   }

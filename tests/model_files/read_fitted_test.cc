@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/error/input_error.h"
-#include "io/format/config.h"
+#include "io/file/read_text_file.h"
 #include "model_files/parameters.h"
 #include "model_files/read_rig.h"
 #include "model_files/read_vehicle.h"

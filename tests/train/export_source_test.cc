@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "tests/support/run_shell.h"
 #include "tests/support/test_model.h"
 #include "train/export/header.h"

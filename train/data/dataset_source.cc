@@ -5,8 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/error/check.h"
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
 #include "io/store/shard_layout.h"
 
 namespace strut {
@@ -202,9 +204,8 @@ TrainingRows split_rows(UsableRows usable, const SplitChoice& choice, const RowS
 
 StoreSource::StoreSource(const RowStore& rows, Normalizer input_map, Normalizer target_map)
     : rows_(&rows), input_map_(std::move(input_map)), target_map_(std::move(target_map)) {
-  if (rows.columns() != input_map_.columns() + target_map_.columns()) {
-    throw std::logic_error("a store's columns are not those of its maps");
-  }
+  STRUT_CHECK(rows.columns() == input_map_.columns() + target_map_.columns(),
+              "a store's columns are not those of its maps");
 }
 
 void StoreSource::read(std::size_t first, std::size_t count, double* inputs, double* targets) {

@@ -8,7 +8,8 @@
 #include "base/error/input_error.h"
 #include "base/math/normal.h"
 #include "base/math/random.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "io/store/shard_layout.h"
 #include "train/data/training_file.h"
 

@@ -1,7 +1,8 @@
 #include "train/data/shift.h"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "base/error/check.h"
 
 namespace strut {
 
@@ -27,9 +28,8 @@ double calc_shift_gain(double u) {
 void read_shifted(std::span<const double> from, double begin, std::span<double> to) {
   const double whole = std::floor(begin);
   const double last = whole + static_cast<double>(to.size()) + 2.0;
-  if (!(whole >= 2.0) || !(last < static_cast<double>(from.size()))) {
-    throw std::logic_error("a shifted window reaches outside of its signal");
-  }
+  STRUT_CHECK(whole >= 2.0 && last < static_cast<double>(from.size()),
+              "a shifted window reaches outside of its signal");
   const auto weights = calc_shift_weights(begin - whole);
   const double* first = from.data() + static_cast<std::size_t>(whole) - 2;
   for (std::size_t i = 0; i < to.size(); ++i) {

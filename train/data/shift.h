@@ -21,7 +21,7 @@ std::array<double, ShiftStencil::kSamples> calc_shift_weights(double u);
 double calc_shift_gain(double u);
 
 /// to[i] = the signal at place `begin` + i, counted in samples of `from`; begin >= 2. Throws
-/// std::logic_error where a sample that it takes is not there.
+/// CheckError where a sample that it takes is not there.
 void read_shifted(std::span<const double> from, double begin, std::span<double> to);
 
 }  // namespace strut

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "train/model/identifier.h"
 #include "train/network/network.h"
 

@@ -3,8 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "io/format/config.h"
 #include "io/store/shard_layout.h"
 #include "train/export/protobuf_message.h"
 #include "train/network/network.h"

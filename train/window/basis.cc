@@ -8,7 +8,8 @@
 
 #include "base/error/input_error.h"
 #include "base/math/normal.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 
 namespace strut {
 namespace {

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "base/error/check.h"
 #include "base/error/input_error.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
+#include "base/text/range.h"
 #include "train/data/shift.h"
 
 namespace strut {
@@ -85,7 +86,7 @@ WindowRecords read_window_records(Dataset& dataset, const RowChoice& choice, con
   records.rows = RowStore(channels.size() * samples + targets.size(), store);
   const auto begin = static_cast<std::size_t>(grid.first) - grid.margin() - spare;
   const auto append = [&](const ShardRows& piece, std::size_t i, std::vector<double>& row) {
-    if (piece.history.empty()) throw std::logic_error("a dataset opened without its histories");
+    STRUT_CHECK(!piece.history.empty(), "a dataset opened without its histories");
     for (const std::size_t c : channels) {
       const auto from = piece.history.at(c).begin() + static_cast<std::ptrdiff_t>(i * all + begin);
       row.insert(row.end(), from, from + static_cast<std::ptrdiff_t>(samples));

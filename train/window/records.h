@@ -41,7 +41,7 @@ WindowGrid make_window_grid(const ShardSchema& schema, const WindowChoice& choic
 std::size_t count_spare(const ShardSchema& schema, const NoiseModel& noise);
 
 /// Reads the histories of the usable cases once; choice.inputs: history channels. Throws InputError
-/// as read_usable_rows does, and where the dataset has none; std::logic_error where it was not
+/// as read_usable_rows does, and where the dataset has none; CheckError where it was not
 /// opened for them.
 WindowRecords read_window_records(Dataset& dataset, const RowChoice& choice, const WindowGrid& grid,
                                   std::size_t spare, const RowStoreOptions& store);

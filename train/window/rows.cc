@@ -4,7 +4,7 @@
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
-#include "io/format/config.h"
+#include "base/text/format_number.h"
 #include "io/store/shard_layout.h"
 
 namespace strut {

@@ -7,41 +7,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error/input_error.h"
+#include "base/text/range.h"
 
 namespace strut {
-
-/// Allowed interval of a number; the bounds belong to it unless `open_low`.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool open_low = false;
-  std::string unit;
-
-  bool contains(double value) const;
-  /// "must be > 0 kg", "must lie in [0, 1]".
-  std::string describe() const;
-};
-
-Range between(double low, double high, const std::string& unit = "");
-Range at_least(double low, const std::string& unit = "");
-Range above(double low, const std::string& unit = "");
-Range any_number(const std::string& unit = "");
-
-/// The shortest decimal text that reads back as the same double.
-std::string format_number(double value);
-/// Six significant digits, for numbers in messages that were computed.
-std::string format_rounded(double value);
-
-/// The whole file. Throws InputError where it is missing or has more than `max_bytes`,
-/// EnvironmentError where it cannot be read.
-std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes = SIZE_MAX);
 
 /// One table of a document. All getters throw InputError on a missing key (unless a fallback is
 /// given), a wrong type, a value that is not finite, or one outside the allowed range.

@@ -1,8 +1,11 @@
-#include "io/format/config.h"
+#include "io/format/toml_document.h"
 
 #include <catch2/catch.hpp>
 
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
+#include "base/text/range.h"
 #include "tests/support/temporary_folder.h"
 
 namespace strut {

@@ -1,14 +1,13 @@
-#include "io/format/config.h"
+#include "io/format/toml_document.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/shorten.h"
-#include "io/file/file_sync.h"
 #include "io/format/parse_toml.h"
 
 namespace strut {
@@ -56,57 +55,6 @@ std::string describe_value(const toml::node& node) {
 }
 
 }  // namespace
-
-std::string read_text_file(const fs::path& path, std::size_t max_bytes) {
-  std::error_code error;  // reading tells it
-  if (const auto size = fs::file_size(path, error); !error && size > max_bytes) {
-    throw InputError(path.string() + ": " + std::to_string(size) + " bytes; at most " +
-                     std::to_string(max_bytes) + " are allowed");
-  }
-  auto text = read_if_present(path);
-  if (!text) throw InputError(path.string() + ": file not found");
-  return *std::move(text);
-}
-
-bool Range::contains(double value) const {
-  return std::isfinite(value) && value <= high && (open_low ? value > low : value >= low);
-}
-
-std::string Range::describe() const {
-  const std::string suffix = unit.empty() ? "" : " " + unit;
-  if (std::isfinite(low) && std::isfinite(high)) {
-    return std::string("must lie in ") + (open_low ? "(" : "[") + format_number(low) + ", " +
-           format_number(high) + "]" + suffix;
-  }
-  if (std::isfinite(low)) {
-    return std::string("must be ") + (open_low ? "> " : ">= ") + format_number(low) + suffix;
-  }
-  if (std::isfinite(high)) return "must be <= " + format_number(high) + suffix;
-  return "must be a finite number" + (unit.empty() ? "" : " of " + unit);
-}
-
-Range between(double low, double high, const std::string& unit) { return {low, high, false, unit}; }
-
-Range at_least(double low, const std::string& unit) { return {.low = low, .unit = unit}; }
-
-Range above(double low, const std::string& unit) {
-  return {.low = low, .open_low = true, .unit = unit};
-}
-
-Range any_number(const std::string& unit) { return {.unit = unit}; }
-
-std::string format_number(double value) {
-  std::array<char, 32> buffer;
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), result.ptr};
-}
-
-std::string format_rounded(double value) {
-  std::array<char, 32> buffer;
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                    std::chars_format::general, 6);
-  return {buffer.data(), result.ptr};
-}
 
 struct Table::Source {
   fs::path path;

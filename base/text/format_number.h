@@ -1,0 +1,13 @@
+// Numbers as text.
+#pragma once
+
+#include <string>
+
+namespace strut {
+
+/// The shortest decimal text that reads back as the same double.
+std::string format_number(double value);
+/// Six significant digits, for numbers in messages that were computed.
+std::string format_rounded(double value);
+
+}  // namespace strut

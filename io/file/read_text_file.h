@@ -1,0 +1,16 @@
+// Text files as a whole.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "base/error/input_error.h"
+
+namespace strut {
+
+/// The whole file. Throws InputError where it is missing or has more than `max_bytes`,
+/// EnvironmentError where it cannot be read.
+std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes = SIZE_MAX);
+
+}  // namespace strut

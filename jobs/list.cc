@@ -1,0 +1,229 @@
+#include "jobs/list.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "base/text/format_number.h"
+#include "base/text/range.h"
+#include "jobs/cli/command.h"
+#include "jobs/cli/messages.h"
+#include "jobs/commands.h"
+#include "model_files/model_tables.h"
+#include "report/json.h"
+
+namespace strut {
+namespace {
+
+const std::vector<std::string> kTopics = {"parameters", "channels", "effects", "commands"};
+
+/// Rows of texts as columns, the first row as heads, the last column as long as it is.
+void print_columns(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      line += row[c];
+      if (c + 1 < row.size()) line.append(widths[c] + 2 - row[c].size(), ' ');
+    }
+    std::cout << line << "\n";
+  }
+}
+
+std::string format_bounds(const Range& range) {
+  return (range.open_low ? "(" : "[") + format_number(range.low) + ", " +
+         format_number(range.high) + "]";
+}
+
+std::string format_optional(const std::optional<double>& value) {
+  return value ? format_number(*value) : "-";
+}
+
+Json make_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json make_json(const Range& range) {
+  Json bounds = Json::array();
+  bounds.push(range.low);
+  bounds.push(range.high);
+  return bounds;
+}
+
+// --- parameters ------------------------------------------------------------------------------
+
+void print_parameters(const ModelTables& model) {
+  const bool has_values =
+      std::any_of(model.parameters.begin(), model.parameters.end(),
+                  [](const ListedParameter& listed) { return listed.value.has_value(); });
+  std::vector<std::vector<std::string>> rows = {{"NAME", "UNIT", "DEFAULT"}};
+  if (has_values) rows.front().push_back("VALUE");
+  rows.front().insert(rows.front().end(), {"ALLOWED", "MEANING"});
+  for (const ListedParameter& listed : model.parameters) {
+    const Parameter& p = *listed.parameter;
+    std::vector<std::string> row = {p.name, p.unit, format_optional(p.default_value)};
+    if (has_values) row.push_back(format_optional(listed.value));
+    row.insert(row.end(), {format_bounds(p.allowed), p.description});
+    rows.push_back(std::move(row));
+  }
+  print_columns(rows);
+}
+
+Json make_parameters_json(const ModelTables& model) {
+  Json list = Json::array();
+  for (const ListedParameter& listed : model.parameters) {
+    const Parameter& p = *listed.parameter;
+    Json json = Json::object();
+    json.set("name", p.name)
+        .set("unit", p.unit)
+        .set("default", make_json(p.default_value))
+        .set("value", make_json(listed.value))
+        .set("range", make_json(p.allowed))
+        .set("effect", p.is_effect)
+        .set("source", p.source)
+        .set("meaning", p.description);
+    list.push(json);
+  }
+  return list;
+}
+
+// --- channels --------------------------------------------------------------------------------
+
+void print_channels(const ModelTables& model) {
+  std::vector<std::vector<std::string>> rows = {{"NAME", "UNIT", "MEANING"}};
+  for (const ChannelInfo& c : model.channels) rows.push_back({c.name, c.unit, c.description});
+  for (const ListedInput& i : model.inputs) {
+    rows.push_back(
+        {i.name, i.unit, std::string(i.required ? "input: " : "optional input: ") + i.description});
+  }
+  print_columns(rows);
+}
+
+Json make_channels_json(const ModelTables& model) {
+  Json list = Json::array();
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& meaning,
+                       const char* role) {
+    Json json = Json::object();
+    json.set("name", name).set("unit", unit).set("role", role).set("meaning", meaning);
+    list.push(json);
+  };
+  for (const ChannelInfo& c : model.channels) add(c.name, c.unit, c.description, "output");
+  for (const ListedInput& i : model.inputs) add(i.name, i.unit, i.description, "input");
+  return list;
+}
+
+// --- effects ---------------------------------------------------------------------------------
+
+/// Effects with a parameter in this kind of model.
+std::vector<const EffectInfo*> list_effects_of(ModelKind kind) {
+  std::vector<const EffectInfo*> effects;
+  for (const EffectInfo& effect : list_effects()) {
+    if (!list_effect_parameters(effect, kind).empty()) effects.push_back(&effect);
+  }
+  return effects;
+}
+
+void print_effects(ModelKind kind) {
+  for (const EffectInfo* effect : list_effects_of(kind)) {
+    std::cout << effect->name << ": " << effect->description << "\n    " << effect->equation
+              << "\n    source: " << effect->source << "\n";
+    for (const EffectParameter* p : list_effect_parameters(*effect, kind)) {
+      std::cout << "    " << p->name << " [" << p->unit << "] = " << format_number(p->neutral)
+                << ", in [" << format_number(p->low) << ", " << format_number(p->high)
+                << "]: " << p->description << "\n";
+    }
+  }
+}
+
+Json make_effects_json(ModelKind kind) {
+  Json list = Json::array();
+  for (const EffectInfo* effect : list_effects_of(kind)) {
+    Json parameters = Json::array();
+    for (const EffectParameter* p : list_effect_parameters(*effect, kind)) {
+      Json json = Json::object();
+      json.set("name", p->name)
+          .set("unit", p->unit)
+          .set("default", p->neutral)
+          .set("range", make_json(between(p->low, p->high)))
+          .set("meaning", p->description);
+      parameters.push(json);
+    }
+    Json json = Json::object();
+    json.set("name", effect->name)
+        .set("places", Json::texts(list_effect_places(*effect, kind)))
+        .set("parameters", parameters)
+        .set("equation", effect->equation)
+        .set("source", effect->source)
+        .set("meaning", effect->description);
+    list.push(json);
+  }
+  return list;
+}
+
+// --- commands --------------------------------------------------------------------------------
+
+void print_commands() {
+  std::vector<std::vector<std::string>> rows = {{"NAME", "MEANING"}};
+  for (const Command& command : list_commands()) rows.push_back({command.name, command.purpose});
+  print_columns(rows);
+}
+
+Json make_commands_json() {
+  Json list = Json::array();
+  for (const Command& command : list_commands()) {
+    Json json = Json::object();
+    json.set("name", command.name).set("meaning", command.purpose);
+    list.push(json);
+  }
+  return list;
+}
+
+}  // namespace
+
+Arguments describe_list() {
+  Arguments arguments(
+      "strut list TOPIC [MODEL] [OPTIONS]",
+      "Lists what a model has: parameters (for --set, the axes of a sweep, unknowns of a fit), "
+      "channels\n"
+      "(for snapshots, histories, measured columns), effects, or the commands of this program. "
+      "MODEL:\n"
+      "the file of a vehicle or rig, whose own values are shown, or a kind of model; default:\n"
+      "full_vehicle.",
+      "  strut list parameters\n"
+      "  strut list channels quarter_car --json");
+  arguments.add_operand(ArgumentValue::one_of("TOPIC", kTopics));
+  arguments.add_operand(ArgumentValue::file("MODEL", {"toml"}));
+  arguments.add_switch("json", "print JSON");
+  return arguments;
+}
+
+int run_list(const Arguments& arguments) {
+  const std::vector<std::string>& words = arguments.positional();
+  const auto topic =
+      words.empty() ? kTopics.end() : std::find(kTopics.begin(), kTopics.end(), words.front());
+  if (topic == kTopics.end() || words.size() > 2) {
+    throw arguments.usage_error(
+        "expected parameters, channels, effects or commands, and at most one model");
+  }
+  if (words.size() > 1 && *topic == "commands") {
+    throw arguments.usage_error("commands are not of a model");
+  }
+  const ModelTables model = make_model_tables(words.size() > 1 ? words[1] : "full_vehicle");
+  const bool as_json = arguments.is_on("json");
+  const auto print = [&](const Json& json, const auto& print_text) {
+    if (as_json) {
+      std::cout << json.dump() << "\n";
+    } else {
+      print_text();
+    }
+  };
+  if (*topic == "parameters") print(make_parameters_json(model), [&] { print_parameters(model); });
+  if (*topic == "channels") print(make_channels_json(model), [&] { print_channels(model); });
+  if (*topic == "effects") {
+    print(make_effects_json(model.kind), [&] { print_effects(model.kind); });
+  }
+  if (*topic == "commands") print(make_commands_json(), print_commands);
+  return kExitDone;
+}
+
+}  // namespace strut
