@@ -5,6 +5,7 @@
 
 #include "base/least_squares/cholesky.h"
 #include "base/math/matrix_map.h"
+#include "base/parallel/instruction_sets.h"
 
 namespace {
 
@@ -48,16 +49,11 @@ void solve(const double* l, std::size_t n, double* x) {
 
 }  // namespace
 
-#define STRUT_JOIN_NAME(a, b) a##b
-#define STRUT_CHOLESKY_NAME(isa) STRUT_JOIN_NAME(strut_cholesky_, isa)
-#define STRUT_QUOTE_NAME(name) #name
-#define STRUT_ISA_STRING(isa) STRUT_QUOTE_NAME(isa)
+extern "C" strut::CholeskyKernel STRUT_ISA_NAME(strut_cholesky_)();
 
-extern "C" strut::CholeskyKernel STRUT_CHOLESKY_NAME(STRUT_ISA)();
-
-extern "C" strut::CholeskyKernel STRUT_CHOLESKY_NAME(STRUT_ISA)() {
+extern "C" strut::CholeskyKernel STRUT_ISA_NAME(strut_cholesky_)() {
   // Eigen cuts its sums by the size of the caches. Asked of the processor, results would differ
   // between machines of one instruction set.
   Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
-  return {STRUT_ISA_STRING(STRUT_ISA), &factor_diagonal, &solve_panel, &update_panel, &solve};
+  return {STRUT_ISA_STRING, &factor_diagonal, &solve_panel, &update_panel, &solve};
 }

@@ -1,6 +1,7 @@
 // The simulation for one instruction set: compiled once for each, with STRUT_ISA naming it.
 
 #include "base/math/xsimd_backend.h"
+#include "base/parallel/instruction_sets.h"
 #include "model/kernel/run_cases.h"
 #include "model/rig/rig_system.h"
 
@@ -62,18 +63,9 @@ double run_peak_loop(long rounds, double& sink) {
 
 }  // namespace
 
-#define STRUT_JOIN_NAME(a, b) a##b
-#define STRUT_KERNEL_NAME(isa) STRUT_JOIN_NAME(strut_kernel_, isa)
-#define STRUT_QUOTE_NAME(name) #name
-#define STRUT_ISA_STRING(isa) STRUT_QUOTE_NAME(isa)
+extern "C" strut::Kernel STRUT_ISA_NAME(strut_kernel_)();
 
-extern "C" strut::Kernel STRUT_KERNEL_NAME(STRUT_ISA)();
-
-extern "C" strut::Kernel STRUT_KERNEL_NAME(STRUT_ISA)() {
-  return {STRUT_ISA_STRING(STRUT_ISA),
-          NativeLanes::kWidth,
-          &run_lanes,
-          &run_scalar,
-          &run_rigs,
-          &run_peak_loop};
+extern "C" strut::Kernel STRUT_ISA_NAME(strut_kernel_)() {
+  return {STRUT_ISA_STRING, NativeLanes::kWidth, &run_lanes,
+          &run_scalar,      &run_rigs,           &run_peak_loop};
 }

@@ -3,33 +3,9 @@
 #include "base/parallel/instruction_sets.h"
 #include "train/network/kernel.h"
 
-extern "C" {
-strut::TrainKernel strut_train_kernel_baseline();
-#ifdef STRUT_HAS_KERNEL_avx2
-strut::TrainKernel strut_train_kernel_avx2();
-#endif
-#ifdef STRUT_HAS_KERNEL_avx512
-strut::TrainKernel strut_train_kernel_avx512();
-#endif
-}
+STRUT_DECLARE_KERNELS(strut::TrainKernel, strut_train_kernel_)
 
 namespace strut {
-namespace {
-
-std::vector<TrainKernel> find_kernels() {
-  std::vector<TrainKernel> kernels;
-#ifdef STRUT_HAS_KERNEL_avx512
-  if (has_avx512()) kernels.push_back(strut_train_kernel_avx512());
-#endif
-#ifdef STRUT_HAS_KERNEL_avx2
-  if (has_avx2()) kernels.push_back(strut_train_kernel_avx2());
-#endif
-  kernels.push_back(strut_train_kernel_baseline());
-  return kernels;
-}
-
-}  // namespace
-
 void load_inputs(const NetworkShape& shape, const double* inputs, std::size_t rows,
                  const Block& block) {
   const auto count = static_cast<std::size_t>(shape.inputs());
@@ -55,7 +31,8 @@ std::size_t get_scratch_size(const NetworkShape& shape) {
 }
 
 const std::vector<TrainKernel>& list_train_kernels() {
-  static const std::vector<TrainKernel> kernels = find_kernels();
+  static const std::vector<TrainKernel> kernels =
+      STRUT_LIST_KERNELS(TrainKernel, strut_train_kernel_);
   return kernels;
 }
 

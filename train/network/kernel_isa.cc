@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "base/math/matrix_map.h"
+#include "base/parallel/instruction_sets.h"
 #include "train/network/block_layers.h"
 
 namespace {
@@ -181,18 +182,13 @@ void add_tile(const NetworkShape& shape, const GramTile& tile, const Block& chun
 
 }  // namespace
 
-#define STRUT_JOIN_NAME(a, b) a##b
-#define STRUT_TRAIN_KERNEL_NAME(isa) STRUT_JOIN_NAME(strut_train_kernel_, isa)
-#define STRUT_QUOTE_NAME(name) #name
-#define STRUT_ISA_STRING(isa) STRUT_QUOTE_NAME(isa)
+extern "C" strut::TrainKernel STRUT_ISA_NAME(strut_train_kernel_)();
 
-extern "C" strut::TrainKernel STRUT_TRAIN_KERNEL_NAME(STRUT_ISA)();
-
-extern "C" strut::TrainKernel STRUT_TRAIN_KERNEL_NAME(STRUT_ISA)() {
+extern "C" strut::TrainKernel STRUT_ISA_NAME(strut_train_kernel_)() {
   // Eigen cuts its sums by the size of the caches. Asked of the processor, results would differ
   // between machines of one instruction set.
   Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
-  return {STRUT_ISA_STRING(STRUT_ISA),
+  return {STRUT_ISA_STRING,
           &predict,
           &strut::run_forward,
           &strut::run_backward,
