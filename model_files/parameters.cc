@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/text/format_number.h"
-#include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "base/text/range.h"
 #include "model/effects/catalogue.h"
@@ -260,20 +259,6 @@ Parameters make_parameters() {
   return list;
 }
 
-/// What a wrong name may have meant: all names for the nearest, but not all listed where none is.
-[[noreturn]] void refuse_name(const std::string& name) {
-  std::vector<std::string> names, plain;
-  for (const ParameterInfo& parameter : list_parameters()) {
-    names.push_back(parameter.name);
-    if (!parameter.is_effect) plain.push_back(parameter.name);
-  }
-  const std::string suggestion = suggest_name(name, names);
-  throw InputError("unknown parameter '" + name + "'" +
-                   (suggestion.empty() ? "; known: " + join_names(plain) +
-                                             ", and those of effects, docs/effects.md"
-                                       : suggestion));
-}
-
 }  // namespace
 
 const std::vector<ParameterInfo>& list_parameters() {
@@ -290,19 +275,14 @@ std::vector<const ParameterInfo*> list_parameters_in_use(const Case& c) {
 }
 
 const ParameterInfo& find_parameter(const std::string& name) {
-  for (const ParameterInfo& parameter : list_parameters()) {
-    if (parameter.name == name) return parameter;
-  }
-  refuse_name(name);
+  return find_listed(list_parameters(), name);
 }
 
 double get_parameter(const Case& c, const std::string& name) { return find_parameter(name).get(c); }
 
 void set_parameter(Case& c, const std::string& name, double value) {
   const ParameterInfo& parameter = find_parameter(name);
-  if (!parameter.allowed.contains(value)) {
-    throw InputError(name + " = " + format_number(value) + ": " + parameter.allowed.describe());
-  }
+  check_value(parameter, value);
   parameter.set(c, value);
 }
 

@@ -5,7 +5,6 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
-#include "base/text/nearest_name.h"
 #include "base/text/range.h"
 #include "io/format/csv.h"
 #include "io/format/toml_document.h"
@@ -176,24 +175,12 @@ const std::vector<RigParameter>& list_rig_settings(RigKind kind) {
 }
 
 const RigParameter& find_rig_parameter(RigKind kind, const std::string& name) {
-  std::vector<std::string> names, plain;
-  for (const RigParameter& parameter : list_rig_settings(kind)) {
-    if (parameter.name == name) return parameter;
-    names.push_back(parameter.name);
-    if (!parameter.is_effect) plain.push_back(parameter.name);
-  }
-  const std::string suggestion = suggest_name(name, names);
-  throw InputError("unknown parameter '" + name + "'" +
-                   (suggestion.empty() ? "; known: " + join_names(plain) +
-                                             ", and those of effects, docs/effects.md"
-                                       : suggestion));
+  return find_listed(list_rig_settings(kind), name);
 }
 
 void set_rig_parameter(RigSpec& spec, const std::string& name, double value) {
   const RigParameter& parameter = find_rig_parameter(spec.kind, name);
-  if (!parameter.allowed.contains(value)) {
-    throw InputError(name + " = " + format_number(value) + ": " + parameter.allowed.describe());
-  }
+  check_value(parameter, value);
   parameter.set(spec, value);
 }
 
