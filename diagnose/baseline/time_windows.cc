@@ -25,8 +25,7 @@ std::vector<TimeWindow> make_car_windows(const MeasuredRun& run) {
   const double last = run.times.back() + 1.0, first = std::min(0.0, run.times.front());
   const double half = 0.5 * m.road.length + kFootprint;
   const double front = m.bump_distance;
-  const double rear =
-      front + run.setup.vehicle.whole.centroid_to_front + run.setup.vehicle.whole.centroid_to_rear;
+  const double rear = front + run.setup.vehicle.whole.wheelbase();
   const auto time = [&](double way) { return std::clamp(way / m.speed, first, last); };
   const double leave = std::min(time(front + half), time(rear - half));
   return {{"approach", first, time(front - half)},

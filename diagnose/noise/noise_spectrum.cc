@@ -69,7 +69,7 @@ enum class PulseAxle { kBoth, kRear };
 std::vector<std::vector<double>> simulate_pulse(Case c, const NoiseSpectrum& s,
                                                 const std::vector<MeasuredChannel>& channels,
                                                 double height, BumpSide side, PulseAxle axle) {
-  const double wheelbase = c.vehicle.whole.centroid_to_front + c.vehicle.whole.centroid_to_rear;
+  const double wheelbase = c.vehicle.whole.wheelbase();
   c.maneuver.road = RoadSpec{};
   c.maneuver.road.shape = BumpShape::kCosine;
   c.maneuver.road.height = height;
@@ -101,7 +101,7 @@ struct TrackResponse {
 
 TrackResponse calc_track_response(const Case& c, const NoiseSpectrum& s,
                                   const std::vector<MeasuredChannel>& channels, BumpSide side) {
-  const double wheelbase = c.vehicle.whole.centroid_to_front + c.vehicle.whole.centroid_to_rear;
+  const double wheelbase = c.vehicle.whole.wheelbase();
   const auto rest = simulate_pulse(c, s, channels, 0.0, side, PulseAxle::kBoth);
   const auto both = simulate_pulse(c, s, channels, kPulseHeight, side, PulseAxle::kBoth);
   const auto rear = simulate_pulse(c, s, channels, kPulseHeight, side, PulseAxle::kRear);
@@ -239,9 +239,8 @@ NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int n
   const WholeCarSpec& whole = c.vehicle.whole;
   const auto& [front, rear] = c.vehicle.suspension;
   const double step = 1.0 / (static_cast<double>(kFiner * s.samples) * s.interval);
-  const std::vector<Eigen::MatrixXcd> fine =
-      calc_road_covariance(wheels, step, speed, whole.centroid_to_front + whole.centroid_to_rear,
-                           front.wheel_center_y + rear.wheel_center_y);
+  const std::vector<Eigen::MatrixXcd> fine = calc_road_covariance(
+      wheels, step, speed, whole.wheelbase(), front.wheel_center_y + rear.wheel_center_y);
   if (record == RoadRecord::kCutOff) {
     s.common = spread_covariance(fine, s.samples);
   } else {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "model/car/assemble.h"
 #include "model/scenario/profile.h"
 #include "sweep/simulate_case.h"
 
@@ -86,25 +87,15 @@ Json make_point(double x, double z) {
   return point;
 }
 
-/// Height of an axle's wheel centers at nominal trim: the free radius less what the car's weight
-/// presses the tire in.
-double calc_wheel_height(const Case& c, int axle) {
-  const WholeCarSpec& whole = c.vehicle.whole;
-  const double base = whole.centroid_to_front + whole.centroid_to_rear;
-  const double other = axle == kFront ? whole.centroid_to_rear : whole.centroid_to_front;
-  const double load = 0.5 * whole.mass * c.maneuver.gravity * other / base;
-  return c.vehicle.tire.unloaded_radius - load / c.vehicle.tire.stiffness;
-}
-
 /// Wheel center and ends of the spring, from the body's reference point.
 Json make_axle(const Case& c, int axle) {
-  const WholeCarSpec& whole = c.vehicle.whole;
   const SuspensionSpec& suspension = c.vehicle.suspension[static_cast<std::size_t>(axle)];
-  const double x = axle == kFront ? whole.centroid_to_front : -whole.centroid_to_rear;
-  const double z = calc_wheel_height(c, axle) - whole.centroid_height;
-  const auto place = [&](const Vec3<double>& p) { return make_point(x + p.x, z + p.z); };
+  const Vec3<double> wheel = calc_wheel_reference(c.vehicle, c.maneuver.gravity, 2 * axle);
+  const auto place = [&](const Vec3<double>& p) {
+    return make_point(wheel.x + p.x, wheel.z + p.z);
+  };
   return Json::object()
-      .set("wheel", make_point(x, z))
+      .set("wheel", make_point(wheel.x, wheel.z))
       .set("upper", place(suspension.spring_upper.position))
       .set("lower", place(suspension.spring_lower.position));
 }

@@ -15,16 +15,9 @@ double calc_center_height(const VehicleSpec& spec, const Vec3<double>& axis, dou
 }
 
 void build_corners(const VehicleSpec& spec, double gravity, double rack, AssembledVehicle& car) {
-  const WholeCarSpec& whole = spec.whole;
-  const double wheelbase = whole.centroid_to_front + whole.centroid_to_rear;
   for (int c = 0; c < kCorners; ++c) {
-    const int axle = axle_of(c);
-    const double lever = axle == kFront ? whole.centroid_to_rear : whole.centroid_to_front;
-    car.nominal_load[c] = 0.5 * whole.mass * gravity * lever / wheelbase;
-    const Vec3<double> axis = calc_spin_axis(spec.suspension[axle], is_right(c));
-    const Vec3<double> reference{
-        axle == kFront ? whole.centroid_to_front : -whole.centroid_to_rear, 0.0,
-        calc_center_height(spec, axis, car.nominal_load[c]) - whole.centroid_height};
+    car.nominal_load[c] = calc_nominal_load(spec, gravity, axle_of(c));
+    const Vec3<double> reference = calc_wheel_reference(spec, gravity, c);
     const BuiltCorner parts = build_corner(spec, c, reference, rack);
     car.layout.predictor[c] = parts.predictor;
     car.layout.corner[c] = parts.topology;
@@ -109,6 +102,21 @@ std::array<bool, kCorners> find_wheels_on_bump(const RoadSpec& road) {
 }
 
 }  // namespace
+
+double calc_nominal_load(const VehicleSpec& spec, double gravity, int axle) {
+  const WholeCarSpec& whole = spec.whole;
+  const double lever = axle == kFront ? whole.centroid_to_rear : whole.centroid_to_front;
+  return 0.5 * whole.mass * gravity * lever / whole.wheelbase();
+}
+
+Vec3<double> calc_wheel_reference(const VehicleSpec& spec, double gravity, int corner) {
+  const int axle = axle_of(corner);
+  const WholeCarSpec& whole = spec.whole;
+  const Vec3<double> axis = calc_spin_axis(spec.suspension[axle], is_right(corner));
+  const double load = calc_nominal_load(spec, gravity, axle);
+  return {axle == kFront ? whole.centroid_to_front : -whole.centroid_to_rear, 0.0,
+          calc_center_height(spec, axis, load) - whole.centroid_height};
+}
 
 // Sylvester's criterion.
 void check_chassis_inertia(const Sym3<double>& j) {

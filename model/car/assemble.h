@@ -19,6 +19,13 @@ struct AssembledVehicle {
   double center_height = 0.0;                 // m, chassis origin over the ground at nominal trim
 };
 
+/// Returns the load on one tire of an axle at rest [N].
+double calc_nominal_load(const VehicleSpec& spec, double gravity, int axle);
+
+/// Returns the wheel center at nominal trim relative to the whole car's centroid [m], projected on
+/// the car's plane of symmetry (y = 0). A cambered wheel stands lower by the cosine of its camber.
+Vec3<double> calc_wheel_reference(const VehicleSpec& spec, double gravity, int corner);
+
 /// Throws ModelError when no such car can stand: chassis mass or inertia not positive, loops that
 /// do not close over +-kHalfTravel.
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver);

@@ -102,6 +102,8 @@ struct WholeCarSpec {
   double centroid_to_rear = 0.0;   // m
   double centroid_height = 0.0;    // m
   Sym3<double> inertia{};          // kg m^2 about the centroid
+
+  double wheelbase() const { return centroid_to_front + centroid_to_rear; }  // m
   bool operator==(const WholeCarSpec&) const = default;
 };
 

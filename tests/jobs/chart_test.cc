@@ -353,6 +353,22 @@ TEST_CASE("A simulated run's report shows the car in motion beside its curves", 
   test::check_page(folder / "page.html", 1);
 }
 
+TEST_CASE("A cambered wheel is drawn at the height at which it is simulated", "[io]") {
+  const TemporaryFolder folder;
+  const std::string out = folder / "report";
+  // Without torque a wheel hardly leaves nominal trim; an upright one would stand 1.6 mm higher.
+  const test::Outcome run =
+      test::run_program(make_simulate_command("bump_20mps", folder / "run.csv", out) +
+                        " --set drive_torque=0 --set front_static_camber=0.09");
+  REQUIRE(run.code == 0);
+  const auto scene = test::parse_json(test::read_text(out + "/figures/motion.json"));
+  const auto get_first = [](const auto& tree) { return tree.front().second; };
+  const double simulated = std::stod(get_first(get_first(scene.get_child("wheel_height"))).data()) -
+                           scene.get<double>("nominal_height");
+  const double drawn = std::stod(std::next(scene.get_child("front.wheel").begin())->second.data());
+  CHECK(drawn == Approx(simulated).margin(test::tolerance(3e-4)));
+}
+
 TEST_CASE("A run beside its report is no part of it", "[io]") {
   const TemporaryFolder folder;
   const std::string simulate = make_simulate_command("one_sided", folder / "run.csv", folder / "");
