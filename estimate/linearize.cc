@@ -74,8 +74,8 @@ SampledRun read_sensors(const Case& setup, const MeasuredRun& run, double interv
                         SampledRun sampled) {
   for (std::size_t c = 0; c < sampled.size(); ++c) {
     const auto channel = static_cast<std::size_t>(run.channels[c].channel);
-    sampled[c] = read_sensor(setup.vehicle.effects, list_car_channels()[channel].name, interval,
-                             std::move(sampled[c]));
+    sampled[c] = read_sensor(setup.vehicle.effects, run.setup.info().channels[channel].name,
+                             interval, std::move(sampled[c]));
   }
   return sampled;
 }
@@ -120,11 +120,12 @@ void ReadingSimulator::choose_readings(std::size_t r) {
   const double earliest = hit == kNoUnknown ? 0.0 : unknowns_[hit].low;
   const double latest = hit == kNoUnknown ? 0.0 : unknowns_[hit].high;
   const double margin = static_cast<double>(kCurveMargin) * step;
-  const double driven = run.setup.maneuver.duration;
+  ManeuverSpec& maneuver = run.setup.car().maneuver;
+  const double driven = maneuver.duration;
   const double last = std::min(run.times.back() + shift, driven) + latest - shift;
   const Range& allowed = find_parameter("duration").allowed;
-  run.setup.maneuver.duration = std::clamp(last + margin + 2.0 * step, allowed.low, allowed.high);
-  const double end = run.setup.maneuver.duration - margin - step;
+  maneuver.duration = std::clamp(last + margin + 2.0 * step, allowed.low, allowed.high);
+  const double end = maneuver.duration - margin - step;
   const std::size_t before = readings_.size();
   for (std::size_t t = 0; t < run.times.size(); ++t) {
     const bool inside = run.times[t] + earliest >= margin && run.times[t] + latest <= end;
@@ -144,15 +145,17 @@ void ReadingSimulator::choose_readings(std::size_t r) {
 void ReadingSimulator::align_durations() {
   constexpr double kNearly = 0.7;
   double longest = 0.0;
-  for (const MeasuredRun& run : runs_) longest = std::max(longest, run.setup.maneuver.duration);
+  for (const MeasuredRun& run : runs_)
+    longest = std::max(longest, run.setup.car().maneuver.duration);
   for (MeasuredRun& run : runs_) {
-    double& duration = run.setup.maneuver.duration;
+    double& duration = run.setup.car().maneuver.duration;
     if (duration > kNearly * longest) duration = longest;
   }
 }
 
 Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& values) const {
-  Case c = runs_[run].setup;
+  const Case& known = runs_[run].setup.car();
+  Case c = known;
   for (std::size_t i = 0; i < unknowns_.size(); ++i) {
     const Unknown& u = unknowns_[i];
     if (!is_parameter_of(u, run)) continue;
@@ -161,7 +164,7 @@ Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& va
       continue;
     }
     // What stays as it is is not touched: a corner's neutral effect would replace the axle's.
-    if (values[i] != parameters_[i]->get(runs_[run].setup)) parameters_[i]->set(c, values[i]);
+    if (values[i] != parameters_[i]->get(known)) parameters_[i]->set(c, values[i]);
   }
   return c;
 }

@@ -1,4 +1,4 @@
-// The simulated readings of all runs, and how they react to every unknown.
+// The simulated readings of cars that cross a road, and how they react to every unknown.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,34 +7,13 @@
 #include <vector>
 
 #include "base/math/eigen_abi.h"
+#include "estimate/linearize_options.h"
 #include "estimate/reading_model.h"
 #include "estimate/run_prepared.h"
 #include "estimate/run_readings.h"
 #include "model_files/parameters.h"
 
 namespace strut {
-
-/// RK4 1 ms, 4 ms away from the bump, contact events located; corners tabulated, which takes half
-/// the time of closing loops, moves no estimate by 1e-6 sigma, and lets cases of different
-/// hardpoints share lanes.
-inline SolverOptions make_fit_integration() {
-  SolverOptions request;
-  request.options.closure = Closure::kTable;
-  request.options.step.coarse_step = 4e-3;
-  return request;
-}
-
-struct LinearizeOptions {
-  SolverOptions integrate = make_fit_integration();
-  /// 1/s, samples of the simulation between which is interpolated: at 1000 the interpolation of a
-  /// bump at 20 m/s errs by a tenth of a standard deviation of MEMS sensors, at 2000 by 3 %.
-  double rate = 2000.0;
-  /// h of the central differences as a share of the scale. Short, since readings near a contact
-  /// event are kinked in the unknowns: at 1e-4 the speed moves an event across them. Rounding is
-  /// 1e-7.
-  double relative_step = 1e-5;
-  int threads = 1;  // no result depends on it
-};
 
 /// Simulates the runs at given values of the unknowns: the base and the +h and -h of every
 /// parameter together in lockstep lanes. Simulated time is measured time plus hit time; readings

@@ -9,8 +9,8 @@
 namespace strut {
 namespace {
 
-const std::string& get_channel_name(const MeasuredChannel& channel) {
-  return list_car_channels()[static_cast<std::size_t>(channel.channel)].name;
+const std::string& get_channel_name(const MeasuredRun& run, const MeasuredChannel& channel) {
+  return run.setup.info().channels[static_cast<std::size_t>(channel.channel)].name;
 }
 
 void check_times(const MeasuredRun& run) {
@@ -25,7 +25,7 @@ void check_times(const MeasuredRun& run) {
 }
 
 void check_channel(const MeasuredRun& run, const MeasuredChannel& c) {
-  const std::string& name = get_channel_name(c);
+  const std::string& name = get_channel_name(run, c);
   const auto same = [&](const MeasuredChannel& other) { return other.channel == c.channel; };
   if (std::count_if(run.channels.begin(), run.channels.end(), same) > 1) {
     throw InputError(run.name + ": channel '" + name + "' twice; allowed: once");

@@ -1,5 +1,5 @@
-// What was measured on one crossing: readings of some channels over the sensor's own clock, and the
-// car and maneuver as far as they are known.
+// What was measured in one run: readings of some channels over the sensor's own clock, and the
+// model as far as it is known, with what drives it.
 #pragma once
 
 #include <cstddef>
@@ -7,23 +7,30 @@
 #include <vector>
 
 #include "estimate/sensor_noise.h"
-#include "model/car/case.h"
+#include "model/model.h"
 
 namespace strut {
 
 /// One sensor.
 struct MeasuredChannel {
-  int channel = 0;             // of the model: CarChannel, or of list_rig_channels
+  int channel = 0;             // of ModelInfo::channels
   double sigma = 0.0;          // 1 sigma of its white noise per sample, in the channel's unit
   std::vector<double> values;  // one reading per time
 };
 
+/// What is not exact about a recorded input.
+struct InputNoise {
+  double sigma = 0.0;       // 1 sigma per sample, in the input's unit
+  double half_width = 0.0;  // s, of the local cubics that smoothed it; 0: none did
+};
+
 struct MeasuredRun {
   std::string name;           // the file, for messages
-  Case setup;                 // known or supposed; the duration is the fit's own
+  Model setup;                // known or supposed; a maneuver's duration is the fit's own
   std::vector<double> times;  // s, ascending
   std::vector<MeasuredChannel> channels;
-  bool may_miss = false;  // readings may be NaN: missing
+  bool may_miss = false;                  // readings may be NaN: missing
+  std::vector<InputNoise> input_noise{};  // of each recorded input
 };
 
 /// Keeps the times in [from, to] s.

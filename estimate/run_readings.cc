@@ -9,10 +9,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool belongs(const Unknown& u, std::size_t run) {
-  return u.run == kEveryRun || static_cast<std::size_t>(u.run) == run;
-}
-
 }  // namespace
 
 bool is_parameter_of(const Unknown& u, std::size_t run) {

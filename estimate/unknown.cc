@@ -5,46 +5,94 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "base/math/spread.h"
 #include "base/text/format_number.h"
-#include "model/channel/car_channels.h"
+#include "base/text/nearest_name.h"
 #include "model/error/model_error.h"
-#include "model_files/parameters.h"
+#include "model_files/read_model.h"
 
 namespace strut {
 namespace {
 
-using C = CarChannel;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const ChannelInfo& get_info(int channel) {
-  return list_car_channels()[static_cast<std::size_t>(channel)];
-}
+constexpr char kGain[] = "_gain", kBias[] = "_bias";
+
+/// Where the parameter's lower bound itself is not allowed, and how far a search may go, in scales.
+constexpr double kAboveLow = 1e-4, kReach = 1e4;
 
 std::string describe_run(const Unknown& u) {
   return u.run == kEveryRun ? "" : " of run " + std::to_string(u.run + 1);
 }
 
+Unknown make_gain(const std::string& name, int input) {
+  Unknown u;
+  u.kind = UnknownKind::kInputGain;
+  u.name = name;
+  u.unit = "1";
+  u.channel = input;
+  u.start = 1.0;
+  u.low = -100.0;
+  u.high = 100.0;
+  return u;
+}
+
+/// Multiplies a recorded input, and what is not exact about it, where the run has it.
+void scale_input(MeasuredRun& measured, int input, double factor) {
+  const std::string& name = measured.setup.info().inputs[static_cast<std::size_t>(input)].name;
+  std::vector<InputSignal>& signals = measured.setup.rig().inputs;
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (signals[k].channel != name) continue;
+    scale_signal(signals[k], factor);
+    if (k < measured.input_noise.size()) measured.input_noise[k].sigma *= std::abs(factor);
+  }
+}
+
 }  // namespace
 
 Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name, int run) {
-  const ParameterInfo& info = find_parameter(name);
+  const Model& setup = runs.at(run == kEveryRun ? 0 : static_cast<std::size_t>(run)).setup;
+  const Parameter& info = find_parameter(setup.info(), name);
   if (name == "duration") {
     throw InputError("duration: cannot be fitted, it is only how long is simulated");
   }
-  const Case& setup = runs.at(run == kEveryRun ? 0 : static_cast<std::size_t>(run)).setup;
-  Case probe = setup;
-  info.set(probe, info.get(setup));  // refuses what this maneuver does not have
   Unknown u;
   u.name = name;
   u.unit = info.unit;
   u.run = run;
-  u.start = info.get(setup);
-  u.low = info.allowed.low;
-  u.high = info.allowed.high;
-  const double ordinary = info.typical > 0.0 ? info.typical : 0.5 * (u.high - u.low);
+  u.start = get_parameter(setup, name);
+  Model probe = setup;
+  set_parameter(probe, name, u.start);  // refuses what this maneuver does not have
+  const double ordinary =
+      info.typical > 0.0 ? info.typical : 0.5 * (info.allowed.high - info.allowed.low);
   u.scale = u.start != 0.0 ? std::abs(u.start) : ordinary;
+  u.low = info.allowed.open_low ? info.allowed.low + kAboveLow * u.scale : info.allowed.low;
+  const bool is_bounded = info.is_effect || u.start == 0.0;
+  u.high = is_bounded ? info.allowed.high : std::min(info.allowed.high, kReach * u.scale);
   return u;
+}
+
+Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::string& name) {
+  const MeasuredRun& run = runs.at(0);
+  const ModelInfo& model = run.setup.info();
+  std::vector<std::string> plain, names;
+  for (const Parameter* p : list_parameters(model)) {
+    if (p->name == name) return make_parameter(runs, name);
+    (p->is_effect ? names : plain).push_back(p->name);
+  }
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    plain.push_back(model.inputs[i].name + kGain);
+    if (plain.back() == name) return make_gain(name, static_cast<int>(i));
+  }
+  for (const MeasuredChannel& c : run.channels) {
+    Unknown u = make_bias(model, kEveryRun, c.channel, {});
+    u.scale = std::max(calc_spread(c.values), c.sigma);
+    if (u.name == name) return u;
+    plain.push_back(u.name);
+  }
+  names.insert(names.end(), plain.begin(), plain.end());
+  throw InputError("'" + name + "' cannot be free; allowed: " + join_names(plain) +
+                   ", and parameters of effects" + suggest_name(name, names));
 }
 
 Unknown make_hit_time(int run, const Prior& prior) {
@@ -61,11 +109,11 @@ Unknown make_hit_time(int run, const Prior& prior) {
   return u;
 }
 
-Unknown make_bias(int run, int channel, const Prior& prior) {
-  const ChannelInfo& info = get_info(channel);
+Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior) {
+  const ChannelInfo& info = model.channels[static_cast<std::size_t>(channel)];
   Unknown u;
   u.kind = UnknownKind::kBias;
-  u.name = info.name + "_bias";
+  u.name = info.name + kBias;
   u.unit = info.unit;
   u.run = run;
   u.channel = channel;
@@ -108,29 +156,6 @@ void add_map_part(ForceMaps& maps, const ForceMap& part, double factor) {
   }
 }
 
-std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
-                                    const NuisanceSigmas& sigmas,
-                                    const std::vector<Unknown>& chosen) {
-  const SensorNoise bias = sigmas.bias.empty() ? make_default_bias() : sigmas.bias;
-  const bool speed_chosen = std::any_of(chosen.begin(), chosen.end(), [](const Unknown& u) {
-    return u.kind == UnknownKind::kParameter && u.name == "speed";
-  });
-  std::vector<Unknown> list;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const int run = static_cast<int>(r);
-    if (sigmas.hit_time > 0.0) list.push_back(make_hit_time(run, {0.0, sigmas.hit_time}));
-    if (sigmas.speed > 0.0 && !speed_chosen) {
-      list.push_back(make_parameter(runs, "speed", run));
-      list.back().prior = {list.back().start, sigmas.speed};
-    }
-    for (const MeasuredChannel& c : runs[r].channels) {
-      const double sigma = bias[static_cast<std::size_t>(c.channel)];
-      if (sigma > 0.0) list.push_back(make_bias(run, c.channel, {0.0, sigma}));
-    }
-  }
-  return list;
-}
-
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
   std::vector<double> values;
   values.reserve(unknowns.size());
@@ -138,17 +163,35 @@ std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
   return values;
 }
 
-void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
-                    const std::vector<double>& values, int run) {
+void set_unknowns(MeasuredRun& measured, const std::vector<Unknown>& unknowns,
+                  const std::vector<double>& values, int run) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
-    if (!is_of_simulation(u) || (u.run != kEveryRun && u.run != run)) continue;
-    if (u.kind == UnknownKind::kForceMap) {
-      add_map_part(c.vehicle.force_maps, *u.part, values[i]);
-    } else {
-      set_parameter(c, u.name, values[i]);
+    if (u.run != kEveryRun && u.run != run) continue;
+    switch (u.kind) {
+      case UnknownKind::kParameter:
+        set_parameter(measured.setup, u.name, values[i]);
+        break;
+      case UnknownKind::kForceMap:
+        add_map_part(measured.setup.force_maps(), *u.part, values[i]);
+        break;
+      case UnknownKind::kInputGain:
+        scale_input(measured, u.channel, values[i]);
+        break;
+      case UnknownKind::kInitialState:
+        set_initial_state(measured.setup.rig().rig, u.channel, values[i]);
+        break;
+      case UnknownKind::kHitTime:
+      case UnknownKind::kBias:
+        break;
     }
   }
+}
+
+void set_initial_state(RigSpec& rig, int channel, double value) {
+  const auto at = static_cast<std::size_t>(channel);
+  const std::size_t masses = get_rig_info(rig.kind).masses.size();
+  (at < masses ? rig.initial_position[at] : rig.initial_velocity[at - masses]) = value;
 }
 
 void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count) {

@@ -1,4 +1,4 @@
-// What a fit is to find: parameters of car and maneuver, and the nuisances of every measurement.
+// What a fit is to find: parameters of the model, and the nuisances of every measurement.
 #pragma once
 
 #include <limits>
@@ -12,11 +12,11 @@
 namespace strut {
 
 enum class UnknownKind {
-  kParameter,     // of model_files/parameters.h
+  kParameter,     // of model_files/read_model.h
   kHitTime,       // s: simulated time minus the time of the measuring clock
   kBias,          // what is to be added to a simulated channel, in its unit
-  kInputGain,     // of a rig: what its measured input is to be multiplied by
-  kInitialState,  // of a rig: offset of its start from rest [m], [m/s]
+  kInputGain,     // what a recorded input is to be multiplied by
+  kInitialState,  // of a mass: offset of its start from rest [m], [m/s]
   kForceMap,      // how many times its part is in the force map of a strut
 };
 
@@ -35,8 +35,8 @@ struct Unknown {
   std::string name;     // "front_stiffness", "hit_time", "imu_rate_y_bias"
   std::string unit;     // "1" if none
   int run = kEveryRun;  // of which run, counted from 0; or one value for all
-  /// kBias: the model's channel; kInputGain: of list_rig_inputs; kInitialState: RigCoordinate,
-  /// its velocity kRigCoordinates later.
+  /// kBias: of ModelInfo::channels; kInputGain: of its inputs; kInitialState: of its masses, their
+  /// velocities behind all positions.
   int channel = 0;
   double start = 0.0;  // where the search begins
   double scale = 1.0;  // 100 % of it: its size, or the sigma of its prior where it starts from 0
@@ -45,7 +45,12 @@ struct Unknown {
   std::shared_ptr<const ForceMap> part{};  // of kForceMap
 };
 
-/// Whether it changes what is simulated for a car in a maneuver, not only how that is read.
+/// Whether an unknown is one of run number `run`.
+inline bool belongs(const Unknown& u, std::size_t run) {
+  return u.run == kEveryRun || static_cast<std::size_t>(u.run) == run;
+}
+
+/// Whether it changes what is simulated of a car in a maneuver, not only how that is read.
 inline bool is_of_simulation(const Unknown& u) {
   return u.kind == UnknownKind::kParameter || u.kind == UnknownKind::kForceMap;
 }
@@ -55,19 +60,16 @@ inline bool is_of_simulation(const Unknown& u) {
 Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name,
                        int run = kEveryRun);
 
+/// What all runs share by its name: a parameter, NAME_gain of an input or NAME_bias of a channel
+/// that runs.front() has. Throws InputError with the nearest known name.
+Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::string& name);
+
 /// Bounds mean +- kHitTimeReach sigma. sigma > 0.
 Unknown make_hit_time(int run, const Prior& prior);
 inline constexpr double kHitTimeReach = 5.0;
 
 /// Without bounds. sigma > 0, may be infinite.
-Unknown make_bias(int run, int channel, const Prior& prior);
-
-/// 1 sigma of what is not known about each run; 0: known.
-struct NuisanceSigmas {
-  double hit_time = 0.005;  // s, a trigger at one frame of a 100 Hz bus
-  double speed = 0.2;       // m/s, a wheel speed sensor and the tire's effective radius
-  SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
-};
+Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);
 
 /// How many times a part is in the map at its place: begins at 0, without bounds.
 Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
@@ -77,20 +79,17 @@ Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap
 /// Throws ModelError where the map there has another grid.
 void add_map_part(ForceMaps& maps, const ForceMap& part, double factor);
 
-/// Hit time, speed and biases of every run, as far as their sigma is not 0; the speed only where no
-/// unknown of `chosen` is the speed.
-std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
-                                    const NuisanceSigmas& sigmas,
-                                    const std::vector<Unknown>& chosen = {});
-
 /// Where the search of each begins.
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
 
-/// Sets the parameters and force maps among the unknowns that belong to a run: to all of them, or
-/// to that alone.
-/// Throws what set_parameter throws.
-void set_parameters(Case& c, const std::vector<Unknown>& unknowns,
-                    const std::vector<double>& values, int run = kEveryRun);
+/// Sets the parameters, force maps, gains of inputs and initial states among the unknowns that
+/// belong to a run: to all of them, or to that alone. The noise of an input is scaled with it; hit
+/// times and biases are left out. Throws what set_parameter throws.
+void set_unknowns(MeasuredRun& measured, const std::vector<Unknown>& unknowns,
+                  const std::vector<double>& values, int run = kEveryRun);
+
+/// Sets a rig's initial state: a kInitialState's `channel` and value.
+void set_initial_state(RigSpec& rig, int channel, double value);
 
 /// Throws InputError where one is named twice, belongs to no run, starts out of its bounds, or has
 /// a prior whose sigma is not positive.

@@ -53,7 +53,7 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
 /// The loop goes on with the extended model, or, where there is none, with other measurements.
 void tell_next_of(const Arguments& arguments, const DiagnoseFolder& folder,
                   const CampaignData& data, const Diagnosis& diagnosis) {
-  if (diagnosis.is_extended() && data.is_rig()) {
+  if (diagnosis.is_extended() && data.has_inputs()) {
     tell_next({"strut", "simulate", folder.extended_model().string(), "MANEUVER.toml", "-o",
                "extended.csv"});
   } else if (diagnosis.is_extended()) {

@@ -14,7 +14,7 @@
 #include "jobs/cli/unsealed.h"
 
 namespace strut {
-Json make_json(const Model& model, const ModelEvaluation& evaluation) {
+Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation) {
   Json parameters = Json::object();
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const Metrics& m = evaluation.metrics[i];
@@ -33,7 +33,7 @@ Json make_json(const Model& model, const ModelEvaluation& evaluation) {
   return json;
 }
 
-void print_table(const Model& model, const ModelEvaluation& evaluation) {
+void print_table(const TrainedModel& model, const ModelEvaluation& evaluation) {
   print_format("%-24s%-8s%12s%12s%12s%12s%12s\n", "parameter", "unit", "ME", "MAE", "MAPE %",
                "RMSE", "1 - R2");
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
@@ -48,7 +48,7 @@ void print_table(const Model& model, const ModelEvaluation& evaluation) {
   }
 }
 
-void tell_next_identify(const std::string& file, const Model& model) {
+void tell_next_identify(const std::string& file, const TrainedModel& model) {
   std::vector<std::string> columns = list_names(model.inputs);
   if (model.window) {
     columns = list_names(model.window->channels);
@@ -81,7 +81,7 @@ int run_evaluate(const Arguments& arguments) {
   if (names.size() < 2)
     throw arguments.usage_error(
         "expected MODEL, of strut train, and DATA, a sweep folder, shards or a merged file");
-  const Model model = load_model(names.front());
+  const TrainedModel model = load_model(names.front());
   DatasetOptions options;
   options.partial = arguments.is_on("partial");
   options.histories = model.window.has_value();

@@ -13,12 +13,12 @@ Arguments describe_evaluate();
 int run_evaluate(const Arguments& arguments);
 
 /// {"parameters": {"front_stiffness": {"ME":, "MAE":, "MAPE":, "RMSE":, "R2":}, ...}, "samples":}
-Json make_json(const Model& model, const ModelEvaluation& evaluation);
+Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation);
 
 /// The same as a table for people.
-void print_table(const Model& model, const ModelEvaluation& evaluation);
+void print_table(const TrainedModel& model, const ModelEvaluation& evaluation);
 
 /// Names `strut identify` as what comes after a model in `file`, and what it takes.
-void tell_next_identify(const std::string& file, const Model& model);
+void tell_next_identify(const std::string& file, const TrainedModel& model);
 
 }  // namespace strut

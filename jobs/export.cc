@@ -38,7 +38,8 @@ std::string find_name(const Arguments& arguments, const fs::path& output) {
   return name;
 }
 
-std::string make_text(const Arguments& arguments, const Model& model, const fs::path& output) {
+std::string make_text(const Arguments& arguments, const TrainedModel& model,
+                      const fs::path& output) {
   const ExportFormat format = find_format(output);
   const bool is_onnx = format == ExportFormat::kOnnx;
   if (is_onnx && arguments.has("name")) throw arguments.usage_error("--name: only for .h and .c");
@@ -92,7 +93,7 @@ int run_export(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) throw arguments.usage_error("expected one MODEL, a file of strut train");
   const fs::path output = find_output_file(arguments, names);
-  const Model model = load_model(names.front());
+  const TrainedModel model = load_model(names.front());
   if (model.window) {
     throw InputError(names.front() +
                      ": a network over windows of time histories: its inputs are no channels but "

@@ -55,7 +55,7 @@ int run_identify(const Arguments& arguments) {
     return identify_by_fit(arguments, names.front(), files);
   }
   refuse_fit_options(arguments);
-  const Model model = load_model(names.front());
+  const TrainedModel model = load_model(names.front());
   return model.window ? identify_by_window(arguments, model, files)
                       : identify_by_snapshot(arguments, model, files);
 }

@@ -8,6 +8,7 @@
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/commands.h"
+#include "model/effects/catalogue.h"
 #include "model_files/model_tables.h"
 #include "report/json.h"
 
@@ -91,8 +92,9 @@ Json make_parameters_json(const ModelTables& model) {
 
 void print_channels(const ModelTables& model) {
   std::vector<std::vector<std::string>> rows = {{"NAME", "UNIT", "MEANING"}};
-  for (const ChannelInfo& c : model.channels) rows.push_back({c.name, c.unit, c.description});
-  for (const ListedInput& i : model.inputs) {
+  for (const ChannelInfo& c : model.model->channels)
+    rows.push_back({c.name, c.unit, c.description});
+  for (const InputInfo& i : model.model->inputs) {
     rows.push_back(
         {i.name, i.unit, std::string(i.required ? "input: " : "optional input: ") + i.description});
   }
@@ -107,27 +109,27 @@ Json make_channels_json(const ModelTables& model) {
     json.set("name", name).set("unit", unit).set("role", role).set("meaning", meaning);
     list.push(json);
   };
-  for (const ChannelInfo& c : model.channels) add(c.name, c.unit, c.description, "output");
-  for (const ListedInput& i : model.inputs) add(i.name, i.unit, i.description, "input");
+  for (const ChannelInfo& c : model.model->channels) add(c.name, c.unit, c.description, "output");
+  for (const InputInfo& i : model.model->inputs) add(i.name, i.unit, i.description, "input");
   return list;
 }
 
 // --- effects ---------------------------------------------------------------------------------
 
 /// Effects with a parameter in this kind of model.
-std::vector<const EffectInfo*> list_effects_of(ModelKind kind) {
+std::vector<const EffectInfo*> list_effects_of(const ModelInfo& model) {
   std::vector<const EffectInfo*> effects;
   for (const EffectInfo& effect : list_effects()) {
-    if (!list_effect_parameters(effect, kind).empty()) effects.push_back(&effect);
+    if (!list_effect_parameters(effect, model).empty()) effects.push_back(&effect);
   }
   return effects;
 }
 
-void print_effects(ModelKind kind) {
-  for (const EffectInfo* effect : list_effects_of(kind)) {
+void print_effects(const ModelInfo& model) {
+  for (const EffectInfo* effect : list_effects_of(model)) {
     std::cout << effect->name << ": " << effect->description << "\n    " << effect->equation
               << "\n    source: " << effect->source << "\n";
-    for (const EffectParameter* p : list_effect_parameters(*effect, kind)) {
+    for (const EffectParameter* p : list_effect_parameters(*effect, model)) {
       std::cout << "    " << p->name << " [" << p->unit << "] = " << format_number(p->neutral)
                 << ", in [" << format_number(p->low) << ", " << format_number(p->high)
                 << "]: " << p->description << "\n";
@@ -135,11 +137,11 @@ void print_effects(ModelKind kind) {
   }
 }
 
-Json make_effects_json(ModelKind kind) {
+Json make_effects_json(const ModelInfo& model) {
   Json list = Json::array();
-  for (const EffectInfo* effect : list_effects_of(kind)) {
+  for (const EffectInfo* effect : list_effects_of(model)) {
     Json parameters = Json::array();
-    for (const EffectParameter* p : list_effect_parameters(*effect, kind)) {
+    for (const EffectParameter* p : list_effect_parameters(*effect, model)) {
       Json json = Json::object();
       json.set("name", p->name)
           .set("unit", p->unit)
@@ -150,7 +152,7 @@ Json make_effects_json(ModelKind kind) {
     }
     Json json = Json::object();
     json.set("name", effect->name)
-        .set("places", Json::texts(list_effect_places(*effect, kind)))
+        .set("places", Json::texts(list_effect_places(*effect, model)))
         .set("parameters", parameters)
         .set("equation", effect->equation)
         .set("source", effect->source)
@@ -220,7 +222,7 @@ int run_list(const Arguments& arguments) {
   if (*topic == "parameters") print(make_parameters_json(model), [&] { print_parameters(model); });
   if (*topic == "channels") print(make_channels_json(model), [&] { print_channels(model); });
   if (*topic == "effects") {
-    print(make_effects_json(model.kind), [&] { print_effects(model.kind); });
+    print(make_effects_json(*model.model), [&] { print_effects(*model.model); });
   }
   if (*topic == "commands") print(make_commands_json(), print_commands);
   return kExitDone;

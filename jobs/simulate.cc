@@ -21,7 +21,7 @@
 #include "jobs/simulate/rig.h"
 #include "jobs/simulate/run_report.h"
 #include "model_files/parameters.h"
-#include "model_files/read_rig.h"
+#include "model_files/read_model.h"
 #include "report/json.h"
 #include "report/page_file.h"
 #include "sweep/simulate_case.h"
@@ -316,10 +316,10 @@ int run_simulate(const Arguments& arguments) {
   const SimulateOptions options = read_options(arguments);
   if (options.kinematics) return run_kinematics(options);
   tell_detail("integrator " + options.integrator_name());
-  if (const auto rig = find_rig_kind(options.source.vehicle)) {
+  if (read_model_info(options.source.vehicle).is_driven_by_inputs()) {
     refuse_options(arguments, {"coarse-step", "closure", "spin", "report"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");
-    return run_rig(arguments, options, *rig);
+    return run_rig(arguments, options);
   }
   return run_case(arguments, options);
 }

@@ -169,7 +169,8 @@ int count_copies(const TrainingRows& data) {
   return data.noise ? data.noise->copies : 1;
 }
 
-void print(const Training& training, const Model& model, const fs::path& output, bool as_json) {
+void print(const Training& training, const TrainedModel& model, const fs::path& output,
+           bool as_json) {
   const ModelEvaluation test = evaluate_rows(model, training.data().test);
   const TrainingRows& data = training.data();
   const TrainingSummary summary = training.summarize();
@@ -305,10 +306,10 @@ int run_train(const Arguments& arguments) {
     tell_interrupted(arguments, checkpoint);
     return 128 + watcher.signal();
   }
-  Model model = training.make_model();
+  TrainedModel model = training.make_model();
   const BuildInfo& build = get_build_info();
   model.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
-  write_model(output, model);
+  write_trained_model(output, model);
   print(training, model, output, arguments.is_on("json"));
   tell_next_identify(output.string(), model);
   return kExitDone;

@@ -6,6 +6,7 @@
 #include "base/text/format_number.h"
 #include "base/text/parse_number.h"
 #include "base/text/range.h"
+#include "model/car/car_info.h"
 #include "model/effects/catalogue.h"
 #include "model_files/read_effects.h"
 
@@ -227,17 +228,17 @@ void add_maneuver(Parameters& list) {
 }
 
 void add_effect(Parameters& list, const EffectInfo& effect, const std::string& place) {
-  constexpr ModelKind kCar = ModelKind::kFullVehicle;
-  const auto parameters = list_effect_parameters(effect, kCar);
+  const ModelInfo& car = get_car_info();
+  const auto parameters = list_effect_parameters(effect, car);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
-    const auto get = [&effect, place, i](const Case& c) {
-      return get_effect_value(c.vehicle.effects, effect, kCar, place, i);
+    const auto get = [&effect, &car, place, i](const Case& c) {
+      return get_effect_value(c.vehicle.effects, effect, car, place, i);
     };
-    const auto set = [&effect, place, i](Case& c, double value) {
-      set_effect_value(c.vehicle.effects, effect, kCar, place, i, value);
+    const auto set = [&effect, &car, place, i](Case& c, double value) {
+      set_effect_value(c.vehicle.effects, effect, car, place, i, value);
     };
-    list.push_back({make_effect_parameter(effect, place, p, kCar), get, set});
+    list.push_back({make_effect_parameter(effect, place, p, car), get, set});
   }
 }
 
@@ -252,7 +253,7 @@ Parameters make_parameters() {
   add_maneuver(list);
   for (std::size_t i = vehicle; i < list.size(); ++i) list[i].is_maneuver = true;
   for (const EffectInfo& effect : list_effects()) {
-    for (const std::string& place : list_effect_places(effect, ModelKind::kFullVehicle)) {
+    for (const std::string& place : list_effect_places(effect, get_car_info())) {
       add_effect(list, effect, place);
     }
   }

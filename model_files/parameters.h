@@ -6,7 +6,6 @@
 // of effects: docs/effects.md.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,11 +17,7 @@
 namespace strut {
 
 /// Defaults: of examples/vehicles/paper_sedan.toml and examples/maneuvers/bump_20mps.toml.
-struct ParameterInfo : Parameter {
-  /// A parameter of an axle reads as the mean of its two corners.
-  std::function<double(const Case&)> get;
-  std::function<void(Case&, double)> set;
-};
+using ParameterInfo = ParameterOf<Case>;
 
 /// All parameters in a fixed order: whole car, axles, corners, tire, maneuver, effects.
 const std::vector<ParameterInfo>& list_parameters();

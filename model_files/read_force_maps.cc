@@ -30,9 +30,9 @@ int read_count(const Table& table, std::size_t count, const std::string& what) {
                                  std::to_string(kMostSplines));
 }
 
-ForceMap read_force_map(const Table& table, ModelKind kind) {
+ForceMap read_force_map(const Table& table, const ModelInfo& model) {
   ForceMap map;
-  const std::vector<std::string>& places = list_force_map_places(kind);
+  const std::vector<std::string>& places = list_force_map_places(model);
   if (places.size() > 1)
     map.place = places[static_cast<std::size_t>(table.choice("place", places))];
   read_range(table, "deflection", kDeflection, map.deflection_low, map.deflection_high);
@@ -67,11 +67,11 @@ std::string write_force_map(const ForceMap& map) {
 
 }  // namespace
 
-ForceMaps read_force_maps(const Table& root, ModelKind kind) {
+ForceMaps read_force_maps(const Table& root, const ModelInfo& model) {
   ForceMaps maps;
   if (!root.has("force_map")) return maps;
   for (const Table& table : root.tables("force_map")) {
-    maps.push_back(read_force_map(table, kind));
+    maps.push_back(read_force_map(table, model));
     const auto same = [&](const ForceMap& map) { return map.place == maps.back().place; };
     if (std::count_if(maps.begin(), maps.end(), same) == 1) continue;
     const std::string twice = "is there twice; allowed: once";
@@ -80,8 +80,9 @@ ForceMaps read_force_maps(const Table& root, ModelKind kind) {
   return maps;
 }
 
-std::string replace_force_maps(const std::string& text, const ForceMaps& maps, ModelKind kind) {
-  validate(maps, kind);
+std::string replace_force_maps(const std::string& text, const ForceMaps& maps,
+                               const ModelInfo& model) {
+  validate(maps, model);
   std::string changed = drop_tables(text, "force_map");
   if (!changed.empty() && changed.back() != '\n' && !maps.empty()) changed += '\n';
   for (const ForceMap& map : maps) {

@@ -29,57 +29,54 @@ constexpr double kMostPeriods = 1e5;
 const Range kInitialPosition = between(-10.0, 10.0, "m");
 const Range kInitialVelocity = between(-100.0, 100.0, "m/s");
 
-Range get_range(const RigParameterInfo& info) {
-  return {.low = info.low, .high = info.high, .open_low = info.open_low, .unit = info.unit};
-}
-
-void add_effect_settings(RigKind kind, const EffectInfo& effect, const std::string& place,
-                         std::vector<RigParameter>& list) {
-  const ModelKind model = get_model_kind(kind);
+void add_effect_parameters(RigKind kind, const EffectInfo& effect, const std::string& place,
+                           std::vector<RigParameter>& list) {
+  const ModelInfo& model = get_rig_info(kind);
   const auto parameters = list_effect_parameters(effect, model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
     list.push_back({make_effect_parameter(effect, place, p, model),
-                    [&effect, model, place, i](const RigSpec& spec) {
+                    [&effect, &model, place, i](const RigSpec& spec) {
                       return get_effect_value(spec.effects, effect, model, place, i);
                     },
-                    [&effect, model, place, i](RigSpec& spec, double value) {
+                    [&effect, &model, place, i](RigSpec& spec, double value) {
                       set_effect_value(spec.effects, effect, model, place, i, value);
                     }});
   }
 }
 
-std::vector<RigParameter> make_settings(RigKind kind) {
+std::vector<RigParameter> make_parameters(RigKind kind) {
   std::vector<RigParameter> list;
-  for (const RigParameterInfo& info : list_rig_parameters(kind)) {
-    const auto field = info.field;
-    RigParameter parameter;
-    parameter.name = info.name;
-    parameter.unit = info.unit;
-    parameter.default_value = info.fallback;
-    parameter.allowed = get_range(info);
-    parameter.description = info.description;
-    parameter.get = [field](const RigSpec& spec) { return spec.*field; };
-    parameter.set = [field](RigSpec& spec, double value) { spec.*field = value; };
-    list.push_back(std::move(parameter));
+  for (const RigField& f : get_rig_info(kind).fields) {
+    const auto field = f.field;
+    list.push_back({f, [field](const RigSpec& spec) { return spec.*field; },
+                    [field](RigSpec& spec, double value) { spec.*field = value; }});
   }
   for (const EffectInfo& effect : list_effects()) {
-    for (const std::string& place : list_effect_places(effect, get_model_kind(kind))) {
-      add_effect_settings(kind, effect, place, list);
+    for (const std::string& place : list_effect_places(effect, get_rig_info(kind))) {
+      add_effect_parameters(kind, effect, place, list);
     }
   }
   return list;
 }
 
+std::vector<std::string> list_type_names() {
+  std::vector<std::string> names;
+  for (const RigInfo& rig : list_rigs()) names.push_back(rig.name);
+  return names;
+}
+
 void read_initial(const Table& root, RigSpec& spec) {
-  const int count = count_coordinates(spec.kind);
-  const auto initial = count > 0 ? root.find_table("initial") : std::nullopt;
+  const RigInfo& rig = get_rig_info(spec.kind);
+  const auto initial = rig.masses.empty() ? std::nullopt : root.find_table("initial");
   if (!initial) return;
-  const std::array<std::string, kRigCoordinates> prefix = {count == 1 ? "" : "unsprung_",
-                                                           "sprung_"};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    spec.initial_position[i] = initial->number_or(prefix[i] + "position", 0.0, kInitialPosition);
-    spec.initial_velocity[i] = initial->number_or(prefix[i] + "velocity", 0.0, kInitialVelocity);
+  const auto name = [&](int channel) {
+    return rig.channels[static_cast<std::size_t>(channel)].name;
+  };
+  for (std::size_t i = 0; i < rig.masses.size(); ++i) {
+    const auto [position, velocity] = rig.masses[i];
+    spec.initial_position[i] = initial->number_or(name(position), 0.0, kInitialPosition);
+    spec.initial_velocity[i] = initial->number_or(name(velocity), 0.0, kInitialVelocity);
   }
 }
 
@@ -140,42 +137,45 @@ std::optional<RigKind> find_rig_kind(const std::filesystem::path& path) {
   const Document document(path);
   const Table root = document.root();
   if (!root.has("type")) return std::nullopt;
-  const std::vector<std::string>& kinds = list_rig_kinds();
-  const auto found = std::find(kinds.begin(), kinds.end(), root.text("type"));
-  if (found == kinds.end()) return std::nullopt;
-  return static_cast<RigKind>(found - kinds.begin());
+  const std::string type = root.text("type");
+  for (const RigInfo& rig : list_rigs()) {
+    if (rig.name == type) return rig.kind;
+  }
+  return std::nullopt;
 }
 
 RigSpec read_rig(const std::filesystem::path& path) {
   const Document document(path);
   const Table root = document.root();
   RigSpec spec;
-  spec.kind = static_cast<RigKind>(root.choice("type", list_rig_kinds()));
+  spec.kind = static_cast<RigKind>(root.choice("type", list_type_names()));
   spec.name = root.text_or("name", path.stem().string());
-  for (const RigParameterInfo& info : list_rig_parameters(spec.kind)) {
-    spec.*info.field = info.fallback ? root.number_or(info.name, *info.fallback, get_range(info))
-                                     : root.number(info.name, get_range(info));
+  for (const RigField& f : get_rig_info(spec.kind).fields) {
+    spec.*f.field = f.default_value ? root.number_or(f.name, *f.default_value, f.allowed)
+                                    : root.number(f.name, f.allowed);
   }
-  if (spec.kind == RigKind::kQuarterCar) {
+  if (get_rig_info(spec.kind).has(kHasTire)) {
     spec.unilateral_tire = root.choice("tire_contact", kContacts) == 1;
   }
   read_initial(root, spec);
   read_fitted(root, spec);
-  spec.effects = read_effects(root, get_model_kind(spec.kind));
-  spec.force_maps = read_force_maps(root, get_model_kind(spec.kind));
+  spec.effects = read_effects(root, get_rig_info(spec.kind));
+  spec.force_maps = read_force_maps(root, get_rig_info(spec.kind));
   document.check_all_read();
   return spec;
 }
 
-const std::vector<RigParameter>& list_rig_settings(RigKind kind) {
-  static const std::array<std::vector<RigParameter>, 3> lists = {
-      make_settings(RigKind::kQuarterCar), make_settings(RigKind::kStrutRig),
-      make_settings(RigKind::kSingleMass)};
+const std::vector<RigParameter>& list_rig_parameters(RigKind kind) {
+  static const std::vector<std::vector<RigParameter>> lists = [] {
+    std::vector<std::vector<RigParameter>> of_rigs;
+    for (const RigInfo& rig : list_rigs()) of_rigs.push_back(make_parameters(rig.kind));
+    return of_rigs;
+  }();
   return lists[static_cast<std::size_t>(kind)];
 }
 
 const RigParameter& find_rig_parameter(RigKind kind, const std::string& name) {
-  return find_listed(list_rig_settings(kind), name);
+  return find_listed(list_rig_parameters(kind), name);
 }
 
 void set_rig_parameter(RigSpec& spec, const std::string& name, double value) {
@@ -191,7 +191,7 @@ RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {
   if (root.has("duration")) maneuver.duration = root.number("duration", kDuration);
   const double given = maneuver.duration;
   if (const auto input = root.find_table("input")) {
-    for (const RigInputInfo& info : list_rig_inputs(kind)) {
+    for (const InputInfo& info : get_rig_info(kind).inputs) {
       const auto table = input->find_table(info.name);
       if (!table) continue;
       maneuver.inputs.push_back(read_input(*table, info.name, given));

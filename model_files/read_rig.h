@@ -5,12 +5,11 @@
 //     const RigManeuver maneuver = read_rig_maneuver(maneuver_path, *kind);
 //     SamplePlan plan{.duration = maneuver.duration, .interval = 1e-3};
 //     const LaneResults run = simulate_rig(rig, maneuver.inputs, StepOptions{}, plan);
-//     // run.history[sample * channels + i]: list_rig_channels(*kind)[i]
+//     // run.history[sample * channels + i]: get_rig_info(*kind).channels[i]
 //   }
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,21 +24,17 @@ namespace strut {
 /// Throws InputError where the file cannot be parsed.
 std::optional<RigKind> find_rig_kind(const std::filesystem::path& path);
 
-/// Reads a rig's file: `type`, `name`, the parameters of list_rig_parameters, for a quarter car
+/// Reads a rig's file: `type`, `name`, the parameters of RigInfo::fields, for a quarter car
 /// `tire_contact` ("bilateral" or "unilateral"), and the table [initial] with offsets of the start
 /// from rest (`sprung_position`, ... or `position`, `velocity`), effects (read_effects.h) and a
 /// force map (read_force_maps.h). Throws InputError with file, line, key, value and what is
 /// allowed.
 RigSpec read_rig(const std::filesystem::path& path);
 
-/// A parameter of a kind of rig that settings and fits know by name.
-struct RigParameter : Parameter {
-  std::function<double(const RigSpec&)> get;
-  std::function<void(RigSpec&, double)> set;
-};
+using RigParameter = ParameterOf<RigSpec>;
 
-/// Those of list_rig_parameters, then those of the effects that this kind of rig may have.
-const std::vector<RigParameter>& list_rig_settings(RigKind kind);
+/// Those of RigInfo::fields, then those of the effects that this kind of rig may have.
+const std::vector<RigParameter>& list_rig_parameters(RigKind kind);
 
 /// Throws InputError with the nearest known name.
 const RigParameter& find_rig_parameter(RigKind kind, const std::string& name);
@@ -47,7 +42,8 @@ const RigParameter& find_rig_parameter(RigKind kind, const std::string& name);
 /// Throws InputError with name, value and allowed range, or with the nearest known name.
 void set_rig_parameter(RigSpec& spec, const std::string& name, double value);
 
-/// Reads what drives a rig: `duration` [s] and, for each of list_rig_inputs that is driven, a table
+/// Reads what drives a rig: `duration` [s] and, for each of the rig's inputs that is driven, a
+/// table
 ///
 ///   [input.road_position]
 ///   shape = "file"              # columns of a CSV file, interpolated between its own times

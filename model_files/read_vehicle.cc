@@ -6,7 +6,7 @@
 #include "base/text/format_number.h"
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
-#include "model/rig/rigs.h"
+#include "model/model.h"
 #include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
@@ -19,9 +19,8 @@ namespace {
 
 /// Every `type` a vehicle file may name; a program looks for the rigs first (read_rig.h).
 std::vector<std::string> list_types() {
-  std::vector<std::string> types = {"full_vehicle"};
-  const auto& rigs = list_rig_kinds();
-  types.insert(types.end(), rigs.begin(), rigs.end());
+  std::vector<std::string> types;
+  for (const ModelInfo* model : list_models()) types.push_back(model->name);
   return types;
 }
 const std::vector<std::string> kSuspensions = {"macpherson", "multilink"};  // SuspensionKind
@@ -265,8 +264,8 @@ VehicleSpec read_vehicle(const std::filesystem::path& path) {
   read_tire_contact(root.table("tire"), vehicle);
   read_options(root, vehicle);
   read_fitted(root, vehicle);
-  vehicle.effects = read_effects(root, ModelKind::kFullVehicle);
-  vehicle.force_maps = read_force_maps(root, ModelKind::kFullVehicle);
+  vehicle.effects = read_effects(root, get_car_info());
+  vehicle.force_maps = read_force_maps(root, get_car_info());
   document.check_all_read();
   return vehicle;
 }

@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "base/text/format_number.h"
+#include "model/model.h"
 #include "model_files/model_tables.h"
 
 namespace strut {
@@ -24,20 +25,17 @@ axes as in ISO 8855: x forward, y left, z up. Inputs are what drives a rig.
 This page is written from the program's own tables (`write_channels_document`); a test fails where the two differ.
 )";
 
-std::string describe_kind(ModelKind kind) {
-  const std::string& name = get_model_kind_name(kind);
-  return "\n## " + name + "\n\n";
-}
+std::string describe_kind(const ModelInfo& model) { return "\n## " + model.name + "\n\n"; }
 
 }  // namespace
 
 std::string write_parameters_document() {
   std::ostringstream text;
   text << kParametersHead;
-  for (const ModelKind kind : list_model_kinds()) {
-    text << describe_kind(kind)
+  for (const ModelInfo* model : list_models()) {
+    text << describe_kind(*model)
          << "| name | unit | default | allowed | meaning | source |\n|---|---|---|---|---|---|\n";
-    for (const ListedParameter& listed : make_model_tables(get_model_kind_name(kind)).parameters) {
+    for (const ListedParameter& listed : make_model_tables(model->name).parameters) {
       const Parameter& p = *listed.parameter;
       if (p.is_effect) continue;
       text << "| `" << p.name << "` | " << p.unit << " | "
@@ -53,13 +51,12 @@ std::string write_parameters_document() {
 std::string write_channels_document() {
   std::ostringstream text;
   text << kChannelsHead;
-  for (const ModelKind kind : list_model_kinds()) {
-    const ModelTables model = make_model_tables(get_model_kind_name(kind));
-    text << describe_kind(kind) << "| name | unit | meaning |\n|---|---|---|\n";
-    for (const ChannelInfo& c : model.channels) {
+  for (const ModelInfo* model : list_models()) {
+    text << describe_kind(*model) << "| name | unit | meaning |\n|---|---|---|\n";
+    for (const ChannelInfo& c : model->channels) {
       text << "| `" << c.name << "` | " << c.unit << " | " << c.description << " |\n";
     }
-    for (const ListedInput& i : model.inputs) {
+    for (const InputInfo& i : model->inputs) {
       text << "| `" << i.name << "` | " << i.unit << " | "
            << (i.required ? "input: " : "optional input: ") << i.description << " |\n";
     }

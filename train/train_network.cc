@@ -144,10 +144,10 @@ Checkpoint Training::make_checkpoint() const {
   return {describe_start(), training_->save(), record_};
 }
 
-Model Training::make_model() const {
+TrainedModel Training::make_model() const {
   const LevenbergMarquardtState& s = state();
   const LevenbergMarquardtOptions& options = request_.options;
-  Model model;
+  TrainedModel model;
   model.sizes = shape_.sizes;
   model.weights = s.best_weights;
   model.inputs = data_.inputs;

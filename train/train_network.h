@@ -57,7 +57,7 @@ class Training {
 
   Checkpoint make_checkpoint() const;
   /// At the validation minimum; without provenance.
-  Model make_model() const;
+  TrainedModel make_model() const;
 
  private:
   NamedTexts describe_start() const;

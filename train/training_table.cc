@@ -31,7 +31,7 @@ std::string compare_text(const NamedTexts& options, const std::string& name,
   return describe_difference(name, is == nullptr ? "unknown" : *is, wanted);
 }
 
-std::string compare_data(const Model& model, const Training& training,
+std::string compare_data(const TrainedModel& model, const Training& training,
                          const TrainingRequest& request) {
   if (model.sizes != training.shape().sizes) return "another network";
   if (model.samples != request.rows.samples) {
@@ -93,11 +93,11 @@ class TrainingTable {
     bool goes_on = true;
     while (goes_on && !halt_) goes_on = training->step();
     if (goes_on) return;
-    Model model = training->make_model();
+    TrainedModel model = training->make_model();
     model.provenance = options_.provenance;
     {
       const std::scoped_lock lock(files_);
-      write_model(find_file(t), model);
+      write_trained_model(find_file(t), model);
     }
     add(progress_.work_done, work);
     ++progress_.trained;
@@ -120,7 +120,7 @@ class TrainingTable {
     if (!fs::exists(file)) return training;
     std::string difference;
     try {
-      difference = find_difference(read_model(file), *training, t.request);
+      difference = find_difference(read_trained_model(file), *training, t.request);
     } catch (const InputError& e) {
       difference = e.what();
     }
@@ -153,7 +153,7 @@ double estimate_epoch_work(const TableTraining& training) {
          weights * weights * weights / 3.0;
 }
 
-std::string find_difference(const Model& model, const Training& training,
+std::string find_difference(const TrainedModel& model, const Training& training,
                             const TrainingRequest& request) {
   for (const auto& [name, wanted] : training.make_checkpoint().started_with) {
     std::string difference = compare_text(model.options, name, wanted);

@@ -43,7 +43,7 @@ double estimate_epoch_work(const TableTraining& training);
 
 /// What a model that is there differs in from one that `training` would make: "seed = 2, not 1";
 /// empty where it is the same training, finished.
-std::string find_difference(const Model& model, const Training& training,
+std::string find_difference(const TrainedModel& model, const Training& training,
                             const TrainingRequest& request);
 
 /// Trains what the folder lacks, longest first. A model of the same data and options is kept; one

@@ -5,7 +5,6 @@
 
 #include "base/error/input_error.h"
 #include "estimate/search_start.h"
-#include "model_files/parameters.h"
 
 namespace strut {
 namespace {
@@ -42,16 +41,10 @@ void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& eva
 
 CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared) {
   CampaignData one = take_run(data, run);
-  if (data.is_rig()) {
-    one.rigs[0] = set_rig_unknowns(one.rigs[0], shared.unknowns, shared.values);
-  } else {
-    set_parameters(one.cars[0].setup, shared.unknowns, shared.values);
-  }
-  std::vector<MeasuredChannel>& channels =
-      data.is_rig() ? one.rigs[0].channels : one.cars[0].channels;
+  set_unknowns(one.runs[0], shared.unknowns, shared.values);
   for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
     const Unknown& u = shared.unknowns[i];
-    if (u.kind == UnknownKind::kBias) shift_readings(channels, u, shared.values[i]);
+    if (u.kind == UnknownKind::kBias) shift_readings(one.runs[0].channels, u, shared.values[i]);
   }
   return one;
 }
@@ -75,7 +68,7 @@ Baseline calibrate_baseline(const CampaignData& data, int threads, const FitOpti
   }
   const auto model = make_reading_model(data, baseline.runs, std::move(unknowns), threads);
   FitOptions chosen = options;
-  if (data.is_rig()) chosen.start = search_start(*model);
+  if (data.has_inputs()) chosen.start = search_start(*model);
   baseline.fit = fit_readings(*model, chosen);
   baseline.is_fitted = true;
   const auto shared = static_cast<std::ptrdiff_t>(baseline.shared_count());
@@ -99,7 +92,7 @@ RunEvaluation evaluate_run(const CampaignData& data, std::size_t run, const Shar
       return evaluation;
     }
   }
-  evaluation.curves = simulate_run(one, 0, evaluation.unknowns, evaluation.values);
+  evaluation.curves = simulate_run(one.runs[0], evaluation.unknowns, evaluation.values);
   evaluation.failure = evaluation.curves.failure;
   if (!evaluation.failure.empty()) return evaluation;
   add_shared_biases(shared, evaluation.curves);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "diagnose/campaign/campaign_data.h"
-#include "diagnose/campaign/simulate_run.h"
 #include "estimate/fit.h"
+#include "estimate/simulate_run.h"
 
 namespace strut {
 

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
+#include "base/math/spread.h"
 #include "diagnose/campaign/local_cubic.h"
-#include "diagnose/campaign/spread.h"
-#include "model/effects/catalogue.h"
-#include "model/rig/rig_system.h"
+#include "estimate/simulate_run.h"
+#include "model/rig/rigs.h"
 
 namespace strut {
 namespace {
 
-using Q = QuarterCarChannel;
 using Values = std::vector<double>;
 
 /// The half width of the local cubics in periods of the fastest mode: a tenth keeps its
@@ -22,30 +22,19 @@ using Values = std::vector<double>;
 constexpr double kHalfPeriods = 0.1;
 constexpr double kLeastSamples = 4.0;  // of a half width
 
-const MeasuredChannel* find(const RigRun& run, int channel) {
+const MeasuredChannel* find(const MeasuredRun& run, int channel) {
   const auto found = std::find_if(run.channels.begin(), run.channels.end(),
                                   [&](const MeasuredChannel& c) { return c.channel == channel; });
   return found == run.channels.end() ? nullptr : &*found;
 }
 
-double calc_half_width(const RigRun& run) {
+double calc_half_width(const MeasuredRun& run) {
   const double interval = run.times.back() / static_cast<double>(run.times.size() - 1);
-  const double period = 2.0 * std::numbers::pi / calc_fastest_mode(run.setup);
+  const double period = 2.0 * std::numbers::pi / run.setup.calc_fastest_mode();
   return std::max(kLeastSamples * interval, kHalfPeriods * period);
 }
 
-/// Whether an effect of a quarter car is one of its strut, with the same parameters.
-bool acts_on_bench(const EffectSetting& setting) {
-  const EffectInfo& effect = *find_effect(setting.effect);
-  return (effect.places & kOnChannel) == 0 &&
-         list_effect_parameters(effect, ModelKind::kQuarterCar) ==
-             list_effect_parameters(effect, ModelKind::kStrutRig);
-}
-
-Values calc_strut_force(const RigRun& run, const Values& deflection) {
-  RigRun bench{run.name, run.setup, {}, run.times, {}};
-  bench.setup.kind = RigKind::kStrutRig;
-  std::erase_if(bench.setup.effects, [](const EffectSetting& s) { return !acts_on_bench(s); });
+Values calc_strut_force(const MeasuredRun& run, const Values& deflection) {
   Values times, moves;
   times.reserve(deflection.size());
   moves.reserve(deflection.size());
@@ -54,9 +43,13 @@ Values calc_strut_force(const RigRun& run, const Values& deflection) {
     times.push_back(run.times[i]);
     moves.push_back(deflection[i]);
   }
-  bench.inputs.push_back(make_signal("displacement", times, moves, Interpolation::kSpline));
-  const RigCurves curves = simulate_rig_run(bench, 0, {}, {});
-  return curves.failure.empty() ? curves.channel[StrutRigChannel::kForce] : Values{};
+  RigCase stand{take_strut(run.setup.rig().rig), {}};
+  const RigInfo& info = get_rig_info(stand.rig.kind);
+  stand.inputs = {make_signal(info.inputs.front().name, times, moves, Interpolation::kSpline)};
+  const MeasuredRun imposed{run.name, std::move(stand), run.times, {}};
+  const RunCurves curves = simulate_run(imposed, {}, {});
+  const auto force = static_cast<std::size_t>(info.stand_force);
+  return curves.failure.empty() ? curves.channel[force] : Values{};
 }
 
 /// Twice integrated over time, exactly for the cubic spline through the readings.
@@ -75,7 +68,7 @@ Values integrate_twice(const Values& times, const Values& values) {
 }
 
 /// What a quantity becomes on the way that leads from a position to its second derivative.
-Values filter(const RigRun& run, const Values& values, double half_width) {
+Values filter(const MeasuredRun& run, const Values& values, double half_width) {
   Values times, there;
   times.reserve(values.size());
   there.reserve(values.size());
@@ -96,7 +89,7 @@ Values filter(const RigRun& run, const Values& values, double half_width) {
 }
 
 /// The rate of the spline through the readings.
-Values calc_rate(const RigRun& run, const Values& values) {
+Values calc_rate(const MeasuredRun& run, const Values& values) {
   Values times, there;
   times.reserve(values.size());
   there.reserve(values.size());
@@ -139,7 +132,7 @@ void fit_strut(BodyBalance& b) {
   b.damping_sigma = std::sqrt(covariance(1, 1));
 }
 
-void add_kinematics(const RigRun& run, int position, int acceleration, double half_width,
+void add_kinematics(const MeasuredRun& run, int position, int acceleration, double half_width,
                     BodyBalance& b) {
   const MeasuredChannel* z = find(run, position);
   const MeasuredChannel* a = find(run, acceleration);
@@ -147,7 +140,7 @@ void add_kinematics(const RigRun& run, int position, int acceleration, double ha
   const Values second = calc_local_cubic(run.times, z->values, half_width).second_rate;
   const Values smoothed = filter(run, a->values, half_width);
   KinematicResidual k;
-  k.channel = list_rig_channels(run.setup.kind)[static_cast<std::size_t>(acceleration)].name;
+  k.channel = run.setup.info().channels[static_cast<std::size_t>(acceleration)].name;
   k.spread = calc_spread(smoothed);
   double products = 0.0, squares = 0.0;
   Values left(second.size());
@@ -164,10 +157,12 @@ void add_kinematics(const RigRun& run, int position, int acceleration, double ha
 
 }  // namespace
 
-std::optional<BodyBalance> calc_body_balance(const RigRun& run) {
-  if (run.setup.kind != RigKind::kQuarterCar) return std::nullopt;
-  const MeasuredChannel* sprung = find(run, Q::kSprungPosition);
-  const MeasuredChannel* unsprung = find(run, Q::kUnsprungPosition);
+std::optional<BodyBalance> calc_body_balance(const MeasuredRun& run) {
+  const ModelInfo& model = run.setup.info();
+  if (model.masses.size() != 2) return std::nullopt;
+  const MassInfo &below = model.masses[kUnsprung], &above = model.masses[kSprung];
+  const MeasuredChannel* sprung = find(run, above.position);
+  const MeasuredChannel* unsprung = find(run, below.position);
   if (sprung == nullptr || unsprung == nullptr) return std::nullopt;
   BodyBalance b;
   b.half_width = calc_half_width(run);
@@ -178,8 +173,9 @@ std::optional<BodyBalance> calc_body_balance(const RigRun& run) {
   b.deflection = filter(run, deflection, b.half_width);
   b.velocity = filter(run, calc_rate(run, deflection), b.half_width);
   b.force = calc_local_cubic(run.times, sprung->values, b.half_width).second_rate;
-  for (double& f : b.force) f *= run.setup.sprung_mass;
-  for (const InputSignal& input : run.inputs) {
+  const RigCase& rig = run.setup.rig();
+  for (double& f : b.force) f *= rig.rig.sprung_mass;
+  for (const InputSignal& input : rig.inputs) {
     if (input.channel != "actuator_force") continue;
     Values actuator(run.times.size());
     for (std::size_t i = 0; i < actuator.size(); ++i) {
@@ -197,13 +193,13 @@ std::optional<BodyBalance> calc_body_balance(const RigRun& run) {
   const double spread = calc_spread(b.force);
   b.nrmse = spread > 0.0 ? b.rms / spread : 0.0;
   const double interval = run.times.back() / static_cast<double>(run.times.size() - 1);
-  b.noise_rms =
-      run.setup.sprung_mass * sprung->sigma * calc_second_rate_gain(b.half_width, interval);
+  b.noise_rms = rig.rig.sprung_mass * sprung->sigma * calc_second_rate_gain(b.half_width, interval);
   b.states = {calc_state_residual("suspension_deflection", "m", b.deflection, b.residual),
               calc_state_residual("suspension_velocity", "m/s", b.velocity, b.residual)};
   fit_strut(b);
-  add_kinematics(run, Q::kSprungPosition, Q::kSprungAcceleration, b.half_width, b);
-  add_kinematics(run, Q::kUnsprungPosition, Q::kUnsprungAcceleration, b.half_width, b);
+  add_kinematics(run, above.position, find_channel(model, "sprung_acceleration"), b.half_width, b);
+  add_kinematics(run, below.position, find_channel(model, "unsprung_acceleration"), b.half_width,
+                 b);
   return b;
 }
 

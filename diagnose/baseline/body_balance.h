@@ -1,4 +1,4 @@
-// Residuals that need no road: what the bodies of a quarter car must satisfy whatever the plate or
+// Residuals that need no road: what two masses on a strut must satisfy whatever the plate or
 // the tire does (diagnosis.md 3.2, R1 and R2).
 //
 //   R1  d2(z_s)/dt2 - a_s,  d2(z_u)/dt2 - a_u       where positions and accelerations are measured
@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "diagnose/baseline/residuals.h"
-#include "diagnose/campaign/rig_readings.h"
+#include "estimate/measured_run.h"
 
 namespace strut {
 
@@ -40,8 +40,8 @@ struct BodyBalance {
   std::vector<KinematicResidual> kinematics;
 };
 
-/// At a run's setup (set_rig_unknowns). Nothing where the model is no quarter car, or positions of
-/// both masses are not measured.
-std::optional<BodyBalance> calc_body_balance(const RigRun& run);
+/// At a run's setup (set_unknowns). Nothing where the model has not two masses, or their positions
+/// are not both measured.
+std::optional<BodyBalance> calc_body_balance(const MeasuredRun& run);
 
 }  // namespace strut

@@ -5,8 +5,8 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
+#include "base/math/spread.h"
 #include "base/text/format_number.h"
-#include "diagnose/campaign/spread.h"
 
 namespace strut {
 namespace {

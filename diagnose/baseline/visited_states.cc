@@ -3,69 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/campaign/spread.h"
-#include "model/channel/car_channels.h"
+#include "base/math/spread.h"
 
 namespace strut {
 namespace {
 
 using Values = std::vector<double>;
-
-/// sign * (first - second); without a second first alone.
-struct Difference {
-  int first, second;
-  double sign;
-
-  Values calc(const RunCurves& curves) const {
-    Values values = curves.channel[static_cast<std::size_t>(first)];
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (second >= 0) values[i] -= curves.channel[static_cast<std::size_t>(second)][i];
-      values[i] *= sign;
-    }
-    return values;
-  }
-};
-
-/// Where a strut's states are found among a model's channels.
-struct StrutChannels {
-  std::string place;
-  Difference deflection, velocity;
-  int force;
-};
-
-std::vector<StrutChannels> list_rig_struts(RigKind kind) {
-  constexpr int kNone = -1;
-  using Q = QuarterCarChannel;
-  using S = StrutRigChannel;
-  using M = SingleMassChannel;
-  switch (kind) {
-    case RigKind::kQuarterCar:
-      return {{"",
-               {Q::kUnsprungPosition, Q::kSprungPosition, 1.0},
-               {Q::kUnsprungVelocity, Q::kSprungVelocity, 1.0},
-               Q::kDamperForce}};
-    case RigKind::kStrutRig:
-      return {{"", {S::kDisplacement, kNone, 1.0}, {S::kVelocity, kNone, 1.0}, S::kDamperForce}};
-    case RigKind::kSingleMass:
-      break;
-  }
-  // Compressed as the mass comes down.
-  return {{"", {M::kPosition, kNone, -1.0}, {M::kVelocity, kNone, -1.0}, M::kDamperForce}};
-}
-
-std::vector<StrutChannels> list_car_struts() {
-  constexpr int kNone = -1;
-  using C = CarChannel;
-  std::vector<StrutChannels> struts;
-  for (int corner = 0; corner < kCorners; ++corner) {
-    const int begin = C::kCornerBegin + corner * C::kCornerChannels;
-    struts.push_back({corner < 2 ? "front" : "rear",
-                      {begin + C::kSuspensionDeflection, kNone, 1.0},
-                      {begin + C::kSuspensionVelocity, kNone, 1.0},
-                      begin + C::kDamperForce});
-  }
-  return struts;
-}
 
 void append(const Values& from, std::size_t stride, Values& into) {
   for (std::size_t i = 0; i < from.size(); i += stride) into.push_back(from[i]);
@@ -99,21 +42,19 @@ std::vector<VisitedStates> list_visited_states(const CampaignData& data,
                                                const std::vector<std::size_t>& runs,
                                                const SharedValues& shared) {
   constexpr std::size_t kMost = 6000;
-  const std::vector<StrutChannels> struts =
-      data.is_rig() ? list_rig_struts(*data.campaign.rig) : list_car_struts();
   std::size_t samples = 0;
   for (const std::size_t r : runs) samples += data.times(r).size();
   const std::size_t stride = 1 + samples / kMost;
   std::vector<VisitedStates> states;
   for (const std::size_t r : runs) {
-    const RunCurves curves = simulate_run(data, r, shared.unknowns, shared.values);
+    const RunCurves curves = simulate_run(data.runs[r], shared.unknowns, shared.values);
     if (!curves.failure.empty()) continue;
-    for (const StrutChannels& strut : struts) {
+    for (const StrutInfo& strut : data.model().struts) {
       VisitedStates& s = find_place(states, strut.place);
-      append(strut.deflection.calc(curves), stride, s.deflection);
-      append(strut.velocity.calc(curves), stride, s.velocity);
-      const double spread = calc_spread(curves.channel[static_cast<std::size_t>(strut.force)]);
-      s.force = std::max(s.force, spread);
+      append(calc_sum(strut.deflection, curves.channel), stride, s.deflection);
+      append(calc_sum(strut.velocity, curves.channel), stride, s.velocity);
+      const auto force = static_cast<std::size_t>(strut.damper_force);
+      s.force = std::max(s.force, calc_spread(curves.channel[force]));
     }
   }
   for (VisitedStates& s : states) drop_missing(s);

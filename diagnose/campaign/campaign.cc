@@ -8,8 +8,7 @@
 #include "base/text/range.h"
 #include "diagnose/campaign/units.h"
 #include "io/format/toml_document.h"
-#include "model/channel/car_channels.h"
-#include "model_files/read_rig.h"
+#include "model_files/read_model.h"
 
 namespace strut {
 namespace {
@@ -23,17 +22,17 @@ constexpr char kHitTime[] = "hit_time";
 const std::vector<std::string> kManeuverKeys = {"speed",       "drive_torque", "bump_distance",
                                                 "bump_height", "bump_length",  kHitTime};
 
-bool is_rig_input(const std::optional<RigKind>& rig, const std::string& channel) {
-  if (!rig) return false;
-  const std::vector<RigInputInfo>& inputs = list_rig_inputs(*rig);
-  return std::any_of(inputs.begin(), inputs.end(),
-                     [&](const RigInputInfo& input) { return input.name == channel; });
+/// Null where the channel is no input.
+const InputInfo* find_input(const ModelInfo& model, const std::string& channel) {
+  const auto found = std::find_if(model.inputs.begin(), model.inputs.end(),
+                                  [&](const InputInfo& input) { return input.name == channel; });
+  return found == model.inputs.end() ? nullptr : &*found;
 }
 
-const ChannelInfo& find_channel_info(const Table& columns, const std::optional<RigKind>& rig,
+const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& model,
                                      const std::string& channel) {
   std::vector<std::string> names;
-  for (const ChannelInfo& info : list_channels(rig)) {
+  for (const ChannelInfo& info : model.channels) {
     if (info.name == channel) return info;
     names.push_back(info.name);
   }
@@ -43,15 +42,12 @@ const ChannelInfo& find_channel_info(const Table& columns, const std::optional<R
                           (nearest.empty() ? "; channels: " + join_names(names) : nearest));
 }
 
-ColumnRole read_role(const Table& table, const std::optional<RigKind>& rig,
-                     const std::string& channel) {
-  const bool drives = is_rig_input(rig, channel);
+ColumnRole read_role(const Table& table, const ModelInfo& model, const std::string& channel) {
+  const bool drives = find_input(model, channel) != nullptr;
   const auto role = static_cast<ColumnRole>(table.choice_or("role", drives ? 0 : 1, kRoles));
   if (role == ColumnRole::kInput && !drives) {
     std::vector<std::string> names;
-    if (rig) {
-      for (const RigInputInfo& input : list_rig_inputs(*rig)) names.push_back(input.name);
-    }
+    for (const InputInfo& input : model.inputs) names.push_back(input.name);
     throw table.error(
         "role", "'" + channel + "' drives no such model; inputs: " +
                     (names.empty() ? "none, a car is driven by its maneuver" : join_names(names)));
@@ -82,18 +78,18 @@ Prior read_known(const Table& table, const std::string& key) {
 
 /// What is known of an input. The command of an actuator is not what it does, neither in scale nor
 /// in sign, unless the campaign says so.
-void read_input(const Table& table, CampaignColumn& c) {
+void read_input(const Table& table, const ModelInfo& model, CampaignColumn& c) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  if (c.channel == "actuator_force") c.gain.sigma = kUnknown;
+  if (find_input(model, c.channel)->is_command) c.gain.sigma = kUnknown;
   if (table.has("gain")) c.gain = read_known(table, "gain");
   if (table.has("smooth")) c.smooth = table.number("smooth", at_least(0.0, "s"));
 }
 
 CampaignColumn read_column(const Table& columns, const std::string& channel,
-                           const std::optional<RigKind>& rig) {
+                           const ModelInfo& model) {
   CampaignColumn c;
   c.channel = channel;
-  c.si = find_channel_info(columns, rig, channel).unit;
+  c.si = find_channel_info(columns, model, channel).unit;
   const Table table = columns.table(channel);
   c.column = table.text_or("column", channel);
   c.unit = table.text_or("unit", "");
@@ -109,9 +105,9 @@ CampaignColumn read_column(const Table& columns, const std::string& channel,
   if (c.scale == 0.0) throw table.error("scale", "must not be 0");
   c.offset = table.number_or("offset", 0.0);
   if (channel == kTime) return c;
-  c.role = read_role(table, rig, channel);
+  c.role = read_role(table, model, channel);
   c.optional = table.boolean_or("optional", false);
-  if (c.role == ColumnRole::kInput) read_input(table, c);
+  if (c.role == ColumnRole::kInput) read_input(table, model, c);
   if (table.has("noise")) c.noise = table.number("noise", above(0.0, c.si));
   return c;
 }
@@ -120,7 +116,7 @@ void read_columns(const Table& root, Campaign& campaign) {
   const Table columns = root.table("columns");
   bool any_output = false;
   for (const std::string& channel : columns.keys()) {
-    CampaignColumn c = read_column(columns, channel, campaign.rig);
+    CampaignColumn c = read_column(columns, channel, *campaign.info);
     any_output = any_output || (channel != kTime && c.role == ColumnRole::kOutput);
     (channel == kTime ? campaign.time : campaign.columns.emplace_back()) = std::move(c);
   }
@@ -156,7 +152,7 @@ CampaignRun read_run(const Table& table, const Campaign& campaign) {
   run.name = table.text("file");
   run.file = table.file("file");
   run.use = static_cast<RunUse>(table.choice("use", kUses));
-  if (!campaign.rig) {
+  if (!campaign.info->is_driven_by_inputs()) {
     run.maneuver = table.file("maneuver");
     for (const std::string& key : kManeuverKeys) {
       if (table.has(key)) run.known[key] = read_known(table, key);
@@ -205,13 +201,9 @@ std::vector<std::filesystem::path> Campaign::list_files() const {
   std::vector<std::filesystem::path> files = {path, model};
   for (const CampaignRun& run : runs) {
     files.push_back(run.file);
-    if (!rig) files.push_back(run.maneuver);
+    if (!info->is_driven_by_inputs()) files.push_back(run.maneuver);
   }
   return files;
-}
-
-const std::vector<ChannelInfo>& list_channels(const std::optional<RigKind>& rig) {
-  return rig ? list_rig_channels(*rig) : list_car_channels();
 }
 
 Campaign read_campaign(const std::filesystem::path& path) {
@@ -220,7 +212,7 @@ Campaign read_campaign(const std::filesystem::path& path) {
   Campaign campaign;
   campaign.path = path;
   campaign.model = root.file("model");
-  campaign.rig = find_rig_kind(campaign.model);
+  campaign.info = &read_model_info(campaign.model);
   read_columns(root, campaign);
   read_fit(root, campaign.fit);
   read_runs(root, campaign);

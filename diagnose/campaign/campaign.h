@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "estimate/unknown.h"
-#include "model/rig/rigs.h"
+#include "model/info/model_info.h"
 
 namespace strut {
 
@@ -41,7 +41,7 @@ struct CampaignRun {
   std::filesystem::path file;
   std::string name;  // as the campaign writes it
   RunUse use = RunUse::kFit;
-  std::filesystem::path maneuver;  // cars
+  std::filesystem::path maneuver;  // of a model that no recorded input drives
   /// What is known of this run alone: parameters of the maneuver, "hit_time" [s]; sigma 0: exactly.
   std::map<std::string, Prior> known;
   std::optional<std::pair<double, double>> window;  // s on the file's clock
@@ -56,7 +56,7 @@ struct CampaignFit {
 
 struct Campaign {
   std::filesystem::path path, model;
-  std::optional<RigKind> rig;  // nothing: a car
+  const ModelInfo* info = nullptr;  // of the model
   CampaignColumn time;
   std::vector<CampaignColumn> columns;  // without time
   CampaignFit fit;
@@ -66,9 +66,6 @@ struct Campaign {
   /// The campaign's own, and what it names: model, runs, maneuvers.
   std::vector<std::filesystem::path> list_files() const;
 };
-
-/// Channels that a campaign's columns may hold.
-const std::vector<ChannelInfo>& list_channels(const std::optional<RigKind>& rig);
 
 /// Reads the campaign and looks that its files are there. Throws InputError with file, line, key,
 /// value and what is allowed; for unknown keys with the nearest known one; where no run is for

@@ -6,26 +6,19 @@
 
 #include "base/error/check.h"
 #include "base/error/input_error.h"
+#include "base/math/spread.h"
 #include "base/text/format_number.h"
 #include "diagnose/campaign/check_campaign_data.h"
 #include "diagnose/campaign/local_cubic.h"
-#include "diagnose/campaign/spread.h"
-#include "estimate/linearize.h"
+#include "estimate/nuisances.h"
+#include "estimate/readings.h"
 #include "model/error/model_error.h"
-#include "model_files/parameters.h"
+#include "model/rig/rigs.h"
 #include "model_files/read_maneuver.h"
-#include "model_files/read_rig.h"
-#include "model_files/read_vehicle.h"
+#include "model_files/read_model.h"
 
 namespace strut {
 namespace {
-
-int find_channel(const CampaignData& data, const std::string& name) {
-  const std::vector<ChannelInfo>& infos = list_channels(data.campaign.rig);
-  const auto found = std::find_if(infos.begin(), infos.end(),
-                                  [&](const ChannelInfo& info) { return info.name == name; });
-  return static_cast<int>(found - infos.begin());
-}
 
 /// Calls `function`; an InputError of it names the campaign's table it came from.
 template <class Function>
@@ -88,7 +81,8 @@ std::vector<MeasuredChannel> make_channels(const CampaignData& data, const Measu
   for (const MeasuredColumn& column : table.columns) {
     const CampaignColumn& c = data.campaign.columns[column.at];
     if (c.role != ColumnRole::kOutput) continue;
-    channels.push_back({find_channel(data, c.channel), data.noise[column.at].sigma, column.values});
+    channels.push_back(
+        {find_channel(data.model(), c.channel), data.noise[column.at].sigma, column.values});
   }
   if (channels.empty()) throw InputError(table.name + ": none of the channels to compare is there");
   return channels;
@@ -110,7 +104,7 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
   }
   noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
   // Masses smooth what they are driven by; a strut's force follows the velocity itself.
-  const bool smooths = data.campaign.rig != RigKind::kStrutRig;
+  const bool smooths = !data.model().masses.empty();
   noise.half_width = c.smooth  ? *c.smooth
                      : smooths ? 0.0
                                : choose_half_width(times, values, noise.sigma);
@@ -123,7 +117,8 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
 
 /// Mean power that goes into the strut over its ends, less that of mean force; 1 where force and
 /// velocity are alike.
-double calc_absorption(const RigRun& run, const MeasuredChannel& force, const InputSignal& moves) {
+double calc_absorption(const MeasuredRun& run, const MeasuredChannel& force,
+                       const InputSignal& moves) {
   const double mean = calc_mean(force.values);
   double power = 0.0, forces = 0.0, rates = 0.0;
   for (std::size_t i = 0; i < run.times.size(); ++i) {
@@ -137,86 +132,106 @@ double calc_absorption(const RigRun& run, const MeasuredChannel& force, const In
   return scale > 0.0 ? power / scale : 0.0;
 }
 
-/// A strut takes energy in. Where every run of a dynamometer says the opposite, force and
-/// displacement count in opposite directions; unless the campaign gives the sign, it is turned.
+/// Null where the run lacks it.
+const InputSignal* find_input(const MeasuredRun& run, const std::string& name) {
+  for (const InputSignal& signal : run.setup.rig().inputs) {
+    if (signal.channel == name) return &signal;
+  }
+  return nullptr;
+}
+
+/// A strut takes energy in. Where every run of a stand that moves it says the opposite, force and
+/// motion, its first input, count in opposite directions; unless the campaign gives the sign, it is
+/// turned.
 void turn_force(CampaignData& data) {
   constexpr double kClearly = -0.3;
-  if (data.campaign.rig != RigKind::kStrutRig) return;
-  const int channel = find_channel(data, "force");
-  for (RigRun& run : data.rigs) {
+  const int channel = data.model().stand_force;
+  if (channel < 0) return;
+  const std::string& moves = data.model().inputs.front().name;
+  for (const MeasuredRun& run : data.runs) {
+    const InputSignal& motion = *find_input(run, moves);
     for (const MeasuredChannel& c : run.channels) {
-      if (c.channel == channel && calc_absorption(run, c, run.inputs[0]) > kClearly) return;
+      if (c.channel == channel && calc_absorption(run, c, motion) > kClearly) return;
     }
   }
+  const std::string& name = data.info(channel).name;
   for (CampaignColumn& c : data.campaign.columns) {
-    if (c.channel != "force") continue;
+    if (c.channel != name) continue;
     if (c.has_sign) {
-      data.notes.push_back(
-          "force: in every run the strut gives energy out, as no strut does; is "
-          "sign = " +
-          format_number(c.sign) + " right?");
+      data.notes.push_back(name +
+                           ": in every run the strut gives energy out, as no strut does; is "
+                           "sign = " +
+                           format_number(c.sign) + " right?");
       return;
     }
     c.sign = -1.0;
-    data.notes.push_back(
-        "force: in every run the strut would give energy out, as no strut does; "
-        "force is taken with sign = -1, against displacement");
+    data.notes.push_back(name +
+                         ": in every run the strut would give energy out, as no strut does; " +
+                         name + " is taken with sign = -1, against " + moves);
   }
-  for (RigRun& run : data.rigs) {
+  for (MeasuredRun& run : data.runs) {
     for (MeasuredChannel& c : run.channels) {
       for (double& value : c.values) value = c.channel == channel ? -value : value;
     }
   }
 }
 
-void make_rigs(CampaignData& data) {
-  RigSpec spec = read_rig(data.campaign.model);
+/// A run that recorded inputs drive, on a clock that begins at 0.
+MeasuredRun make_driven_run(const CampaignData& data, const Model& model,
+                            const MeasuredTable& table) {
+  MeasuredRun run{table.name, model, table.times, make_channels(data, table)};
+  for (double& t : run.times) t -= table.times.front();
+  std::vector<InputSignal>& inputs = run.setup.rig().inputs;
+  for (const MeasuredColumn& column : table.columns) {
+    if (data.campaign.columns[column.at].role != ColumnRole::kInput) continue;
+    InputNoise noise;
+    inputs.push_back(make_input(data, table, column, noise));
+    run.input_noise.push_back(noise);
+  }
+  try {
+    assign_rig_inputs(run.setup.rig().rig.kind, inputs);
+  } catch (const ModelError& e) {
+    throw InputError(data.campaign.path.string() + ": columns: " + e.what());
+  }
+  return run;
+}
+
+/// A run over a road, on the clock of its own.
+MeasuredRun make_crossing(const CampaignData& data, const Model& model, const MeasuredTable& table,
+                          const CampaignRun& about) {
+  MeasuredRun run{table.name, model, table.times, make_channels(data, table)};
+  run.setup.car().maneuver = read_maneuver(about.maneuver);
   name_table(data, "fit.fix", [&] {
-    for (const auto& [name, value] : data.campaign.fit.fix) set_rig_parameter(spec, name, value);
+    for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);
   });
-  for (const MeasuredTable& table : data.tables) {
-    RigRun run{table.name, spec, {}, table.times, make_channels(data, table)};
-    for (double& t : run.times) t -= table.times.front();
-    for (const MeasuredColumn& column : table.columns) {
-      if (data.campaign.columns[column.at].role != ColumnRole::kInput) continue;
-      InputNoise noise;
-      run.inputs.push_back(make_input(data, table, column, noise));
-      run.input_noise.push_back(noise);
+  name_table(data, "run " + about.name, [&] {
+    for (const auto& [name, known] : about.known) {
+      if (name != "hit_time") set_parameter(run.setup, name, known.mean);
     }
-    try {
-      assign_rig_inputs(spec.kind, run.inputs);
-    } catch (const ModelError& e) {
-      throw InputError(data.campaign.path.string() + ": columns: " + e.what());
-    }
-    data.rigs.push_back(std::move(run));
+  });
+  return run;
+}
+
+void make_runs(CampaignData& data) {
+  Model model = read_model(data.campaign.model);
+  const bool is_driven = data.has_inputs();
+  if (is_driven) {
+    name_table(data, "fit.fix", [&] {
+      for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(model, name, value);
+    });
+  }
+  for (std::size_t r = 0; r < data.run_count(); ++r) {
+    data.runs.push_back(is_driven
+                            ? make_driven_run(data, model, data.tables[r])
+                            : make_crossing(data, model, data.tables[r], data.campaign.runs[r]));
+    data.runs.back().may_miss = true;
   }
   turn_force(data);
 }
 
-void make_cars(CampaignData& data) {
-  const VehicleSpec vehicle = read_vehicle(data.campaign.model);
-  for (std::size_t r = 0; r < data.run_count(); ++r) {
-    const CampaignRun& about = data.campaign.runs[r];
-    MeasuredRun run{data.tables[r].name,
-                    {vehicle, read_maneuver(about.maneuver)},
-                    data.tables[r].times,
-                    make_channels(data, data.tables[r])};
-    run.may_miss = true;
-    name_table(data, "fit.fix", [&] {
-      for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);
-    });
-    name_table(data, "run " + about.name, [&] {
-      for (const auto& [name, known] : about.known) {
-        if (name != "hit_time") set_parameter(run.setup, name, known.mean);
-      }
-    });
-    data.cars.push_back(std::move(run));
-  }
-}
-
-template <class Run>
-std::vector<Run> select(const std::vector<Run>& runs, const std::vector<std::size_t>& chosen) {
-  std::vector<Run> list;
+std::vector<MeasuredRun> select(const std::vector<MeasuredRun>& runs,
+                                const std::vector<std::size_t>& chosen) {
+  std::vector<MeasuredRun> list;
   list.reserve(chosen.size());
   for (const std::size_t r : chosen) list.push_back(runs[r]);
   return list;
@@ -245,36 +260,6 @@ void apply_known(const std::vector<MeasuredRun>& runs, int at, const std::string
   }
 }
 
-std::vector<Unknown> make_car_unknowns(const CampaignData& data,
-                                       const std::vector<std::size_t>& chosen,
-                                       const std::vector<Unknown>& free) {
-  const std::vector<MeasuredRun> runs = select(data.cars, chosen);
-  // An offset of a sensor must never speak for a cause, so it is all but free.
-  constexpr double kWide = 10.0;
-  NuisanceSigmas sigmas;
-  sigmas.bias = make_default_bias();
-  for (double& sigma : sigmas.bias) sigma *= kWide;
-  std::vector<Unknown> unknowns = make_nuisances(runs, sigmas, free);
-  for (std::size_t r = 0; r < chosen.size(); ++r) {
-    for (const auto& [name, known] : data.campaign.runs[chosen[r]].known) {
-      if (is_among(free, name)) continue;
-      apply_known(runs, static_cast<int>(r), name, known, unknowns);
-    }
-  }
-  return unknowns;
-}
-
-std::vector<Unknown> make_rig_nuisances(const CampaignData& data,
-                                        const std::vector<std::size_t>& chosen,
-                                        const std::vector<Unknown>& free) {
-  const std::vector<RigRun> runs = select(data.rigs, chosen);
-  std::vector<Unknown> unknowns = make_initial_states(runs);
-  for (Unknown& u : make_rig_biases(runs)) {
-    if (!is_among(free, u.name)) unknowns.push_back(std::move(u));
-  }
-  return unknowns;
-}
-
 }  // namespace
 
 const NoiseEstimate& CampaignData::find_noise(int channel) const {
@@ -299,8 +284,7 @@ CampaignData take_run(const CampaignData& data, std::size_t run) {
   one.campaign.runs = {data.campaign.runs[run]};
   one.noise = data.noise;
   one.tables = {data.tables[run]};
-  if (data.is_rig()) one.rigs = {data.rigs[run]};
-  if (!data.is_rig()) one.cars = {data.cars[run]};
+  one.runs = {data.runs[run]};
   return one;
 }
 
@@ -314,7 +298,7 @@ CampaignData read_campaign_data(const std::filesystem::path& path) {
     data.notes.insert(data.notes.end(), notes.begin(), notes.end());
   }
   fill_noise(data);
-  data.is_rig() ? make_rigs(data) : make_cars(data);
+  make_runs(data);
   check_campaign_data(data);
   make_free_unknowns(data, data.list_runs(RunUse::kFit));  // names what cannot be free
   return data;
@@ -322,18 +306,15 @@ CampaignData read_campaign_data(const std::filesystem::path& path) {
 
 namespace {
 
-bool is_driven_by(const RigRun& run, const std::string& input) {
-  return std::any_of(run.inputs.begin(), run.inputs.end(),
-                     [&](const InputSignal& signal) { return signal.channel == input; });
-}
-
 /// Gains of inputs that are not known exactly, where they drive some of the runs.
-void add_gains(const CampaignData& data, const std::vector<RigRun>& runs,
+void add_gains(const CampaignData& data, const std::vector<MeasuredRun>& runs,
                std::vector<Unknown>& unknowns) {
   for (const CampaignColumn& c : data.campaign.columns) {
     if (c.role != ColumnRole::kInput || c.gain.sigma == 0.0) continue;
-    Unknown u = make_rig_unknown(runs, c.channel + "_gain");
-    const auto driven = [&](const RigRun& run) { return is_driven_by(run, c.channel); };
+    Unknown u = make_shared_unknown(runs, c.channel + "_gain");
+    const auto driven = [&](const MeasuredRun& run) {
+      return find_input(run, c.channel) != nullptr;
+    };
     if (is_among(unknowns, u.name) || std::none_of(runs.begin(), runs.end(), driven)) continue;
     u.prior = c.gain;
     u.start = c.gain.mean;
@@ -346,17 +327,17 @@ void add_gains(const CampaignData& data, const std::vector<RigRun>& runs,
 std::vector<Unknown> make_free_unknowns(const CampaignData& data,
                                         const std::vector<std::size_t>& chosen) {
   return name_table(data, "fit.free", [&] {
+    const std::vector<MeasuredRun> runs = select(data.runs, chosen);
     std::vector<Unknown> unknowns;
     for (const std::string& name : data.campaign.fit.free) {
-      unknowns.push_back(data.is_rig() ? make_rig_unknown(select(data.rigs, chosen), name)
-                                       : make_parameter(select(data.cars, chosen), name));
+      unknowns.push_back(make_shared_unknown(runs, name));
       for (const auto& [of, prior] : data.campaign.fit.prior) {
         if (of != name) continue;
         unknowns.back().prior = prior;
         unknowns.back().start = std::clamp(prior.mean, unknowns.back().low, unknowns.back().high);
       }
     }
-    if (data.is_rig()) add_gains(data, select(data.rigs, chosen), unknowns);
+    add_gains(data, runs, unknowns);
     return unknowns;
   });
 }
@@ -364,35 +345,48 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
 double get_nominal(const CampaignData& data, const Unknown& unknown) {
   if (unknown.kind != UnknownKind::kParameter)
     return unknown.kind == UnknownKind::kInputGain ? 1.0 : 0.0;
-  return data.is_rig() ? get_rig_parameter(data.rigs[0].setup, unknown.name)
-                       : get_parameter(data.cars[0].setup, unknown.name);
+  return get_parameter(data.runs[0].setup, unknown.name);
 }
 
 std::vector<Unknown> make_run_unknowns(const CampaignData& data,
                                        const std::vector<std::size_t>& runs,
                                        const std::vector<Unknown>& chosen) {
-  return data.is_rig() ? make_rig_nuisances(data, runs, chosen)
-                       : make_car_unknowns(data, runs, chosen);
+  const std::vector<MeasuredRun> selected = select(data.runs, runs);
+  // An offset of a sensor must never speak for a cause, so it is all but free.
+  constexpr double kWide = 10.0;
+  NuisanceSigmas sigmas;
+  sigmas.bias = make_default_bias();
+  for (double& sigma : sigmas.bias) sigma *= kWide;
+  std::vector<Unknown> unknowns = make_nuisances(selected, sigmas, chosen);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (const auto& [name, known] : data.campaign.runs[runs[r]].known) {
+      if (is_among(chosen, name)) continue;
+      apply_known(selected, static_cast<int>(r), name, known, unknowns);
+    }
+  }
+  return unknowns;
 }
 
 bool meets_bump(const CampaignData& data, std::size_t run) {
-  if (data.is_rig()) return true;
-  const RoadSpec& road = data.cars[run].setup.maneuver.road;
+  if (data.has_inputs()) return true;
+  const RoadSpec& road = data.runs[run].setup.car().maneuver.road;
   return road.shape != BumpShape::kNone && road.height != 0.0;
 }
 
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads) {
-  if (data.is_rig()) {
-    RigOptions options;
-    options.threads = threads;
-    return std::make_unique<RigReadings>(select(data.rigs, runs), std::move(unknowns), options);
-  }
   LinearizeOptions options;
   options.rate = 1000.0;  // at a campaign's sensors and speeds
   options.threads = threads;
-  return std::make_unique<ReadingSimulator>(select(data.cars, runs), std::move(unknowns), options);
+  return make_readings(select(data.runs, runs), std::move(unknowns), options);
+}
+
+InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
+                               const std::vector<double>& values, double half_width) {
+  if (half_width <= 0.0) return make_signal(channel, times, values, Interpolation::kSpline);
+  const SmoothCurve curve = calc_local_cubic(times, values, half_width, CurveEnds::kOneSided);
+  return make_signal(channel, times, curve.value, curve.rate);
 }
 
 }  // namespace strut

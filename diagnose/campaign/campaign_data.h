@@ -8,7 +8,6 @@
 #include "diagnose/campaign/campaign.h"
 #include "diagnose/campaign/measured_table.h"
 #include "diagnose/campaign/noise_model.h"
-#include "diagnose/campaign/rig_readings.h"
 #include "estimate/measured_run.h"
 #include "estimate/reading_model.h"
 
@@ -17,22 +16,19 @@ namespace strut {
 struct CampaignData {
   Campaign campaign;
   std::vector<MeasuredTable> tables;  // one a run
-  std::vector<MeasuredRun> cars;      // one a run, or empty
-  std::vector<RigRun> rigs;           // one a run, or empty
+  std::vector<MeasuredRun> runs;      // one a run
   std::vector<NoiseEstimate> noise;   // one a column of the campaign; inputs have none
   std::vector<std::string> notes;     // for the user
 
-  bool is_rig() const { return campaign.rig.has_value(); }
+  const ModelInfo& model() const { return *campaign.info; }
+  /// Whether recorded inputs drive the runs; if not, a road whose roughness nobody measured.
+  bool has_inputs() const { return model().is_driven_by_inputs(); }
   std::size_t run_count() const { return campaign.runs.size(); }
-  const std::vector<MeasuredChannel>& channels(std::size_t run) const {
-    return is_rig() ? rigs[run].channels : cars[run].channels;
-  }
-  /// s on the clock of readings and simulation (a car's: measured time).
-  const std::vector<double>& times(std::size_t run) const {
-    return is_rig() ? rigs[run].times : cars[run].times;
-  }
+  const std::vector<MeasuredChannel>& channels(std::size_t run) const { return runs[run].channels; }
+  /// s on the clock of the readings.
+  const std::vector<double>& times(std::size_t run) const { return runs[run].times; }
   const ChannelInfo& info(int channel) const {
-    return list_channels(campaign.rig)[static_cast<std::size_t>(channel)];
+    return model().channels[static_cast<std::size_t>(channel)];
   }
   const NoiseEstimate& find_noise(int channel) const;
   /// Numbers of the runs for this use.
@@ -42,7 +38,7 @@ struct CampaignData {
 /// The campaign of one of its runs.
 CampaignData take_run(const CampaignData& data, std::size_t run);
 
-/// Whether a run's wheels meet more than a road's roughness; those of rigs always do.
+/// Whether a run meets more than a road's roughness; what recorded inputs drive always does.
 bool meets_bump(const CampaignData& data, std::size_t run);
 
 /// Reads the campaign, its model with what `[fit] fix` sets, and every run. Throws InputError for
@@ -57,9 +53,8 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
 /// What an unknown that all runs share is in the model's file.
 double get_nominal(const CampaignData& data, const Unknown& unknown);
 
-/// What is unknown about each of `runs` alone: of a car hit time, speed, what the campaign gives
-/// with an uncertainty, and biases; of a rig where it starts, and biases. Unknown::run counts
-/// within `runs`. What is in `chosen` is left out.
+/// What is unknown about each of `runs` alone (make_nuisances), and what the campaign gives with an
+/// uncertainty. Unknown::run counts within `runs`. What is in `chosen` is left out.
 std::vector<Unknown> make_run_unknowns(const CampaignData& data,
                                        const std::vector<std::size_t>& runs,
                                        const std::vector<Unknown>& chosen);
@@ -68,5 +63,10 @@ std::vector<Unknown> make_run_unknowns(const CampaignData& data,
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads = 1);
+
+/// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
+/// std::invalid_argument as make_signal does.
+InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
+                               const std::vector<double>& values, double half_width);
 
 }  // namespace strut

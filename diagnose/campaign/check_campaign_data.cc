@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "base/error/input_error.h"
+#include "base/math/spread.h"
 #include "base/text/format_number.h"
 #include "diagnose/campaign/campaign_data.h"
-#include "diagnose/campaign/simulate_run.h"
-#include "diagnose/campaign/spread.h"
 #include "diagnose/campaign/units.h"
+#include "estimate/simulate_run.h"
 
 namespace strut {
 namespace {
@@ -49,16 +49,17 @@ double calc_frequency(const std::vector<double>& values, double duration) {
 }
 
 RateNeed find_need(const CampaignData& data, std::size_t r) {
-  if (!data.is_rig()) {
+  if (!data.has_inputs()) {
     return {kWantedCarRate, kNeededCarRate, "wheels hop at 10 to 15 Hz"};
   }
-  const RigRun& run = data.rigs[r];
-  const double mode = calc_fastest_mode(run.setup) / (2.0 * std::numbers::pi);
+  const MeasuredRun& run = data.runs[r];
+  const double mode = run.setup.calc_fastest_mode() / (2.0 * std::numbers::pi);
   if (mode > 0.0) {
     return {kWantedPerPeriod * mode, kNeededPerPeriod * mode,
             "the model's fastest mode has " + format_rounded(mode) + " Hz"};
   }
-  const MeasuredColumn* stroke = data.tables[r].find(data.campaign.columns, "displacement");
+  const MeasuredColumn* stroke =
+      data.tables[r].find(data.campaign.columns, data.model().inputs.front().name);
   const double f = stroke ? calc_frequency(stroke->values, run.times.back()) : 0.0;
   return {kWantedPerStroke * f, kNeededPerStroke * f,
           "the strut is driven at " + format_rounded(f) + " Hz"};
@@ -125,7 +126,7 @@ void check_plausible(const CampaignData& data, std::size_t r) {
 }
 
 void check_driven(const CampaignData& data, std::size_t r) {
-  if (!data.is_rig()) return;
+  if (!data.has_inputs()) return;
   double most = 0.0;
   for (const MeasuredColumn& column : data.tables[r].columns) {
     if (data.campaign.columns[column.at].role != ColumnRole::kInput) continue;
@@ -137,7 +138,7 @@ void check_driven(const CampaignData& data, std::size_t r) {
 
 /// Against the nominal model, driven by the same inputs or the stated maneuver.
 void check_units(const CampaignData& data, std::size_t r) {
-  const RunCurves curves = simulate_nominal(data, r);
+  const RunCurves curves = simulate_run(data.runs[r], {}, {});
   if (!curves.failure.empty()) return;  // told by whoever needs the simulation
   for (std::size_t k = 0; k < data.channels(r).size(); ++k) {
     const MeasuredChannel& channel = data.channels(r)[k];
@@ -148,7 +149,7 @@ void check_units(const CampaignData& data, std::size_t r) {
     if (ratio < kMostRatio && ratio * kMostRatio > 1.0) continue;
     // Below the noise the model may rest; where it rests, a rough road still moves the car.
     if (std::max(simulated, measured) < 10.0 * channel.sigma) continue;
-    if (!data.is_rig() && simulated < channel.sigma) continue;
+    if (!data.has_inputs() && simulated < channel.sigma) continue;
     for (const CampaignColumn& c : data.campaign.columns) {
       if (c.channel != data.info(channel.channel).name) continue;
       throw InputError(suspect(data.tables[r], c, measured, simulated,

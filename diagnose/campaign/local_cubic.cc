@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "diagnose/campaign/spread.h"
+#include "base/math/spread.h"
 
 namespace strut {
 namespace {

@@ -41,7 +41,7 @@ bool has_deflection(const std::vector<MeasuredChannel>& channels, int axle) {
 }
 
 bool can_balance(const CampaignData& data, std::size_t run) {
-  if (data.is_rig()) return false;
+  if (data.has_inputs()) return false;
   const std::vector<MeasuredChannel>& channels = data.channels(run);
   return (has_channel(channels, C::kImuAccelerationZ) ||
           has_channel(channels, C::kBodyAccelerationZ)) &&
@@ -71,13 +71,13 @@ struct Start {
 Start make_start(const CampaignData& data, const SharedValues& shared, const RunEvaluation& at) {
   Start start;
   for (const char* name : kStrutNames) {
-    const Unknown u = make_parameter(data.cars, name);
+    const Unknown u = make_parameter(data.runs, name);
     start.add(u, u.start);
   }
-  std::vector<MeasuredRun> cars = data.cars;
-  set_parameters(cars.front().setup, at.unknowns, at.values, 0);
+  std::vector<MeasuredRun> cars = data.runs;
+  set_unknowns(cars.front(), at.unknowns, at.values, 0);
   for (const Below& below : kBelow) {
-    if (below.is_bump && !cars.front().setup.maneuver.road.has_formula()) continue;
+    if (below.is_bump && !cars.front().setup.car().maneuver.road.has_formula()) continue;
     Unknown u = make_parameter(cars, below.name);
     if (!(u.start > 0.0)) continue;  // a level road
     u.prior = {u.start, below.share * u.start};

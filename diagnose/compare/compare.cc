@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
-#include "diagnose/campaign/spread.h"
 #include "model_files/parameters.h"
 
 namespace strut {
@@ -33,7 +33,8 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
   c.bands = calc_band_residuals(times, residual, measured.values, c.sigma);
   c.states.reserve(states.size());
   for (const StateCurve& state : states) {
-    c.states.push_back(calc_state_residual(state.name, state.unit, state.values, residual));
+    c.states.push_back(
+        calc_state_residual(state.info->name, state.info->unit, state.values, residual));
   }
   return c;
 }
@@ -87,10 +88,9 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
     run.windows = make_time_windows(data, r);
     run.nominal = compare_run(data, r, baseline.nominal, run.windows, threads);
     run.calibrated = compare_run(data, r, baseline.calibrated, run.windows, threads);
-    if (data.is_rig()) {
-      run.balance = calc_body_balance(
-          set_rig_unknowns(data.rigs[r], baseline.calibrated.unknowns, baseline.calibrated.values));
-    }
+    MeasuredRun calibrated = data.runs[r];
+    set_unknowns(calibrated, baseline.calibrated.unknowns, baseline.calibrated.values);
+    run.balance = calc_body_balance(calibrated);
     run.car_balance =
         calc_car_balance(data, r, baseline.calibrated, run.calibrated.evaluation, threads);
     comparison.runs.push_back(std::move(run));

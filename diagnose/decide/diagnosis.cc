@@ -24,7 +24,7 @@ std::string describe(const Cause& cause) { return describe_effect(cause.effect, 
 
 CauseParameter make_parameter_of(const CampaignData& data, const Hypothesis& h, std::size_t i,
                                  double value, double sigma) {
-  const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   const EffectParameter& p = *parameters[i];
   CauseParameter c{p.name, p.unit, value, value - kNormal95 * sigma, value + kNormal95 * sigma};
   c.low = std::clamp(c.low, p.low, std::max(p.low, value));

@@ -2,28 +2,21 @@
 #include "diagnose/decide/diagnosis.h"
 #include "io/file/read_text_file.h"
 #include "io/format/toml_document.h"
-#include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
 #include "model_files/read_force_maps.h"
-#include "model_files/read_rig.h"
+#include "model_files/read_model.h"
 
 namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a shared unknown is the model's own, no effect and no gain of an input.
+/// Whether a shared unknown is in the model's file, no effect and no gain of an input.
 bool is_of_model(const CampaignData& data, const Unknown& u) {
   if (u.kind != UnknownKind::kParameter) return false;
-  if (data.is_rig()) return !find_rig_parameter(data.rigs[0].setup.kind, u.name).is_effect;
-  if (find_parameter(u.name).is_effect) return false;
-  Case c = data.cars[0].setup;
-  const ManeuverSpec before = c.maneuver;
-  const ParameterInfo& info = find_parameter(u.name);
-  const double value = info.get(c);
-  info.set(c, value == info.allowed.high ? info.allowed.low : info.allowed.high);
-  return c.maneuver == before;
+  const Parameter& parameter = find_parameter(data.model(), u.name);
+  return !parameter.is_effect && !parameter.is_maneuver;
 }
 
 /// Names the tire file of a car as it is seen from `folder`.
@@ -58,10 +51,10 @@ std::string make_extended_model(const CampaignData& data, const Diagnosis& diagn
     }
   }
   std::string text = read_text_file(data.campaign.model);
-  if (!data.is_rig()) text = move_tire_file(text, data.campaign.model, folder);
-  const ModelKind kind = get_model_kind(data);
-  text = replace_effects(replace_fitted(text, fitted), list_effects_on(data, shared), kind);
-  return diagnosis.force ? replace_force_maps(text, list_force_maps_on(data, shared), kind) : text;
+  if (data.model().has(kHasCar)) text = move_tire_file(text, data.campaign.model, folder);
+  const ModelInfo& model = data.model();
+  text = replace_effects(replace_fitted(text, fitted), list_effects_on(data, shared), model);
+  return diagnosis.force ? replace_force_maps(text, list_force_maps_on(data, shared), model) : text;
 }
 
 }  // namespace strut

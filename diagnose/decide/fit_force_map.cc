@@ -14,11 +14,11 @@ namespace {
 using Index = Eigen::Index;
 
 ForceMaps& get_force_maps(CampaignData& data, std::size_t run) {
-  return data.is_rig() ? data.rigs[run].setup.force_maps : data.cars[run].setup.vehicle.force_maps;
+  return data.runs[run].setup.force_maps();
 }
 
 const ForceMaps& get_force_maps(const CampaignData& data) {
-  return data.is_rig() ? data.rigs[0].setup.force_maps : data.cars[0].setup.vehicle.force_maps;
+  return data.runs[0].setup.force_maps();
 }
 
 /// The campaign with a map in its model.
@@ -115,7 +115,7 @@ class MapSearch {
     const Whitener whitener(*model, fit.spectra);
     const WhitenedModel whitened(*model, whitener);
     const Linearization seen = whitener.apply(at);
-    if (!data_.is_rig()) {
+    if (!data_.has_inputs()) {
       fit.linearization = std::make_shared<const Linearization>(std::move(at));
     }
     fit.fit = describe_fit(whitened, seen, values, std::vector<bool>(values.size(), false), false);

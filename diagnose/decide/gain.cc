@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "diagnose/campaign/spread.h"
+#include "base/math/spread.h"
 
 namespace strut {
 namespace {

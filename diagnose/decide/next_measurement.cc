@@ -15,11 +15,11 @@ struct Proposal {
   CampaignData data;  // of that run alone
 };
 
-void add_car_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
+void add_crossings(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
   constexpr double kKilometersPerHour = 3.6;
   for (const double factor : {0.5, 0.75, 1.5, 2.0}) {
     CampaignData one = take_run(data, run);
-    ManeuverSpec& m = one.cars[0].setup.maneuver;
+    ManeuverSpec& m = one.runs[0].setup.car().maneuver;
     if (m.road.shape == BumpShape::kNone) return;
     // The bump is met at the same time.
     m.speed *= factor;
@@ -30,7 +30,7 @@ void add_car_proposals(const CampaignData& data, std::size_t run, std::vector<Pr
   }
   for (const double factor : {0.5, 1.5}) {
     CampaignData one = take_run(data, run);
-    RoadSpec& road = one.cars[0].setup.maneuver.road;
+    RoadSpec& road = one.runs[0].setup.car().maneuver.road;
     road.height *= factor;
     menu.push_back({"repeat " + data.campaign.runs[run].name + " over a bump of " +
                         format_rounded(std::round(1e3 * road.height)) + " mm",
@@ -38,12 +38,13 @@ void add_car_proposals(const CampaignData& data, std::size_t run, std::vector<Pr
   }
 }
 
-void add_rig_proposals(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
+void add_amplitudes(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
   for (const double factor : {0.3, 2.0, 4.0}) {
     CampaignData one = take_run(data, run);
-    for (InputSignal& input : one.rigs[0].inputs) {
-      if (input.channel == "temperature") continue;
-      scale_signal(input, factor);
+    for (InputSignal& signal : one.runs[0].setup.rig().inputs) {
+      for (const InputInfo& input : data.model().inputs) {
+        if (input.moves && input.name == signal.channel) scale_signal(signal, factor);
+      }
     }
     menu.push_back({"repeat " + data.campaign.runs[run].name + " at " + format_rounded(factor) +
                         " times its amplitude",
@@ -75,8 +76,8 @@ std::optional<Rivals> find_rivals(const Selection& selection, const Cause& a, co
 
 /// Sum over the readings of the squared difference of two models over the sensors' noise.
 double calc_difference(const CampaignData& one, const SharedValues& a, const SharedValues& b) {
-  const RunCurves first = simulate_run(one, 0, a.unknowns, a.values);
-  const RunCurves second = simulate_run(one, 0, b.unknowns, b.values);
+  const RunCurves first = simulate_run(one.runs[0], a.unknowns, a.values);
+  const RunCurves second = simulate_run(one.runs[0], b.unknowns, b.values);
   if (!first.failure.empty() || !second.failure.empty()) return 0.0;
   double sum = 0.0;
   for (const MeasuredChannel& c : one.channels(0)) {
@@ -118,7 +119,7 @@ std::string propose_measurement(const CampaignData& data, const Selection& selec
   double already = 0.0;
   for (const std::size_t r : data.list_runs(RunUse::kFit)) {
     already = std::max(already, calc_difference(take_run(data, r), a, b));
-    data.is_rig() ? add_rig_proposals(data, r, menu) : add_car_proposals(data, r, menu);
+    data.has_inputs() ? add_amplitudes(data, r, menu) : add_crossings(data, r, menu);
   }
   double most = already;
   std::string best;

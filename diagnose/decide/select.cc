@@ -15,7 +15,7 @@ namespace strut {
 namespace {
 
 bool is_one_sided(const CampaignData& data, const Hypothesis& h) {
-  const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   return std::any_of(parameters.begin(), parameters.end(),
                      [](const EffectParameter* p) { return p->switches && p->low >= p->neutral; });
 }
@@ -48,7 +48,7 @@ std::vector<RankedTrial> rank(const Evidence& evidence, const Score& score,
 /// A beginning with the sizes that the score asks for, within what is allowed.
 std::vector<double> make_beginning(const CampaignData& data, const Hypothesis& h,
                                    const HypothesisTrial& trial, const Gain& gain) {
-  const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   std::vector<double> values = h.beginnings[trial.beginning];
   for (std::size_t j = 0; j < trial.parameters.size(); ++j) {
     const std::size_t i = trial.parameters[j];
@@ -102,7 +102,7 @@ ExtendedUnknowns extend(const CampaignData& data, const WhitenedFit& base, const
   e.unknowns.assign(base.fit.unknowns.begin(), base.fit.unknowns.begin() + shared);
   e.values.assign(base_values.begin(), base_values.begin() + shared);
   std::vector<Unknown> own = make_unknowns(data, h);
-  const auto of_effect = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  const auto of_effect = list_effect_parameters(*find_effect(h.effect), data.model());
   for (std::size_t i = 0; i < own.size(); ++i) {
     Unknown& u = own[i];
     // Steps and sizes are counted in what was found.
@@ -193,7 +193,7 @@ class Selector {
   Selection run() {
     tell("calibrating the baseline");
     FitOptions quick;
-    quick.iterations = data_.is_rig() ? 50 : 5;
+    quick.iterations = data_.has_inputs() ? 50 : 5;
     const Baseline baseline = calibrate_baseline(data_, options_.threads, quick);
     if (!baseline.is_fitted) {
       throw InputError(data_.campaign.path.string() +
@@ -257,9 +257,9 @@ class Selector {
 
   /// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
   double calc_negligible(const Whitener& whitener) const {
-    const double share = data_.is_rig() ? options_.negligible : options_.negligible_car;
+    const double share = data_.has_inputs() ? options_.negligible : options_.negligible_car;
     double power = share * static_cast<double>(whitener.whitened_count());
-    if (data_.is_rig()) return power;
+    if (data_.has_inputs()) return power;
     for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
       const NoiseSpectrum& s = whitener.spectra()[r];
       double ratio = 0.0;  // of the road's power to the sensors', mean over channels
@@ -323,7 +323,7 @@ class Selector {
     HypothesisFit fit = bench.fit(h, beginning);
     Candidate c;
     c.simulations = fit.simulations;
-    if (data_.is_rig() && (!fit.failure.empty() || fit.gain < 0.5 * gain.chi2)) {
+    if (data_.has_inputs() && (!fit.failure.empty() || fit.gain < 0.5 * gain.chi2)) {
       // Far from what the score promised: another valley, and none of the sizes that a search
       // begins with was in the right one. Near the base the score cannot be wrong.
       HypothesisFit near = bench.fit(h, reduce(trial, beginning));

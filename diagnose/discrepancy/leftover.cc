@@ -56,7 +56,7 @@ std::vector<Cell> list_numbers(const CampaignData& data, const TestBench& bench,
   std::vector<std::vector<double>> allowed(bench.run_count());  // by run and band
   for (std::size_t r = 0; r < allowed.size(); ++r) {
     for (std::size_t b = 0; b < kNoiseBands.size(); ++b) {
-      const double road = data.is_rig() ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
+      const double road = data.has_inputs() ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
       allowed[r].push_back(1.0 + options.noise_tolerance + options.road_tolerance * road);
     }
   }
@@ -132,7 +132,7 @@ struct Actor {
   std::vector<Index> columns;
 };
 
-std::vector<Actor> list_actors(const CampaignData& data, const std::vector<Hypothesis>& hypotheses,
+std::vector<Actor> list_actors(const std::vector<Hypothesis>& hypotheses,
                                const std::vector<HypothesisTrial>& trials) {
   std::vector<Actor> actors;
   for (const HypothesisTrial& trial : trials) {
@@ -141,7 +141,7 @@ std::vector<Actor> list_actors(const CampaignData& data, const std::vector<Hypot
     const bool is_road = h.effect == "bump_height" || h.effect == "bump_length";
     LeftoverPlace place;
     place.kind = is_body ? "body" : is_road ? "road" : "strut";
-    place.name = data.is_rig() && is_body ? "body" : h.place;
+    place.name = is_body ? "body" : h.place;
     const auto found = std::find_if(actors.begin(), actors.end(), [&](const Actor& a) {
       return a.place.kind == place.kind && a.place.name == place.name;
     });
@@ -174,7 +174,7 @@ void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& 
   const std::vector<Hypothesis> forces = list_forces(data, at);
   std::vector<HypothesisTrial> trials;
   const Eigen::MatrixXd columns = bench.simulate_columns(forces, trials);
-  const std::vector<Actor> actors = list_actors(data, forces, trials);
+  const std::vector<Actor> actors = list_actors(forces, trials);
   for (const Actor& actor : actors) places.push_back(actor.place);
   const Whitener& whitener = bench.whitener();
   std::map<int, std::size_t> sensors;  // by channel of the model

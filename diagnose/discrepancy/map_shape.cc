@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/math/spread.h"
 #include "base/text/format_number.h"
 #include "base/text/range.h"
-#include "diagnose/campaign/spread.h"
 #include "diagnose/discrepancy/map_axis.h"
 
 namespace strut {

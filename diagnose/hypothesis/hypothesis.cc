@@ -4,10 +4,9 @@
 #include <cmath>
 #include <map>
 
+#include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
-#include "diagnose/campaign/spread.h"
-#include "model_files/parameters.h"
-#include "model_files/read_rig.h"
+#include "model_files/read_model.h"
 
 namespace strut {
 namespace {
@@ -36,34 +35,36 @@ double get_shared_parameter(const CampaignData& data, const SharedValues& shared
   for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
     if (shared.unknowns[i].name == name) return shared.values[i];
   }
-  return data.is_rig() ? get_rig_parameter(data.rigs[0].setup, name)
-                       : get_parameter(data.cars[0].setup, name);
+  return get_parameter(data.runs[0].setup, name);
 }
 
-/// By axle; "" on a rig.
+/// By StateInfo::place.
 std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
                                                   const SharedValues& shared) {
   std::map<std::string, StrutMotion> motions;
   double runs = 0.0;
   for (const std::size_t r : data.list_runs(RunUse::kFit)) {
-    const RunEvaluation evaluation{
-        "", {}, {}, simulate_run(data, r, shared.unknowns, shared.values), {}};
-    if (!evaluation.curves.failure.empty()) continue;
+    const RunCurves curves = simulate_run(data.runs[r], shared.unknowns, shared.values);
+    if (!curves.failure.empty()) continue;
     ++runs;
-    for (const StateCurve& state : list_states(data, evaluation.curves)) {
-      StrutMotion& m = motions[data.is_rig() ? "" : find_axle(state.name)];
+    for (const StateCurve& state : list_states(data, curves)) {
+      StrutMotion& m = motions[state.info->place];
       const double spread = calc_spread(state.values);
-      if (state.name.find("deflection") != std::string::npos ||
-          state.name.find("position") != std::string::npos ||
-          state.name.find("displacement") != std::string::npos) {
-        m.deflection += spread * spread;
-        for (const double v : state.values) {
-          if (std::isfinite(v)) m.compression = std::max(m.compression, v);
-        }
-      } else if (state.name.find("velocity") != std::string::npos) {
-        m.velocity += spread * spread;
-      } else {
-        m.tire_deflection += spread * spread;
+      switch (state.info->kind) {
+        case StateKind::kDeflection:
+          m.deflection += spread * spread;
+          for (const double v : state.values) {
+            if (std::isfinite(v)) m.compression = std::max(m.compression, v);
+          }
+          break;
+        case StateKind::kVelocity:
+          m.velocity += spread * spread;
+          break;
+        case StateKind::kTireLoad:
+          m.tire_deflection += spread * spread;
+          break;
+        case StateKind::kGuideVelocity:
+          break;
       }
     }
   }
@@ -74,11 +75,8 @@ std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
     m.stiffness = get_shared_parameter(data, shared, head + "stiffness");
     m.damping = get_shared_parameter(data, shared, head + "damping");
     m.tire_deflection = std::sqrt(m.tire_deflection / std::max(runs, 1.0));
-    if (data.campaign.rig == RigKind::kQuarterCar) {
+    if (data.model().has(kHasTire)) {
       m.tire_deflection /= get_shared_parameter(data, shared, "tire_stiffness");
-    } else {
-      constexpr double kTireStiffness = 2e5;  // N/m, an ordinary car's
-      m.tire_deflection /= kTireStiffness;
     }
   }
   return motions;
@@ -133,12 +131,11 @@ Beginnings choose_beginnings(const std::string& effect, const StrutMotion& m) {
   return {{}};
 }
 
-/// Whether a rig's own parameter says the same: its tire's stiffness is the effect's.
+/// Whether the model's own parameter says the same: a quarter car's tire stiffness is the effect's.
 bool is_own_parameter(const CampaignData& data, const std::string& name) {
-  if (!data.is_rig()) return false;
-  const auto& settings = list_rig_settings(*data.campaign.rig);
-  return std::any_of(settings.begin(), settings.end(),
-                     [&](const RigParameter& p) { return p.name == name && !p.is_effect; });
+  const auto parameters = list_parameters(data.model());
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const Parameter* p) { return p->name == name && !p->is_effect; });
 }
 
 /// Whether `place` is another name for `other`, an axle or one of its corners.
@@ -183,8 +180,7 @@ std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h
   std::vector<Unknown> unknowns;
   unknowns.reserve(h.parameters.size());
   for (const HypothesisParameter& p : h.parameters) {
-    unknowns.push_back(data.is_rig() ? make_rig_unknown(data.rigs, p.name)
-                                     : make_parameter(data.cars, p.name));
+    unknowns.push_back(make_parameter(data.runs, p.name));
   }
   return unknowns;
 }
@@ -192,8 +188,8 @@ std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h
 bool is_plausible(const CampaignData& data, const Hypothesis& h,
                   const std::vector<double>& values) {
   constexpr double kMost = 10.0;
-  if (data.is_rig()) return true;
-  const auto parameters = list_effect_parameters(*find_effect(h.effect), get_model_kind(data));
+  if (data.has_inputs()) return true;
+  const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
     if (p.switches && std::abs(values[i] - p.neutral) > kMost * std::abs(p.typical - p.neutral)) {
@@ -205,40 +201,33 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h,
 
 bool is_corner(const std::string& place) { return find_corner(place) >= 0; }
 
-ModelKind get_model_kind(const CampaignData& data) {
-  return data.is_rig() ? get_model_kind(*data.campaign.rig) : ModelKind::kFullVehicle;
-}
-
 EffectSettings list_effects_on(const CampaignData& data, const SharedValues& shared) {
-  if (data.is_rig()) {
-    return set_rig_unknowns(data.rigs[0], shared.unknowns, shared.values).setup.effects;
-  }
-  Case c = data.cars[0].setup;
-  set_parameters(c, shared.unknowns, shared.values);
-  return c.vehicle.effects;
+  MeasuredRun run = data.runs[0];
+  set_unknowns(run, shared.unknowns, shared.values);
+  return run.setup.effects();
 }
 
 std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,
                                         const EffectSettings& model_effects,
                                         const std::vector<Unknown>& free) {
   const std::map<std::string, StrutMotion> motions = measure_motion(data, shared);
-  const ModelKind kind = get_model_kind(data);
+  const ModelInfo& model = data.model();
   std::vector<Hypothesis> list;
   for (const EffectInfo& effect : list_effects()) {
     if (effect.name == "sensor_bias") continue;  // a bias of every run and channel is always free
-    const auto parameters = list_effect_parameters(effect, kind);
-    for (const std::string& place : list_effect_places(effect, kind)) {
+    const auto parameters = list_effect_parameters(effect, model);
+    for (const std::string& place : list_effect_places(effect, model)) {
       const bool is_on =
           std::any_of(model_effects.begin(), model_effects.end(), [&](const EffectSetting& s) {
             return s.effect == effect.name && overlaps(s.place, place);
           });
       if (is_on) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;
-      const auto motion = motions.find(data.is_rig() ? "" : find_axle(place));
+      const auto motion = motions.find(find_axle(place));
       Hypothesis h{effect.name, place, {}, {}};
       for (const EffectParameter* p : parameters) {
         h.parameters.push_back(
-            {make_effect_parameter_name(effect, place, *p, kind), p->name, p->switches});
+            {make_effect_parameter_name(effect, place, *p, model), p->name, p->switches});
       }
       if (is_own_parameter(data, h.parameters.front().name)) continue;
       const bool is_free = std::any_of(free.begin(), free.end(), [&](const Unknown& u) {

@@ -48,7 +48,6 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h, const std::vect
 /// "front_left", ...: one corner of an axle.
 bool is_corner(const std::string& place);
 
-ModelKind get_model_kind(const CampaignData& data);
 /// Effects that the model's file and the values of unknowns switch on.
 EffectSettings list_effects_on(const CampaignData& data, const SharedValues& shared);
 

@@ -59,7 +59,7 @@ class Search {
         x_(Eigen::VectorXd::Zero(n_ + m_)) {}
 
   HypothesisFit run() {
-    const int steps = ground_.is_rig ? 60 : 12;
+    const int steps = ground_.has_inputs ? 60 : 12;
     if (begin()) {
       for (int step = 0; step < steps && linearize() && improve(); ++step) {
       }
@@ -108,7 +108,7 @@ class Search {
     struct Shares {
       double least, factor;
     };
-    const Shares shares = ground_.is_rig ? Shares{0.02, 0.7} : Shares{0.05, 0.4};
+    const Shares shares = ground_.has_inputs ? Shares{0.02, 0.7} : Shares{0.05, 0.4};
     std::vector<Eigen::VectorXd> tried;
     std::vector<std::vector<double>> points;
     for (double share = 1.0; share > 0.9 * shares.least; share *= shares.factor) {
@@ -168,7 +168,7 @@ class Search {
 
   /// Normal equations where the search stands. False where a rig cannot be simulated beside it.
   bool linearize() {
-    if (!ground_.is_rig) {
+    if (!ground_.has_inputs) {
       gather(ground_.jacobian, ground_.normal, calc_differences());
       return true;
     }

@@ -25,7 +25,7 @@ struct HypothesisFit {
 
 /// The fit that it starts from. All must outlive the search.
 struct SearchGround {
-  bool is_rig = false;
+  bool has_inputs = false;
   const std::vector<Unknown>& unknowns;
   const std::vector<double>& values;
   const Whitener& whitener;

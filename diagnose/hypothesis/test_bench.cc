@@ -172,8 +172,8 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
 HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
                              const std::vector<double>& beginning) const {
   const std::vector<Unknown> own = make_unknowns(data_, hypothesis);
-  const SearchGround ground{data_.is_rig(), unknowns_, values_, *whitener_,
-                            residual_,      jacobian_, normal_, regular_normal_};
+  const SearchGround ground{data_.has_inputs(), unknowns_, values_, *whitener_,
+                            residual_,          jacobian_, normal_, regular_normal_};
   return search_hypothesis(ground, *make_model(own, 1), hypothesis, own, beginning);
 }
 

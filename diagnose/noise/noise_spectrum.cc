@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/error/input_error.h"
-#include "estimate/linearize.h"
-#include "model_files/parameters.h"
+#include "estimate/run_prepared.h"
+#include "estimate/simulate_run.h"
 
 namespace strut {
 namespace {
@@ -217,14 +217,15 @@ std::vector<Eigen::MatrixXcd> spread_covariance(const std::vector<Eigen::MatrixX
   return spread;
 }
 
-NoiseSpectrum make_car_spectrum(const CampaignData& data, std::size_t run, int number,
-                                const std::vector<Unknown>& unknowns,
-                                const std::vector<double>& values, RoadRecord record) {
+NoiseSpectrum make_road_spectrum(const CampaignData& data, std::size_t run, int number,
+                                 const std::vector<Unknown>& unknowns,
+                                 const std::vector<double>& values, RoadRecord record) {
   NoiseSpectrum s = make_white(data, run);
   s.level = 0.0;
   s.fades = true;
-  Case c = data.cars[run].setup;
-  set_parameters(c, unknowns, values, number);
+  MeasuredRun measured = data.runs[run];
+  set_unknowns(measured, unknowns, values, number);
+  Case& c = measured.setup.car();
   // The road's faults have no place on this one, and at rest friction would hold the car.
   c.vehicle.effects.clear();
   c.vehicle.force_maps.clear();
@@ -263,31 +264,33 @@ void add_source(const Eigen::MatrixXcd& source, NoiseSpectrum& s) {
 }
 
 /// The response to one wrong sample of an input, on its way through whatever smooths it.
-NoiseSpectrum make_rig_spectrum(const CampaignData& data, std::size_t run,
-                                const std::vector<Unknown>& unknowns,
-                                const std::vector<double>& values) {
+NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
+                                   const std::vector<Unknown>& unknowns,
+                                   const std::vector<double>& values) {
   NoiseSpectrum s = make_white(data, run);
-  RigRun rig = set_rig_unknowns(data.rigs[run], unknowns, values);
-  const std::vector<double> times = rig.times;
-  rig.setup.effects.clear();
-  rig.setup.force_maps.clear();
-  rig.setup.initial_position = {};
-  rig.setup.initial_velocity = {};
+  MeasuredRun measured = data.runs[run];
+  set_unknowns(measured, unknowns, values);
+  const std::vector<double> times = measured.times;
+  auto& [rig, inputs] = measured.setup.rig();
+  rig.effects.clear();
+  rig.force_maps.clear();
+  rig.initial_position = {};
+  rig.initial_velocity = {};
   const std::size_t longest =
       std::min(times.size(), static_cast<std::size_t>(kLongestResponse / s.interval) + 2);
-  rig.times.resize(longest);
-  for (std::size_t input = 0; input < rig.inputs.size(); ++input) {
-    const InputNoise noise = rig.input_noise[input];
+  measured.times.resize(longest);
+  for (std::size_t input = 0; input < inputs.size(); ++input) {
+    const InputNoise noise = measured.input_noise[input];
     if (!(noise.sigma > 0.0)) continue;
     const auto begin =
         std::min(longest / 4, static_cast<std::size_t>(2.0 * noise.half_width / s.interval) + 4);
-    for (std::size_t i = 0; i < rig.inputs.size(); ++i) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
       std::vector<double> pulse(longest, 0.0);
       if (i == input) pulse[begin] = noise.sigma;
-      rig.inputs[i] = make_sampled_input(rig.inputs[i].channel, rig.times, pulse,
-                                         rig.input_noise[i].half_width);
+      inputs[i] = make_sampled_input(inputs[i].channel, measured.times, pulse,
+                                     measured.input_noise[i].half_width);
     }
-    const RigCurves curves = simulate_rig_run(rig, 0, {}, {});
+    const RunCurves curves = simulate_run(measured, {}, {});
     if (!curves.failure.empty()) throw InputError(curves.failure);
     Eigen::MatrixXcd source = make_source(s, s.samples);
     for (std::size_t k = 0; k < data.channels(run).size(); ++k) {
@@ -359,9 +362,9 @@ std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
   std::vector<NoiseSpectrum> spectra;
   spectra.reserve(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    spectra.push_back(data.is_rig() ? make_rig_spectrum(data, runs[i], unknowns, values)
-                                    : make_car_spectrum(data, runs[i], static_cast<int>(i),
-                                                        unknowns, values, record));
+    spectra.push_back(data.has_inputs() ? make_driven_spectrum(data, runs[i], unknowns, values)
+                                        : make_road_spectrum(data, runs[i], static_cast<int>(i),
+                                                             unknowns, values, record));
   }
   return spectra;
 }

@@ -77,7 +77,7 @@ Roughness measure_roughness(const CampaignData& data, const std::vector<std::siz
 std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline) {
   std::vector<NoiseSpectrum> spectra =
       make_noise_spectra(data, baseline.runs, baseline.fit.unknowns, baseline.fit.values);
-  if (data.is_rig()) return spectra;
+  if (data.has_inputs()) return spectra;
   const auto model = make_reading_model(data, baseline.runs, baseline.fit.unknowns);
   const Evaluation at = model->evaluate(baseline.fit.values);
   if (!at.failure.empty()) throw InputError(at.failure);
@@ -91,8 +91,9 @@ std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baselin
 
 namespace {
 
-/// What a rig has beyond its sensors' noise is what is looked for: nothing of it counts as noise.
-void fit_rig(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
+/// Where the inputs are recorded, what is beyond the sensors' noise is what is looked for: nothing
+/// of it counts as noise.
+void fit_driven(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
   FitOptions options;
   options.start = start;
   const Whitener whitener(model, result.spectra);
@@ -123,7 +124,7 @@ void conclude(ChordSearch& search, ReadingModel& model, const Whitener& whitener
 
 /// A rough road excites what is not linear, too: what a band has beyond its noise counts as noise.
 /// It is known only once the fit is there, and moves it.
-void fit_car(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
+void fit_crossing(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
   constexpr int kRounds = 2;
   ChordSearch search(model, start);
   for (int round = 0; round < kRounds; ++round) {
@@ -154,10 +155,10 @@ WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t
   result.spectra = spectra;
   result.shared_count = shared_count;
   const auto model = make_reading_model(data, runs, unknowns, threads);
-  if (data.is_rig()) {
-    fit_rig(*model, start, result);
+  if (data.has_inputs()) {
+    fit_driven(*model, start, result);
   } else {
-    fit_car(*model, start, result);
+    fit_crossing(*model, start, result);
   }
   return result;
 }

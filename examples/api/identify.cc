@@ -4,6 +4,7 @@
 #include <exception>
 
 #include "estimate/fit.h"
+#include "estimate/nuisances.h"
 #include "io/store/measurement.h"
 #include "model_files/read_maneuver.h"
 #include "model_files/read_vehicle.h"
@@ -12,7 +13,7 @@
 namespace {
 
 void identify_by_network(const char* model_file, const char* run_file) {
-  const strut::Model model = strut::read_model(model_file);
+  const strut::TrainedModel model = strut::read_trained_model(model_file);
   std::vector<std::string> names;
   for (const auto& input : model.inputs) names.push_back(input.name);
   const strut::Measurement snapshot = strut::read_measurement(run_file, {names});

@@ -28,8 +28,8 @@ void note_unsealed_data(const std::vector<std::string>& paths) {
   }
 }
 
-Model load_model(const fs::path& file) {
-  Model model = read_model(file);
+TrainedModel load_model(const fs::path& file) {
+  TrainedModel model = read_trained_model(file);
   note_unsealed(file, kModelSeal);
   return model;
 }

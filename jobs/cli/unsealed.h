@@ -15,6 +15,6 @@ void note_unsealed(const std::filesystem::path& file, const SealKind& kind);
 /// The same of the plans of sweep folders and of merged files among the data of a command.
 void note_unsealed_data(const std::vector<std::string>& paths);
 /// read_model, and the note.
-Model load_model(const std::filesystem::path& file);
+TrainedModel load_model(const std::filesystem::path& file);
 
 }  // namespace strut

@@ -1,7 +1,6 @@
 #include "jobs/diagnose/figures.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 
@@ -15,10 +14,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// How deflection and velocity are called depends on the model; the tire is not of interest here.
-bool is_motion(const StateCurve& state) { return state.name.find("tire") == std::string::npos; }
-
-bool is_rate(const StateCurve& state) { return state.name.find("velocity") != std::string::npos; }
+bool is_motion(const StateCurve& state) { return state.info->kind != StateKind::kTireLoad; }
 
 std::vector<const DiagnosedRun*> list_held_out(const CampaignData& data,
                                                const Diagnosis& diagnosis) {
@@ -44,7 +40,7 @@ void pool(const CampaignData& data, std::size_t run, const RunEvaluation& evalua
     std::vector<PooledState>& all = pooled[channels[k].channel];
     if (all.empty()) {
       for (const StateCurve& s : states) {
-        if (is_motion(s)) all.push_back({s.name, s.unit, {}, {}});
+        if (is_motion(s)) all.push_back({s.info->name, s.info->unit, {}, {}});
       }
     }
     const Values& residual = evaluation.residual[k];
@@ -100,59 +96,46 @@ void add_points(const Values& x, const Values& y, ChartSeries& points) {
   }
 }
 
-const Values& get_channel(const CampaignData& data, const RunCurves& curves,
-                          const std::string& name) {
-  const std::vector<ChannelInfo>& all = list_channels(data.campaign.rig);
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const ChannelInfo& c) { return c.name == name; });
-  return curves.channel[static_cast<std::size_t>(found - all.begin())];
+/// The law of these labels, made where it is not there yet: the corners of an axle share theirs.
+ForceLaw& find_law(std::vector<ForceLaw>& laws, const std::string& x_label,
+                   const std::string& y_label) {
+  const auto found = std::find_if(laws.begin(), laws.end(),
+                                  [&](const ForceLaw& law) { return law.x_label == x_label; });
+  return found != laws.end() ? *found : laws.emplace_back(ForceLaw{x_label, y_label});
 }
 
-std::vector<ForceLaw> list_rig_laws(const CampaignData& data, const RunCurves& curves) {
-  std::vector<ForceLaw> laws;
-  for (const StateCurve& state : list_states(data, curves)) {
-    if (!is_motion(state)) continue;
-    const std::string force = *data.campaign.rig == RigKind::kStrutRig ? "force"
-                              : is_rate(state)                         ? "damper_force"
-                                                                       : "spring_force";
-    ForceLaw law{make_label(state.name, state.unit), make_label(force, "N")};
-    add_points(state.values, get_channel(data, curves, force), law.points);
-    laws.push_back(std::move(law));
-  }
-  return laws;
-}
-
-std::vector<ForceLaw> list_car_laws(const CampaignData& data, const RunCurves& curves) {
-  std::vector<ForceLaw> laws;
-  for (const std::string axle : {"front_", "rear_"}) {
-    for (const auto& [motion, unit, force] :
-         {std::array{"suspension_deflection", "m", "spring_force"},
-          std::array{"suspension_velocity", "m/s", "damper_force"}}) {
-      ForceLaw law{make_label(axle + motion, unit), make_label(axle + force, "N")};
-      for (const char* side : {"left_", "right_"}) {
-        add_points(get_channel(data, curves, axle + side + motion),
-                   get_channel(data, curves, axle + side + force), law.points);
-      }
-      laws.push_back(std::move(law));
-    }
-  }
-  return laws;
-}
-
+/// Spring over deflection, damper over velocity of each axle's struts; where a stand measures the
+/// force of the whole strut, that over both.
 std::vector<ForceLaw> list_laws(const CampaignData& data, const RunCurves& curves) {
-  return data.is_rig() ? list_rig_laws(data, curves) : list_car_laws(data, curves);
+  const ModelInfo& model = data.model();
+  std::vector<ForceLaw> laws;
+  const auto add = [&](const StrutInfo& strut, const std::string& motion, const std::string& unit,
+                       const ChannelSum& sum, int own_force, const char* own_name) {
+    const bool is_whole = model.stand_force >= 0;
+    const int force = is_whole ? model.stand_force : own_force;
+    const std::string prefix = strut.place.empty() ? "" : strut.place + "_";
+    const std::string name = is_whole ? data.info(force).name : prefix + own_name;
+    add_points(calc_sum(sum, curves.channel), curves.channel[static_cast<std::size_t>(force)],
+               find_law(laws, make_label(motion, unit), make_label(name, "N")).points);
+  };
+  for (const StrutInfo& s : model.struts) {
+    add(s, s.deflection_name, "m", s.deflection, s.spring_force, "spring_force");
+    add(s, s.velocity_name, "m/s", s.velocity, s.damper_force, "damper_force");
+  }
+  return laws;
 }
 
-/// What a strut rig measures over the motion that drives it.
+/// What a stand measures of the whole strut, over the motion that it imposes.
 void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
                         std::vector<ChartPanel>& panels) {
-  if (data.campaign.rig != RigKind::kStrutRig) return;
+  const ModelInfo& model = data.model();
+  if (model.stand_force < 0) return;
   for (const MeasuredChannel& c : data.channels(run.run)) {
-    if (c.channel != StrutRigChannel::kForce) continue;
+    if (c.channel != model.stand_force) continue;
     auto panel = panels.begin();
-    for (const StateCurve& state : list_states(data, run.before.curves)) {
+    for (const ChannelSum& sum : {model.struts[0].deflection, model.struts[0].velocity}) {
       ChartSeries points{"measured", SeriesKind::kPoints, 1};
-      add_points(state.values, c.values, points);
+      add_points(calc_sum(sum, run.before.curves.channel), c.values, points);
       (panel++)->series.push_back(std::move(points));
     }
   }
@@ -181,9 +164,11 @@ Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
 
 std::optional<BodyBalance> calc_balance(const CampaignData& data, std::size_t run,
                                         const WhitenedFit& fit) {
-  if (!data.is_rig() || fit.runs.empty()) return std::nullopt;
+  if (fit.runs.empty()) return std::nullopt;
   const SharedValues shared = fit.shared();
-  return calc_body_balance(set_rig_unknowns(data.rigs[run], shared.unknowns, shared.values));
+  MeasuredRun measured = data.runs[run];
+  set_unknowns(measured, shared.unknowns, shared.values);
+  return calc_body_balance(measured);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "estimate/fit.h"
+#include "estimate/nuisances.h"
 #include "io/store/measurement.h"
 #include "jobs/case/load_case.h"
 #include "jobs/cli/command.h"
@@ -19,7 +20,7 @@
 #include "jobs/identify/fit_report.h"
 #include "model_files/find_channel.h"
 #include "model_files/parameters.h"
-#include "model_files/read_rig.h"
+#include "model_files/read_model.h"
 
 namespace strut {
 namespace {
@@ -185,7 +186,8 @@ std::pair<std::string, Prior> parse_prior(const std::string& setting) {
   return {name, prior};
 }
 
-void apply_prior(std::vector<Unknown>& unknowns, const std::string& setting) {
+void apply_prior(const ModelInfo& model, const std::string& setting,
+                 std::vector<Unknown>& unknowns) {
   const auto [name, prior] = parse_prior(setting);
   std::vector<std::string> names;
   bool found = false;
@@ -196,7 +198,7 @@ void apply_prior(std::vector<Unknown>& unknowns, const std::string& setting) {
     if (u.kind == UnknownKind::kHitTime) {
       u = make_hit_time(u.run, prior);
     } else if (u.kind == UnknownKind::kBias) {
-      u = make_bias(u.run, u.channel, prior);
+      u = make_bias(model, u.run, u.channel, prior);
     } else {
       u.prior = prior;
       u.start = std::clamp(prior.mean, u.low, u.high);
@@ -215,7 +217,7 @@ void require_fit_arguments(const Arguments& arguments, const fs::path& vehicle,
     throw InputError("--event-time: allowed with a model's snapshot only");
   }
   if (arguments.is_on("extrapolate")) throw InputError("--extrapolate: allowed with a model only");
-  if (find_rig_kind(vehicle)) {
+  if (read_model_info(vehicle).is_driven_by_inputs()) {
     throw InputError(vehicle.string() +
                      ": is a rig; identify fits cars only, `strut compare` calibrates rigs");
   }
@@ -270,7 +272,9 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   if (!arguments.is_on("no-nuisances")) {
     for (Unknown& u : make_nuisances(runs, {}, unknowns)) unknowns.push_back(std::move(u));
   }
-  for (const std::string& setting : arguments.list("prior")) apply_prior(unknowns, setting);
+  for (const std::string& setting : arguments.list("prior")) {
+    apply_prior(runs.front().setup.info(), setting, unknowns);
+  }
   FitOptions options;
   options.linearize.threads = static_cast<int>(arguments.integer_or("threads", 1, 1, 1024));
   tell_detail(std::to_string(unknowns.size()) + " unknowns, " +

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr char kTime[] = "time";
 
-std::vector<OutsideChannel> list_outside(const Model& model, const SnapshotOptions& options,
+std::vector<OutsideChannel> list_outside(const TrainedModel& model, const SnapshotOptions& options,
                                          const double* inputs) {
   std::vector<OutsideChannel> outside;
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
@@ -54,7 +54,8 @@ std::vector<double> calc_noise(const Identifier& identifier, const SnapshotOptio
 }
 
 /// Position of an input in the model. Throws InputError.
-std::size_t find_input(const Model& model, const std::string& option, const std::string& name) {
+std::size_t find_input(const TrainedModel& model, const std::string& option,
+                       const std::string& name) {
   const std::vector<std::string> names = list_names(model.inputs);
   const auto at = std::find(names.begin(), names.end(), name);
   if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
@@ -63,7 +64,7 @@ std::size_t find_input(const Model& model, const std::string& option, const std:
 }
 
 /// Values of an option NAME=VALUE for the model's inputs; NaN where one is not named.
-std::vector<double> read_settings(const Arguments& arguments, const Model& model,
+std::vector<double> read_settings(const Arguments& arguments, const TrainedModel& model,
                                   const std::string& option) {
   std::vector<double> values(model.inputs.size(), std::nan(""));
   for (const std::string& setting : arguments.list(option)) {
@@ -76,7 +77,7 @@ std::vector<double> read_settings(const Arguments& arguments, const Model& model
   return values;
 }
 
-SnapshotOptions read_options(const Arguments& arguments, const Model& model) {
+SnapshotOptions read_options(const Arguments& arguments, const TrainedModel& model) {
   SnapshotOptions options;
   options.extrapolate = arguments.is_on("extrapolate");
   options.noise = read_settings(arguments, model, "noise");
@@ -93,7 +94,7 @@ struct Snapshots {
   std::vector<std::string> places;
 };
 
-Snapshots read_command_line(const Arguments& arguments, const Model& model) {
+Snapshots read_command_line(const Arguments& arguments, const TrainedModel& model) {
   Snapshots snapshots{read_settings(arguments, model, "set"), {"--set"}};
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
@@ -104,7 +105,7 @@ Snapshots read_command_line(const Arguments& arguments, const Model& model) {
                    join_names(list_names(model.inputs)));
 }
 
-void append_rows(const Model& model, const Measurement& measurement, Snapshots& snapshots) {
+void append_rows(const TrainedModel& model, const Measurement& measurement, Snapshots& snapshots) {
   std::vector<const std::vector<double>*> columns;
   columns.reserve(model.inputs.size());
   for (const ColumnInfo& input : model.inputs) columns.push_back(&measurement.values(input.name));
@@ -115,7 +116,7 @@ void append_rows(const Model& model, const Measurement& measurement, Snapshots& 
 }
 
 /// Between the two samples around `time`, on the straight line.
-void append_instant(const Model& model, const Measurement& history, double time,
+void append_instant(const TrainedModel& model, const Measurement& history, double time,
                     Snapshots& snapshots) {
   const std::vector<double>& times = history.values(kTime);
   const auto unordered = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>());
@@ -140,7 +141,7 @@ void append_instant(const Model& model, const Measurement& history, double time,
   snapshots.places.push_back(history.path.string() + " at " + format_number(time) + " s");
 }
 
-void append_file(const Arguments& arguments, const Model& model, const fs::path& file,
+void append_file(const Arguments& arguments, const TrainedModel& model, const fs::path& file,
                  Snapshots& snapshots) {
   const double time = arguments.number_or("event-time", std::nan(""), Range{});
   const bool at_instant = !std::isnan(time);
@@ -162,7 +163,7 @@ void append_file(const Arguments& arguments, const Model& model, const fs::path&
   append_rows(model, measurement, snapshots);
 }
 
-Snapshots read_snapshots(const Arguments& arguments, const Model& model,
+Snapshots read_snapshots(const Arguments& arguments, const TrainedModel& model,
                          const std::vector<fs::path>& files) {
   if (arguments.has("set") && !files.empty()) {
     throw arguments.usage_error("--set gives the snapshot: name no file beside it");
@@ -178,7 +179,7 @@ Snapshots read_snapshots(const Arguments& arguments, const Model& model,
 
 }  // namespace
 
-IdentifiedRow identify_snapshot(const Model& model, const Identifier& identifier,
+IdentifiedRow identify_snapshot(const TrainedModel& model, const Identifier& identifier,
                                 const SnapshotOptions& options, const double* inputs) {
   const std::size_t m = model.targets.size();
   IdentifiedRow row;
@@ -212,7 +213,7 @@ void add_snapshot_options(Arguments& arguments) {
                        "snapshot, window: give values outside of the range trained on, too");
 }
 
-int identify_by_snapshot(const Arguments& arguments, const Model& model,
+int identify_by_snapshot(const Arguments& arguments, const TrainedModel& model,
                          const std::vector<fs::path>& files) {
   const SnapshotOptions options = read_options(arguments, model);
   Snapshots snapshots = read_snapshots(arguments, model, files);

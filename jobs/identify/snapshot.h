@@ -25,7 +25,7 @@ struct SnapshotOptions {
 ///
 /// of the model's interval and of independent noise of the inputs, to first order.
 /// `inputs`: one value for each of the model's.
-IdentifiedRow identify_snapshot(const Model& model, const Identifier& identifier,
+IdentifiedRow identify_snapshot(const TrainedModel& model, const Identifier& identifier,
                                 const SnapshotOptions& options, const double* inputs);
 
 /// --set, --event-time, --noise, --extrapolate
@@ -33,7 +33,7 @@ void add_snapshot_options(Arguments& arguments);
 
 /// Reads the files (or --set), identifies, prints and writes. Returns an exit code. Throws
 /// InputError.
-int identify_by_snapshot(const Arguments& arguments, const Model& model,
+int identify_by_snapshot(const Arguments& arguments, const TrainedModel& model,
                          const std::vector<std::filesystem::path>& files);
 
 }  // namespace strut

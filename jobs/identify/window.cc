@@ -131,7 +131,7 @@ std::vector<double> resample(const Measurement& measurement, const std::string& 
   return samples;
 }
 
-std::vector<OutsideChannel> list_outside(const Model& model, const MeasuredRecord& record,
+std::vector<OutsideChannel> list_outside(const TrainedModel& model, const MeasuredRecord& record,
                                          const WindowReading& reading,
                                          const std::vector<double>& components) {
   const WindowTransform& window = *model.window;
@@ -175,7 +175,7 @@ MeasuredRecord read_record(const WindowTransform& window, const fs::path& file) 
   return record;
 }
 
-IdentifiedRow identify_record(const Model& model, const Identifier& identifier,
+IdentifiedRow identify_record(const TrainedModel& model, const Identifier& identifier,
                               const MeasuredRecord& record, bool extrapolate) {
   std::vector<double> components(model.inputs.size());
   const WindowReading reading =
@@ -196,7 +196,7 @@ IdentifiedRow identify_record(const Model& model, const Identifier& identifier,
   return row;
 }
 
-int identify_by_window(const Arguments& arguments, const Model& model,
+int identify_by_window(const Arguments& arguments, const TrainedModel& model,
                        const std::vector<fs::path>& files) {
   if (files.empty())
     throw arguments.usage_error("MEASURED: missing; name a history with the model's channels");

@@ -28,11 +28,11 @@ MeasuredRecord read_record(const WindowTransform& window, const std::filesystem:
 /// What a record tells. Outside of what the network was trained on are a component beyond its range
 /// by more than the noise, a record that the directions of the training do not span, and one that
 /// agrees with the reference only at its end.
-IdentifiedRow identify_record(const Model& model, const Identifier& identifier,
+IdentifiedRow identify_record(const TrainedModel& model, const Identifier& identifier,
                               const MeasuredRecord& record, bool extrapolate);
 
 /// One row for each of `files`. Returns an exit code.
-int identify_by_window(const Arguments& arguments, const Model& model,
+int identify_by_window(const Arguments& arguments, const TrainedModel& model,
                        const std::vector<std::filesystem::path>& files);
 
 }  // namespace strut

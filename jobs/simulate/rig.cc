@@ -44,12 +44,9 @@ int explain_failure(const Arguments& arguments, const SimulateOptions& options, 
   return kExitNo;
 }
 
-void describe_run(const SimulateOptions& options, const RigSpec& rig, RigKind kind,
-                  RunRecord& run) {
-  RigSpec plain;
-  plain.kind = kind;
-  for (const RigParameter& p : list_rig_settings(kind)) {
-    if (p.is_effect && p.get(rig) == p.get(plain)) continue;
+void describe_run(const SimulateOptions& options, const RigSpec& rig, RunRecord& run) {
+  for (const RigParameter& p : list_rig_parameters(rig.kind)) {
+    if (p.is_effect && p.get(rig) == p.default_value) continue;
     run.parameters.push_back({p.name, p.unit, p.description, p.get(rig)});
   }
   const StepOptions& step = options.integrate.step;
@@ -63,12 +60,12 @@ void describe_run(const SimulateOptions& options, const RigSpec& rig, RigKind ki
 
 }  // namespace
 
-int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind kind) {
+int run_rig(const Arguments& arguments, const SimulateOptions& options) {
   if (options.integrator == kIntegratorCvode) {
     throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
   }
   const RigSpec rig = load_rig(options.source);
-  const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, kind);
+  const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, rig.kind);
   const RunFormat format = check_output(options);
   check_rate(options.rate, maneuver.duration);
   check_step_count(options, maneuver.duration);
@@ -78,7 +75,7 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind 
   plan.snapshot = false;
 
   RunRecord run;
-  run.channels = &list_rig_channels(kind);
+  run.channels = &get_rig_info(rig.kind).channels;
   const auto start = std::chrono::steady_clock::now();
   const ReadOut out(*run.channels, {&rig.effects});
   {
@@ -92,7 +89,7 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind 
   if (run.results.status[0] != 0) {
     return explain_failure(arguments, options, rig, maneuver, plan, run.results.failure_time[0]);
   }
-  describe_run(options, rig, kind, run);
+  describe_run(options, rig, run);
   write_run(options.output, format, run);
   char line[160];
   std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s",

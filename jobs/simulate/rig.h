@@ -8,6 +8,6 @@
 namespace strut {
 
 /// Exit code. Throws InputError, EnvironmentError.
-int run_rig(const Arguments& arguments, const SimulateOptions& options, RigKind kind);
+int run_rig(const Arguments& arguments, const SimulateOptions& options);
 
 }  // namespace strut

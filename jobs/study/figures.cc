@@ -33,7 +33,7 @@ const SeedResult& find_median_seed(const CellResult& cell) {
 
 /// The test cases of a model, and what it identifies from them; by rows.
 struct Identified {
-  Model model;
+  TrainedModel model;
   Rows inputs, reference, predicted;
 };
 
@@ -51,7 +51,7 @@ Rows read_columns(const RowStore& store, std::size_t first, std::size_t count) {
 
 Identified identify(const StudyFolder& folder, const CellResult& cell) {
   Identified identified{load_model(folder.root / find_median_seed(cell).model), {}, {}, {}};
-  const Model& model = identified.model;
+  const TrainedModel& model = identified.model;
   Dataset dataset({folder.sweep(cell.sweep).root});
   const RowStore test = read_test_rows(model, dataset);
   std::int64_t outside = 0;
@@ -162,7 +162,8 @@ Chart make_box_chart(const StudyRequest& request, const CellResult& cell, const 
   return chart;
 }
 
-Chart make_training_chart(const CellResult& cell, const Model& model, const std::string& preload) {
+Chart make_training_chart(const CellResult& cell, const TrainedModel& model,
+                          const std::string& preload) {
   ChartSeries training{"training cases", SeriesKind::kLine, 1};
   ChartSeries validation{"validation cases", SeriesKind::kDashedLine, 2};
   ChartSeries best{"weights kept", SeriesKind::kPoints, 2};

@@ -7,6 +7,7 @@
 #include "base/parallel/team.h"
 #include "estimate/design.h"
 #include "estimate/fit.h"
+#include "estimate/nuisances.h"
 #include "jobs/cli/machine.h"
 #include "jobs/study/noise_limits_file.h"
 #include "jobs/study/noise_records.h"
@@ -75,7 +76,7 @@ FittedCase fit_record(const NoiseStudyRequest& request, const NoiseStudyData& da
   fitted.bounds.number = test.number;
   fitted.chi2_per_degree = fit.chi2_per_degree();
   fitted.converged = fit.converged;
-  runs.front().setup = test.setup;
+  runs.front().setup = Model(test.setup);
   const std::vector<Unknown> at_truth = list_unknowns(request, data, runs);
   const Uncertainty bounds = calc_fit_bounds(runs, at_truth);
   const std::size_t count = data.snapshots.front().sweep.grid.axes().size();

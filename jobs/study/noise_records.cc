@@ -59,7 +59,7 @@ Eigen::VectorXd simulate_readings(const MeasuredRun& run, const std::string& par
   options.rate *= 4.0;
   // Any unknown will do: what is wanted are the residuals of readings that are zero.
   ReadingSimulator simulator({run}, {make_parameter({run}, parameter)}, options);
-  const Linearization at = simulator.linearize({get_parameter(run.setup, parameter)});
+  const Linearization at = simulator.linearize({get_parameter(run.setup.car(), parameter)});
   if (!at.failure.empty()) throw InputError(run.name + ": " + at.failure);
   return at.residual;
 }
@@ -102,7 +102,7 @@ MeasuredRun draw_record(const NoiseStudyRequest& request, const NoiseStudyData& 
   for (double& time : run.times) time -= draw.calc_hit_time();
   const Eigen::VectorXd residuals = simulate_readings(run, list_axes(data.window).front());
   run.times = times;
-  run.setup = make_base_point(data.window.base, data.window.grid, {}, {});
+  run.setup = Model(make_base_point(data.window.base, data.window.grid, {}, {}));
   Eigen::Index next = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     for (MeasuredChannel& c : run.channels) c.values[i] = c.sigma * residuals(next++);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 /// Root mean square errors of a model on its test cases; sets the parameters.
 std::vector<double> evaluate(const fs::path& file, const fs::path& data, NoiseStudy& study) {
-  const Model model = load_model(file);
+  const TrainedModel model = load_model(file);
   study.parameters = model.targets;
   Dataset dataset({data}, {.histories = model.window.has_value()});
   const ModelEvaluation evaluation = evaluate_model(model, dataset, EvaluatedPart::kTest);

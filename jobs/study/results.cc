@@ -21,7 +21,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 SeedResult read_seed(const StudyFolder& folder, const std::string& name, Dataset& dataset,
                      CellResult& cell) {
   const std::filesystem::path file = folder.model(name);
-  const Model model = load_model(file);
+  const TrainedModel model = load_model(file);
   const ModelEvaluation test = evaluate_model(model, dataset, EvaluatedPart::kTest);
   cell.parameters = model.targets;
   SeedResult seed;

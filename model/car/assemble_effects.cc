@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "model/car/car_info.h"
 #include "model/effects/strut_numbers.h"
 
 namespace strut {
 namespace {
 
 constexpr double kAirDensity = 1.2;  // kg/m^3, at 20 degrees Celsius
-constexpr ModelKind kCar = ModelKind::kFullVehicle;
 
 void set_struts(const EffectValues& values, VehicleLayout& layout,
                 VehicleParameters<double>& numbers) {
@@ -97,7 +97,7 @@ void scale_bump(double height, double length, RoadSpec& road) {
 Case apply_case_effects(const Case& c) {
   if (std::none_of(c.vehicle.effects.begin(), c.vehicle.effects.end(), is_of_case)) return c;
   Case changed = c;
-  const EffectValues values{c.vehicle.effects, kCar};
+  const EffectValues values{c.vehicle.effects, get_car_info()};
   for (int axle = 0; axle < kAxles; ++axle) {
     changed.vehicle.suspension[axle].wheel_mass +=
         values.get("unsprung_mass", "mass", kAxleNames[axle]);
@@ -116,7 +116,7 @@ Case apply_case_effects(const Case& c) {
 
 void set_effects(const VehicleSpec& spec, VehicleLayout& layout,
                  VehicleParameters<double>& numbers) {
-  const EffectValues values{spec.effects, kCar};
+  const EffectValues values{spec.effects, get_car_info()};
   set_struts(values, layout, numbers);
   set_tires(values, layout, numbers);
   set_body(spec, values, layout, numbers);

@@ -4,18 +4,15 @@
 namespace strut {
 namespace {
 
-constexpr ModelSet kWithTire = kCars | kQuarterCars;
-
 EffectInfo make_payload() {
-  return {
-      "payload",
-      "load that the model does not know, a point mass on the body",
-      "m_body + m_p at x_p, z_p from the whole car's centroid",
-      "rigid load; the car sinks on its springs",
-      kOnBody,
-      {make_switch("mass", "kg", "m_p: the load", -500.0, 2000.0, 50.0, kEveryModel & ~kStrutRigs),
-       make_shape("x", "m", "x_p: ahead of the centroid", 0.0, -5.0, 5.0, 1.0, kCars),
-       make_shape("z", "m", "z_p: above the centroid", 0.0, -2.0, 3.0, 0.5, kCars)}};
+  return {"payload",
+          "load that the model does not know, a point mass on the body",
+          "m_body + m_p at x_p, z_p from the whole car's centroid",
+          "rigid load; the car sinks on its springs",
+          kOnBody,
+          {make_switch("mass", "kg", "m_p: the load", -500.0, 2000.0, 50.0, kHasSprungMass),
+           make_shape("x", "m", "x_p: ahead of the centroid", 0.0, -5.0, 5.0, 1.0, kHasCar),
+           make_shape("z", "m", "z_p: above the centroid", 0.0, -2.0, 3.0, 0.5, kHasCar)}};
 }
 
 EffectInfo make_center_of_mass_shift() {
@@ -24,14 +21,15 @@ EffectInfo make_center_of_mass_shift() {
           "r_body + (m / m_body) (x, 0, z)",
           "masses and inertia stay; 1 to 10 cm between model and car",
           kOnBody,
-          {make_switch("x", "m", "shift forward", -1.0, 1.0, 0.05, kCars),
-           make_switch("z", "m", "shift upward", -0.5, 0.5, 0.05, kCars)}};
+          {make_switch("x", "m", "shift forward", -1.0, 1.0, 0.05, kHasCar),
+           make_switch("z", "m", "shift upward", -0.5, 0.5, 0.05, kHasCar)}};
 }
 
 EffectInfo make_pitch_inertia() {
-  return {"pitch_inertia", "the whole car's pitch inertia is not what the file says",
-          "I_yy (1 + e)",  "4 to 15 % by estimates from size and mass",
-          kOnBody,         {make_switch("gain", "1", "e: relative error", -0.3, 1.0, 0.1, kCars)}};
+  return {
+      "pitch_inertia", "the whole car's pitch inertia is not what the file says",
+      "I_yy (1 + e)",  "4 to 15 % by estimates from size and mass",
+      kOnBody,         {make_switch("gain", "1", "e: relative error", -0.3, 1.0, 0.1, kHasCar)}};
 }
 
 EffectInfo make_unsprung_mass() {
@@ -41,7 +39,7 @@ EffectInfo make_unsprung_mass() {
       "m_wheel + m_e; quarter_car: m_unsprung + m_e",
       "point mass at the wheel center; 5 to 25 % of the unsprung mass",
       kOnAxle,
-      {make_switch("mass", "kg", "m_e: additional mass of a wheel", -30.0, 300.0, 5.0, kWithTire)}};
+      {make_switch("mass", "kg", "m_e: additional mass of a wheel", -30.0, 300.0, 5.0, kHasTire)}};
 }
 
 EffectInfo make_tire_stiffness() {
@@ -50,17 +48,17 @@ EffectInfo make_tire_stiffness() {
           "k_t (1 + e)",
           "nearly proportional to pressure; 5 to 20 %",
           kOnAxle,
-          {make_switch("gain", "1", "e: relative error", -0.7, 3.0, 0.1, kWithTire)}};
+          {make_switch("gain", "1", "e: relative error", -0.7, 3.0, 0.1, kHasTire)}};
 }
 
 EffectInfo make_tire_progressive() {
-  return {"tire_progressive",
-          "the tire's vertical stiffness grows with its deflection",
-          "F = k_t (x + q x abs(x)), rate k_t (1 + 2 q abs(x))",
-          "quadratic term of PAC2002's load (QFZ2); +10 to +30 % stiffness at bump loads",
-          kOnAxle,
-          {make_switch("progression", "1/m", "q: growth of the stiffness", 0.0, 200.0, 4.0,
-                       kWithTire)}};
+  return {
+      "tire_progressive",
+      "the tire's vertical stiffness grows with its deflection",
+      "F = k_t (x + q x abs(x)), rate k_t (1 + 2 q abs(x))",
+      "quadratic term of PAC2002's load (QFZ2); +10 to +30 % stiffness at bump loads",
+      kOnAxle,
+      {make_switch("progression", "1/m", "q: growth of the stiffness", 0.0, 200.0, 4.0, kHasTire)}};
 }
 
 EffectInfo make_tire_damping() {
@@ -70,7 +68,7 @@ EffectInfo make_tire_damping() {
           "50 to 2000 N s/m in the literature",
           kOnAxle,
           {make_switch("rate", "N s/m", "c_e: additional damping of a tire", -5000.0, 50000.0,
-                       200.0, kWithTire)}};
+                       200.0, kHasTire)}};
 }
 
 EffectInfo make_tire_enveloping() {
@@ -80,7 +78,7 @@ EffectInfo make_tire_enveloping() {
       "footprint + l",
       "averaging over the patch, docs/design/0003-road-contact.md; patches of 0.08 to 0.15 m",
       kOnRoad,
-      {make_switch("length", "m", "l: additional length averaged over", -0.5, 0.8, 0.04, kCars)}};
+      {make_switch("length", "m", "l: additional length averaged over", -0.5, 0.8, 0.04, kHasCar)}};
 }
 
 EffectInfo make_wheel_runout() {
@@ -89,14 +87,14 @@ EffectInfo make_wheel_runout() {
           "x + a cos(theta + phi), theta: angle of the wheel since the start",
           "first harmonic of radial run-out; 0.3 to 0.5 mm for 80 N of radial force variation",
           kOnAxle | kOnCorner,
-          {make_switch("amplitude", "m", "a: amplitude of the radius", 0.0, 0.02, 4e-4, kCars),
-           make_shape("phase", "rad", "phi: phase at the start", 0.0, -6.4, 6.4, 1.0, kCars)}};
+          {make_switch("amplitude", "m", "a: amplitude of the radius", 0.0, 0.02, 4e-4, kHasCar),
+           make_shape("phase", "rad", "phi: phase at the start", 0.0, -6.4, 6.4, 1.0, kHasCar)}};
 }
 
 EffectInfo make_bump_height() {
   return {"bump_height", "the bump is higher than surveyed",
           "h (1 + e)",   "2 to 8 % as built",
-          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kCars)}};
+          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kHasCar)}};
 }
 
 EffectInfo make_bump_length() {
@@ -105,13 +103,13 @@ EffectInfo make_bump_length() {
           "L (1 + e), flanks as well",
           "2 to 8 % as built",
           kOnRoad,
-          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kCars)}};
+          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kHasCar)}};
 }
 
 EffectInfo make_speed_error() {
   return {"speed_error", "the car drives faster than the speedometer says",
           "v (1 + e)",   "wheel speed and effective radius; 0.2 to 2 %",
-          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.5, 1.0, 0.01, kCars)}};
+          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.5, 1.0, 0.01, kHasCar)}};
 }
 
 EffectInfo make_road_gain() {
@@ -120,7 +118,7 @@ EffectInfo make_road_gain() {
           "z_road (1 + e)",
           "gain of the stand's displacement sensor",
           kOnRoad,
-          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.02, kQuarterCars)}};
+          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.02, kHasGroundInput)}};
 }
 
 EffectInfo make_aerodynamic_lift() {
@@ -131,7 +129,7 @@ EffectInfo make_aerodynamic_lift() {
       "A_l: lift coefficient times frontal area, -0.1 to 0.3 m^2 an axle; Hucho, Aerodynamics of "
       "Road Vehicles",
       kOnAxle,
-      {make_switch("area", "m^2", "A_l: lift area of the axle", -5.0, 5.0, 0.1, kCars)}};
+      {make_switch("area", "m^2", "A_l: lift area of the axle", -5.0, 5.0, 0.1, kHasCar)}};
 }
 
 }  // namespace

@@ -33,28 +33,38 @@ auto find_setting(Settings& settings, const std::string& effect, const std::stri
 }
 
 std::vector<double> get_values(const EffectSettings& settings, const EffectInfo& effect,
-                               ModelKind kind, const std::string& place) {
+                               const ModelInfo& model, const std::string& place) {
   auto found = find_setting(settings, effect.name, place);
   if (found != settings.end()) return found->values;
   const std::string axle = find_axle_of(place);
-  if (!axle.empty()) return get_values(settings, effect, kind, axle);
-  return make_neutral_setting(effect, place, kind).values;
+  if (!axle.empty()) return get_values(settings, effect, model, axle);
+  return make_neutral_setting(effect, place, model).values;
 }
 
 /// Replaces the setting at a place, or drops it where it says what would hold without it.
-void put_values(EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
+void put_values(EffectSettings& settings, const EffectInfo& effect, const ModelInfo& model,
                 const std::string& place, const std::vector<double>& values) {
   const auto found = find_setting(settings, effect.name, place);
   const auto at = found - settings.begin();
   EffectSettings others = settings;
   if (found != settings.end()) others.erase(others.begin() + at);
-  if (get_values(others, effect, kind, place) == values) {
+  if (get_values(others, effect, model, place) == values) {
     settings = std::move(others);
   } else if (found != settings.end()) {
     found->values = values;
   } else {
     settings.push_back({effect.name, place, values});
   }
+}
+
+/// The channels that a sensor may read.
+std::vector<std::string> list_sensor_channels(const ModelInfo& model) {
+  std::vector<std::string> names;
+  names.reserve(model.channels.size());
+  for (const ChannelInfo& channel : model.channels) {
+    if (channel.name != "time") names.push_back(channel.name);
+  }
+  return names;
 }
 
 std::string join(const std::vector<std::string>& names) {
@@ -83,35 +93,20 @@ void check_values(const EffectSetting& setting,
   }
 }
 
-void check_setting(const EffectSetting& setting, ModelKind kind) {
+void check_setting(const EffectSetting& setting, const ModelInfo& model) {
   const EffectInfo* effect = find_effect(setting.effect);
   if (effect == nullptr) throw ModelError("effect " + setting.effect + ": there is none");
-  const std::vector<std::string> places = list_effect_places(*effect, kind);
+  const std::vector<std::string> places = list_effect_places(*effect, model);
   if (places.empty()) {
-    throw ModelError("effect " + setting.effect + ": a " + get_model_kind_name(kind) +
-                     " does not have it");
+    throw ModelError("effect " + setting.effect + ": a " + model.name + " does not have it");
   }
   if (std::find(places.begin(), places.end(), setting.place) == places.end()) {
     throw ModelError(describe(setting) + ": place must be one of " + join(places));
   }
-  check_values(setting, list_effect_parameters(*effect, kind));
+  check_values(setting, list_effect_parameters(*effect, model));
 }
 
 }  // namespace
-
-const std::vector<ModelKind>& list_model_kinds() {
-  static const std::vector<ModelKind> kinds = {ModelKind::kFullVehicle, ModelKind::kQuarterCar,
-                                               ModelKind::kStrutRig, ModelKind::kSingleMass};
-  return kinds;
-}
-
-const std::string& get_model_kind_name(ModelKind kind) {
-  static const std::array<std::string, 4> names = {"full_vehicle", "quarter_car", "strut_rig",
-                                                   "single_mass"};
-  std::size_t i = 0;
-  while (list_model_kinds()[i] != kind) ++i;
-  return names[i];
-}
 
 const std::vector<EffectInfo>& list_effects() {
   static const std::vector<EffectInfo> effects = make_effects();
@@ -126,25 +121,25 @@ const EffectInfo* find_effect(std::string_view name) {
 }
 
 std::vector<const EffectParameter*> list_effect_parameters(const EffectInfo& effect,
-                                                           ModelKind kind) {
+                                                           const ModelInfo& model) {
   std::vector<const EffectParameter*> list;
   list.reserve(effect.parameters.size());
   for (const EffectParameter& p : effect.parameters) {
-    if (contains(p.models, kind)) list.push_back(&p);
+    if (p.exists_in(model)) list.push_back(&p);
   }
   return list;
 }
 
 std::string make_effect_parameter_name(const EffectInfo& effect, const std::string& place,
-                                       const EffectParameter& parameter, ModelKind kind) {
-  const bool only_one = list_effect_parameters(effect, kind).size() == 1;
+                                       const EffectParameter& parameter, const ModelInfo& model) {
+  const bool only_one = list_effect_parameters(effect, model).size() == 1;
   return (place.empty() ? "" : place + "_") + effect.name + (only_one ? "" : "_" + parameter.name);
 }
 
-std::vector<std::string> list_effect_places(const EffectInfo& effect, ModelKind kind) {
-  if (list_effect_parameters(effect, kind).empty()) return {};
-  if ((effect.places & kOnChannel) != 0) return list_sensor_channels(kind);
-  if (kind != ModelKind::kFullVehicle) return {""};
+std::vector<std::string> list_effect_places(const EffectInfo& effect, const ModelInfo& model) {
+  if (list_effect_parameters(effect, model).empty()) return {};
+  if ((effect.places & kOnChannel) != 0) return list_sensor_channels(model);
+  if (!model.has(kHasCar)) return {""};
   std::vector<std::string> places;
   if ((effect.places & kOnAxle) != 0) {
     places.insert(places.end(), kAxleNames.begin(), kAxleNames.end());
@@ -158,25 +153,25 @@ std::vector<std::string> list_effect_places(const EffectInfo& effect, ModelKind 
 }
 
 EffectSetting make_neutral_setting(const EffectInfo& effect, const std::string& place,
-                                   ModelKind kind) {
+                                   const ModelInfo& model) {
   EffectSetting setting{effect.name, place, {}};
-  for (const EffectParameter* p : list_effect_parameters(effect, kind)) {
+  for (const EffectParameter* p : list_effect_parameters(effect, model)) {
     setting.values.push_back(p->neutral);
   }
   return setting;
 }
 
-bool is_neutral(const EffectSetting& setting, ModelKind kind) {
-  const auto parameters = list_effect_parameters(*find_effect(setting.effect), kind);
+bool is_neutral(const EffectSetting& setting, const ModelInfo& model) {
+  const auto parameters = list_effect_parameters(*find_effect(setting.effect), model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i]->switches && setting.values[i] != parameters[i]->neutral) return false;
   }
   return true;
 }
 
-void validate(const EffectSettings& settings, ModelKind kind) {
+void validate(const EffectSettings& settings, const ModelInfo& model) {
   for (const EffectSetting& setting : settings) {
-    check_setting(setting, kind);
+    check_setting(setting, model);
     const auto same = [&](const EffectSetting& other) {
       return other.effect == setting.effect && other.place == setting.place;
     };
@@ -186,26 +181,26 @@ void validate(const EffectSettings& settings, ModelKind kind) {
   }
 }
 
-double get_effect_value(const EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
-                        const std::string& place, std::size_t parameter) {
+double get_effect_value(const EffectSettings& settings, const EffectInfo& effect,
+                        const ModelInfo& model, const std::string& place, std::size_t parameter) {
   // An axle reads as the mean of its two corners.
   std::vector<double> found;
   for (const char* corner : kCornerNames) {
     if (find_axle_of(corner) != place) continue;
     if (find_setting(settings, effect.name, corner) == settings.end()) continue;
-    found.push_back(get_values(settings, effect, kind, corner).at(parameter));
+    found.push_back(get_values(settings, effect, model, corner).at(parameter));
   }
-  const double own = get_values(settings, effect, kind, place).at(parameter);
+  const double own = get_values(settings, effect, model, place).at(parameter);
   if (found.empty()) return own;
   return 0.5 * (found.front() + (found.size() > 1 ? found.back() : own));
 }
 
-void set_effect_value(EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
+void set_effect_value(EffectSettings& settings, const EffectInfo& effect, const ModelInfo& model,
                       const std::string& place, std::size_t parameter, double value) {
   const auto put = [&](const std::string& where) {
-    std::vector<double> values = get_values(settings, effect, kind, where);
+    std::vector<double> values = get_values(settings, effect, model, where);
     values.at(parameter) = value;
-    put_values(settings, effect, kind, where, values);
+    put_values(settings, effect, model, where, values);
   };
   // Corners with settings of their own first: once the axle says the same they are dropped.
   std::vector<std::string> corners;

@@ -11,23 +11,9 @@
 #include <vector>
 
 #include "model/effects/setting.h"
+#include "model/info/model_info.h"
 
 namespace strut {
-
-/// What a model file describes; bits of a ModelSet.
-enum class ModelKind : unsigned {
-  kFullVehicle = 1,
-  kQuarterCar = 2,
-  kStrutRig = 4,
-  kSingleMass = 8,
-};
-using ModelSet = unsigned;
-constexpr bool contains(ModelSet set, ModelKind kind) {
-  return (set & static_cast<unsigned>(kind)) != 0;
-}
-/// All kinds, in the order of their bits, and their names as in a file's `type`.
-const std::vector<ModelKind>& list_model_kinds();
-const std::string& get_model_kind_name(ModelKind kind);
 
 /// Where in a car an effect may act; bits of a set. On a rig there is one place of each kind.
 enum EffectPlaces : unsigned {
@@ -44,7 +30,10 @@ struct EffectParameter {
   bool switches;     // the effect vanishes where all that switch are neutral; else a mere shape
   double low, high;  // the plausible range; a value outside of it is an input error
   double typical;    // an ordinary size in a car, where a search begins to look
-  ModelSet models;   // in which it exists
+  unsigned needs = 0, without = 0;  // ModelPart: which the model has all of, and none of
+  bool exists_in(const ModelInfo& model) const {
+    return (model.parts & needs) == needs && (model.parts & without) == 0;
+  }
 };
 
 struct EffectInfo {
@@ -61,38 +50,36 @@ const EffectInfo* find_effect(std::string_view name);
 
 /// The parameters that exist in this kind of model, in order; none where the effect does not.
 std::vector<const EffectParameter*> list_effect_parameters(const EffectInfo& effect,
-                                                           ModelKind kind);
+                                                           const ModelInfo& model);
 
 /// The names of the places where it may act: {""} on a rig; none where the effect does not exist.
-std::vector<std::string> list_effect_places(const EffectInfo& effect, ModelKind kind);
+std::vector<std::string> list_effect_places(const EffectInfo& effect, const ModelInfo& model);
 
 /// `<place>_<effect>` where the effect has one parameter in this kind of model, else
 /// `<place>_<effect>_<parameter>`; without the place on a rig.
 std::string make_effect_parameter_name(const EffectInfo& effect, const std::string& place,
-                                       const EffectParameter& parameter, ModelKind kind);
+                                       const EffectParameter& parameter, const ModelInfo& model);
 
 /// A setting whose every parameter is neutral.
 EffectSetting make_neutral_setting(const EffectInfo& effect, const std::string& place,
-                                   ModelKind kind);
+                                   const ModelInfo& model);
 
 /// Whether the setting leaves the model as it is, bit for bit.
-bool is_neutral(const EffectSetting& setting, ModelKind kind);
+bool is_neutral(const EffectSetting& setting, const ModelInfo& model);
 
 /// Throws ModelError that says what is allowed: unknown effects and places, a setting that is there
 /// twice, a wrong number of values, values out of range.
-void validate(const EffectSettings& settings, ModelKind kind);
+void validate(const EffectSettings& settings, const ModelInfo& model);
 
 /// The value of a parameter at a place; at a corner that has no setting of its own the axle's;
 /// neutral where there is none. `parameter` counts list_effect_parameters.
-double get_effect_value(const EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
-                        const std::string& place, std::size_t parameter = 0);
+double get_effect_value(const EffectSettings& settings, const EffectInfo& effect,
+                        const ModelInfo& model, const std::string& place,
+                        std::size_t parameter = 0);
 
 /// Sets it; at an axle for both its corners. What then is as if absent is dropped, so that equal
 /// models compare equal.
-void set_effect_value(EffectSettings& settings, const EffectInfo& effect, ModelKind kind,
+void set_effect_value(EffectSettings& settings, const EffectInfo& effect, const ModelInfo& model,
                       const std::string& place, std::size_t parameter, double value);
-
-/// The catalogue as a document in Markdown: docs/effects.md.
-std::string write_effects_document();
 
 }  // namespace strut

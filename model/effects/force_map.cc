@@ -44,8 +44,8 @@ void check_coefficients(const ForceMap& map) {
   }
 }
 
-void check_map(const ForceMap& map, ModelKind kind) {
-  const std::vector<std::string>& places = list_force_map_places(kind);
+void check_map(const ForceMap& map, const ModelInfo& model) {
+  const std::vector<std::string>& places = list_force_map_places(model);
   if (std::find(places.begin(), places.end(), map.place) == places.end()) {
     std::string names;
     for (const std::string& place : places) names += (names.empty() ? "" : ", ") + place;
@@ -65,19 +65,19 @@ SplineAxis<double> make_axis(double low, double high, int count) {
 
 }  // namespace
 
-const std::vector<std::string>& list_force_map_places(ModelKind kind) {
+const std::vector<std::string>& list_force_map_places(const ModelInfo& model) {
   static const std::vector<std::string> of_rig = {""};
   static const std::vector<std::string> of_car = [] {
     std::vector<std::string> places(kAxleNames.begin(), kAxleNames.end());
     places.insert(places.end(), kCornerNames.begin(), kCornerNames.end());
     return places;
   }();
-  return kind == ModelKind::kFullVehicle ? of_car : of_rig;
+  return model.has(kHasCar) ? of_car : of_rig;
 }
 
-void validate(const ForceMaps& maps, ModelKind kind) {
+void validate(const ForceMaps& maps, const ModelInfo& model) {
   for (const ForceMap& map : maps) {
-    check_map(map, kind);
+    check_map(map, model);
     const auto same = [&](const ForceMap& other) { return other.place == map.place; };
     if (std::count_if(maps.begin(), maps.end(), same) > 1) {
       throw refuse(map, "is there twice; allowed: once");

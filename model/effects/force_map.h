@@ -34,11 +34,11 @@ inline constexpr int kFewestSplines = 4, kMostSplines = 64;
 inline constexpr double kLargestMapForce = 1e6;
 
 /// The names of the places where a map may act: axles and corners of a car, {""} on a rig.
-const std::vector<std::string>& list_force_map_places(ModelKind kind);
+const std::vector<std::string>& list_force_map_places(const ModelInfo& model);
 
 /// Throws ModelError that says what is allowed: unknown places, two maps at one, empty ranges,
 /// wrong counts, a wrong number of coefficients, those that are too large or not finite.
-void validate(const ForceMaps& maps, ModelKind kind);
+void validate(const ForceMaps& maps, const ModelInfo& model);
 
 /// The map that acts at a corner or on a rig; null where there is none.
 const ForceMap* find_force_map(const ForceMaps& maps, const std::string& place);

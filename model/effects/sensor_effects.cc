@@ -1,6 +1,4 @@
 // Effects of sensors: what a reading differs by from the channel itself.
-#include "model/channel/car_channels.h"
-#include "model/channel/rig_channels.h"
 #include "model/effects/tables.h"
 
 namespace strut {
@@ -43,9 +41,9 @@ EffectInfo make_sensor_position() {
           "a + dw/dt x s + w x (w x s), s: the shift",
           "rigid body kinematics; 3 to 30 cm, or in the frame of another drawing",
           kOnBody,
-          {make_switch("x", "m", "forward", -3.0, 3.0, 0.05, kCars),
-           make_switch("y", "m", "left", -3.0, 3.0, 0.05, kCars),
-           make_switch("z", "m", "upward", -3.0, 3.0, 0.05, kCars)}};
+          {make_switch("x", "m", "forward", -3.0, 3.0, 0.05, kHasCar),
+           make_switch("y", "m", "left", -3.0, 3.0, 0.05, kHasCar),
+           make_switch("z", "m", "upward", -3.0, 3.0, 0.05, kHasCar)}};
 }
 
 }  // namespace
@@ -53,21 +51,6 @@ EffectInfo make_sensor_position() {
 std::vector<EffectInfo> make_sensor_effects() {
   return {make_sensor_gain(), make_sensor_bias(), make_sensor_delay(), make_sensor_lowpass(),
           make_sensor_position()};
-}
-
-std::vector<std::string> list_sensor_channels(ModelKind kind) {
-  const auto rig = [](RigKind of) { return &list_rig_channels(of); };
-  const std::vector<ChannelInfo>* channels =
-      kind == ModelKind::kFullVehicle  ? &list_car_channels()
-      : kind == ModelKind::kQuarterCar ? rig(RigKind::kQuarterCar)
-      : kind == ModelKind::kStrutRig   ? rig(RigKind::kStrutRig)
-                                       : rig(RigKind::kSingleMass);
-  std::vector<std::string> names;
-  names.reserve(channels->size());
-  for (const ChannelInfo& channel : *channels) {
-    if (channel.name != "time") names.push_back(channel.name);
-  }
-  return names;
 }
 
 }  // namespace strut

@@ -60,8 +60,8 @@ EffectInfo make_damper_fade() {
       {make_switch("loss", "1", "l: share of the rate lost; < 0: gained, cold oil", -2.0, 0.95,
                    0.1),
        make_switch("rate", "1/K", "b: relative loss of rate per kelvin", -0.1, 0.1, 5e-3)}};
-  fade.parameters[0].models = kEveryModel & ~kStrutRigs;
-  fade.parameters[1].models = kStrutRigs;
+  fade.parameters[0].without = kHasDamperTemperature;
+  fade.parameters[1].needs = kHasDamperTemperature;
   return fade;
 }
 
@@ -134,7 +134,7 @@ EffectInfo make_gas_force() {
       "150 to 300 N a corner in monotube dampers; Dixon",
       kOnStrut,
       {make_switch("force", "N", "F_g: force of the gas at rest", -5000.0, 5000.0, 200.0)}};
-  gas.parameters[0].models = kCars | kStrutRigs;
+  gas.parameters[0].needs = kHasStaticForce;
   return gas;
 }
 
@@ -148,7 +148,7 @@ EffectInfo make_anti_roll_bar() {
       kOnAxle,
       {make_switch("stiffness", "N/m", "k_r: force on each spring's line by their difference", 0.0,
                    1e6, 1e4)}};
-  bar.parameters[0].models = kCars;
+  bar.parameters[0].needs = kHasCar;
   return bar;
 }
 

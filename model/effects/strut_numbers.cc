@@ -8,9 +8,9 @@ double EffectValues::get(const char* effect, const char* parameter,
                          const std::string& place) const {
   const EffectInfo* info = find_effect(effect);
   STRUT_CHECK(info != nullptr, std::string(effect) + ": no such effect");
-  const auto here = list_effect_parameters(*info, kind);
+  const auto here = list_effect_parameters(*info, model);
   for (std::size_t i = 0; i < here.size(); ++i) {
-    if (here[i]->name == parameter) return get_effect_value(settings, *info, kind, place, i);
+    if (here[i]->name == parameter) return get_effect_value(settings, *info, model, place, i);
   }
   for (const EffectParameter& p : info->parameters) {
     if (p.name == parameter) return p.neutral;

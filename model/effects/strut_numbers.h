@@ -9,7 +9,7 @@ namespace strut {
 /// Reads values of settings by name.
 struct EffectValues {
   const EffectSettings& settings;
-  ModelKind kind;
+  const ModelInfo& model;
 
   /// The value at a place, neutral where there is no such setting or this kind of model does not
   /// have the parameter.

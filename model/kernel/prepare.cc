@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "model/car/assemble_effects.h"
+#include "model/car/car_info.h"
 #include "model/kernel/mechanism.h"
 #include "model/kernel/simulation.h"
 #include "model/sensor/sensors.h"
@@ -70,8 +71,8 @@ bool shares_mechanism(const Case& a, const Case& b) {
 }
 
 PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
-  validate(given.vehicle.effects, ModelKind::kFullVehicle);
-  validate(given.vehicle.force_maps, ModelKind::kFullVehicle);
+  validate(given.vehicle.effects, get_car_info());
+  validate(given.vehicle.force_maps, get_car_info());
   const Case c = apply_case_effects(given);
   const Case key = strip_to_mechanism(c);
   if (!mechanism_ || !(mechanism_->vehicle == key.vehicle) ||

@@ -1,6 +1,6 @@
-// A rig as a system that simulate.h can run; its equations stand at the head of vehicle/rigs.h.
+// A rig as a system that simulate.h can run; its equations stand at the head of rigs.h.
 //
-// State: positions, then velocities, of quarter_car by RigCoordinate, of single_mass the mass's;
+// State: positions, then velocities, of two masses by RigCoordinate, of a rig of one mass its own;
 // strut_rig has none, its inputs say everything. Behind them, where effects give the strut states,
 // its lagged force, its mount's and its joint's displacement.
 //
@@ -16,17 +16,17 @@
 namespace strut {
 
 /// Number of moving masses.
-constexpr int count_coordinates(RigKind kind) {
-  return kind == RigKind::kQuarterCar ? 2 : kind == RigKind::kSingleMass ? 1 : 0;
+inline int count_coordinates(RigKind kind) {
+  return static_cast<int>(get_rig_info(kind).masses.size());
 }
 
 /// Everything the equations find on their way.
 template <class T>
 struct RigWorkspace {
-  std::array<SignalPoint<T>, kMaxRigInputs> input;  // in the order of list_rig_inputs
+  std::array<SignalPoint<T>, kMaxRigInputs> input;  // in the order of the rig's inputs
   std::array<CornerMotion<T>, 1> motion;            // only its lines' length and length_q
   std::array<StrutForce<T>, 1> strut;
-  T unclamped_load, tire_force;                 // N
+  T unclamped_load, tire_force, guide_force;    // N
   std::array<T, kRigCoordinates> acceleration;  // m/s^2
   std::array<T, kStatesPerStrut> strut_decay;   // 1/s
 };
@@ -42,20 +42,23 @@ class RigSystem {
 
   /// `inputs` from assign_rig_inputs. Rig and signals must outlive the system.
   RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs)
-      : rig_(rig), inputs_(inputs), count_(count_coordinates(rig.layout.kind)) {}
+      : rig_(rig),
+        inputs_(inputs),
+        count_(count_coordinates(rig.layout.kind)),
+        on_ground_(get_rig_info(rig.layout.kind).has(kHasGroundInput)) {}
 
   int size() const { return 2 * count_ + stiff_count(); }
   int stiff_at(int i) const { return 2 * count_ + i; }
   int stiff_count() const { return rig_.effects.has_states() ? kStatesPerStrut : 0; }
 
-  /// At rest on the road's first position, plus the rig's own initial offsets; a strut with states
-  /// as if it had moved for long as it moves at the start.
+  /// At rest on the ground's first position, plus the rig's own initial offsets; a strut with
+  /// states as if it had moved for long as it moves at the start.
   std::array<T, kCapacity> make_start() {
     std::array<T, kCapacity> x;
     x.fill(T(0.0));
-    const bool on_road = rig_.layout.kind == RigKind::kQuarterCar && inputs_[0];
+    const bool moves = on_ground_ && inputs_[0];
     const T ground =
-        on_road ? rig_.numbers.road_gain * calc_signal(*inputs_[0], T(0.0)).value : T(0.0);
+        moves ? rig_.numbers.ground_gain * calc_signal(*inputs_[0], T(0.0)).value : T(0.0);
     for (int i = 0; i < count_; ++i) {
       x[at(i)] = ground + rig_.numbers.initial_position[at(i)];
       x[at(count_ + i)] = rig_.numbers.initial_velocity[at(i)];
@@ -80,9 +83,12 @@ class RigSystem {
         break;
       case RigKind::kSingleMass:
         update_strut(x[0], x[1]);
-        ws_.acceleration[0] =
-            (ws_.input[0].value + ws_.strut[0].generalized) * (T(1.0) / rig_.numbers.mass[0]) -
-            rig_.numbers.gravity;
+        accelerate_one_mass(ws_.input[0].value);
+        break;
+      case RigKind::kGuidedMass:
+        update_strut(x[0] - ws_.input[0].value, x[1] - ws_.input[0].rate);
+        ws_.guide_force = calc_guide_force(x[1]);
+        accelerate_one_mass(ws_.input[1].value + ws_.guide_force);
         break;
     }
     for (int i = 0; i < count_; ++i) {
@@ -117,6 +123,8 @@ class RigSystem {
         return observe_strut_rig(t, out);
       case RigKind::kSingleMass:
         return observe_single_mass(t, x, out);
+      case RigKind::kGuidedMass:
+        return observe_guided_mass(t, x, out);
     }
   }
 
@@ -125,12 +133,12 @@ class RigSystem {
  private:
   static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  /// The road is by a gain higher than its recording; other inputs are as recorded.
+  /// The ground moves by a gain more than its recording; other inputs are as recorded.
   void update_first_input(const T& t) {
     SignalPoint<T>& input = ws_.input[0];
     input = calc_signal(*inputs_[0], t);
-    if (rig_.layout.kind != RigKind::kQuarterCar) return;
-    const T& gain = rig_.numbers.road_gain;
+    if (!on_ground_) return;
+    const T& gain = rig_.numbers.ground_gain;
     input = {gain * input.value, gain * input.rate, gain * input.second_rate};
   }
   void update_inputs(const T& t) {
@@ -143,13 +151,25 @@ class RigSystem {
 
   void settle_strut(T* x) {
     update_inputs(T(0.0));
-    const bool on_stand = rig_.layout.kind == RigKind::kStrutRig;
-    const T speed = on_stand      ? ws_.input[0].rate
-                    : count_ == 1 ? -x[1]
-                                  : x[2 + kUnsprung] - x[2 + kSprung];
+    const T speed = calc_start_speed(x);
     const StrutEffectNumbers<T>& numbers = rig_.numbers.effects;
     x[2 * count_] = x[2 * count_ + 1] = numbers.law.calc_rate(speed, calc_warming()) * speed;
     x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
+  }
+
+  /// Of the strut, positive in compression.
+  T calc_start_speed(const T* x) const {
+    switch (rig_.layout.kind) {
+      case RigKind::kQuarterCar:
+        return x[2 + kUnsprung] - x[2 + kSprung];
+      case RigKind::kStrutRig:
+        return ws_.input[0].rate;
+      case RigKind::kSingleMass:
+        return -x[1];
+      case RigKind::kGuidedMass:
+        break;
+    }
+    return ws_.input[0].rate - x[1];
   }
 
   T calc_warming() const {
@@ -187,6 +207,18 @@ class RigSystem {
     ws_.acceleration[kUnsprung] =
         (ws_.tire_force - between) * (T(1.0) / p.mass[kUnsprung]) - p.gravity;
     ws_.acceleration[kSprung] = between * (T(1.0) / p.mass[kSprung]) - p.gravity;
+  }
+
+  /// `applied`: all but the strut's force and the weight.
+  void accelerate_one_mass(const T& applied) {
+    ws_.acceleration[0] = (applied + ws_.strut[0].generalized) * (T(1.0) / rig_.numbers.mass[0]) -
+                          rig_.numbers.gravity;
+  }
+
+  T calc_guide_force(const T& velocity) const {
+    LineState<T> line{};
+    line.rate = velocity;
+    return rig_.numbers.guide.calc_force(line);
   }
 
   void observe_quarter_car(const T& t, const T* x, T* out) const {
@@ -228,16 +260,32 @@ class RigSystem {
     out[C::kDamperForce] = ws_.strut[0].damper_force;
   }
 
+  void observe_guided_mass(const T& t, const T* x, T* out) const {
+    using C = GuidedMassChannel;
+    out[C::kTime] = t;
+    out[C::kBasePosition] = ws_.input[0].value;
+    out[C::kPosition] = x[0];
+    out[C::kBaseVelocity] = ws_.input[0].rate;
+    out[C::kVelocity] = x[1];
+    out[C::kBaseAcceleration] = ws_.input[0].second_rate;
+    out[C::kAcceleration] = ws_.acceleration[0];
+    out[C::kForce] = ws_.input[1].value;
+    out[C::kSpringForce] = ws_.strut[0].spring_force;
+    out[C::kDamperForce] = ws_.strut[0].damper_force;
+    out[C::kGuideForce] = ws_.guide_force;
+  }
+
   const Rig<T>& rig_;
   std::array<const InputSignal*, kMaxRigInputs> inputs_;
   int count_;
+  bool on_ground_;
   RigWorkspace<T> ws_{};
   StrutStates<T> states_;
   Mask failed_{};
 };
 
 /// Simulates kLaneCount<T> rigs of one kind under the same inputs for `plan.duration` [s]; the
-/// history holds list_rig_channels every `plan.interval` [s]. Throws ModelError as make_rig and
+/// history holds the rig's channels every `plan.interval` [s]. Throws ModelError as make_rig and
 /// assign_rig_inputs do.
 template <class T>
 LaneResults simulate_rigs(const RigSpec* const specs[], const std::vector<InputSignal>& inputs,
@@ -245,7 +293,7 @@ LaneResults simulate_rigs(const RigSpec* const specs[], const std::vector<InputS
   const Rig<T> rig = make_rig<T>(specs);
   RigSystem<T> system(rig, assign_rig_inputs(rig.layout.kind, inputs));
   plan.snapshot = false;
-  plan.channel_count = static_cast<int>(list_rig_channels(rig.layout.kind).size());
+  plan.channel_count = static_cast<int>(get_rig_info(rig.layout.kind).channels.size());
   return Simulation<T, RigSystem<T>>(system, options, plan).run(system.make_start());
 }
 

@@ -1,7 +1,8 @@
-// Test stands from the car's force elements: quarter car, strut on a dynamometer, single mass.
+// Test stands from the car's force elements: quarter car, strut on a dynamometer, single mass,
+// guided mass on a moving base.
 //
 // Positions are displacements from the rest position, up positive: the static equilibrium under
-// gravity at road position zero (masses), the point at which the spring is relaxed (strut_rig,
+// gravity at ground position zero (masses), the point at which the spring is relaxed (strut_rig,
 // whose displacement is positive in compression). Forces are total, the static load included. Force
 // of strut and actuator is positive where it pushes its two ends apart. So with gravity = 0, and
 // for every rig whose tire cannot lift off, motion is that of the deviations from rest.
@@ -9,80 +10,25 @@
 //   quarter_car  m_u a_u = F_t - F_s - F_a - m_u g,   m_s a_s = F_s + F_a - m_s g
 //   single_mass  m a = F + F_s - m g
 //   strut_rig    F = F_s at the given displacement and its rate
+//   guided_mass  m a = F + F_s + F_g - m g,   F_g = -f tanh(v / v_f)
 //
-// F_s: sum of the strut's elements, F_t: tire, F_a: actuator force, F: applied force.
+// F_s: sum of the strut's elements, F_t: tire, F_a: actuator force, F: applied force, F_g: friction
+// of the guide (f: guide_friction, v_f: guide_speed), on the mass and against its velocity. The
+// guided mass's strut stands on the base, whose position is an input.
 #pragma once
 
 #include <array>
-#include <optional>
-#include <string>
 #include <vector>
 
-#include "model/channel/rig_channels.h"
-#include "model/effects/force_map.h"
 #include "model/force/strut_effects.h"
 #include "model/force/tire_contact.h"
-#include "model/scenario/input_signal.h"
+#include "model/rig/rig_info.h"
 
 namespace strut {
 
-/// Names of the kinds in RigKind order: the `type` of a rig's file.
-const std::vector<std::string>& list_rig_kinds();
-
-inline constexpr int kRigCoordinates = 2;
-/// Coordinates; single_mass has only the first.
-enum RigCoordinate : int { kUnsprung = 0, kSprung = 1 };
-
-struct RigSpec {
-  RigKind kind = RigKind::kQuarterCar;
-  std::string name;
-  double sprung_mass = 0.0;      // kg; single_mass: the mass
-  double unsprung_mass = 0.0;    // kg
-  double stiffness = 0.0;        // N/m, strut; single_mass: 0 for none
-  double damping = 0.0;          // N s/m, strut
-  double tire_stiffness = 0.0;   // N/m
-  double tire_damping = 0.0;     // N s/m
-  double gravity = 0.0;          // m/s^2, along the guide
-  double temperature = 293.15;   // K, where no input gives it
-  bool unilateral_tire = false;  // true: the car's tire law, which lifts off
-  /// Start, as an offset from rest on the road's first position [m], [m/s]; by RigCoordinate.
-  std::array<double, kRigCoordinates> initial_position{}, initial_velocity{};
-  EffectSettings effects;
-  ForceMaps force_maps;  // at most one; what it gives at rest the spring need not carry
-  bool operator==(const RigSpec&) const = default;
-};
-
-/// A number of a rig that files, settings and fits know by name.
-struct RigParameterInfo {
-  std::string name, unit, description;
-  double low, high;  // allowed
-  bool open_low;     // `low` itself is not allowed
-  std::optional<double> fallback;
-  double RigSpec::*field;
-};
-
-/// The parameters of a kind of rig, each listed once; readers and help texts derive from it.
-const std::vector<RigParameterInfo>& list_rig_parameters(RigKind kind);
-
-/// Throws ModelError with name, value and allowed range.
-void validate(const RigSpec& spec);
-
-struct RigInputInfo {
-  std::string name, unit, description;
-  bool required;
-};
-
 inline constexpr int kMaxRigInputs = 2;
-/// What can drive a kind of rig, in the order of RigSystem's signals.
-const std::vector<RigInputInfo>& list_rig_inputs(RigKind kind);
 
-/// What drives a rig and for how long.
-struct RigManeuver {
-  double duration = 0.0;  // s
-  std::vector<InputSignal> inputs;
-};
-
-/// The signals in the order of list_rig_inputs, null where none is given. Throws ModelError for an
+/// The signals in the order of the rig's inputs, null where none is given. Throws ModelError for an
 /// input that this kind of rig does not have, one that is given twice and one that is missing.
 std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
     RigKind kind, const std::vector<InputSignal>& inputs);
@@ -97,8 +43,9 @@ struct RigParameters {
   LinearDamper<T> damper;
   StrutEffectNumbers<T> effects;
   TireVertical<T> tire;
+  DryFriction<T> guide;
   T static_deflection;  // m, of the tire at rest
-  T road_gain;          // of the road's input
+  T ground_gain;        // of the input that moves the ground
   T gravity;            // m/s^2
   T temperature;        // K
 };
@@ -119,8 +66,9 @@ struct Rig {
   StrutEffects<T> effects{};
 };
 
-/// The kind of model that a kind of rig is to the catalogue of effects.
-ModelKind get_model_kind(RigKind kind);
+/// The strut of a rig on a stand that moves it (strut_rig), with the effects that are its own:
+/// those that have the same parameters there.
+RigSpec take_strut(const RigSpec& rig);
 
 /// Numbers of a rig at its rest position. Throws ModelError as validate does.
 RigParameters<double> make_rig_parameters(const RigSpec& spec);

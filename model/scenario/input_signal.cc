@@ -180,4 +180,10 @@ InputSignal make_bump(const std::string& channel, double height, double begin, d
   return make_signal(channel, times, values, rates);
 }
 
+void scale_signal(InputSignal& signal, double factor) {
+  for (SignalCell& cell : signal.cells) {
+    for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
+  }
+}
+
 }  // namespace strut

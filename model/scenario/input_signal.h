@@ -24,7 +24,7 @@ struct SignalCell {
 static_assert(sizeof(SignalCell) == 5 * sizeof(double));
 
 struct InputSignal {
-  std::string channel;            // input it drives, a name of list_rig_inputs
+  std::string channel;            // input it drives, a name of ModelInfo::inputs
   double begin = 0.0, end = 0.0;  // s, first and last sample
   std::vector<SignalCell> cells;  // one an interval, then a sentinel
   // Equal bins of time lead to the cells: the cell of t is at most `search_steps` after its bin's.
@@ -46,6 +46,9 @@ InputSignal make_signal(const std::string& channel, const std::vector<double>& t
 /// `end_frequency` at `duration` [s]; to 5e-8 of the amplitude.
 InputSignal make_chirp(const std::string& channel, double amplitude, double begin_frequency,
                        double end_frequency, double duration);
+
+/// The whole signal times a factor.
+void scale_signal(InputSignal& signal, double factor);
 
 /// 0 until `begin` [s], then linearly within `rise` [s] > 0 to `height`.
 InputSignal make_step(const std::string& channel, double height, double begin, double rise);

@@ -15,11 +15,11 @@ using test::tolerance;
 using Numbers = std::vector<double>;
 
 /// y(x; b), and its derivatives by b into j.
-using Model = double (*)(double x, const double* b, double* j);
+using TrainedModel = double (*)(double x, const double* b, double* j);
 
 struct Regression {
   const char* name;
-  Model model;
+  TrainedModel model;
   std::vector<Numbers> starts;
   Numbers certified;
   double certified_sum;  // of squares

@@ -60,11 +60,11 @@ TEST_CASE("A campaign reads units signs scales offsets and uses of its columns",
   text.sprung = "{ column = \"sprung\", unit = \"mm\", scale = 2 }";
   const CampaignData data = read_campaign_data(test::write_campaign(folder, text));
   const test::QuarterRecord truth = test::record_quarter_car({});
-  REQUIRE(data.rigs.size() == 2);
+  REQUIRE(data.runs.size() == 2);
   CHECK(data.campaign.runs[0].use == RunUse::kFit);
   CHECK(data.campaign.runs[1].use == RunUse::kHoldOut);
-  CHECK(data.rigs[0].setup.sprung_mass == 2.6);
-  const RigRun& run = data.rigs[0];
+  CHECK(data.runs[0].setup.rig().rig.sprung_mass == 2.6);
+  const MeasuredRun& run = data.runs[0];
   REQUIRE(run.channels.size() == 2);
   double worst = 0.0;
   for (std::size_t i = 0; i < truth.time.size(); ++i) {
@@ -168,7 +168,7 @@ TEST_CASE("Missing samples are left out and counted", "[unit]") {
   const MeasuredTable& table = data.tables[0];
   CHECK(table.find(data.campaign.columns, "unsprung_position")->missing == 267);
   CHECK(table.find(data.campaign.columns, "sprung_position")->missing == 160);
-  CHECK(std::isnan(data.rigs[0].channels[0].values[1]));
+  CHECK(std::isnan(data.runs[0].channels[0].values[1]));
   CHECK(data.notes.size() == 6);
   const auto unknowns = make_run_unknowns(data, {0}, {});
   CHECK(make_reading_model(data, {0}, unknowns)->reading_count() == 2 * 801 - 267 - 160);
@@ -236,9 +236,9 @@ TEST_CASE("Every file has its own clock and rate, CSV or HDF5", "[io]") {
   const CampaignData data = read_campaign_data(test::write_campaign(folder, text));
   CHECK(data.tables[0].rate() == Approx(200.0));
   CHECK(data.tables[1].rate() == Approx(250.0));
-  CHECK(data.rigs[0].times.front() == 0.0);
+  CHECK(data.runs[0].times.front() == 0.0);
   CHECK(data.tables[0].times.front() == Approx(1234.5));
-  CHECK(data.rigs[1].channels[1].values == record.sprung);
+  CHECK(data.runs[1].channels[1].values == record.sprung);
 }
 
 TEST_CASE("Times rounded to few digits become the even clock they are rounded from", "[unit]") {

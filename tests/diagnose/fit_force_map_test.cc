@@ -293,12 +293,12 @@ CampaignData simulate_campaign(const test::TemporaryFolder& folder, const ForceM
       record.time.push_back(i * kInterval);
       record.road.push_back(test::calc_test_road(truth, record.time.back(), kDuration));
     }
-    RigRun run{name,
-               spec,
-               {make_sampled_input("road_position", record.time, record.road, 0.0)},
-               record.time,
-               {}};
-    const RigCurves curves = simulate_rig_run(run, 0, {}, {});
+    const MeasuredRun run{
+        name,
+        RigCase{spec, {make_sampled_input("road_position", record.time, record.road, 0.0)}},
+        record.time,
+        {}};
+    const RunCurves curves = simulate_run(run, {}, {});
     REQUIRE(curves.failure.empty());
     record.unsprung = curves.channel[QuarterCarChannel::kUnsprungPosition];
     record.sprung = curves.channel[QuarterCarChannel::kSprungPosition];
@@ -355,9 +355,9 @@ TEST_CASE("A map hidden in the program's own readings is found", "[regression][s
 
   SECTION("and stands in the model's file") {
     const ForceMaps maps = list_force_maps_on(data, fit->shared());
-    const auto file =
-        folder.write("extended.toml",
-                     replace_force_maps(read_text_file(kRigFile), maps, ModelKind::kQuarterCar));
+    const auto file = folder.write(
+        "extended.toml",
+        replace_force_maps(read_text_file(kRigFile), maps, get_rig_info(RigKind::kQuarterCar)));
     CHECK(read_rig(file).force_maps == maps);
   }
 }

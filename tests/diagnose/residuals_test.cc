@@ -6,9 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "base/math/spread.h"
 #include "diagnose/baseline/body_balance.h"
 #include "diagnose/campaign/local_cubic.h"
-#include "diagnose/campaign/spread.h"
 #include "diagnose/compare/compare.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/test_car.h"
@@ -125,7 +125,7 @@ BodyBalance balance_truth(const test::QuarterTruth& truth, double tire_stiffness
   text.fit = "fix = { sprung_mass = 2.6, stiffness = 950, damping = 8, tire_stiffness = " +
              test::print_number(tire_stiffness) + " }\n";
   const CampaignData data = read_campaign_data(test::write_campaign(folder, text));
-  const auto balance = calc_body_balance(data.rigs[0]);
+  const auto balance = calc_body_balance(data.runs[0]);
   REQUIRE(balance.has_value());
   return *balance;
 }
@@ -161,7 +161,7 @@ TEST_CASE("A model is adequate on its own data and not without its friction", "[
     const Comparison comparison = compare_campaign(data);
     CHECK(comparison.is_adequate() == (friction == 0.0));
     // The noise is estimated, to 4 %.
-    CHECK(data.rigs[0].channels[0].sigma == Approx(2e-5).epsilon(test::tolerance(0.12)));
+    CHECK(data.runs[0].channels[0].sigma == Approx(2e-5).epsilon(test::tolerance(0.12)));
     const ChannelComparison& sprung = comparison.runs[1].calibrated.channels[1];
     if (friction == 0.0) {
       CHECK(sprung.chi2_per_reading == Approx(1.0).margin(test::tolerance(0.15)));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error/input_error.h"
+#include "estimate/nuisances.h"
 #include "estimate/sampled_curve.h"
 #include "tests/support/fit_case.h"
 
@@ -137,7 +138,7 @@ TEST_CASE("Hit time and bias have the derivatives of their definition", "[proper
   const Case base = test::make_bump_case();
   const std::vector<MeasuredRun> runs{test::measure(base, base, {})};
   const std::vector<Unknown> unknowns{make_hit_time(0, {0.0, 0.005}),
-                                      make_bias(0, C::kImuRateY, {0.0, 0.02})};
+                                      make_bias(get_car_info(), 0, C::kImuRateY, {0.0, 0.02})};
   ReadingSimulator simulator(runs, unknowns, {});
   const double step = 1e-7;  // s
   const Linearization point = simulator.linearize({0.0013, 0.004});
@@ -160,7 +161,7 @@ TEST_CASE("A fit of a bias alone is the weighted mean", "[reference]") {
   const Case base = test::make_bump_case();
   const MeasuredRun run = test::measure(base, base, {0.0, 0.3, 0.0, 1.0, 5});
   const Prior prior{0.1, 1e-3};
-  const std::vector<Unknown> unknowns{make_bias(0, C::kImuAccelerationZ, prior)};
+  const std::vector<Unknown> unknowns{make_bias(get_car_info(), 0, C::kImuAccelerationZ, prior)};
   const FitResult fit = fit_simulation({run}, unknowns);
   REQUIRE(fit.converged);
   // Residuals without bias, by the same simulation.
@@ -393,7 +394,7 @@ TEST_CASE("Residuals that are not white show it", "[property]") {
   const Case base = test::make_bump_case();
   const MeasuredRun white = test::measure(base, base, {0.0, 0.0, 0.0, 1.0, 4});
   MeasuredRun wrong = white;
-  set_parameter(wrong.setup, "rear_damping", 1800.0);
+  set_parameter(wrong.setup.car(), "rear_damping", 1800.0);
   const std::vector<Unknown> unknowns{make_parameter({white}, "front_damping")};
   const FitResult good = fit_simulation({white}, unknowns), bad = fit_simulation({wrong}, unknowns);
   CHECK(good.is_adequate());

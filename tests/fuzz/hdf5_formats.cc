@@ -27,7 +27,7 @@ void read_dataset(const fs::path& path) {
 }
 
 void read_network(const fs::path& path) {
-  const Model model = read_model(path);
+  const TrainedModel model = read_trained_model(path);
   const Identifier identifier(model);
   const std::vector<double> inputs(model.inputs.size(), 0.5);
   std::vector<double> values(model.targets.size());

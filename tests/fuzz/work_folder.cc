@@ -75,8 +75,8 @@ SweepFolder make_sweep(const fs::path& work) {
   return folder;
 }
 
-Model make_model() {
-  Model model;
+TrainedModel make_model() {
+  TrainedModel model;
   model.sizes = {2, 3, 1};
   model.weights = make_nguyen_widrow_weights(NetworkShape(model.sizes), {}, 1);
   model.inputs = {{"pitch_angle", "rad", "angle"}, {"pitch_rate", "rad/s", "rate"}};
@@ -96,11 +96,11 @@ Model make_model() {
 }
 
 void write_networks(const fs::path& work) {
-  Model model = make_model();
-  write_model(work / "model.h5", model);
+  TrainedModel model = make_model();
+  write_trained_model(work / "model.h5", model);
 
   model.noise = NoiseModel{.sigma = {1e-3, 2e-3}, .bias = {0.0, 1e-2}, .copies = 2, .seed = 5};
-  write_model(work / "noisy.h5", model);
+  write_trained_model(work / "noisy.h5", model);
 
   model.noise.reset();
   model.inputs = {{"component_1", "1", "direction"}, {"component_2", "1", "direction"}};
@@ -112,7 +112,7 @@ void write_networks(const fs::path& work) {
   window.reference = window.mean;
   window.basis = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0};
   model.window = window;
-  write_model(work / "window.h5", model);
+  write_trained_model(work / "window.h5", model);
 
   Checkpoint checkpoint;
   checkpoint.started_with = {{"seed", "1"}, {"layers", "4, 27, 4"}};

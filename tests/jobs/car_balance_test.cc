@@ -178,7 +178,7 @@ TEST_CASE("Without measured deflections there is no balance of a car", "[regress
   RunEvaluation at;
   const SharedValues nominal;
   const int rear = find_car_channel("rear_left_suspension_deflection");
-  std::erase_if(data.cars[0].channels, [&](const MeasuredChannel& c) { return c.channel >= rear; });
+  std::erase_if(data.runs[0].channels, [&](const MeasuredChannel& c) { return c.channel >= rear; });
   CHECK(!calc_car_balance(data, 0, nominal, at));
   at.failure = "not simulated";
   CHECK(!calc_car_balance(data, 1, nominal, at));
@@ -194,7 +194,7 @@ TEST_CASE("A bump by table has a car's balance, and a road without a bump does n
                             evaluate_run(data, 0, baseline.calibrated));
   };
   const auto arc = balance();
-  RoadSpec& road = data.cars[0].setup.maneuver.road;
+  RoadSpec& road = data.runs[0].setup.car().maneuver.road;
   const RoadSpec formula = road;
   for (int i = 0; i <= 200; ++i) {
     const double x = formula.length * (i / 200.0 - 0.5);

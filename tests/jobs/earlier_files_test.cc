@@ -67,7 +67,7 @@ TEST_CASE("A network of an earlier version identifies, is judged and exported", 
     CHECK(run_program("export " + model + " -o " + (folder / name).string()).code == 0);
     CHECK(fs::file_size(folder / name) > 0);
   }
-  CHECK(read_model(kEarlier + "window.h5").window.has_value());
+  CHECK(read_trained_model(kEarlier + "window.h5").window.has_value());
 }
 
 TEST_CASE("A merged file of an earlier version trains a network", "[io]") {
@@ -95,7 +95,8 @@ TEST_CASE("A checkpoint of an earlier version is resumed on its instruction set"
   }
   CHECK(resumed.code == 0);
   REQUIRE(run_program(data + (folder / "whole.h5").string() + kTraining).code == 0);
-  CHECK(read_model(folder / "resumed.h5").weights == read_model(folder / "whole.h5").weights);
+  CHECK(read_trained_model(folder / "resumed.h5").weights ==
+        read_trained_model(folder / "whole.h5").weights);
 }
 
 TEST_CASE("A virtual merged file of an earlier version is refused with the remedy", "[io]") {

@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "model/model.h"
 #include "model_files/read_effects.h"
 #include "tests/jobs/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -22,8 +23,7 @@ std::string write_car(const test::TemporaryFolder& folder, const EffectSettings&
   fs::copy(kExamples / "tires", folder / "tires", fs::copy_options::recursive);
   fs::create_directory(folder / "vehicles");
   const std::string plain = test::read_text(kExamples / "vehicles/paper_sedan.toml");
-  return folder.write("vehicles/extended.toml",
-                      replace_effects(plain, effects, ModelKind::kFullVehicle));
+  return folder.write("vehicles/extended.toml", replace_effects(plain, effects, get_car_info()));
 }
 
 TEST_CASE("A car's effect from its file and by a setting give one run", "[io][effects]") {
@@ -50,7 +50,7 @@ TEST_CASE("A rig's effect from its file and by a setting give one run", "[io][ef
   const std::string plain = kExamples / "rigs/quarter_car.toml";
   const std::string extended = folder.write(
       "rig.toml", replace_effects(test::read_text(plain), {{"strut_friction", "", {1.0, 0.01}}},
-                                  ModelKind::kQuarterCar));
+                                  get_rig_info(RigKind::kQuarterCar)));
   const std::string maneuver = kExamples / "rigs/maneuvers/bump.toml";
   const auto simulate = [&](const std::string& rig, const std::string& more) {
     const std::string file = folder / "run.csv";

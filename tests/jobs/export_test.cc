@@ -22,7 +22,7 @@ constexpr char kWarnings[] = " -Wall -Wextra -Wpedantic -Wshadow -Wconversion -W
 
 /// A model file and what export makes of it.
 struct Desk {
-  Desk() { write_model(folder / "m.h5", test::make_random_model()); }
+  Desk() { write_trained_model(folder / "m.h5", test::make_random_model()); }
   Outcome export_to(const std::string& words) const {
     return run_program("export " + (folder / "m.h5").string() + " " + words);
   }
@@ -60,7 +60,7 @@ TEST_CASE("export writes what the file's name asks for, and nothing over another
 
 TEST_CASE("export refuses a network over windows, whose inputs are no channels", "[io]") {
   const Desk desk;
-  Model model = test::make_random_model();
+  TrainedModel model = test::make_random_model();
   WindowTransform window;
   window.channels = {{"imu_rate_y", "rad/s", "pitch rate"}};
   window.noise = {{1e-3}, {0.02}};
@@ -69,7 +69,7 @@ TEST_CASE("export refuses a network over windows, whose inputs are no channels",
   window.basis.assign(4 * 5, 0.0);  // a component for each of the network's inputs
   for (std::size_t k = 0; k < 4; ++k) window.basis[6 * k] = 1.0;
   model.window = window;
-  write_model(desk.file("window.h5"), model);
+  write_trained_model(desk.file("window.h5"), model);
   const std::string file = desk.file(GENERATE("w.onnx", "w.h", "w.c"));
   const Outcome outcome = run_program("export " + desk.file("window.h5") + " -o " + file);
   CHECK(outcome.code == 2);
@@ -89,7 +89,7 @@ std::string read_snippet(const std::string& language) {
 
 TEST_CASE("The guide's programs for online users compile and run", "[io]") {
   const TemporaryFolder folder;
-  Model model = test::make_random_model({4, 5, 2});
+  TrainedModel model = test::make_random_model({4, 5, 2});
   // The guide's model has four parameters.
   model.sizes.back() = 4;
   model.weights = make_xavier_weights(NetworkShape(model.sizes), 1);
@@ -128,7 +128,7 @@ TEST_CASE("Example models for other runtimes", "[.][example_models]") {
   const std::vector<std::pair<std::string, std::vector<int>>> shapes = {
       {"deep", {4, 27, 19, 11, 2}}, {"linear", {3, 1}}};
   for (const auto& [stem, sizes] : shapes) {
-    const Model model = test::make_random_model(sizes);
+    const TrainedModel model = test::make_random_model(sizes);
     const NamedTexts provenance = {{"strut_version", "1.2.3"}};
     write(stem + "_double.onnx", make_onnx(model, OnnxNumber::kDouble, provenance));
     write(stem + "_float.onnx", make_onnx(model, OnnxNumber::kFloat, provenance));

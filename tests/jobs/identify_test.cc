@@ -24,7 +24,7 @@ using test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 TEST_CASE("An identifier's Jacobian is that of differences", "[property]") {
-  const Model model = test::make_random_model(
+  const TrainedModel model = test::make_random_model(
       GENERATE(std::vector<int>{4, 9, 7, 2}, std::vector<int>{3, 2}, std::vector<int>{1, 5, 1}));
   const Identifier identifier(model);
   const std::size_t n = model.inputs.size(), m = model.targets.size();
@@ -60,7 +60,7 @@ TEST_CASE("Excess is a signed share of the range", "[unit]") {
 
 TEST_CASE("A parameter is out of range beyond its interval and a hundredth of the range",
           "[unit]") {
-  const Model model = test::make_random_model();  // front_stiffness in [35500, 40000]
+  const TrainedModel model = test::make_random_model();  // front_stiffness in [35500, 40000]
   CHECK(is_parameter_in_range(model, 0, 40044.0, 0.0));
   CHECK(!is_parameter_in_range(model, 0, 40046.0, 0.0));
   CHECK(is_parameter_in_range(model, 0, 40046.0, 2.0));
@@ -72,7 +72,7 @@ TEST_CASE("A parameter is out of range beyond its interval and a hundredth of th
 
 TEST_CASE("Noise of the sensors widens an interval as repeated measurements scatter",
           "[statistical]") {
-  const Model model = test::make_random_model();
+  const TrainedModel model = test::make_random_model();
   const Identifier identifier(model);
   const std::vector<double> x = test::draw_inputs(model, 1);
   SnapshotOptions options{{1e-5, 0.0, 0.02, 5e-6}};
@@ -100,7 +100,7 @@ TEST_CASE("Noise of the sensors widens an interval as repeated measurements scat
 
 /// A model and measured tables in a folder of their own.
 struct Desk {
-  Desk() { write_model(folder / "m.h5", model); }
+  Desk() { write_trained_model(folder / "m.h5", model); }
 
   Outcome identify(const std::string& words) const {
     return run_program("identify " + (folder / "m.h5").string() + " " + words);
@@ -126,10 +126,10 @@ struct Desk {
   }
 
   TemporaryFolder folder;
-  Model model = test::make_random_model();
+  TrainedModel model = test::make_random_model();
 };
 
-std::vector<double> identify_directly(const Model& model, const double* inputs) {
+std::vector<double> identify_directly(const TrainedModel& model, const double* inputs) {
   std::vector<double> values(2);
   Identifier(model).identify(inputs, values.data());
   return values;

@@ -115,7 +115,7 @@ TEST_CASE("A record of another kind is told from those trained on", "[io][slow]"
 TEST_CASE("Intervals hold the parameters of unseen cars with unseen noise", "[statistical][slow]") {
   const TemporaryFolder folder;
   const fs::path data = test::make_sweep(folder, 7);
-  const Model model = read_model(get_trained().file);
+  const TrainedModel model = read_trained_model(get_trained().file);
   WindowTransform transform = *model.window;
   transform.noise.seed = 99;
   Dataset dataset({data}, {.histories = true});

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "jobs/commands.h"
+#include "model/car/car_info.h"
 #include "model/effects/catalogue.h"
 #include "model_files/parameters.h"
 #include "tests/jobs/parse_json.h"
@@ -81,7 +82,7 @@ TEST_CASE("list tells channels, inputs and effects by the kind of model", "[io]"
   const auto of_car = get_names(list("effects"));
   for (const EffectInfo& effect : list_effects()) {
     const bool listed = of_car.count(effect.name) == 1;
-    CHECK(listed == !list_effect_places(effect, ModelKind::kFullVehicle).empty());
+    CHECK(listed == !list_effect_places(effect, get_car_info()).empty());
   }
   const auto mass = get_names(list("effects single_mass"));
   CHECK(mass.count("strut_friction") == 1);

@@ -79,11 +79,11 @@ TEST_CASE("Trainings side by side give what each gives alone", "[io][property]")
   CHECK(run_table(trainings, folder / "one", 1).trained == 6);
   CHECK(run_table(trainings, folder / "three", 3).trained == 6);
   for (const TableTraining& t : trainings) {
-    const Model one = read_model(folder / "one" / (t.name + ".h5"));
+    const TrainedModel one = read_trained_model(folder / "one" / (t.name + ".h5"));
     Dataset dataset({t.data});
     Training alone(dataset, t.request);
     while (alone.step()) continue;
-    CHECK(read_model(folder / "three" / (t.name + ".h5")).weights == one.weights);
+    CHECK(read_trained_model(folder / "three" / (t.name + ".h5")).weights == one.weights);
     CHECK(one.weights == alone.make_model().weights);
   }
 }

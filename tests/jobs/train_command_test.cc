@@ -65,7 +65,7 @@ std::vector<double> train_weights(const std::string& data, const std::string& op
   const Outcome outcome = train(data, folder / "m.h5", options);
   INFO(outcome.messages);
   REQUIRE(outcome.code == 0);
-  return read_model(folder / "m.h5").weights;
+  return read_trained_model(folder / "m.h5").weights;
 }
 
 TEST_CASE("A network learns the stiffness of both axles from a sweep's snapshots", "[io][slow]") {
@@ -124,7 +124,8 @@ TEST_CASE("A resumed training is the uninterrupted one bit for bit", "[io][prope
           .code == 0);
   const std::string resume = " --resume --checkpoint " + keep;
   REQUIRE(train(sweep, folder / "b.h5", common + resume).code == 0);
-  const Model whole = read_model(folder / "whole.h5"), parts = read_model(folder / "b.h5");
+  const TrainedModel whole = read_trained_model(folder / "whole.h5"),
+                     parts = read_trained_model(folder / "b.h5");
   CHECK(parts.weights == whole.weights);
   CHECK(parts.best_validation == whole.best_validation);
   REQUIRE(parts.record.size() == whole.record.size());
@@ -202,7 +203,7 @@ TEST_CASE("Cases with NaN are left out of a training and counted", "[io][threads
                                    " --hidden 4 --json -o " + (folder / "m.h5").string());
   REQUIRE(good.code == 0);
   CHECK(test::parse_json(good.out).get<int>("skipped_cases") == 2);
-  CHECK(read_model(folder / "m.h5").usable == 58);
+  CHECK(read_trained_model(folder / "m.h5").usable == 58);
 }
 
 TEST_CASE("Nothing is overwritten without --force", "[io]") {
@@ -213,7 +214,7 @@ TEST_CASE("Nothing is overwritten without --force", "[io]") {
   CHECK_THAT(refused.messages, Contains("m.h5: exists; --force replaces it"));
   CHECK(test::read_text(model) == "mine");
   CHECK(train(get_sweep().string(), model, "--force").code == 0);
-  CHECK(read_model(model).sizes == std::vector<int>{4, 6, 4, 2});
+  CHECK(read_trained_model(model).sizes == std::vector<int>{4, 6, 4, 2});
   const fs::path shard = get_sweep() / "shards/000000.h5";
   const auto before = read_bytes(shard);
   CHECK_THAT(train(shard, shard, "--force").messages, Contains("belongs to the sweep in"));

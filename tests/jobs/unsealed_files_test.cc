@@ -110,7 +110,7 @@ TEST_CASE("A flipped number in a merged file without a seal is found", "[io][pro
 TEST_CASE("A plan, a model and a checkpoint without seals hold to their own checks", "[io]") {
   CHECK(read_plan(kFiles / "half_done/plan.h5").extent.shard_cases == 16);
   CHECK(read_plan(kFiles / "half_done/plan.h5").extent.shard_count() == 4);
-  CHECK(read_model(kFiles / "model.h5").sizes == std::vector<int>{4, 3, 3});
+  CHECK(read_trained_model(kFiles / "model.h5").sizes == std::vector<int>{4, 3, 3});
   CHECK(read_checkpoint(kFiles / "checkpoint.h5").state.training.epoch == 5);
 
   const TemporaryFolder folder;
@@ -123,7 +123,7 @@ TEST_CASE("A plan, a model and a checkpoint without seals hold to their own chec
   REQUIRE(at != image.end());
   *(at + 5) ^= std::byte{1};
   test::write_bytes(file, image);
-  CHECK_THROWS_WITH(read_model(file), Contains("model.h5: /layer_sizes: damaged"));
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("model.h5: /layer_sizes: damaged"));
 }
 
 }  // namespace

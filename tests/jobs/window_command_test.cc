@@ -3,6 +3,7 @@
 
 #include "estimate/design.h"
 #include "estimate/fit.h"
+#include "estimate/nuisances.h"
 #include "sweep/request.h"
 #include "tests/jobs/window_sweep.h"
 #include "train/model/model_file.h"
@@ -28,7 +29,7 @@ std::vector<double> train_weights(const std::string& data, const std::string& op
   const Outcome outcome = train(data, folder / "m.h5", options);
   INFO(outcome.messages);
   REQUIRE(outcome.code == 0);
-  return read_model(folder / "m.h5").weights;
+  return read_trained_model(folder / "m.h5").weights;
 }
 
 TEST_CASE("evaluate reproduces the test figures of a noisy training", "[io][slow]") {
@@ -99,7 +100,8 @@ TEST_CASE("A resumed noisy training is the uninterrupted one bit for bit", "[io]
   REQUIRE(train(sweep, folder / "a.h5", options + "--epochs 5 --checkpoint " + keep).code == 0);
   const std::string resume = "--epochs 12 --resume --checkpoint " + keep;
   REQUIRE(train(sweep, folder / "b.h5", options + resume).code == 0);
-  CHECK(read_model(folder / "b.h5").weights == read_model(folder / "whole.h5").weights);
+  CHECK(read_trained_model(folder / "b.h5").weights ==
+        read_trained_model(folder / "whole.h5").weights);
   const Outcome other = train(
       sweep, folder / "c.h5",
       options + "--bias " + (inputs.empty() ? "imu_rate_y" : "pitch_angle") + "=0.25 " + resume);
@@ -115,7 +117,7 @@ TEST_CASE("A network with noisy snapshots knows its noise", "[io][slow]") {
       train(get_sweep().string(), file, "--noise pitch_angle=2e-4 --copies 3 --epochs 20" + inputs);
   INFO(outcome.messages);
   REQUIRE(outcome.code == 0);
-  const Model model = read_model(file);
+  const TrainedModel model = read_trained_model(file);
   REQUIRE(model.noise);
   CHECK(model.noise->sigma == std::vector{1e-3, 5e-3, 2e-4});
   CHECK(model.noise->bias == std::vector{0.0, 0.0, 0.0});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/effects/catalogue.h"
+#include "model/model.h"
 #include "model_files/parameters.h"
 #include "tests/support/test_car.h"
 #include "tests/support/test_run.h"
@@ -16,7 +17,7 @@ using test::prepare;
 using test::tolerance;
 using C = CarChannel;
 using I = StateIndex;
-constexpr ModelKind kCar = ModelKind::kFullVehicle;
+const ModelInfo& kCar = get_car_info();
 
 /// A one-sided bump, so that roll is excited too.
 Case make_case(const EffectSettings& effects = {}) {

@@ -6,6 +6,7 @@
 #include "base/error/input_error.h"
 #include "model/effects/catalogue.h"
 #include "model/error/model_error.h"
+#include "model/model.h"
 #include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_rig.h"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 const fs::path kSource = STRUT_SOURCE_DIR;
 const fs::path kCarFile = kSource / "examples/vehicles/paper_sedan.toml";
 const fs::path kRigFile = kSource / "examples/rigs/quarter_car.toml";
-constexpr ModelKind kCar = ModelKind::kFullVehicle;
+const ModelInfo& kCar = get_car_info();
 
 /// The names of interface and users' files.
 const std::set<std::string> kNames = {
@@ -49,7 +50,8 @@ TEST_CASE("The catalogue holds each effect once, with a unit, a range and a sour
       CHECK(p.neutral <= p.high);
       CHECK(p.typical > 0.0);
       CHECK(p.typical <= p.high);
-      CHECK(p.models != 0);
+      CHECK(std::any_of(list_models().begin(), list_models().end(),
+                        [&](const ModelInfo* model) { return p.exists_in(*model); }));
       switches = switches || p.switches;
     }
     CHECK(switches);
@@ -57,17 +59,8 @@ TEST_CASE("The catalogue holds each effect once, with a unit, a range and a sour
   CHECK(names == kNames);
 }
 
-TEST_CASE("docs/effects.md is what the catalogue says", "[io]") {
-  // Mend it by: strut_tests_model "Write docs/effects.md from the catalogue"
-  CHECK(test::read_text(kSource / "docs/effects.md") == write_effects_document());
-}
-
-TEST_CASE("Write docs/effects.md from the catalogue", "[.]") {
-  std::ofstream(kSource / "docs/effects.md", std::ios::binary) << write_effects_document();
-}
-
 /// A setting of ordinary size at each place of each effect.
-EffectSettings make_ordinary_settings(ModelKind kind) {
+EffectSettings make_ordinary_settings(const ModelInfo& kind) {
   EffectSettings settings;
   for (const EffectInfo& effect : list_effects()) {
     for (const std::string& place : list_effect_places(effect, kind)) {
@@ -101,7 +94,7 @@ TEST_CASE("Effects of a car's file are written back exactly", "[io][property]") 
 TEST_CASE("Effects of a rig's file are written back exactly", "[io][property]") {
   const test::TemporaryFolder folder;
   const RigSpec base = read_rig(kRigFile);
-  const ModelKind kind = ModelKind::kQuarterCar;
+  const ModelInfo& kind = get_rig_info(RigKind::kQuarterCar);
   const EffectSettings settings = make_ordinary_settings(kind);
   const std::string text = replace_effects(test::read_text(kRigFile), settings, kind);
   RigSpec read = read_rig(folder.write("rig.toml", text));

@@ -47,7 +47,7 @@ SamplePlan make_plan(double duration, double interval) {
 }
 
 double get_value(const LaneResults& run, RigKind kind, int sample, int channel, int lane = 0) {
-  const auto channels = list_rig_channels(kind).size();
+  const auto channels = get_rig_info(kind).channels.size();
   const auto row = static_cast<std::size_t>(sample) * channels + static_cast<std::size_t>(channel);
   return run.history[row * static_cast<std::size_t>(run.lanes) + static_cast<std::size_t>(lane)];
 }
@@ -430,7 +430,7 @@ TEST_CASE("Smooth effects keep order four, kinks of a force's slope leave two",
 std::vector<EffectSetting> list_ordinary(RigKind kind) {
   std::vector<EffectSetting> settings;
   for (const EffectInfo& effect : list_effects()) {
-    const auto parameters = list_effect_parameters(effect, get_model_kind(kind));
+    const auto parameters = list_effect_parameters(effect, get_rig_info(kind));
     if (parameters.empty() || (effect.places & kOnChannel) != 0) continue;
     EffectSetting setting{effect.name, "", {}};
     for (const EffectParameter* p : parameters) setting.values.push_back(p->typical);
@@ -443,7 +443,7 @@ std::vector<EffectSetting> list_ordinary(RigKind kind) {
 std::vector<InputSignal> make_input(RigKind kind) {
   const double size = kind == RigKind::kSingleMass ? 500.0 : 0.02;
   std::vector<InputSignal> inputs = {
-      make_chirp(list_rig_inputs(kind)[0].name, size, 1.0, 10.0, 1.0)};
+      make_chirp(get_rig_info(kind).inputs[0].name, size, 1.0, 10.0, 1.0)};
   if (kind == RigKind::kStrutRig) {
     inputs.push_back(
         make_signal("temperature", {0.0, 1.0}, {293.15, 333.15}, Interpolation::kLinear));
@@ -454,7 +454,8 @@ std::vector<InputSignal> make_input(RigKind kind) {
 TEST_CASE("An effect moves its rig, and neutral it is as if absent, also beside one that is on",
           "[unit][property][rigs]") {
   constexpr int kWidth = NativeLanes::kWidth;
-  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass);
+  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass,
+                                RigKind::kGuidedMass);
   const RigSpec plain = make_rig(kind);
   const StepOptions options = make_options(1e-3);
   const SamplePlan plan = make_plan(1.0, 0.01);
@@ -464,7 +465,7 @@ TEST_CASE("An effect moves its rig, and neutral it is as if absent, also beside 
       simulate_rigs<NativeLanes>(specs.data(), make_input(kind), options, plan);
   for (const EffectSetting& setting : list_ordinary(kind)) {
     INFO(setting.effect);
-    const ModelKind model = get_model_kind(kind);
+    const ModelInfo& model = get_rig_info(kind);
     const EffectSetting nothing = make_neutral_setting(*find_effect(setting.effect), "", model);
     REQUIRE(is_neutral(nothing, model));
     REQUIRE_FALSE(is_neutral(setting, model));
@@ -474,7 +475,7 @@ TEST_CASE("An effect moves its rig, and neutral it is as if absent, also beside 
     const LaneResults both =
         simulate_rigs<NativeLanes>(specs.data(), make_input(kind), options, plan);
     const LaneResults alone = simulate_rig(on, make_input(kind), options, plan);
-    const int channels = static_cast<int>(list_rig_channels(kind).size());
+    const int channels = static_cast<int>(get_rig_info(kind).channels.size());
     bool moved = false, same = true;
     for (int i = 0; i <= 100; ++i) {
       for (int c = 0; c < channels; ++c) {

@@ -9,6 +9,7 @@
 
 #include "base/math/xsimd_backend.h"
 #include "io/format/toml_text.h"
+#include "model/model.h"
 #include "model/rig/rig_system.h"
 #include "model_files/drop_tables.h"
 #include "model_files/read_effects.h"
@@ -29,7 +30,7 @@ using test::prepare;
 using test::tolerance;
 using C = CarChannel;
 using I = StateIndex;
-constexpr ModelKind kCar = ModelKind::kFullVehicle;
+const ModelInfo& kCar = get_car_info();
 const fs::path kSource = STRUT_SOURCE_DIR;
 const fs::path kCarFile = kSource / "examples/vehicles/paper_sedan.toml";
 const fs::path kRigFile = kSource / "examples/rigs/quarter_car.toml";
@@ -132,7 +133,7 @@ RigSpec make_rig(RigKind kind, const ForceMaps& maps = {}) {
 
 std::vector<InputSignal> make_input(RigKind kind) {
   const double size = kind == RigKind::kSingleMass ? 500.0 : 0.02;
-  return {make_chirp(list_rig_inputs(kind)[0].name, size, 1.0, 10.0, 1.0)};
+  return {make_chirp(get_rig_info(kind).inputs[0].name, size, 1.0, 10.0, 1.0)};
 }
 
 StepOptions make_step(double step = 1e-3) {
@@ -147,7 +148,8 @@ LaneResults run_rig(const RigSpec& spec) {
 }
 
 TEST_CASE("A rig's map that is a damper or a spring equals them", "[unit][reference][rigs]") {
-  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass);
+  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass,
+                                RigKind::kGuidedMass);
   const bool spring = GENERATE(false, true);
   ForceMap map = make_damper_map("", 400.0);
   RigSpec changed = make_rig(kind);
@@ -159,7 +161,7 @@ TEST_CASE("A rig's map that is a damper or a spring equals them", "[unit][refere
     }
   }
   const LaneResults a = run_rig(make_rig(kind, {map})), b = run_rig(changed);
-  const auto& channels = list_rig_channels(kind);
+  const auto& channels = get_rig_info(kind).channels;
   for (std::size_t i = 0; i < b.history.size(); ++i) {
     // What the map gives counts as the damper's, not as the spring's.
     const std::string& name = channels[i % channels.size()].name;
@@ -185,7 +187,8 @@ TEST_CASE("A rig with a map rests at its rest position", "[unit][rigs]") {
 
 TEST_CASE("Lanes of rigs may differ in their maps and in having one", "[unit][property][rigs]") {
   constexpr int kWidth = NativeLanes::kWidth;
-  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass);
+  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass,
+                                RigKind::kGuidedMass);
   std::vector<RigSpec> rigs;
   for (int lane = 0; lane < kWidth; ++lane) {
     const auto seed = static_cast<unsigned>(lane);
@@ -409,7 +412,7 @@ TEST_CASE("Force maps of a car's file are written back exactly", "[io][property]
 TEST_CASE("A force map of a rig's file is written back exactly", "[io][property]") {
   const test::TemporaryFolder folder;
   const ForceMaps maps = {make_bent_map("", 7)};
-  const ModelKind kind = ModelKind::kQuarterCar;
+  const ModelInfo& kind = get_rig_info(RigKind::kQuarterCar);
   const std::string text = replace_force_maps(test::read_text(kRigFile), maps, kind);
   const RigSpec read = read_rig(folder.write("rig.toml", text));
   CHECK(read.force_maps == maps);

@@ -42,7 +42,7 @@ RigSpec make_single_mass() {
 }
 
 double get_value(const LaneResults& run, RigKind kind, int sample, int channel, int lane = 0) {
-  const auto channels = list_rig_channels(kind).size();
+  const auto channels = get_rig_info(kind).channels.size();
   const auto row = static_cast<std::size_t>(sample) * channels + static_cast<std::size_t>(channel);
   return run.history[row * static_cast<std::size_t>(run.lanes) + static_cast<std::size_t>(lane)];
 }
@@ -360,7 +360,8 @@ TEST_CASE("A bilateral tire pulls", "[unit][rigs]") {
 
 TEST_CASE("Lanes of different rigs repeat each rig in double", "[property][rigs]") {
   constexpr int kWidth = NativeLanes::kWidth;
-  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kSingleMass, RigKind::kStrutRig);
+  const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kSingleMass, RigKind::kStrutRig,
+                                RigKind::kGuidedMass);
   const Stepper stepper = GENERATE(Stepper::kRk4, Stepper::kAbm4);
   std::vector<RigSpec> specs(static_cast<std::size_t>(kWidth), make_quarter_car());
   std::array<const RigSpec*, static_cast<std::size_t>(kWidth)> pointers{};
@@ -374,12 +375,12 @@ TEST_CASE("Lanes of different rigs repeat each rig in double", "[property][rigs]
     spec.initial_velocity = {0.8 * factor, 0.8};
     pointers[lane] = &spec;
   }
-  const std::string driven = list_rig_inputs(kind)[0].name;
+  const std::string driven = get_rig_info(kind).inputs[0].name;
   const std::vector<InputSignal> inputs = {make_chirp(driven, 0.01, 2.0, 6.0, 1.0)};
   const StepOptions options = make_options(1e-3, stepper);
   const SamplePlan plan = make_plan(1.0, 0.01);
   const LaneResults lanes = simulate_rigs<NativeLanes>(pointers.data(), inputs, options, plan);
-  const int channels = static_cast<int>(list_rig_channels(kind).size());
+  const int channels = static_cast<int>(get_rig_info(kind).channels.size());
   for (int lane = 0; lane < kWidth; ++lane) {
     const LaneResults one =
         simulate_rig(*pointers[static_cast<std::size_t>(lane)], inputs, options, plan);
@@ -416,12 +417,14 @@ TEST_CASE("A diverging rig is stopped and disturbs no other", "[unit][rigs]") {
 }
 
 TEST_CASE("Every kind of rig names as many channels as it reports", "[unit][rigs]") {
-  CHECK(list_rig_channels(RigKind::kQuarterCar).size() == Quarter::kCount);
-  CHECK(list_rig_channels(RigKind::kStrutRig).size() == StrutRigChannel::kCount);
-  CHECK(list_rig_channels(RigKind::kSingleMass).size() == SingleMassChannel::kCount);
-  CHECK(list_rig_channels(RigKind::kQuarterCar)[Quarter::kTireForce].name == "tire_force");
-  CHECK(list_rig_channels(RigKind::kStrutRig)[StrutRigChannel::kTemperature].name == "temperature");
-  CHECK(list_rig_channels(RigKind::kSingleMass)[SingleMassChannel::kForce].name == "force");
+  CHECK(get_rig_info(RigKind::kQuarterCar).channels.size() == Quarter::kCount);
+  CHECK(get_rig_info(RigKind::kStrutRig).channels.size() == StrutRigChannel::kCount);
+  CHECK(get_rig_info(RigKind::kSingleMass).channels.size() == SingleMassChannel::kCount);
+  CHECK(get_rig_info(RigKind::kGuidedMass).channels.size() == GuidedMassChannel::kCount);
+  CHECK(get_rig_info(RigKind::kQuarterCar).channels[Quarter::kTireForce].name == "tire_force");
+  CHECK(get_rig_info(RigKind::kStrutRig).channels[StrutRigChannel::kTemperature].name ==
+        "temperature");
+  CHECK(get_rig_info(RigKind::kSingleMass).channels[SingleMassChannel::kForce].name == "force");
 }
 
 TEST_CASE("Rigs that cannot be are refused by name", "[unit][rigs]") {
@@ -434,7 +437,7 @@ TEST_CASE("Rigs that cannot be are refused by name", "[unit][rigs]") {
                     "input rod_position: a quarter_car is driven by road_position, actuator_force");
   spec.tire_stiffness = 0.0;
   CHECK_THROWS_WITH(simulate_rig(spec, {road}, options, plan),
-                    "tire_stiffness = 0: must lie in (0, 100000000] N/m");
+                    "tire_stiffness = 0: must lie in (0, 1e+08] N/m");
   RigSpec dyno;
   dyno.kind = RigKind::kStrutRig;
   CHECK_THROWS_WITH(simulate_rig(dyno, {}, options, plan),

@@ -42,7 +42,8 @@ TEST_CASE("The rigs that ship run under the maneuvers that ship", "[io][rigs]") 
   const std::pair<std::string, std::string> pairs[] = {{"quarter_car.toml", "bump.toml"},
                                                        {"quarter_car.toml", "chirp.toml"},
                                                        {"strut_rig.toml", "dynamometer.toml"},
-                                                       {"single_mass.toml", "force_step.toml"}};
+                                                       {"single_mass.toml", "force_step.toml"},
+                                                       {"guided_mass.toml", "shaker.toml"}};
   for (const auto& [rig, maneuver] : pairs) {
     INFO(rig << " " << maneuver);
     const LaneResults run = run_example(rig, maneuver);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "estimate/fit.h"
+#include "estimate/nuisances.h"
 #include "model_files/parameters.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/test_car.h"

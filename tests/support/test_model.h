@@ -10,8 +10,8 @@
 
 namespace strut::test {
 
-inline Model make_random_model(std::vector<int> sizes = {4, 9, 7, 2}) {
-  Model model;
+inline TrainedModel make_random_model(std::vector<int> sizes = {4, 9, 7, 2}) {
+  TrainedModel model;
   model.sizes = std::move(sizes);
   model.weights = make_xavier_weights(NetworkShape(model.sizes), 3);
   for (double& w : model.weights) w = w == 0.0 ? 0.1 : w;
@@ -38,7 +38,7 @@ inline Model make_random_model(std::vector<int> sizes = {4, 9, 7, 2}) {
 }
 
 /// `count` rows of inputs, uniform on the model's ranges stretched about their middle.
-inline std::vector<double> draw_inputs(const Model& model, std::size_t count,
+inline std::vector<double> draw_inputs(const TrainedModel& model, std::size_t count,
                                        double stretch = 1.0) {
   const std::size_t n = model.inputs.size();
   std::vector<double> rows(count * n);

@@ -34,7 +34,7 @@ LaneResults read_strut(const EffectSettings& effects, double interval) {
   plan.snapshot = false;
   StepOptions options;
   options.step = 5e-3;
-  const ReadOut out(list_rig_channels(spec.kind), {&spec.effects});
+  const ReadOut out(get_rig_info(spec.kind).channels, {&spec.effects});
   return simulate_readings(out, plan, [&](const SamplePlan& record) {
     return simulate_rig(spec, {make_chirp("displacement", kSize, 4.0, 4.0, 1.0)}, options, record);
   });

@@ -40,7 +40,7 @@ std::string to_lines(const std::vector<double>& rows, std::size_t columns) {
 }
 
 /// The mask that the model asks for.
-int find_mask(const Model& model, const double* in, const double* out) {
+int find_mask(const TrainedModel& model, const double* in, const double* out) {
   int mask = 0;
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     if (calc_excess(in[i], model.input_map.low()[i], model.input_map.high()[i]) != 0.0) mask |= 1;
@@ -52,7 +52,8 @@ int find_mask(const Model& model, const double* in, const double* out) {
 }
 
 /// Answers of a compiled program against the library's.
-void check_program(const Model& model, const std::string& program, const TemporaryFolder& folder) {
+void check_program(const TrainedModel& model, const std::string& program,
+                   const TemporaryFolder& folder) {
   const std::size_t n = model.inputs.size(), m = model.targets.size(), count = 2000;
   const std::vector<double> rows = test::draw_inputs(model, count, 1.2);
   folder.write("rows", to_lines(rows, n));
@@ -85,7 +86,7 @@ void check_program(const Model& model, const std::string& program, const Tempora
 
 TEST_CASE("An exported header gives the network's answers in C and in C++", "[reference]") {
   const TemporaryFolder folder;
-  const Model model =
+  const TrainedModel model =
       test::make_random_model(GENERATE(std::vector<int>{4, 9, 7, 2}, std::vector<int>{2, 1}));
   folder.write("car.h", make_c_source(model, "car", SourceKind::kHeader));
   // Twice: the guard is tested too.
@@ -103,7 +104,7 @@ TEST_CASE("An exported header gives the network's answers in C and in C++", "[re
 
 TEST_CASE("An exported C source links to a program that declares its function", "[reference]") {
   const TemporaryFolder folder;
-  const Model model = test::make_random_model();
+  const TrainedModel model = test::make_random_model();
   const std::string unit = folder.write("car.c", make_c_source(model, "car", SourceKind::kSource));
   const std::string driver = folder.write(
       "main.c", make_driver("int strut_identify_car(const double in[4], double out[2]);\n", 4, 2));
@@ -117,7 +118,7 @@ TEST_CASE("An exported C source links to a program that declares its function", 
 
 TEST_CASE("Names, units and infinite intervals survive the C source", "[reference]") {
   const TemporaryFolder folder;
-  Model model = test::make_random_model();
+  TrainedModel model = test::make_random_model();
   model.inputs[0].name = "a\"b\\c?\?/ */";
   model.inputs[1].unit =
       "\xc2\xb0"
@@ -169,7 +170,7 @@ constexpr char kTimer[] = R"(int main(void) {
 )";
 
 /// us, in this program.
-double measure_identifier(const Model& model) {
+double measure_identifier(const TrainedModel& model) {
   const Identifier identifier(model);
   std::vector<double> in = model.input_map.low(), out(model.targets.size());
   double least = 1e9;
@@ -187,7 +188,7 @@ double measure_identifier(const Model& model) {
 
 TEST_CASE("A prediction of the default network takes less than 5 us", "[slow]") {
   const TemporaryFolder folder;
-  const Model model = test::make_random_model({4, 27, 19, 11, 2});
+  const TrainedModel model = test::make_random_model({4, 27, 19, 11, 2});
   folder.write("car.h", make_c_source(model, "car", SourceKind::kHeader));
   const std::string source = folder.write(
                         "main.c",

@@ -52,7 +52,7 @@ TEST_CASE("A conformal interval holds 95 of 100 new errors on average", "[statis
 }
 
 TEST_CASE("A model's intervals are in its targets' units", "[unit]") {
-  const Model model = test::make_random_model();
+  const TrainedModel model = test::make_random_model();
   const Identifier identifier(model);
   constexpr std::size_t kRows = 99;
   const std::vector<double> inputs = test::draw_inputs(model, kRows);

@@ -22,8 +22,8 @@ using Catch::Matchers::Contains;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
 
-Model make_model() {
-  Model model;
+TrainedModel make_model() {
+  TrainedModel model;
   model.sizes = {2, 3, 1};
   model.weights = make_nguyen_widrow_weights(NetworkShape(model.sizes), {}, 1);
   model.inputs = {{"pitch_angle", "rad", "angle"}, {"body_position_z", "m", "height"}};
@@ -68,7 +68,7 @@ Checkpoint make_checkpoint() {
   return checkpoint;
 }
 
-void check_same(const Model& a, const Model& b) {
+void check_same(const TrainedModel& a, const TrainedModel& b) {
   CHECK(a.sizes == b.sizes);
   CHECK(test::same_bits(a.weights, b.weights));
   CHECK(a.inputs == b.inputs);
@@ -101,8 +101,8 @@ void check_same(const Model& a, const Model& b) {
 
 TEST_CASE("A model comes back from its file as it was", "[io]") {
   const TemporaryFolder folder;
-  write_model(folder / "model.h5", make_model());
-  check_same(read_model(folder / "model.h5"), make_model());
+  write_trained_model(folder / "model.h5", make_model());
+  check_same(read_trained_model(folder / "model.h5"), make_model());
   const Hdf5Reader file(folder / "model.h5");
   CHECK(file.read_attribute("/", "stop_reason") == "validation failures");
   CHECK(file.read_attribute("/", "commit") == "abc");
@@ -139,43 +139,44 @@ TEST_CASE("What is no model, or one that does not fit itself, is refused", "[io]
   const TemporaryFolder folder;
   const fs::path file = folder / "m.h5";
   write_checkpoint(file, make_checkpoint());
-  CHECK_THROWS_WITH(read_model(file), Contains("m.h5: no model file of strut"));
-  write_model(file, make_model());
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("m.h5: no model file of strut"));
+  write_trained_model(file, make_model());
   CHECK_THROWS_WITH(read_checkpoint(file), Contains("m.h5: no checkpoint file of strut"));
-  CHECK_THROWS_WITH(read_model(folder.write("text.h5", "text")),
+  CHECK_THROWS_WITH(read_trained_model(folder.write("text.h5", "text")),
                     Contains("text.h5: damaged, or no model file"));
-  Model model = make_model();
+  TrainedModel model = make_model();
   model.weights.pop_back();
-  write_model(file, model);
-  CHECK_THROWS_WITH(read_model(file), Contains("/weights: 12; the layers have 13"));
+  write_trained_model(file, model);
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("/weights: 12; the layers have 13"));
   model = make_model();
   model.weights[3] = std::nan("");
-  write_model(file, model);
-  CHECK_THROWS_WITH(read_model(file), Contains("/weights: must be finite"));
+  write_trained_model(file, model);
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("/weights: must be finite"));
   model = make_model();
   model.target_map = Normalizer({1.0}, {1.0});
-  write_model(file, model);
-  CHECK_THROWS_WITH(read_model(file), Contains("/targets: bounds"));
+  write_trained_model(file, model);
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("/targets: bounds"));
   for (const std::vector<double>& ci95 :
        {std::vector<double>{}, std::vector<double>{-1.0}, std::vector<double>{std::nan("")}}) {
     model = make_model();
     model.ci95 = ci95;
-    write_model(file, model);
-    CHECK_THROWS_WITH(read_model(file), Contains("/ci95: must have a width for each target"));
+    write_trained_model(file, model);
+    CHECK_THROWS_WITH(read_trained_model(file),
+                      Contains("/ci95: must have a width for each target"));
   }
   model = make_model();
   model.sizes = {1, 4, 1};
-  write_model(file, model);
-  CHECK_THROWS_WITH(read_model(file), Contains("/inputs, /targets"));
+  write_trained_model(file, model);
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("/inputs, /targets"));
 }
 
 TEST_CASE("Every flipped bit of a model or a checkpoint is found", "[io][property]") {
   const TemporaryFolder folder;
   const fs::path model = folder / "m.h5", checkpoint = folder / "c.h5";
-  write_model(model, make_model());
+  write_trained_model(model, make_model());
   write_checkpoint(checkpoint, make_checkpoint());
   CHECK(test::count_missed_flips(
-            model, [&] { read_model(model); }, "`strut train`") == 0);
+            model, [&] { read_trained_model(model); }, "`strut train`") == 0);
   CHECK(test::count_missed_flips(
             checkpoint, [&] { read_checkpoint(checkpoint); }, "without --resume") == 0);
 }
@@ -191,8 +192,8 @@ void strip_seal(const fs::path& file) {
 TEST_CASE("A flipped bit in a model without a seal is an error, or changes nothing",
           "[io][property]") {
   const TemporaryFolder folder;
-  const Model truth = make_model();
-  write_model(folder / "m.h5", truth);
+  const TrainedModel truth = make_model();
+  write_trained_model(folder / "m.h5", truth);
   strip_seal(folder / "m.h5");
   const std::vector<std::byte> good = read_bytes(folder / "m.h5");
   std::mt19937 random(1);
@@ -202,7 +203,7 @@ TEST_CASE("A flipped bit in a model without a seal is an error, or changes nothi
     image[random() % image.size()] ^= std::byte{1} << (random() % 8);
     test::write_bytes(folder / "m.h5", image);
     try {
-      const Model model = read_model(folder / "m.h5");
+      const TrainedModel model = read_trained_model(folder / "m.h5");
       if (!test::same_bits(model.weights, truth.weights) || model.sizes != truth.sizes ||
           model.input_map.low() != truth.input_map.low() || model.inputs != truth.inputs ||
           model.split.seed != truth.split.seed || model.ci95 != truth.ci95 ||
@@ -219,8 +220,8 @@ TEST_CASE("A flipped bit in a model without a seal is an error, or changes nothi
 
 TEST_CASE("The intervals of a model are under its checksum", "[io]") {
   const TemporaryFolder folder;
-  const Model model = make_model();
-  write_model(folder / "m.h5", model);
+  const TrainedModel model = make_model();
+  write_trained_model(folder / "m.h5", model);
   strip_seal(folder / "m.h5");
   const std::vector<std::byte> good = read_bytes(folder / "m.h5");
   const double number = model.ci95[0];
@@ -230,16 +231,16 @@ TEST_CASE("The intervals of a model are under its checksum", "[io]") {
   REQUIRE(at != image.end());
   *at ^= std::byte{1};  // an ulp
   test::write_bytes(folder / "m.h5", image);
-  CHECK_THROWS_WITH(read_model(folder / "m.h5"), Contains("checksum"));
+  CHECK_THROWS_WITH(read_trained_model(folder / "m.h5"), Contains("checksum"));
 }
 
 TEST_CASE("A model meets a full disk and leaves what was there", "[io]") {
   const TemporaryFolder folder;
-  write_model(folder / "m.h5", make_model());
+  write_trained_model(folder / "m.h5", make_model());
   const auto before = read_bytes(folder / "m.h5");
   {
     const test::LimitedFileSize limit(1000);
-    CHECK_THROWS_AS(write_model(folder / "m.h5", make_model()), EnvironmentError);
+    CHECK_THROWS_AS(write_trained_model(folder / "m.h5", make_model()), EnvironmentError);
   }
   CHECK(read_bytes(folder / "m.h5") == before);
   CHECK(folder.file_count() == 1);

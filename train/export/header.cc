@@ -55,7 +55,7 @@ std::string list_values(const std::vector<T>& values, const std::string& indent,
 /// Writes the source of one model.
 class CSource {
  public:
-  CSource(const Model& model, const std::string& name, SourceKind kind)
+  CSource(const TrainedModel& model, const std::string& name, SourceKind kind)
       : model_(model),
         shape_(model.sizes),
         name_(name),
@@ -171,7 +171,7 @@ class CSource {
           << "  return outside;\n}\n";
   }
 
-  const Model& model_;
+  const TrainedModel& model_;
   const NetworkShape shape_;
   const std::string name_, storage_;
   std::ostringstream text_;
@@ -179,7 +179,7 @@ class CSource {
 
 }  // namespace
 
-std::string make_c_source(const Model& model, const std::string& name, SourceKind kind) {
+std::string make_c_source(const TrainedModel& model, const std::string& name, SourceKind kind) {
   return CSource(model, name, kind).write();
 }
 

@@ -20,7 +20,7 @@ enum class SourceKind {
 /// where a value of `in` lies outside of the range trained on or is NaN, 2 where one of `out` is
 /// outside as is_parameter_in_range says; 0: all is in range. Beside it functions that return
 /// names, units, ranges and intervals. `name`: the end of a C identifier.
-std::string make_c_source(const Model& model, const std::string& name, SourceKind kind);
+std::string make_c_source(const TrainedModel& model, const std::string& name, SourceKind kind);
 
 /// `text` as the end of a C identifier: ASCII letters, digits and `_` stay, else `_`.
 std::string make_c_name(const std::string& text);

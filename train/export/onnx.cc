@@ -57,7 +57,7 @@ std::string list_numbers(const std::vector<double>& values) {
 /// Writes the graph of one model node by node, each feeding the next.
 class OnnxGraph {
  public:
-  OnnxGraph(const Model& model, OnnxNumber number) : model_(model), number_(number) {}
+  OnnxGraph(const TrainedModel& model, OnnxNumber number) : model_(model), number_(number) {}
 
   ProtobufMessage write() {
     const NetworkShape shape(model_.sizes);
@@ -160,7 +160,7 @@ class OnnxGraph {
     return ProtobufMessage().add(1, std::string(name)).add(2, ProtobufMessage().add(1, tensor));
   }
 
-  const Model& model_;
+  const TrainedModel& model_;
   const OnnxNumber number_;
   ProtobufMessage graph_;
   std::string last_ = kInputName;
@@ -183,7 +183,7 @@ void add_columns(ProtobufMessage& proto, const std::string& what,
 
 }  // namespace
 
-std::string make_onnx(const Model& model, OnnxNumber number, const NamedTexts& provenance) {
+std::string make_onnx(const TrainedModel& model, OnnxNumber number, const NamedTexts& provenance) {
   ProtobufMessage proto;
   proto.add(ModelField::kIr, kIrVersion)
       .add(ModelField::kProducer, std::string("strut"))

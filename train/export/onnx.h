@@ -21,6 +21,6 @@ enum class OnnxNumber {
 /// and Add to restore. Properties (metadata_props): input_names, input_units, input_low,
 /// input_high, the same of outputs, output_ci95, each a list parted by commas, plan_hash, and
 /// `provenance`.
-std::string make_onnx(const Model& model, OnnxNumber number, const NamedTexts& provenance);
+std::string make_onnx(const TrainedModel& model, OnnxNumber number, const NamedTexts& provenance);
 
 }  // namespace strut

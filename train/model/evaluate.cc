@@ -21,7 +21,7 @@ std::vector<double> read_column(const RowStore& rows, std::size_t column) {
   return values;
 }
 
-void require_trained_on(const Model& model, const Dataset& dataset, const RowStore& usable) {
+void require_trained_on(const TrainedModel& model, const Dataset& dataset, const RowStore& usable) {
   if (dataset.plan_hash() != model.plan_hash) {
     throw InputError(
         "the data is of another plan than the model was trained on, so it has no "
@@ -36,13 +36,13 @@ void require_trained_on(const Model& model, const Dataset& dataset, const RowSto
 }
 
 /// The noise of the training, drawn anew for other cases: draws belong to row numbers.
-NoiseModel choose_noise(NoiseModel noise, const Model& model, const Dataset& dataset) {
+NoiseModel choose_noise(NoiseModel noise, const TrainedModel& model, const Dataset& dataset) {
   if (dataset.plan_hash() != model.plan_hash) ++noise.seed;
   return noise;
 }
 
 /// The model's inputs and targets, as noisy as those it was trained on.
-RowStore read_rows(const Model& model, Dataset& dataset, EvaluatedPart part,
+RowStore read_rows(const TrainedModel& model, Dataset& dataset, EvaluatedPart part,
                    const RowStoreOptions& store) {
   const bool test = part == EvaluatedPart::kTest;
   RowChoice choice{list_names(model.window ? model.window->channels : model.inputs),
@@ -74,7 +74,7 @@ RowStore read_rows(const Model& model, Dataset& dataset, EvaluatedPart part,
 
 }  // namespace
 
-RowStore predict_rows(const Model& model, const RowStore& rows, std::int64_t* out_of_range) {
+RowStore predict_rows(const TrainedModel& model, const RowStore& rows, std::int64_t* out_of_range) {
   const Predictor predictor(NetworkShape(model.sizes), model.weights);
   const std::size_t n = model.inputs.size(), m = model.targets.size();
   RowStore predicted(m);
@@ -94,11 +94,11 @@ RowStore predict_rows(const Model& model, const RowStore& rows, std::int64_t* ou
   return predicted;
 }
 
-RowStore read_test_rows(const Model& model, Dataset& dataset, const RowStoreOptions& store) {
+RowStore read_test_rows(const TrainedModel& model, Dataset& dataset, const RowStoreOptions& store) {
   return read_rows(model, dataset, EvaluatedPart::kTest, store);
 }
 
-ModelEvaluation evaluate_rows(const Model& model, const RowStore& rows) {
+ModelEvaluation evaluate_rows(const TrainedModel& model, const RowStore& rows) {
   ModelEvaluation evaluation;
   evaluation.samples = static_cast<std::int64_t>(rows.row_count());
   const RowStore predicted = predict_rows(model, rows, &evaluation.out_of_range);
@@ -110,7 +110,7 @@ ModelEvaluation evaluate_rows(const Model& model, const RowStore& rows) {
   return evaluation;
 }
 
-ModelEvaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
+ModelEvaluation evaluate_model(const TrainedModel& model, Dataset& dataset, EvaluatedPart part,
                                const RowStoreOptions& store) {
   return evaluate_rows(model, read_rows(model, dataset, part, store));
 }

@@ -23,17 +23,18 @@ struct ModelEvaluation {
 
 /// Predicted parameters of rows as recorded, the model's inputs before its targets; adds to
 /// `out_of_range` those with an input outside of those trained on.
-RowStore predict_rows(const Model& model, const RowStore& rows, std::int64_t* out_of_range);
+RowStore predict_rows(const TrainedModel& model, const RowStore& rows, std::int64_t* out_of_range);
 
 /// The rows that the model's training left aside to test it. Throws InputError as evaluate_model.
-RowStore read_test_rows(const Model& model, Dataset& dataset, const RowStoreOptions& store = {});
+RowStore read_test_rows(const TrainedModel& model, Dataset& dataset,
+                        const RowStoreOptions& store = {});
 
 /// Rows as recorded, the model's inputs before its targets.
-ModelEvaluation evaluate_rows(const Model& model, const RowStore& rows);
+ModelEvaluation evaluate_rows(const TrainedModel& model, const RowStore& rows);
 
 /// Throws InputError where the data lacks a column of the model, or is not what the model was
 /// trained on and its test part is asked for.
-ModelEvaluation evaluate_model(const Model& model, Dataset& dataset, EvaluatedPart part,
+ModelEvaluation evaluate_model(const TrainedModel& model, Dataset& dataset, EvaluatedPart part,
                                const RowStoreOptions& store = {});
 
 }  // namespace strut

@@ -46,7 +46,7 @@ Derivatives make_inputs(const Normalizer& map, const double* inputs) {
 
 }  // namespace
 
-Identifier::Identifier(const Model& model)
+Identifier::Identifier(const TrainedModel& model)
     : predictor_(NetworkShape(model.sizes), model.weights),
       weights_(model.weights),
       input_map_(model.input_map),
@@ -82,7 +82,8 @@ double calc_excess(double x, double low, double high) {
   return 0.0;
 }
 
-bool is_parameter_in_range(const Model& model, std::size_t t, double value, double half_width) {
+bool is_parameter_in_range(const TrainedModel& model, std::size_t t, double value,
+                           double half_width) {
   const double low = model.target_map.low()[t], high = model.target_map.high()[t];
   const double margin = half_width + kParameterMargin * (high - low);
   return value + margin >= low && value - margin <= high;

@@ -13,7 +13,7 @@ namespace strut {
 /// threads.
 class Identifier {
  public:
-  explicit Identifier(const Model& model);
+  explicit Identifier(const TrainedModel& model);
 
   /// `inputs`: a value for each of model.inputs; `values`: room for each of model.targets.
   /// Allocates nothing. What lies outside of the range trained on is extrapolated: see calc_excess.
@@ -40,6 +40,7 @@ inline constexpr double kParameterMargin = 0.01;
 
 /// False where the whole interval value +- half_width lies beyond the range of target `t` and that
 /// margin, or where the value is NaN.
-bool is_parameter_in_range(const Model& model, std::size_t t, double value, double half_width);
+bool is_parameter_in_range(const TrainedModel& model, std::size_t t, double value,
+                           double half_width);
 
 }  // namespace strut

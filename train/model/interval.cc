@@ -30,7 +30,7 @@ double ConformalWidth::get() const {
   return largest_.empty() ? std::numeric_limits<double>::infinity() : largest_.front();
 }
 
-std::vector<double> calc_ci95(const Model& model, const RowStore& validation) {
+std::vector<double> calc_ci95(const TrainedModel& model, const RowStore& validation) {
   const Identifier identifier(model);
   const std::size_t n = model.inputs.size(), m = model.targets.size();
   std::vector<ConformalWidth> widths(m, ConformalWidth(validation.row_count()));

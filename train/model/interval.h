@@ -37,6 +37,6 @@ class ConformalWidth {
 /// recorded, the model's inputs before its targets, that did not train it. The weights are those at
 /// the validation minimum, a choice among some hundred epochs by these very rows, so that the
 /// promise above holds not to the letter; docs/identify.md has what was measured.
-std::vector<double> calc_ci95(const Model& model, const RowStore& validation);
+std::vector<double> calc_ci95(const TrainedModel& model, const RowStore& validation);
 
 }  // namespace strut

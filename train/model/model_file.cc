@@ -55,7 +55,7 @@ void read_columns(const fs::path& path, const Hdf5Reader& file, const std::strin
   }
 }
 
-std::string calc_checksum(const Model& model) {
+std::string calc_checksum(const TrainedModel& model) {
   Checksum sum;
   sum.add(widen(model.sizes));
   sum.add(model.weights);
@@ -88,7 +88,7 @@ NoiseModel read_noise_of(const fs::path& path, const Hdf5Reader& file,
   return noise;
 }
 
-void check_model(const fs::path& path, const Model& model) {
+void check_model(const fs::path& path, const TrainedModel& model) {
   const NetworkShape shape(model.sizes);
   if (model.weights.size() != shape.weight_count) {
     fail_file(path, "/weights: " + std::to_string(model.weights.size()) + "; the layers have " +
@@ -114,7 +114,7 @@ void check_model(const fs::path& path, const Model& model) {
 
 }  // namespace
 
-void write_model(const fs::path& path, const Model& model) {
+void write_trained_model(const fs::path& path, const TrainedModel& model) {
   Hdf5Writer file(path, {.seal = SealLabel{kKind.seal}});
   const std::vector<std::int64_t> sizes = widen(model.sizes);
   file.write("/layer_sizes", std::span<const std::int64_t>(sizes),
@@ -149,10 +149,10 @@ void write_model(const fs::path& path, const Model& model) {
   file.commit();
 }
 
-Model read_model(const fs::path& path) {
+TrainedModel read_trained_model(const fs::path& path) {
   const Hdf5Reader file(path, kKind.seal);
   check_kind(path, file, kKind);
-  Model model;
+  TrainedModel model;
   for (const std::int64_t size : file.read_integers("/layer_sizes")) {
     model.sizes.push_back(to_int(path, "/layer_sizes", static_cast<double>(size)));
   }

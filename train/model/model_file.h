@@ -17,7 +17,7 @@
 
 namespace strut {
 
-struct Model {
+struct TrainedModel {
   std::vector<int> sizes;  // inputs, hidden layers, outputs
   std::vector<double> weights;
   std::vector<ColumnInfo> inputs, targets;
@@ -47,10 +47,10 @@ struct Model {
 };
 
 /// Appears whole or not at all; replaces a file of that name. Throws EnvironmentError.
-void write_model(const std::filesystem::path& path, const Model& model);
+void write_trained_model(const std::filesystem::path& path, const TrainedModel& model);
 
 /// Throws InputError that names the file and what is wrong: no model, an unknown version, a
 /// checksum or shapes that do not fit. Provenance is not read.
-Model read_model(const std::filesystem::path& path);
+TrainedModel read_trained_model(const std::filesystem::path& path);
 
 }  // namespace strut

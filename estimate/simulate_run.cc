@@ -1,11 +1,13 @@
-#include "diagnose/campaign/simulate_run.h"
+#include "estimate/simulate_run.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/error/input_error.h"
 #include "base/text/range.h"
-#include "estimate/linearize.h"
+#include "estimate/driven_batch.h"
+#include "estimate/run_prepared.h"
 #include "estimate/sampled_curve.h"
 #include "model/channel/car_channels.h"
 #include "model/error/model_error.h"
@@ -17,13 +19,11 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-bool is_of_this_run(const Unknown& u) { return u.run == kEveryRun || u.run == 0; }
-
 /// s by which simulated time is ahead of measured time.
 double find_hit_time_value(const std::vector<Unknown>& unknowns,
                            const std::vector<double>& values) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    if (unknowns[i].kind == UnknownKind::kHitTime && is_of_this_run(unknowns[i])) return values[i];
+    if (unknowns[i].kind == UnknownKind::kHitTime && belongs(unknowns[i], 0)) return values[i];
   }
   return 0.0;
 }
@@ -50,8 +50,9 @@ void read_history(const LaneRun& simulated, const EffectSettings& effects,
 /// The car in the run, with the maneuver as long as the readings need.
 Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                const std::vector<double>& values, double hit_time) {
-  Case c = run.setup;
-  set_parameters(c, unknowns, values, 0);
+  MeasuredRun changed{run.name, run.setup, {}, {}};
+  set_unknowns(changed, unknowns, values, 0);
+  Case& c = changed.setup.car();
   constexpr double kMargin = 0.02;  // s
   const Range& allowed = find_parameter("duration").allowed;
   const double last = std::min(run.times.back() + hit_time + kMargin, c.maneuver.duration);
@@ -59,8 +60,8 @@ Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
   return c;
 }
 
-RunCurves simulate_car(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
-                       const std::vector<double>& values) {
+RunCurves simulate_crossing(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                            const std::vector<double>& values) {
   RunCurves curves;
   const double hit_time = find_hit_time_value(unknowns, values);
   const LinearizeOptions options;
@@ -85,28 +86,37 @@ RunCurves simulate_car(const MeasuredRun& run, const std::vector<Unknown>& unkno
   return curves;
 }
 
-}  // namespace
-
-RunCurves simulate_run(const CampaignData& data, std::size_t run,
-                       const std::vector<Unknown>& unknowns, const std::vector<double>& values) {
+RunCurves simulate_driven(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                          const std::vector<double>& values) {
+  const DrivenTask only(run, 0, unknowns, values, {});
+  if (!only.failure.empty()) throw InputError(only.failure);
   RunCurves curves;
-  if (data.is_rig()) {
-    RigCurves rig = simulate_rig_run(data.rigs[run], 0, unknowns, values);
-    curves = {std::move(rig.failure), std::move(rig.channel)};
-  } else {
-    curves = simulate_car(data.cars[run], unknowns, values);
-  }
-  if (!curves.failure.empty()) return curves;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Unknown& u = unknowns[i];
-    if (u.kind != UnknownKind::kBias || !is_of_this_run(u)) continue;
-    for (double& value : curves.channel[static_cast<std::size_t>(u.channel)]) value += values[i];
-  }
+  simulate_tasks({only}, 1, [&](std::size_t, const DrivenResult& result) {
+    curves.failure = result.failure();
+    if (!curves.failure.empty()) return;
+    const std::size_t count = run.setup.info().channels.size();
+    curves.channel.assign(count, std::vector<double>(run.times.size()));
+    for (std::size_t c = 0; c < count; ++c) {
+      for (std::size_t t = 0; t < run.times.size(); ++t) curves.channel[c][t] = result.read(t, c);
+    }
+  });
   return curves;
 }
 
-RunCurves simulate_nominal(const CampaignData& data, std::size_t run) {
-  return simulate_run(data, run, {}, {});
+}  // namespace
+
+RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                       const std::vector<double>& values) {
+  RunCurves curves = run.setup.info().is_driven_by_inputs()
+                         ? simulate_driven(run, unknowns, values)
+                         : simulate_crossing(run, unknowns, values);
+  if (!curves.failure.empty()) return curves;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    if (u.kind != UnknownKind::kBias || !belongs(u, 0)) continue;
+    for (double& value : curves.channel[static_cast<std::size_t>(u.channel)]) value += values[i];
+  }
+  return curves;
 }
 
 }  // namespace strut

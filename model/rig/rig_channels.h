@@ -1,13 +1,7 @@
-// What a simulation of a rig reports: a list of names, units and meanings for each kind.
+// The order of a rig's channels; their names, units and meanings: rig_info.cc.
 #pragma once
 
-#include <vector>
-
-#include "model/channel/channel_info.h"
-
 namespace strut {
-
-enum class RigKind { kQuarterCar, kStrutRig, kSingleMass };
 
 struct QuarterCarChannel {
   enum : int {
@@ -55,7 +49,21 @@ struct SingleMassChannel {
   };
 };
 
-/// The channels of a kind of rig in the order of its enumeration above.
-const std::vector<ChannelInfo>& list_rig_channels(RigKind kind);
+struct GuidedMassChannel {
+  enum : int {
+    kTime,
+    kBasePosition,
+    kPosition,
+    kBaseVelocity,
+    kVelocity,
+    kBaseAcceleration,
+    kAcceleration,
+    kForce,
+    kSpringForce,
+    kDamperForce,
+    kGuideForce,
+    kCount
+  };
+};
 
 }  // namespace strut

@@ -1,5 +1,5 @@
 // Rigs fitted to what was measured: parameters of records by an integrator of the test's own.
-#include "diagnose/campaign/rig_readings.h"
+#include "estimate/driven_readings.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -89,9 +89,9 @@ TEST_CASE("Intervals of a fitted rig cover the truth as often as they say", "[st
 TEST_CASE("The Jacobian of a rig agrees with differences of its residuals", "[unit]") {
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
   const std::vector<std::size_t> runs = {0, 1};
-  std::vector<Unknown> unknowns = {make_rig_unknown(data.rigs, "stiffness"),
-                                   make_rig_unknown(data.rigs, "road_position_gain"),
-                                   make_rig_unknown(data.rigs, "sprung_position_bias")};
+  std::vector<Unknown> unknowns = {make_shared_unknown(data.runs, "stiffness"),
+                                   make_shared_unknown(data.runs, "road_position_gain"),
+                                   make_shared_unknown(data.runs, "sprung_position_bias")};
   for (Unknown& u : make_run_unknowns(data, runs, unknowns)) unknowns.push_back(u);
   const auto model = make_reading_model(data, runs, unknowns, 2);
   std::vector<double> values = list_starts(unknowns);
@@ -114,9 +114,9 @@ TEST_CASE("The Jacobian of a rig agrees with differences of its residuals", "[un
 
 TEST_CASE("Points of a rig simulated together are those simulated alone", "[property]") {
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
-  const std::vector<Unknown> unknowns = {make_rig_unknown(data.rigs, "stiffness"),
-                                         make_rig_unknown(data.rigs, "damper_leak"),
-                                         make_rig_unknown(data.rigs, "road_position_gain")};
+  const std::vector<Unknown> unknowns = {make_shared_unknown(data.runs, "stiffness"),
+                                         make_shared_unknown(data.runs, "damper_leak"),
+                                         make_shared_unknown(data.runs, "road_position_gain")};
   const auto model = make_reading_model(data, {0, 1}, unknowns, 1);
   std::vector<std::vector<double>> points;
   // Others of the run's lanes, another step, another road; and one that cannot be simulated.
@@ -140,7 +140,8 @@ TEST_CASE("A lost stroke can be read at uneven times", "[unit]") {
       read_two_runs({}, with_noise(2e-5), [](std::size_t row, std::array<std::string, 4>& cells) {
         if (row % 3 == 1) cells[0] = test::print_number(std::stod(cells[0]) + 1.2345e-4);
       });
-  const auto model = make_reading_model(data, {0}, {make_rig_unknown(data.rigs, "damper_leak")}, 1);
+  const auto model =
+      make_reading_model(data, {0}, {make_shared_unknown(data.runs, "damper_leak")}, 1);
   for (const double stroke : {0.0, 1e-4, 3e-5, 1e-5}) {
     INFO(stroke);
     const Evaluation at = model->evaluate(std::vector<double>{stroke});
@@ -151,9 +152,9 @@ TEST_CASE("A lost stroke can be read at uneven times", "[unit]") {
 
 TEST_CASE("The derivative by a stroke is not one of steps", "[reference]") {
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
-  const std::vector<Unknown> unknowns = {make_rig_unknown(data.rigs, "damper_leak")};
+  const std::vector<Unknown> unknowns = {make_shared_unknown(data.runs, "damper_leak")};
   const auto find_step = [&](double stroke) {
-    return RigCase(data.rigs[0], 0, unknowns, {stroke}, {}).sampling.step;
+    return DrivenTask(data.runs[0], 0, unknowns, {stroke}, {}).sampling.step;
   };
   double fine = 3e-5, coarse = 1e-4;
   REQUIRE(find_step(fine) < find_step(coarse));
@@ -172,23 +173,25 @@ TEST_CASE("The derivative by a stroke is not one of steps", "[reference]") {
 TEST_CASE("A lost stroke shorter than a step is felt", "[reference]") {
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
   constexpr double kStroke = 6e-5;
-  const auto model = make_reading_model(data, {0}, {make_rig_unknown(data.rigs, "damper_leak")}, 1);
+  const auto model =
+      make_reading_model(data, {0}, {make_shared_unknown(data.runs, "damper_leak")}, 1);
   const std::vector<Evaluation> points =
       model->evaluate(std::vector<std::vector<double>>{{kStroke}, {0.0}});
   const Eigen::VectorXd felt = points[0].residual - points[1].residual;
 
-  const RigRun& run = data.rigs.front();
+  const MeasuredRun& run = data.runs.front();
   StepOptions fine;
   fine.step = 1e-5;
   SamplePlan plan;
   plan.duration = run.times.back();
   plan.interval = run.times[1] - run.times[0];
-  RigSpec leaking = run.setup;
+  const RigCase& setup = run.setup.rig();
+  RigSpec leaking = setup.rig;
   set_rig_parameter(leaking, "damper_leak", kStroke);
-  const LaneResults without = simulate_rig(run.setup, run.inputs, fine, plan);
-  const LaneResults with = simulate_rig(leaking, run.inputs, fine, plan);
+  const LaneResults without = simulate_rig(setup.rig, setup.inputs, fine, plan);
+  const LaneResults with = simulate_rig(leaking, setup.inputs, fine, plan);
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(felt.size());
-  const std::size_t channels = list_rig_channels(run.setup.kind).size();
+  const std::size_t channels = run.setup.info().channels.size();
   for (std::size_t k = 0; k < model->reading_count(); ++k) {
     const ReadingPlace& place = model->readings()[k];
     const MeasuredChannel& c = run.channels[place.channel];
@@ -240,14 +243,14 @@ TEST_CASE("A held-out run is not used to fit, and tells only where it started", 
 
 TEST_CASE("The noise of an input is scaled with it", "[unit]") {
   CampaignData data = read_two_runs({}, with_noise(1e-6));
-  RigRun run = data.rigs[0];
+  MeasuredRun run = data.runs[0];
   REQUIRE(run.input_noise.size() == 1);
   run.input_noise[0].sigma = 1e-5;
   Unknown gain;
   gain.kind = UnknownKind::kInputGain;
   gain.channel = 0;
-  const RigRun scaled = set_rig_unknowns(run, {gain}, {-4.6});
-  CHECK(scaled.input_noise[0].sigma == Approx(4.6e-5).epsilon(test::tolerance(1e-12)));
+  set_unknowns(run, {gain}, {-4.6});
+  CHECK(run.input_noise[0].sigma == Approx(4.6e-5).epsilon(test::tolerance(1e-12)));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "diagnose/campaign/spread.h"
+#include "base/math/spread.h"
 
 #include <algorithm>
 #include <cmath>

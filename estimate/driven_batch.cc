@@ -1,4 +1,4 @@
-#include "diagnose/campaign/simulate_rigs.h"
+#include "estimate/driven_batch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,11 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// The sampling with as many more steps as a lost stroke of the strut takes: a short one is crossed
 /// in a fraction of a millisecond, and what a step passes over it never feels. Masses do not feel
 /// the shortest, a dynamometer's force shows them all.
-RigSampling refine(RigSampling sampling, const RigSpec& spec) {
+DrivenSampling refine(DrivenSampling sampling, const RigSpec& spec) {
   constexpr double kStepsOfContact = 4.0;
-  const double most = spec.kind == RigKind::kStrutRig ? 16.0 : 8.0;
-  const EffectValues values{spec.effects, get_model_kind(spec.kind)};
+  const RigInfo& info = get_rig_info(spec.kind);
+  const double most = info.masses.empty() ? 16.0 : 8.0;
+  const EffectValues values{spec.effects, info};
   const double play = make_strut_effect_numbers(values, "", {}).series.play;
   if (play <= 0.0) return sampling;
   const double longest = kStepsOfContact / calc_contact_rate(play);
@@ -34,19 +35,31 @@ RigSampling refine(RigSampling sampling, const RigSpec& spec) {
   return sampling;
 }
 
-bool may_share_lanes(const RigCase& a, const RigCase& b) {
+bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
   return a.failure.empty() && b.failure.empty() && a.run == b.run &&
          a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step;
 }
 
-using Take = std::function<void(std::size_t, const RigResult&)>;
+/// The run's inputs, times their gains.
+std::vector<InputSignal> scale_inputs(const DrivenTask& task) {
+  std::vector<InputSignal> scaled = task.run->setup.rig().inputs;
+  const std::vector<InputInfo>& inputs = task.run->setup.info().inputs;
+  for (InputSignal& signal : scaled) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      if (inputs[i].name == signal.channel) scale_signal(signal, task.variant.gain[i]);
+    }
+  }
+  return scaled;
+}
 
-/// Simulates cases that may share lanes, from number `first` up to `end`, together. One alone takes
+using Take = std::function<void(std::size_t, const DrivenResult&)>;
+
+/// Simulates tasks that may share lanes, from number `first` up to `end`, together. One alone takes
 /// a lane, too, so that it gives the same bits.
-void simulate_together(const std::vector<RigCase>& cases, std::size_t first, std::size_t end,
+void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, std::size_t end,
                        const Take& take) {
   constexpr double kMarginSteps = 4.0;
-  const RigCase& any = cases[first];
+  const DrivenTask& any = tasks[first];
   StepOptions step;
   step.step = any.sampling.step;
   SamplePlan plan;
@@ -56,88 +69,52 @@ void simulate_together(const std::vector<RigCase>& cases, std::size_t first, std
   plan.snapshot = false;
   std::vector<const RigSpec*> specs;
   specs.reserve(end - first);
-  for (std::size_t i = first; i < end; ++i) specs.push_back(&cases[i].variant.spec);
+  for (std::size_t i = first; i < end; ++i) specs.push_back(&tasks[i].variant.rig);
   try {
-    const LaneResults lanes =
-        list_kernels().front().run_rigs(specs.data(), static_cast<int>(specs.size()),
-                                        scale_inputs(*any.run, any.variant), step, plan);
+    const LaneResults lanes = list_kernels().front().run_rigs(
+        specs.data(), static_cast<int>(specs.size()), scale_inputs(any), step, plan);
     for (std::size_t i = first; i < end; ++i) {
-      take(i, RigResult(cases[i], lanes, static_cast<int>(i - first)));
+      take(i, DrivenResult(tasks[i], lanes, static_cast<int>(i - first)));
     }
   } catch (const ModelError& e) {
     if (end - first == 1) {
-      take(first, RigResult(any.run->name + ": " + e.what()));
+      take(first, DrivenResult(any.run->name + ": " + e.what()));
       return;
     }
-    for (std::size_t i = first; i < end; ++i) simulate_together(cases, i, i + 1, take);
+    for (std::size_t i = first; i < end; ++i) simulate_together(tasks, i, i + 1, take);
   }
 }
 
 }  // namespace
 
-double calc_fastest_mode(const RigSpec& spec) {
-  switch (spec.kind) {
-    case RigKind::kQuarterCar:
-      return std::sqrt((spec.stiffness + spec.tire_stiffness) / spec.unsprung_mass);
-    case RigKind::kSingleMass:
-      return std::sqrt(spec.stiffness / spec.sprung_mass);
-    case RigKind::kStrutRig:
-      break;
-  }
-  return 0.0;
-}
-
-void scale_signal(InputSignal& signal, double factor) {
-  for (SignalCell& cell : signal.cells) {
-    for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
-  }
-}
-
-bool belongs(const Unknown& u, int run) { return u.run == kEveryRun || u.run == run; }
-
-RigVariant make_variant(const RigRun& run, int index, const std::vector<Unknown>& unknowns,
-                        const std::vector<double>& values) {
-  RigVariant variant{run.setup, {}};
+DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
+                           const std::vector<Unknown>& unknowns,
+                           const std::vector<double>& values) {
+  DrivenVariant variant{run.setup.rig().rig, {}};
   variant.gain.fill(1.0);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
     if (!belongs(u, index)) continue;
-    if (u.kind == UnknownKind::kParameter) set_rig_parameter(variant.spec, u.name, values[i]);
+    if (u.kind == UnknownKind::kParameter) set_rig_parameter(variant.rig, u.name, values[i]);
     if (u.kind == UnknownKind::kForceMap) {
-      add_map_part(variant.spec.force_maps, *u.part, values[i]);
+      add_map_part(variant.rig.force_maps, *u.part, values[i]);
     }
     if (u.kind == UnknownKind::kInputGain) {
       variant.gain[static_cast<std::size_t>(u.channel)] *= values[i];
     }
     if (u.kind == UnknownKind::kInitialState) {
-      const bool rate = u.channel >= kRigCoordinates;
-      const auto at = static_cast<std::size_t>(u.channel - (rate ? kRigCoordinates : 0));
-      (rate ? variant.spec.initial_velocity : variant.spec.initial_position)[at] = values[i];
+      set_initial_state(variant.rig, u.channel, values[i]);
     }
   }
   return variant;
 }
 
-double get_gain(const RigVariant& variant, const std::string& input) {
-  const std::vector<RigInputInfo>& inputs = list_rig_inputs(variant.spec.kind);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i].name == input) return variant.gain[i];
-  }
-  return 1.0;
-}
-
-std::vector<InputSignal> scale_inputs(const RigRun& run, const RigVariant& variant) {
-  std::vector<InputSignal> scaled = run.inputs;
-  for (InputSignal& signal : scaled) scale_signal(signal, get_gain(variant, signal.channel));
-  return scaled;
-}
-
-RigSampling choose_sampling(const RigRun& run, const RigOptions& options) {
+DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& options) {
   const double n = static_cast<double>(run.times.size() - 1);
-  const double mean = run.times.back() / n, mode = calc_fastest_mode(run.setup);
+  const double mean = run.times.back() / n, mode = run.setup.calc_fastest_mode();
   const double longest =
       mode > 0.0 ? std::min(options.longest_step, 0.1 / mode) : options.longest_step;
-  RigSampling s;
+  DrivenSampling s;
   s.even = true;
   for (std::size_t i = 0; i < run.times.size() && s.even; ++i) {
     s.even = std::abs(run.times[i] - mean * static_cast<double>(i)) < 1e-6 * mean;
@@ -147,21 +124,22 @@ RigSampling choose_sampling(const RigRun& run, const RigOptions& options) {
   return s;
 }
 
-RigCase::RigCase(const RigRun& of, int index, const std::vector<Unknown>& unknowns,
-                 const std::vector<double>& values, const RigOptions& options)
+DrivenTask::DrivenTask(const MeasuredRun& of, std::size_t index,
+                       const std::vector<Unknown>& unknowns, const std::vector<double>& values,
+                       const LinearizeOptions& options)
     : run(&of) {
   try {
     variant = make_variant(of, index, unknowns, values);
-    sampling = refine(choose_sampling(of, options), variant.spec);
+    sampling = refine(choose_sampling(of, options), variant.rig);
   } catch (const InputError& e) {  // out of a parameter's range
     failure = of.name + ": " + e.what();
   }
 }
 
-RigResult::RigResult(const RigCase& of, const LaneResults& results, int lane)
+DrivenResult::DrivenResult(const DrivenTask& of, const LaneResults& results, int lane)
     : run_(of.run),
       sampling_(of.sampling),
-      channels_(list_rig_channels(of.run->setup.kind).size()),
+      channels_(of.run->setup.info().channels.size()),
       count_(static_cast<std::size_t>(results.sample_count)) {
   const auto at = static_cast<std::size_t>(lane), lanes = static_cast<std::size_t>(results.lanes);
   if (results.status[at] != 0) {
@@ -172,10 +150,10 @@ RigResult::RigResult(const RigCase& of, const LaneResults& results, int lane)
   }
   history_.resize(count_ * channels_);
   for (std::size_t i = 0; i < history_.size(); ++i) history_[i] = results.history[i * lanes + at];
-  read_sensors(of.variant.spec);
+  read_sensors(of.variant.rig);
 }
 
-double RigResult::read(std::size_t time, std::size_t channel) const {
+double DrivenResult::read(std::size_t time, std::size_t channel) const {
   const auto get = [&](std::size_t sample) { return history_[sample * channels_ + channel]; };
   if (sampling_.even) return time < count_ ? get(time) : kNan;
   const double at = run_->times[time] / sampling_.interval;
@@ -185,31 +163,31 @@ double RigResult::read(std::size_t time, std::size_t channel) const {
 }
 
 /// Replaces what the channels are by what their sensors read.
-void RigResult::read_sensors(const RigSpec& spec) {
+void DrivenResult::read_sensors(const RigSpec& spec) {
   if (spec.effects.empty()) return;
   for (std::size_t c = 0; c < channels_; ++c) {
     std::vector<double> series(count_);
     for (std::size_t i = 0; i < count_; ++i) series[i] = history_[i * channels_ + c];
-    series = read_sensor(spec.effects, list_rig_channels(spec.kind)[c].name, sampling_.interval,
+    series = read_sensor(spec.effects, get_rig_info(spec.kind).channels[c].name, sampling_.interval,
                          std::move(series));
     for (std::size_t i = 0; i < count_; ++i) history_[i * channels_ + c] = series[i];
   }
 }
 
-void simulate_cases(const std::vector<RigCase>& cases, int threads, const Take& take) {
+void simulate_tasks(const std::vector<DrivenTask>& tasks, int threads, const Take& take) {
   const auto width = static_cast<std::size_t>(list_kernels().front().lanes);
   std::vector<std::size_t> begin;  // of each batch
-  for (std::size_t i = 0; i < cases.size(); ++i) {
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
     const bool joins = !begin.empty() && i - begin.back() < width &&
-                       may_share_lanes(cases[begin.back()], cases[i]);
+                       may_share_lanes(tasks[begin.back()], tasks[i]);
     if (!joins) begin.push_back(i);
   }
   share_items(threads, begin.size(), [&](std::size_t k, int /*thread*/) {
-    const std::size_t first = begin[k], end = k + 1 < begin.size() ? begin[k + 1] : cases.size();
-    if (cases[first].failure.empty()) {
-      simulate_together(cases, first, end, take);
+    const std::size_t first = begin[k], end = k + 1 < begin.size() ? begin[k + 1] : tasks.size();
+    if (tasks[first].failure.empty()) {
+      simulate_together(tasks, first, end, take);
     } else {
-      take(first, RigResult(cases[first].failure));
+      take(first, DrivenResult(tasks[first].failure));
     }
   });
 }

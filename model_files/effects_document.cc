@@ -1,6 +1,8 @@
 #include <sstream>
 
 #include "model/effects/catalogue.h"
+#include "model/model.h"
+#include "model_files/model_tables.h"
 
 namespace strut {
 namespace {
@@ -54,10 +56,8 @@ std::string describe_places(const EffectInfo& effect) {
 
 std::string describe_models(const EffectParameter& parameter) {
   std::string text;
-  for (const ModelKind kind : list_model_kinds()) {
-    if (contains(parameter.models, kind)) {
-      text += (text.empty() ? "" : ", ") + get_model_kind_name(kind);
-    }
+  for (const ModelInfo* model : list_models()) {
+    if (parameter.exists_in(*model)) text += (text.empty() ? "" : ", ") + model->name;
   }
   return text;
 }

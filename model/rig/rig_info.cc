@@ -1,0 +1,261 @@
+#include "model/rig/rig_info.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/text/format_number.h"
+#include "model/error/model_error.h"
+
+namespace strut {
+namespace {
+
+constexpr double kEarthGravity = 9.81;  // m/s^2, as for the car
+
+RigField make_field(const std::string& name, const std::string& unit, double high,
+                    const std::string& description, double RigSpec::*field) {
+  RigField f;
+  f.name = name;
+  f.unit = unit;
+  f.allowed = {.low = 0.0, .high = high, .open_low = true, .unit = unit};
+  f.description = description;
+  f.field = field;
+  return f;
+}
+
+/// One that a file need not give. A search from zero begins with a unit of it.
+RigField make_optional(const std::string& name, const std::string& unit, double high,
+                       const std::string& description, double default_value,
+                       double RigSpec::*field) {
+  RigField f = make_field(name, unit, high, description, field);
+  f.allowed.open_low = false;
+  f.default_value = default_value;
+  f.typical = 1.0;
+  return f;
+}
+
+RigField make_gravity(double default_value) {
+  return make_optional("gravity", "m/s^2", 100.0, "gravity along the guide", default_value,
+                       &RigSpec::gravity);
+}
+
+StateInfo make_deflection(const std::string& name, ChannelSum sum) {
+  return {StateKind::kDeflection, "", name, "m", std::move(sum)};
+}
+StateInfo make_velocity(const std::string& name, ChannelSum sum) {
+  return {StateKind::kVelocity, "", name, "m/s", std::move(sum)};
+}
+
+// --- quarter_car -----------------------------------------------------------------------------
+
+std::vector<RigField> list_quarter_car_fields() {
+  using S = RigSpec;
+  return {make_field("sprung_mass", "kg", 1e5, "mass on the strut", &S::sprung_mass),
+          make_field("unsprung_mass", "kg", 1e5, "mass between strut and tire", &S::unsprung_mass),
+          make_field("stiffness", "N/m", 1e8, "rate of the strut's spring", &S::stiffness),
+          make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
+          make_field("tire_stiffness", "N/m", 1e8, "vertical rate of the tire", &S::tire_stiffness),
+          make_optional("tire_damping", "N s/m", 1e6, "vertical damping of the tire", 0.0,
+                        &S::tire_damping),
+          make_gravity(kEarthGravity)};
+}
+
+RigInfo make_quarter_car() {
+  using C = QuarterCarChannel;
+  RigInfo info;
+  info.kind = RigKind::kQuarterCar;
+  info.name = "quarter_car";
+  info.parts = kHasTire | kHasGroundInput | kHasSprungMass;
+  info.channels = {{"time", "s", "time since the start"},
+                   {"road_position", "m", "height of the road under the tire"},
+                   {"unsprung_position", "m", "unsprung mass, from rest"},
+                   {"sprung_position", "m", "sprung mass, from rest"},
+                   {"road_velocity", "m/s", "rate of road_position"},
+                   {"unsprung_velocity", "m/s", "unsprung mass"},
+                   {"sprung_velocity", "m/s", "sprung mass"},
+                   {"road_acceleration", "m/s^2", "rate of road_velocity"},
+                   {"unsprung_acceleration", "m/s^2", "unsprung mass, gravity not included"},
+                   {"sprung_acceleration", "m/s^2", "sprung mass, gravity not included"},
+                   {"actuator_force", "N", "between the masses, pushes them apart"},
+                   {"spring_force", "N", "strut's spring, positive in compression"},
+                   {"damper_force", "N", "strut's damper, positive in compression"},
+                   {"tire_force", "N", "of the road on the tire, upwards, static load included"}};
+  info.inputs = {{.name = "road_position",
+                  .unit = "m",
+                  .description = "height of the road",
+                  .is_ground = true},
+                 {.name = "actuator_force",
+                  .unit = "N",
+                  .description = "pushes the masses apart",
+                  .is_command = true}};
+  info.masses = {{C::kUnsprungPosition, C::kUnsprungVelocity},
+                 {C::kSprungPosition, C::kSprungVelocity}};
+  const ChannelSum deflection = {{C::kUnsprungPosition, 1.0}, {C::kSprungPosition, -1.0}};
+  const ChannelSum velocity = {{C::kUnsprungVelocity, 1.0}, {C::kSprungVelocity, -1.0}};
+  info.struts = {{"", "suspension_deflection", "suspension_velocity", deflection, velocity,
+                  C::kSpringForce, C::kDamperForce}};
+  info.states = {make_deflection("suspension_deflection", deflection),
+                 make_velocity("suspension_velocity", velocity),
+                 {StateKind::kTireLoad, "", "tire_load", "N", {{C::kTireForce, 1.0}}}};
+  info.fields = list_quarter_car_fields();
+  info.calc_fastest_mode = [](const RigSpec& spec) {
+    return std::sqrt((spec.stiffness + spec.tire_stiffness) / spec.unsprung_mass);
+  };
+  return info;
+}
+
+// --- strut_rig -------------------------------------------------------------------------------
+
+std::vector<RigField> list_strut_rig_fields() {
+  using S = RigSpec;
+  return {make_optional("stiffness", "N/m", 1e8, "rate of the strut's spring", 0.0, &S::stiffness),
+          make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
+          make_optional("temperature", "K", 1000.0, "temperature where no input gives it", 293.15,
+                        &S::temperature)};
+}
+
+RigInfo make_strut_rig() {
+  using C = StrutRigChannel;
+  RigInfo info;
+  info.kind = RigKind::kStrutRig;
+  info.name = "strut_rig";
+  info.parts = kHasDamperTemperature | kHasStaticForce;
+  info.channels = {{"time", "s", "time since the start"},
+                   {"displacement", "m", "compression of the strut"},
+                   {"velocity", "m/s", "rate of displacement"},
+                   {"force", "N", "of the whole strut, positive in compression"},
+                   {"spring_force", "N", "strut's spring, positive in compression"},
+                   {"damper_force", "N", "strut's damper, positive in compression"},
+                   {"temperature", "K", "of the damper, as given"}};
+  info.inputs = {
+      {.name = "displacement",
+       .unit = "m",
+       .description = "compression of the strut",
+       .required = true},
+      {.name = "temperature", .unit = "K", .description = "of the damper", .moves = false}};
+  const ChannelSum deflection = {{C::kDisplacement, 1.0}}, velocity = {{C::kVelocity, 1.0}};
+  info.struts = {
+      {"", "displacement", "velocity", deflection, velocity, C::kSpringForce, C::kDamperForce}};
+  info.states = {make_deflection("displacement", deflection), make_velocity("velocity", velocity)};
+  info.stand_force = C::kForce;
+  info.fields = list_strut_rig_fields();
+  info.calc_fastest_mode = [](const RigSpec&) { return 0.0; };
+  return info;
+}
+
+// --- single_mass -----------------------------------------------------------------------------
+
+double calc_mode_of_one_mass(const RigSpec& spec) {
+  return std::sqrt(spec.stiffness / spec.sprung_mass);
+}
+
+std::vector<RigField> list_single_mass_fields() {
+  using S = RigSpec;
+  return {
+      make_field("mass", "kg", 1e5, "the mass on the guide", &S::sprung_mass),
+      make_optional("stiffness", "N/m", 1e8, "rate of the spring to ground", 0.0, &S::stiffness),
+      make_optional("damping", "N s/m", 1e6, "rate of the damper to ground", 0.0, &S::damping),
+      make_gravity(0.0)};
+}
+
+RigInfo make_single_mass() {
+  using C = SingleMassChannel;
+  RigInfo info;
+  info.kind = RigKind::kSingleMass;
+  info.name = "single_mass";
+  info.parts = kHasSprungMass;
+  info.channels = {{"time", "s", "time since the start"},
+                   {"position", "m", "from rest"},
+                   {"velocity", "m/s", "rate of position"},
+                   {"acceleration", "m/s^2", "rate of velocity"},
+                   {"force", "N", "applied to the mass, as given"},
+                   {"spring_force", "N", "spring to ground, positive in compression"},
+                   {"damper_force", "N", "damper to ground, positive in compression"}};
+  info.inputs = {{.name = "force", .unit = "N", .description = "on the mass, along its position"}};
+  info.masses = {{C::kPosition, C::kVelocity}};
+  // Compressed as the mass comes down.
+  info.struts = {{"",
+                  "deflection",
+                  "deflection_velocity",
+                  {{C::kPosition, -1.0}},
+                  {{C::kVelocity, -1.0}},
+                  C::kSpringForce,
+                  C::kDamperForce}};
+  info.states = {make_deflection("position", {{C::kPosition, 1.0}}),
+                 make_velocity("velocity", {{C::kVelocity, 1.0}})};
+  info.fields = list_single_mass_fields();
+  info.calc_fastest_mode = calc_mode_of_one_mass;
+  return info;
+}
+
+// --- guided_mass -----------------------------------------------------------------------------
+
+std::vector<RigField> list_guided_mass_fields() {
+  using S = RigSpec;
+  std::vector<RigField> fields = {
+      make_field("mass", "kg", 1e5, "the mass on the guide", &S::sprung_mass),
+      make_field("stiffness", "N/m", 1e8, "rate of the spring to the base", &S::stiffness),
+      make_optional("damping", "N s/m", 1e6, "rate of the damper to the base", 0.0, &S::damping),
+      make_optional("guide_friction", "N", 1e5, "dry friction between mass and guide", 0.0,
+                    &S::guide_friction),
+      make_optional("guide_speed", "m/s", 10.0, "speed at which 76 % of the guide's friction act",
+                    0.01, &S::guide_speed),
+      make_gravity(0.0)};
+  fields[4].allowed.open_low = true;
+  return fields;
+}
+
+RigInfo make_guided_mass() {
+  using C = GuidedMassChannel;
+  RigInfo info;
+  info.kind = RigKind::kGuidedMass;
+  info.name = "guided_mass";
+  info.parts = kHasGroundInput | kHasSprungMass;
+  info.channels = {{"time", "s", "time since the start"},
+                   {"base_position", "m", "height of the base under the strut"},
+                   {"position", "m", "of the mass, from rest"},
+                   {"base_velocity", "m/s", "rate of base_position"},
+                   {"velocity", "m/s", "rate of position"},
+                   {"base_acceleration", "m/s^2", "rate of base_velocity"},
+                   {"acceleration", "m/s^2", "rate of velocity, gravity not included"},
+                   {"force", "N", "applied to the mass, as given"},
+                   {"spring_force", "N", "strut's spring, positive in compression"},
+                   {"damper_force", "N", "strut's damper, positive in compression"},
+                   {"guide_force", "N", "friction of the guide on the mass, upwards"}};
+  info.inputs = {{.name = "base_position",
+                  .unit = "m",
+                  .description = "height of the base",
+                  .is_ground = true},
+                 {.name = "force", .unit = "N", .description = "on the mass, along its position"}};
+  info.masses = {{C::kPosition, C::kVelocity}};
+  const ChannelSum deflection = {{C::kBasePosition, 1.0}, {C::kPosition, -1.0}};
+  const ChannelSum velocity = {{C::kBaseVelocity, 1.0}, {C::kVelocity, -1.0}};
+  info.struts = {{"", "strut_deflection", "strut_velocity", deflection, velocity, C::kSpringForce,
+                  C::kDamperForce}};
+  info.states = {make_deflection("strut_deflection", deflection),
+                 make_velocity("strut_velocity", velocity),
+                 {StateKind::kGuideVelocity, "", "velocity", "m/s", {{C::kVelocity, 1.0}}}};
+  info.fields = list_guided_mass_fields();
+  info.calc_fastest_mode = calc_mode_of_one_mass;
+  return info;
+}
+
+}  // namespace
+
+const std::vector<RigInfo>& list_rigs() {
+  static const std::vector<RigInfo> rigs = {make_quarter_car(), make_strut_rig(),
+                                            make_single_mass(), make_guided_mass()};
+  return rigs;
+}
+
+void validate(const RigSpec& spec) {
+  const RigInfo& rig = get_rig_info(spec.kind);
+  for (const RigField& field : rig.fields) {
+    const double value = spec.*field.field;
+    if (field.allowed.contains(value)) continue;
+    throw ModelError(field.name + " = " + format_number(value) + ": " + field.allowed.describe());
+  }
+  validate(spec.effects, rig);
+  validate(spec.force_maps, rig);
+}
+
+}  // namespace strut
