@@ -77,12 +77,12 @@ int run_compare(const Arguments& arguments) {
     return compare_campaign(data, threads);
   }();
   tell(comparison);
-  const std::string json = make_compare_json(data, comparison).dump() + "\n";
+  const std::string json = format_json(make_compare_json(data, comparison)) + "\n";
   {
     const InterruptGuard guard;
     clear_page_folder(folder, folder.json());
     const std::vector<std::string> tables = write_compare_tables(folder, data, comparison);
-    tell_notes(write_compare_report(folder, data, comparison, tables));
+    write_compare_report(folder, data, comparison, tables);
     write_text_file_inside(folder.root, folder.json(), json);
     tell_detail("written: " + folder.json().string() + ", " + folder.report().string());
   }

@@ -141,7 +141,7 @@ int run_design(const Arguments& arguments) {
     write_design_csv(arguments.text("csv"), report);
   }
   if (arguments.is_on("json")) {
-    std::cout << make_design_json(report).dump() << "\n";
+    std::cout << format_json(make_design_json(report)) << "\n";
   } else {
     print_design(report);
   }

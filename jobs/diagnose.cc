@@ -98,13 +98,13 @@ int run_diagnose(const Arguments& arguments) {
   tell_notes(data.notes);
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
   tell_notes(diagnosis.notes);
-  const std::string json = make_verdict_json(data, diagnosis).dump() + "\n";
+  const std::string json = format_json(make_verdict_json(data, diagnosis)) + "\n";
   {
     const InterruptGuard guard;
     clear_page_folder(folder, folder.verdict());
     write_extended_model(folder, data, diagnosis);
     const std::vector<std::string> tables = write_diagnose_tables(folder, data, diagnosis);
-    tell_notes(write_diagnose_report(folder, data, diagnosis, tables));
+    write_diagnose_report(folder, data, diagnosis, tables);
     write_text_file_inside(folder.root, folder.verdict(), json);
     tell_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
   }

@@ -85,13 +85,12 @@ Findings examine(const Arguments& arguments, const fs::path& root) {
 Json make_json(const Findings& findings) {
   Json list = Json::array();
   for (const Finding& f : findings) {
-    list.push(Json::object()
-                  .set("check", f.check)
-                  .set("health", get_name(f.health))
-                  .set("found", f.found)
-                  .set("meaning", f.meaning));
+    list.push_back(Json{{"check", f.check},
+                        {"health", get_name(f.health)},
+                        {"found", f.found},
+                        {"meaning", f.meaning}});
   }
-  return Json::object().set("checks", list);
+  return Json{{"checks", list}};
 }
 
 void print_text(const Findings& findings) {
@@ -147,7 +146,7 @@ int run_doctor(const Arguments& arguments) {
     throw InputError(root.string() + ": must be a folder; one that shall hold a sweep will do");
   const Findings findings = examine(arguments, fs::canonical(root));
   if (arguments.is_on("json")) {
-    std::cout << make_json(findings).dump() << "\n";
+    std::cout << format_json(make_json(findings)) << "\n";
   } else {
     print_text(findings);
   }

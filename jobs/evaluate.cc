@@ -19,17 +19,17 @@ Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation) {
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const Metrics& m = evaluation.metrics[i];
     Json values = Json::object();
-    values.set("ME", m.largest_error)
-        .set("MAE", m.mean_absolute_error)
-        .set("MAPE", m.mean_absolute_percentage)
-        .set("RMSE", m.rms_error)
-        .set("R2", m.r2);
-    parameters.set(model.targets[i].name, values);
+    values["ME"] = m.largest_error;
+    values["MAE"] = m.mean_absolute_error;
+    values["MAPE"] = m.mean_absolute_percentage;
+    values["RMSE"] = m.rms_error;
+    values["R2"] = m.r2;
+    parameters[model.targets[i].name] = values;
   }
   Json json = Json::object();
-  json.set("parameters", parameters)
-      .set("samples", static_cast<long>(evaluation.samples))
-      .set("out_of_range", static_cast<long>(evaluation.out_of_range));
+  json["parameters"] = parameters;
+  json["samples"] = evaluation.samples;
+  json["out_of_range"] = evaluation.out_of_range;
   return json;
 }
 
@@ -96,7 +96,7 @@ int run_evaluate(const Arguments& arguments) {
     return evaluate_model(model, dataset, part);
   }();
   if (arguments.is_on("json")) {
-    std::cout << make_json(model, evaluation).dump() << "\n";
+    std::cout << format_json(make_json(model, evaluation)) << "\n";
   } else {
     std::cout << format_count(evaluation.samples)
               << (all ? " cases\n" : " cases of the test part\n");

@@ -46,8 +46,8 @@ Json make_json(const std::optional<double>& value) { return value ? Json(*value)
 
 Json make_json(const Range& range) {
   Json bounds = Json::array();
-  bounds.push(range.low);
-  bounds.push(range.high);
+  bounds.push_back(range.low);
+  bounds.push_back(range.high);
   return bounds;
 }
 
@@ -75,15 +75,15 @@ Json make_parameters_json(const ModelTables& model) {
   for (const ListedParameter& listed : model.parameters) {
     const Parameter& p = *listed.parameter;
     Json json = Json::object();
-    json.set("name", p.name)
-        .set("unit", p.unit)
-        .set("default", make_json(p.default_value))
-        .set("value", make_json(listed.value))
-        .set("range", make_json(p.allowed))
-        .set("effect", p.is_effect)
-        .set("source", p.source)
-        .set("meaning", p.description);
-    list.push(json);
+    json["name"] = p.name;
+    json["unit"] = p.unit;
+    json["default"] = make_json(p.default_value);
+    json["value"] = make_json(listed.value);
+    json["range"] = make_json(p.allowed);
+    json["effect"] = p.is_effect;
+    json["source"] = p.source;
+    json["meaning"] = p.description;
+    list.push_back(json);
   }
   return list;
 }
@@ -106,8 +106,11 @@ Json make_channels_json(const ModelTables& model) {
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& meaning,
                        const char* role) {
     Json json = Json::object();
-    json.set("name", name).set("unit", unit).set("role", role).set("meaning", meaning);
-    list.push(json);
+    json["name"] = name;
+    json["unit"] = unit;
+    json["role"] = role;
+    json["meaning"] = meaning;
+    list.push_back(json);
   };
   for (const ChannelInfo& c : model.model->channels) add(c.name, c.unit, c.description, "output");
   for (const InputInfo& i : model.model->inputs) add(i.name, i.unit, i.description, "input");
@@ -143,21 +146,21 @@ Json make_effects_json(const ModelInfo& model) {
     Json parameters = Json::array();
     for (const EffectParameter* p : list_effect_parameters(*effect, model)) {
       Json json = Json::object();
-      json.set("name", p->name)
-          .set("unit", p->unit)
-          .set("default", p->neutral)
-          .set("range", make_json(between(p->low, p->high)))
-          .set("meaning", p->description);
-      parameters.push(json);
+      json["name"] = p->name;
+      json["unit"] = p->unit;
+      json["default"] = p->neutral;
+      json["range"] = make_json(between(p->low, p->high));
+      json["meaning"] = p->description;
+      parameters.push_back(json);
     }
     Json json = Json::object();
-    json.set("name", effect->name)
-        .set("places", Json::texts(list_effect_places(*effect, model)))
-        .set("parameters", parameters)
-        .set("equation", effect->equation)
-        .set("source", effect->source)
-        .set("meaning", effect->description);
-    list.push(json);
+    json["name"] = effect->name;
+    json["places"] = Json(list_effect_places(*effect, model));
+    json["parameters"] = parameters;
+    json["equation"] = effect->equation;
+    json["source"] = effect->source;
+    json["meaning"] = effect->description;
+    list.push_back(json);
   }
   return list;
 }
@@ -174,8 +177,9 @@ Json make_commands_json() {
   Json list = Json::array();
   for (const Command& command : list_commands()) {
     Json json = Json::object();
-    json.set("name", command.name).set("meaning", command.purpose);
-    list.push(json);
+    json["name"] = command.name;
+    json["meaning"] = command.purpose;
+    list.push_back(json);
   }
   return list;
 }
@@ -214,7 +218,7 @@ int run_list(const Arguments& arguments) {
   const bool as_json = arguments.is_on("json");
   const auto print = [&](const Json& json, const auto& print_text) {
     if (as_json) {
-      std::cout << json.dump() << "\n";
+      std::cout << format_json(json) << "\n";
     } else {
       print_text();
     }

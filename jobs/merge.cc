@@ -32,13 +32,13 @@ MergeInput make_input(const Plan& plan) {
 void print(const MergeReport& report, const fs::path& output, bool as_json) {
   if (as_json) {
     Json json = Json::object();
-    json.set("file", output.string())
-        .set("cases", static_cast<long>(report.cases))
-        .set("failed", static_cast<long>(report.failed))
-        .set("shards", static_cast<long>(report.shards))
-        .set("missing_shards", static_cast<long>(report.missing))
-        .set("data_digest", report.data_digest);
-    std::cout << json.dump() << "\n";
+    json["file"] = output.string();
+    json["cases"] = report.cases;
+    json["failed"] = report.failed;
+    json["shards"] = report.shards;
+    json["missing_shards"] = report.missing;
+    json["data_digest"] = report.data_digest;
+    std::cout << format_json(json) << "\n";
     return;
   }
   std::cout << output.string() << ": " << format_count(report.cases) << " cases ("

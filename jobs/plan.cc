@@ -70,26 +70,23 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
                 const std::optional<SweepFolder>& folder) {
   Json layers = Json::array();
   for (const Layer& layer : plan.layers()) {
-    layers.push(Json::object()
-                    .set("lower", layer.lower)
-                    .set("upper", layer.upper)
-                    .set("population", static_cast<long>(layer.population))
-                    .set("drawn", static_cast<long>(layer.drawn)));
+    layers.push_back(Json{{"lower", layer.lower},
+                          {"upper", layer.upper},
+                          {"population", layer.population},
+                          {"drawn", layer.drawn}});
   }
-  std::cout << Json::object()
-                   .set("points", static_cast<long>(plan.point_count()))
-                   .set("cases", static_cast<long>(plan.case_count()))
-                   .set("by", plan.request().sample.by)
-                   .set("layers", layers)
-                   .set("shuffled", plan.request().shuffle)
-                   .set("shards", static_cast<long>(plan.shard_count()))
-                   .set("shard_cases", plan.request().shard_cases)
-                   .set("estimated_seconds", estimate.seconds)
-                   .set("estimated_bytes", estimate.bytes)
-                   .set("cores", estimate.cores)
-                   .set("plan_hash", plan.hash())
-                   .set("folder", folder ? Json(folder->root.string()) : Json())
-                   .dump()
+  std::cout << format_json(Json{{"points", plan.point_count()},
+                                {"cases", plan.case_count()},
+                                {"by", plan.request().sample.by},
+                                {"layers", layers},
+                                {"shuffled", plan.request().shuffle},
+                                {"shards", plan.shard_count()},
+                                {"shard_cases", plan.request().shard_cases},
+                                {"estimated_seconds", estimate.seconds},
+                                {"estimated_bytes", estimate.bytes},
+                                {"cores", estimate.cores},
+                                {"plan_hash", plan.hash()},
+                                {"folder", folder ? Json(folder->root.string()) : Json()}})
             << "\n";
 }
 

@@ -19,27 +19,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a report made, and what it could not.
-struct Written {
-  fs::path file;
-  std::vector<std::string> notes;
-};
-
-Written report_study(const fs::path& root) {
+/// Each returns the page that it wrote.
+fs::path report_study(const fs::path& root) {
   const StudyFolder folder{root.lexically_normal()};
-  return {folder.report(), write_study_output(folder, open_study_folder(folder)).notes};
+  write_study_output(folder, open_study_folder(folder));
+  return folder.report();
 }
 
-Written report_sweep(const fs::path& root) {
+fs::path report_sweep(const fs::path& root) {
   const SweepFolder folder{root.lexically_normal()};
-  return {folder.root / "report.html", write_sweep_report(folder)};
+  write_sweep_report(folder);
+  return folder.root / "report.html";
 }
 
 /// What keeps its page: written anew.
-Written report_page(const fs::path& root) {
+fs::path report_page(const fs::path& root) {
   const PageFolder folder{root.lexically_normal()};
   write_page_again(folder);
-  return {folder.report(), {}};
+  return folder.report();
 }
 
 const FolderContent& require_content(const fs::path& root) {
@@ -52,7 +49,7 @@ const FolderContent& require_content(const fs::path& root) {
                    join_names(names));
 }
 
-Written report(const FolderContent& content, const fs::path& root) {
+fs::path report(const FolderContent& content, const fs::path& root) {
   if (&content == &kStudyContent) return report_study(root);
   if (&content == &kSweepContent) return report_sweep(root);
   return report_page(root);
@@ -65,9 +62,9 @@ Arguments describe_report() {
       "strut report DIR",
       "Writes DIR/report.html, one file that needs no other, about the study, sweep, comparison,\n"
       "diagnosis or simulated run in DIR, from what is there: no case is simulated, no network\n"
-      "trained; of a sweep only the few runs by which its sensitivities are told. Of a study and "
-      "a\n"
-      "sweep, charts are also in DIR/figures as SVG, their numbers as CSV.",
+      "trained; of a sweep only the few runs by which its sensitivities are told. The numbers of "
+      "the\n"
+      "charts are also in DIR/figures as CSV.",
       "  strut report study\n  strut report cars\n  strut report diagnosis");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;
@@ -80,13 +77,12 @@ int run_report(const Arguments& arguments) {
   }
   const fs::path root = names.front();
   const FolderContent& content = require_content(root);
-  const Written written = [&] {
+  const fs::path page = [&] {
     const ProgressLine line(std::string("writing the report of a ") + content.name);
     return report(content, root);
   }();
-  tell_notes(written.notes);
-  std::cout << written.file.string() << "\n";
-  tell_next_page(written.file.string());
+  std::cout << page.string() << "\n";
+  tell_next_page(page.string());
   return kExitDone;
 }
 

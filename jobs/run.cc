@@ -99,29 +99,29 @@ std::string describe_progress(const RunProgress& progress, double start) {
 
 Json make_json(const RunProgress& progress, const RunSummary& summary, double seconds) {
   Json damaged = Json::array();
-  for (const auto& [shard, what] : summary.damaged) damaged.push(what);
+  for (const auto& [shard, what] : summary.damaged) damaged.push_back(what);
   Json parts = Json::object();
-  parts.set("prepare", summary.simulation.prepare)
-      .set("integrate", summary.simulation.integrate)
-      .set("retry", summary.simulation.retry)
-      .set("compress", summary.compress)
-      .set("write", summary.write);
+  parts["prepare"] = summary.simulation.prepare;
+  parts["integrate"] = summary.simulation.integrate;
+  parts["retry"] = summary.simulation.retry;
+  parts["compress"] = summary.compress;
+  parts["write"] = summary.write;
   Json json = Json::object();
-  json.set("cases", static_cast<long>(progress.cases))
-      .set("present", static_cast<long>(progress.present))
-      .set("written", static_cast<long>(progress.written))
-      .set("elsewhere", static_cast<long>(progress.elsewhere))
-      .set("failed", static_cast<long>(summary.failed))
-      .set("mended", static_cast<long>(summary.mended))
-      .set("still_failing", static_cast<long>(summary.still_failing))
-      .set("duplicates", static_cast<long>(summary.duplicates))
-      .set("shards", static_cast<long>(summary.shards_written))
-      .set("bytes", static_cast<long>(summary.bytes))
-      .set("seconds", seconds)
-      .set("runs_per_s", static_cast<double>(progress.written) / seconds)
-      .set("thread_seconds", parts)
-      .set("damaged", damaged)
-      .set("interrupted", summary.stopped);
+  json["cases"] = progress.cases.load();
+  json["present"] = progress.present.load();
+  json["written"] = progress.written.load();
+  json["elsewhere"] = progress.elsewhere.load();
+  json["failed"] = summary.failed;
+  json["mended"] = summary.mended;
+  json["still_failing"] = summary.still_failing;
+  json["duplicates"] = summary.duplicates;
+  json["shards"] = summary.shards_written;
+  json["bytes"] = summary.bytes;
+  json["seconds"] = seconds;
+  json["runs_per_s"] = static_cast<double>(progress.written) / seconds;
+  json["thread_seconds"] = parts;
+  json["damaged"] = damaged;
+  json["interrupted"] = summary.stopped;
   return json;
 }
 
@@ -261,7 +261,7 @@ int run(bool retries, const Arguments& arguments) {
   const double seconds = now() - start;
   tell(summary);
   if (arguments.is_on("json")) {
-    std::cout << make_json(progress, summary, seconds).dump() << "\n";
+    std::cout << format_json(make_json(progress, summary, seconds)) << "\n";
   } else {
     print_summary(sweep, progress, summary, seconds);
   }

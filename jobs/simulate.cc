@@ -190,15 +190,14 @@ void print_json(const LaneResults& results, double duration, double seconds) {
   Json snapshot = Json::object();
   for (const int channel : kInputs) {
     const auto at = static_cast<std::size_t>(channel);
-    snapshot.set(list_car_channels()[at].name, results.snapshot[at]);
+    snapshot[list_car_channels()[at].name] = results.snapshot[at];
   }
-  const Json json = Json::object()
-                        .set("event_time", results.event_time[0])
-                        .set("snapshot", has_snapshot(results) ? snapshot : Json())
-                        .set("events", results.event_count)
-                        .set("seconds", seconds)
-                        .set("real_time_factor", duration / seconds);
-  std::cout << json.dump() << "\n";
+  const Json json = Json{{"event_time", results.event_time[0]},
+                         {"snapshot", has_snapshot(results) ? snapshot : Json()},
+                         {"events", results.event_count},
+                         {"seconds", seconds},
+                         {"real_time_factor", duration / seconds}};
+  std::cout << format_json(json) << "\n";
 }
 
 void print_summary(const SimulateOptions& options, const LaneResults& results, double duration,
@@ -245,7 +244,7 @@ int run_case(const Arguments& arguments, const SimulateOptions& options) {
   run.provenance = describe_run(options, run.results);
   write_run(options.output, format, run);
   if (!options.report.empty()) {
-    tell_notes(write_run_report(options.report, options.source, input, run));
+    write_run_report(options.report, options.source, input, run);
     tell_next_page((options.report / "report.html").string());
   }
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);

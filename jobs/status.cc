@@ -48,20 +48,19 @@ Json make_json(const Followed& followed) {
   const SubmissionState& state = followed.state;
   Json ended = Json::object(), waits = Json::object();
   for (const auto& [fate, tasks] : state.fates) {
-    ended.set(get_name(fate), static_cast<long>(tasks));
+    ended[get_name(fate)] = tasks;
   }
-  for (const auto& [reason, tasks] : state.reasons) waits.set(reason, static_cast<long>(tasks));
-  return Json::object()
-      .set("submission", followed.submission.name())
-      .set("to", followed.submission.dispatcher)
-      .set("state", get_name(state.queue))
-      .set("why_unknown", state.why)
-      .set("cancelled", followed.submission.is_cancelled())
-      .set("pending", static_cast<long>(state.pending))
-      .set("running", static_cast<long>(state.running))
-      .set("waiting_for", waits)
-      .set("ended", ended)
-      .set("restarts", static_cast<long>(state.restarts));
+  for (const auto& [reason, tasks] : state.reasons) waits[reason] = tasks;
+  return Json{{"submission", followed.submission.name()},
+              {"to", followed.submission.dispatcher},
+              {"state", get_name(state.queue)},
+              {"why_unknown", state.why},
+              {"cancelled", followed.submission.is_cancelled()},
+              {"pending", state.pending},
+              {"running", state.running},
+              {"waiting_for", waits},
+              {"ended", ended},
+              {"restarts", state.restarts}};
 }
 
 /// "001 on slurm: 3 running, 20 pending (Resources); ended: 7 done, 1 timeout"
@@ -85,34 +84,34 @@ std::string describe(const Followed& followed) {
 
 Json make_json(const SweepStatus& status, const Submissions& submissions) {
   Json jobs = Json::array();
-  for (const Followed& followed : submissions.followed) jobs.push(make_json(followed));
+  for (const Followed& followed : submissions.followed) jobs.push_back(make_json(followed));
   Json failures = Json::object(), faults = Json::array(), runners = Json::array();
   for (const auto& [reason, cases] : status.failures) {
-    failures.set(reason, static_cast<long>(cases));
+    failures[reason] = cases;
   }
-  for (const std::string& fault : status.faults) faults.push(fault);
-  for (const std::string& fault : submissions.faults) faults.push(fault);
+  for (const std::string& fault : status.faults) faults.push_back(fault);
+  for (const std::string& fault : submissions.faults) faults.push_back(fault);
   for (const ClaimInfo& claim : status.claims) {
-    runners.push(Json::object().set("unit", claim.unit).set("runner", claim.runner));
+    runners.push_back(Json{{"unit", claim.unit}, {"runner", claim.runner}});
   }
   Json json = Json::object();
-  json.set("cases", static_cast<long>(status.cases))
-      .set("done", static_cast<long>(status.done))
-      .set("failed", static_cast<long>(status.failed))
-      .set("running", static_cast<long>(status.running))
-      .set("left", static_cast<long>(status.left))
-      .set("rate_per_s", status.rate > 0.0 ? Json(status.rate) : Json())
-      .set("seconds_left", status.seconds_left)
-      .set("complete", status.complete())
-      .set("failures", failures)
-      .set("shards", static_cast<long>(status.shards_present))
-      .set("shards_planned", static_cast<long>(status.shards))
-      .set("bytes", static_cast<long>(status.bytes))
-      .set("duplicates", static_cast<long>(status.duplicates))
-      .set("data_digest", status.digest.text())
-      .set("claims", runners)
-      .set("submissions", jobs)
-      .set("faults", faults);
+  json["cases"] = status.cases;
+  json["done"] = status.done;
+  json["failed"] = status.failed;
+  json["running"] = status.running;
+  json["left"] = status.left;
+  json["rate_per_s"] = status.rate > 0.0 ? Json(status.rate) : Json();
+  json["seconds_left"] = status.seconds_left;
+  json["complete"] = status.complete();
+  json["failures"] = failures;
+  json["shards"] = status.shards_present;
+  json["shards_planned"] = status.shards;
+  json["bytes"] = status.bytes;
+  json["duplicates"] = status.duplicates;
+  json["data_digest"] = status.digest.text();
+  json["claims"] = runners;
+  json["submissions"] = jobs;
+  json["faults"] = faults;
   return json;
 }
 
@@ -195,7 +194,7 @@ int run_status(const Arguments& arguments) {
     if (look % kAskEvery == 0) submissions = follow_all(sweep.folder);
     if (arguments.is_on("watch") && on_terminal) print_control("\033[H\033[J");
     if (arguments.is_on("json")) {
-      std::cout << make_json(status, submissions).dump() << std::endl;
+      std::cout << format_json(make_json(status, submissions)) << std::endl;
     } else {
       print_text(status, submissions);
       std::cout << std::flush;

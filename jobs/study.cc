@@ -179,17 +179,16 @@ int run_study(const Arguments& arguments) {
     tell_next_again(arguments, "goes on");
     return 128 + watcher.signal();
   }
-  const StudyOutput output = [&] {
+  const StudyResults results = [&] {
     const Stage stage("tables and figures");
     const ProgressLine line("writing tables and figures");
     return write_study_output(folder, request);
   }();
   if (arguments.is_on("json")) {
-    std::cout << make_json(request, output.results).dump() << "\n";
+    std::cout << format_json(make_json(request, results)) << "\n";
   } else {
-    print_tables(request, output.results);
+    print_tables(request, results);
   }
-  tell_notes(output.notes);
   tell_note(folder.report().string());
   tell_next_page(folder.report().string());
   return kExitDone;

@@ -327,13 +327,11 @@ class Submitter {
               const std::vector<std::string>& jobs) const {
     if (arguments_.is_on("json")) {
       Json queued = Json::object();
-      for (std::size_t i = 0; i < parts.size(); ++i) queued.set(parts[i], jobs[i]);
-      std::cout << Json::object()
-                       .set("submission", s.name())
-                       .set("to", s.dispatcher)
-                       .set("tasks", static_cast<long>(count_tasks()))
-                       .set("jobs", queued)
-                       .dump()
+      for (std::size_t i = 0; i < parts.size(); ++i) queued[parts[i]] = jobs[i];
+      std::cout << format_json(Json{{"submission", s.name()},
+                                    {"to", s.dispatcher},
+                                    {"tasks", count_tasks()},
+                                    {"jobs", queued}})
                 << "\n";
       return;
     }

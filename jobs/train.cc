@@ -180,17 +180,17 @@ void print(const Training& training, const TrainedModel& model, const fs::path& 
   };
   if (as_json) {
     Json json = make_json(model, test);
-    json.set("file", output.string())
-        .set("stopped_by", get_name(summary.reason))
-        .set("epochs", summary.last.epoch)
-        .set("best_epoch", summary.best_epoch)
-        .set("best_validation", summary.best_validation)
-        .set("training_cases", static_cast<long>(count_cases(data.train)))
-        .set("copies", copies)
-        .set("skipped_cases", static_cast<long>(data.skipped))
-        .set("weights", static_cast<long>(model.weights.size()))
-        .set("seconds", summary.seconds);
-    std::cout << json.dump() << "\n";
+    json["file"] = output.string();
+    json["stopped_by"] = get_name(summary.reason);
+    json["epochs"] = summary.last.epoch;
+    json["best_epoch"] = summary.best_epoch;
+    json["best_validation"] = summary.best_validation;
+    json["training_cases"] = count_cases(data.train);
+    json["copies"] = copies;
+    json["skipped_cases"] = data.skipped;
+    json["weights"] = model.weights.size();
+    json["seconds"] = summary.seconds;
+    std::cout << format_json(json) << "\n";
     return;
   }
   std::cout << format_count(count_cases(data.train)) << " cases trained, "

@@ -19,17 +19,17 @@ namespace {
 
 Json make_json(const VerifyReport& report) {
   Json json = Json::object();
-  json.set("ok", report.ok())
-      .set("data_digest", report.data_digest)
-      .set("cases", static_cast<long>(report.cases))
-      .set("missing", static_cast<long>(report.missing))
-      .set("double", static_cast<long>(report.twice))
-      .set("foreign", static_cast<long>(report.foreign))
-      .set("damaged", Json::texts(report.damaged))
-      .set("shards", static_cast<long>(report.shards))
-      .set("resimulated", static_cast<long>(report.resimulated))
-      .set("compared_by_tolerance", static_cast<long>(report.compared_by_tolerance))
-      .set("differing", Json::texts(report.differing));
+  json["ok"] = report.ok();
+  json["data_digest"] = report.data_digest;
+  json["cases"] = report.cases;
+  json["missing"] = report.missing;
+  json["double"] = report.twice;
+  json["foreign"] = report.foreign;
+  json["damaged"] = Json(report.damaged);
+  json["shards"] = report.shards;
+  json["resimulated"] = report.resimulated;
+  json["compared_by_tolerance"] = report.compared_by_tolerance;
+  json["differing"] = Json(report.differing);
   return json;
 }
 
@@ -123,7 +123,7 @@ int run_verify(const Arguments& arguments) {
     report =
         verify_sweep(sweep.folder, sweep.plan, options, [&](std::int64_t cases) { read = cases; });
   }
-  arguments.is_on("json") ? void(std::cout << make_json(report).dump() << "\n")
+  arguments.is_on("json") ? void(std::cout << format_json(make_json(report)) << "\n")
                           : print_text(report);
   if (arguments.is_on("quarantine")) move_aside(sweep.folder, report);
   tell_next_of(arguments, sweep.folder.root.string(), report);

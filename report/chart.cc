@@ -8,7 +8,7 @@ namespace strut {
 namespace {
 
 // px
-constexpr double kLeftLabel = 85.0, kRightEdge = 25.0;
+constexpr double kLeftLabel = 85.0, kRightEdge = 25.0, kValueScale = 95.0;
 constexpr double kBottomLabel = 60.0, kTics = 28.0, kTitle = 30.0, kNoTitle = 12.0;
 constexpr int kLegendRow = 26, kLegendColumns = 5;
 
@@ -36,13 +36,6 @@ std::set<std::size_t> pick_points(const std::vector<double>& y, std::size_t begi
 
 }  // namespace
 
-bool Chart::is_3d() const {
-  return std::any_of(panels.begin(), panels.end(), [](const ChartPanel& panel) {
-    return std::any_of(panel.series.begin(), panel.series.end(),
-                       [](const ChartSeries& s) { return s.kind == SeriesKind::kPoints3d; });
-  });
-}
-
 std::vector<const ChartSeries*> Chart::list_legend() const {
   std::vector<const ChartSeries*> entries;
   std::set<std::string> names = {""};
@@ -69,7 +62,8 @@ PanelPlace calc_place(const Chart& chart, std::size_t panel) {
   const bool has_label = !about.x.label.empty() || !about.x.categories.empty();
   const double below = has_label ? kBottomLabel : kTics;
   const double above = about.title.empty() ? kNoTitle : kTitle;
-  return {(left + kLeftLabel) / all, (left + width - kRightEdge) / all,
+  const double right = about.value_label.empty() ? kRightEdge : kValueScale;
+  return {(left + kLeftLabel) / all, (left + width - right) / all,
           (top - chart.panel_height + below) / height, (top - above) / height};
 }
 

@@ -1,6 +1,5 @@
 // Charts as data: what is shown, apart from how it is drawn. One chart becomes an interactive
-// drawing of a page (report/plotly.h), a picture for papers (report/gnuplot.h) and a
-// table of numbers (report/chart_csv.h).
+// drawing of a page (report/plotly.h) and a table of numbers (report/chart_csv.h).
 #pragma once
 
 #include <cstddef>
@@ -20,10 +19,9 @@ enum class SeriesKind {
   kDashedLine,
   kPoints,
   kLinePoints,
-  kBand,     // between low and high
-  kBars,     // at x of height y, whiskers from low to high where these are given
-  kBoxes,    // quartiles of y, whose values stand at x
-  kPoints3d  // at x, y, z
+  kBand,  // between low and high
+  kBars,  // at x of height y, whiskers from low to high where these are given
+  kBoxes  // quartiles of y, whose values stand at x
 };
 
 enum class Marker { kDot, kCircle, kCross, kTriangle };
@@ -38,7 +36,7 @@ struct ChartSeries {
   int color = 1;
   std::vector<double> x = {}, y = {};
   std::vector<double> low = {}, high = {};
-  std::vector<double> z = {};
+  std::vector<double> value = {};  // of points, which it colors by the panel's scale
   Marker marker = Marker::kDot;
   double width = 0.0;  // of bars, in units of x; 0: most of the room between them
 };
@@ -54,7 +52,7 @@ struct ChartPanel {
   ChartAxis x, y;
   std::vector<ChartSeries> series;
   std::string title = {};
-  ChartAxis z = {""};      // of kPoints3d
+  std::string value_label = {};  // of the scale of the points' values
   std::string about = {};  // for name_panel(), where title and labels are those of other panels too
 };
 
@@ -69,7 +67,6 @@ struct Chart {
   std::string caption = {};
 
   std::size_t rows() const { return (panels.size() + columns - 1) / columns; }
-  bool is_3d() const;
   /// Entries of the legend, each once: the first series of each name.
   std::vector<const ChartSeries*> list_legend() const;
 };

@@ -22,7 +22,7 @@ struct Column {
 
 constexpr std::array<Column, 5> kColumns = {{{"x", &ChartSeries::x},
                                              {"y", &ChartSeries::y},
-                                             {"z", &ChartSeries::z},
+                                             {"value", &ChartSeries::value},
                                              {"low", &ChartSeries::low},
                                              {"high", &ChartSeries::high}}};
 

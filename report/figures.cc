@@ -9,7 +9,6 @@
 #include "base/text/shorten.h"
 #include "io/file/atomic_file.h"
 #include "report/chart_csv.h"
-#include "report/gnuplot.h"
 #include "report/plotly.h"
 
 namespace strut {
@@ -35,24 +34,12 @@ bool is_figure_name(const std::string& name) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
-FigureDrawer::FigureDrawer(const Folder& root) : folder_(root.make_folder("figures")) {
-  if (!has_gnuplot()) {
-    note_ =
-        "gnuplot cannot be started, so there are no pictures of the charts as files (Debian: apt "
-        "install gnuplot-nox)";
-  }
-}
+FigureDrawer::FigureDrawer(const Folder& root) : folder_(root.make_folder("figures")) {}
 
 ReportFigure FigureDrawer::draw(const Chart& chart) const {
   check_figure_name(folder_, chart.name);
-  const std::string script = make_gnuplot(chart);
-  write_text_file(folder_, chart.name + ".json", make_plotly(chart).dump() + "\n");
+  write_text_file(folder_, chart.name + ".json", format_json(make_plotly(chart)) + "\n");
   write_text_file(folder_, chart.name + ".csv", make_chart_csv(chart));
-  write_text_file(folder_, chart.name + ".gp", script);
-  // One of other numbers must not stay where there is no gnuplot now.
-  folder_.remove(chart.name + ".svg");
-  if (note_.empty())
-    write_text_file(folder_, chart.name + ".svg", draw_picture(chart.name, script));
   return read_again(chart.name, chart.caption);
 }
 
@@ -69,26 +56,22 @@ std::string FigureDrawer::read_json_of(const std::string& name) const {
 
 ReportFigure FigureDrawer::read_again(const std::string& name, const std::string& caption) const {
   ReportFigure figure{name, caption, read_json_of(name), {}};
-  const std::string link = folder_.path().filename().string() + "/" + name;
-  for (const char* end : {".svg", ".csv"}) {
-    if (folder_.open_file(name + end, O_RDONLY).is_open()) figure.files.push_back(link + end);
+  const std::string table = name + ".csv";
+  if (folder_.open_file(table, O_RDONLY).is_open()) {
+    figure.files.push_back(folder_.path().filename().string() + "/" + table);
   }
   return figure;
 }
 
 ReportMotion FigureDrawer::draw_motion(const Json& scene, const std::string& name,
                                        const std::string& caption) const {
-  write_text_file(folder_, name + ".json", scene.dump() + "\n");
+  write_text_file(folder_, name + ".json", format_json(scene) + "\n");
   return read_motion_again(name, caption);
 }
 
 ReportMotion FigureDrawer::read_motion_again(const std::string& name,
                                              const std::string& caption) const {
   return {name, caption, read_json_of(name)};
-}
-
-std::vector<std::string> FigureDrawer::list_notes() const {
-  return note_.empty() ? std::vector<std::string>{} : std::vector<std::string>{note_};
 }
 
 std::string make_report_footer() {

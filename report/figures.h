@@ -15,9 +15,8 @@ namespace strut {
 /// at most 200 of them. Others would lead elsewhere.
 bool is_figure_name(const std::string& name);
 
-/// Writes figures into the subfolder figures/ of a report's folder: NAME.json for the page,
-/// NAME.csv with the numbers, NAME.gp for whoever wants to draw them another way, and the picture
-/// NAME.svg by gnuplot. Without gnuplot there are no pictures, and list_notes() says so.
+/// Writes figures into the subfolder figures/ of a report's folder: NAME.json for the page and
+/// NAME.csv with the numbers.
 class FigureDrawer {
  public:
   /// Throws InputError where figures/ is a link, EnvironmentError where it cannot be made.
@@ -33,14 +32,11 @@ class FigureDrawer {
   ReportMotion draw_motion(const Json& scene, const std::string& name,
                            const std::string& caption) const;
   ReportMotion read_motion_again(const std::string& name, const std::string& caption) const;
-  /// For the user: none where pictures are drawn.
-  std::vector<std::string> list_notes() const;
 
  private:
   std::string read_json_of(const std::string& name) const;
 
   Folder folder_;
-  std::string note_;
 };
 
 /// Program, version, commit, compiler: the last line of every report.

@@ -77,9 +77,9 @@ std::string make_links(const std::vector<std::string>& files) {
 std::string make_figure(const ReportFigure& figure) {
   return "<figure id=\"figure-" + escape_html(figure.name) + "\">\n<div class=\"chart\">" +
          make_json_element(figure.chart) +
-         "<noscript>The chart needs JavaScript; its numbers, and where gnuplot was there its " +
-         "picture, are linked below.</noscript></div><figcaption>" + escape_html(figure.caption) +
-         make_links(figure.files) + "</figcaption>\n</figure>\n";
+         "<noscript>The chart needs JavaScript; its numbers are linked below.</noscript></div>" +
+         "<figcaption>" + escape_html(figure.caption) + make_links(figure.files) +
+         "</figcaption>\n</figure>\n";
 }
 
 std::string make_motion_figure(const ReportMotion& motion) {
@@ -109,17 +109,14 @@ std::string make_section(const ReportSection& section, const std::string& id) {
 
 /// What of a page needs scripts.
 struct Moving {
-  bool charts = false, charts_3d = false, motions = false;
+  bool charts = false, motions = false;
 };
 
 Moving find_moving(const ReportPage& page) {
   Moving found;
   for (const ReportSection& section : page.sections) {
     found.motions = found.motions || !section.motions.empty();
-    for (const ReportFigure& figure : section.figures) {
-      found.charts = true;
-      if (figure.is_3d()) found.charts_3d = true;
-    }
+    found.charts = found.charts || !section.figures.empty();
   }
   return found;
 }
@@ -128,14 +125,9 @@ std::string make_script(std::string_view code) {
   return "<script>\n" + std::string(code) + "\n</script>\n";
 }
 
-/// Both bundles of plotly.js name themselves Plotly, so the first steps aside.
 std::string make_scripts(const ReportPage& page) {
   const Moving moving = find_moving(page);
   std::string text;
-  if (moving.charts_3d) {
-    text += make_script(embedded::plotly_gl3d_min_js) +
-            make_script("window.PlotlyThreeD = window.Plotly;");
-  }
   if (moving.charts) text += make_script(embedded::plotly_cartesian_min_js);
   if (moving.charts) text += make_script(embedded::page_js);
   if (moving.motions) return text + make_script(embedded::motion_js);
@@ -153,8 +145,6 @@ std::string make_footer(const ReportPage& page) {
 }
 
 }  // namespace
-
-bool ReportFigure::is_3d() const { return chart.find("\"three_d\": true") != std::string::npos; }
 
 std::string print_number(const char* format, double value) {
   if (std::isnan(value)) return "";

@@ -31,8 +31,6 @@ struct ReportFigure {
   std::string caption;
   std::string chart;               // the text of make_plotly()
   std::vector<std::string> files;  // beside the page, as its links name them
-
-  bool is_3d() const;
 };
 
 /// A car crossing its bump, with a slider: see jobs/simulate/motion.h.

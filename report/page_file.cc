@@ -18,70 +18,63 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Tree = JsonTree;
-
 /// Of each element what `make` makes of it.
 template <class T, class Make>
 Json make_list(const std::vector<T>& elements, const Make& make) {
   Json list = Json::array();
-  for (const T& element : elements) list.push(make(element));
+  for (const T& element : elements) list.push_back(make(element));
   return list;
 }
 
+Json make_texts(const std::vector<std::string>& texts) { return texts; }
+
 Json make_table_json(const ReportTable& table) {
-  return Json::object()
-      .set("caption", table.caption)
-      .set("header", Json::texts(table.header))
-      .set("rows", make_list(table.rows, &Json::texts))
-      .set("notes", Json::texts(table.notes))
-      .set("text_columns", static_cast<long>(table.text_columns));
+  return Json{{"caption", table.caption},
+              {"header", Json(table.header)},
+              {"rows", make_list(table.rows, &make_texts)},
+              {"notes", Json(table.notes)},
+              {"text_columns", table.text_columns}};
 }
 
 /// A figure or a motion, whose content stands in a file of its name.
 template <class T>
 Json make_named(const T& figure) {
-  return Json::object().set("name", figure.name).set("caption", figure.caption);
+  return Json{{"name", figure.name}, {"caption", figure.caption}};
 }
 
 Json make_section_json(const ReportSection& section) {
-  return Json::object()
-      .set("heading", section.heading)
-      .set("paragraphs", Json::texts(section.paragraphs))
-      .set("tables", make_list(section.tables, &make_table_json))
-      .set("figures", make_list(section.figures, &make_named<ReportFigure>))
-      .set("motions", make_list(section.motions, &make_named<ReportMotion>));
+  return Json{{"heading", section.heading},
+              {"paragraphs", Json(section.paragraphs)},
+              {"tables", make_list(section.tables, &make_table_json)},
+              {"figures", make_list(section.figures, &make_named<ReportFigure>)},
+              {"motions", make_list(section.motions, &make_named<ReportMotion>)}};
 }
 
 Json make_page_json(const ReportPage& page) {
-  return Json::object()
-      .set("of", page.of)
-      .set("title", page.title)
-      .set("lead", Json::texts(page.lead))
-      .set("sections", make_list(page.sections, &make_section_json))
-      .set("tables", Json::texts(page.tables))
-      .set("footer", page.footer);
+  return Json{{"of", page.of},
+              {"title", page.title},
+              {"lead", Json(page.lead)},
+              {"sections", make_list(page.sections, &make_section_json)},
+              {"tables", Json(page.tables)},
+              {"footer", page.footer}};
 }
 
 /// The elements of a list, each read by `read`.
 template <class Read>
-auto read_list(const Tree& tree, const char* key, const Read& read) {
+auto read_list(const Json& tree, const char* key, const Read& read) {
   std::vector<decltype(read(tree))> list;
-  for (const auto& [name, element] : tree.get_child(key)) list.push_back(read(element));
+  for (const Json& element : tree.at(key)) list.push_back(read(element));
   return list;
 }
 
-std::string read_text(const Tree& tree) { return tree.data(); }
+std::string read_text(const Json& tree) { return tree.get<std::string>(); }
 
-std::vector<std::string> read_row(const Tree& tree) {
-  std::vector<std::string> row;
-  for (const auto& [name, element] : tree) row.push_back(element.data());
-  return row;
-}
+std::vector<std::string> read_row(const Json& tree) { return tree.get<std::vector<std::string>>(); }
 
-ReportTable read_table(const Tree& tree) {
-  return {tree.get<std::string>("caption"), read_list(tree, "header", &read_text),
+ReportTable read_table(const Json& tree) {
+  return {tree.at("caption").get<std::string>(), read_list(tree, "header", &read_text),
           read_list(tree, "rows", &read_row), read_list(tree, "notes", &read_text),
-          tree.get<std::size_t>("text_columns")};
+          tree.at("text_columns").get<std::size_t>()};
 }
 
 /// Names of the figures and tables of comparisons, diagnoses and simulated runs, but those of one
@@ -112,22 +105,22 @@ void check_names(const ReportPage& page) {
 }
 
 /// The files that the folder's page names.
-std::vector<fs::path> list_files(const PageFolder& folder, const Tree& page) {
+std::vector<fs::path> list_files(const PageFolder& folder, const Json& page) {
   std::vector<fs::path> files;
   for (const std::string& name : read_list(page, "tables", &read_text)) {
     if (is_page_name(name)) files.push_back(folder.table(name));
   }
-  const auto add_figures = [&](const Tree& list, const std::vector<const char*>& ends) {
-    for (const auto& [key, figure] : list) {
-      const auto name = figure.get<std::string>("name");
+  const auto add_figures = [&](const Json& list, const std::vector<const char*>& ends) {
+    for (const Json& figure : list) {
+      const auto name = figure.at("name").get<std::string>();
       for (const char* end : ends) {
         if (is_page_name(name)) files.push_back(folder.figures() / (name + end));
       }
     }
   };
-  for (const auto& [key, section] : page.get_child("sections")) {
-    add_figures(section.get_child("figures"), {".csv", ".gp", ".json", ".svg"});
-    add_figures(section.get_child("motions"), {".json"});
+  for (const Json& section : page.at("sections")) {
+    add_figures(section.at("figures"), {".csv", ".json"});
+    add_figures(section.at("motions"), {".json"});
   }
   return files;
 }
@@ -141,20 +134,20 @@ struct EarlierPage {
 EarlierPage read_earlier_page(const PageFolder& folder) {
   try {
     if (!fs::exists(folder.page())) return {};
-    const Tree page = read_json(folder.page());
-    return {page.get<std::string>("of"), list_files(folder, page)};
-  } catch (const boost::property_tree::ptree_error&) {
+    const Json page = read_json(folder.page());
+    return {page.at("of").get<std::string>(), list_files(folder, page)};
+  } catch (const Json::exception&) {
     return {};
   }
 }
 
 /// Each figure stands in a page once: a small file could else name a large one without end.
-void refuse_repeated(const PageFolder& folder, const Tree& page) {
+void refuse_repeated(const PageFolder& folder, const Json& page) {
   std::set<std::string> names;
-  for (const auto& [key, section] : page.get_child("sections")) {
+  for (const Json& section : page.at("sections")) {
     for (const char* list : {"figures", "motions"}) {
-      for (const auto& [index, figure] : section.get_child(list)) {
-        const auto name = figure.get<std::string>("name");
+      for (const Json& figure : section.at(list)) {
+        const auto name = figure.at("name").get<std::string>();
         if (!names.insert(name).second) {
           throw InputError(folder.page().string() + ": figure '" + shorten(name) +
                            "': named twice; must be as strut wrote it");
@@ -164,26 +157,26 @@ void refuse_repeated(const PageFolder& folder, const Tree& page) {
   }
 }
 
-ReportPage read_page(const Tree& tree, const FigureDrawer& drawer) {
+ReportPage read_page(const Json& tree, const FigureDrawer& drawer) {
   ReportPage page;
-  page.of = tree.get<std::string>("of");
-  page.title = tree.get<std::string>("title");
+  page.of = tree.at("of").get<std::string>();
+  page.title = tree.at("title").get<std::string>();
   page.lead = read_list(tree, "lead", &read_text);
-  page.footer = tree.get<std::string>("footer");
+  page.footer = tree.at("footer").get<std::string>();
   page.tables = read_list(tree, "tables", &read_text);
-  page.sections = read_list(tree, "sections", [&](const Tree& section) {
-    return ReportSection{section.get<std::string>("heading"),
-                         read_list(section, "paragraphs", &read_text),
-                         read_list(section, "tables", &read_table),
-                         read_list(section, "figures",
-                                   [&](const Tree& figure) {
-                                     return drawer.read_again(figure.get<std::string>("name"),
-                                                              figure.get<std::string>("caption"));
-                                   }),
-                         read_list(section, "motions", [&](const Tree& motion) {
-                           return drawer.read_motion_again(motion.get<std::string>("name"),
-                                                           motion.get<std::string>("caption"));
-                         })};
+  page.sections = read_list(tree, "sections", [&](const Json& section) {
+    return ReportSection{
+        section.at("heading").get<std::string>(), read_list(section, "paragraphs", &read_text),
+        read_list(section, "tables", &read_table),
+        read_list(section, "figures",
+                  [&](const Json& figure) {
+                    return drawer.read_again(figure.at("name").get<std::string>(),
+                                             figure.at("caption").get<std::string>());
+                  }),
+        read_list(section, "motions", [&](const Json& motion) {
+          return drawer.read_motion_again(motion.at("name").get<std::string>(),
+                                          motion.at("caption").get<std::string>());
+        })};
   });
   return page;
 }
@@ -228,18 +221,18 @@ void clear_page_folder(const PageFolder& folder, const std::filesystem::path& ma
 void write_page(const PageFolder& folder, const ReportPage& page) {
   check_names(page);
   folder.make();
-  write_text_file_inside(folder.root, folder.page(), make_page_json(page).dump() + "\n");
+  write_text_file_inside(folder.root, folder.page(), format_json(make_page_json(page)) + "\n");
   write_text_file_inside(folder.root, folder.report(), make_html(page));
 }
 
 void write_page_again(const PageFolder& folder) {
   try {
-    const Tree tree = read_json(folder.page());
+    const Json tree = read_json(folder.page());
     refuse_repeated(folder, tree);
     const FigureDrawer drawer(Folder(folder.root));
     write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));
-  } catch (const boost::property_tree::ptree_error& e) {
-    throw InputError(folder.page().string() + ": " + e.what() +
+  } catch (const Json::exception& e) {
+    throw InputError(folder.page().string() + ": " + explain(e) +
                      "; must be as strut compare, diagnose or simulate wrote it");
   }
 }

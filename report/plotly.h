@@ -6,7 +6,7 @@
 
 namespace strut {
 
-/// {"name", "height" [px], "three_d", "data", "layout"}: plotly.js's traces and layout. Colors of
+/// {"name", "height" [px], "data", "layout"}: plotly.js's traces and layout. Colors of
 /// the page's text are the word "ink", which the page replaces as it is light or dark. Numbers have
 /// seven digits, more than is seen.
 Json make_plotly(const Chart& chart);

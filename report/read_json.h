@@ -1,20 +1,23 @@
-// JSON files, read within limits: the parser recurses once per level.
+// JSON files, read within limits.
 #pragma once
 
-#include <boost/property_tree/ptree.hpp>
 #include <filesystem>
 #include <string>
 
+#include "base/error/input_error.h"
+#include "report/json.h"
+
 namespace strut {
 
-using JsonTree = boost::property_tree::ptree;
+/// What an exception of the library says, without the number that it begins with.
+std::string explain(const Json::exception& e);
 
 /// Throws InputError, which names `path`, where a text is nested more than 64 levels deep or not
 /// JSON.
-JsonTree parse_json(const std::string& text, const std::filesystem::path& path);
+Json parse_json(const std::string& text, const std::filesystem::path& path);
 
 /// Reads a regular file, links not followed. Throws InputError where it is missing, a link, larger
-/// than 256 MiB, or as parse_json does.
-JsonTree read_json(const std::filesystem::path& path);
+/// than 4 MiB, or as parse_json does.
+Json read_json(const std::filesystem::path& path);
 
 }  // namespace strut

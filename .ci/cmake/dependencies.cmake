@@ -20,9 +20,10 @@ find_package(SUNDIALS 6.4 REQUIRED
   COMPONENTS kinsol cvode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
 find_package(tomlplusplus 3.3 REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
-# Asked for by Boost 1.74's own JSON parser, which uses the names that it deprecates.
+# Asked for by Boost 1.74's own JSON parser, which tests read by and which uses the names that it deprecates.
 set_property(TARGET Boost::headers APPEND PROPERTY
   INTERFACE_COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)
+find_package(nlohmann_json 3.11 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(ZLIB 1.2 REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)

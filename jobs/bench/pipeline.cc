@@ -110,27 +110,24 @@ PipelineResult measure_pipeline(const fs::path& file, std::int64_t cases, int co
 Json make_json(const PipelineResult& result) {
   Json figures = Json::array();
   for (const PipelineFigure& f : result.figures) {
-    figures.push(Json::object()
-                     .set("isa", f.isa)
-                     .set("lanes", f.lanes)
-                     .set("threads", f.threads)
-                     .set("runs_per_s", f.runs_per_s)
-                     .set("spin_control", f.spin_control));
+    figures.push_back(Json{{"isa", f.isa},
+                           {"lanes", f.lanes},
+                           {"threads", f.threads},
+                           {"runs_per_s", f.runs_per_s},
+                           {"spin_control", f.spin_control}});
   }
-  return Json::object()
-      .set("sweep", result.sweep)
-      .set("cases", static_cast<long>(result.cases))
-      .set("runs", figures)
-      .set("thread_seconds", Json::object()
-                                 .set("prepare", result.prepare)
-                                 .set("integrate", result.integrate)
-                                 .set("compress", result.compress)
-                                 .set("write", result.write))
-      .set("output_share", result.output_share())
-      .set("bytes_per_case", result.bytes_per_case)
-      .set("plan_seconds", result.plan_seconds)
-      .set("resume_seconds", result.resume_seconds)
-      .set("peak_memory_bytes", result.peak_memory);
+  return Json{{"sweep", result.sweep},
+              {"cases", result.cases},
+              {"runs", figures},
+              {"thread_seconds", Json{{"prepare", result.prepare},
+                                      {"integrate", result.integrate},
+                                      {"compress", result.compress},
+                                      {"write", result.write}}},
+              {"output_share", result.output_share()},
+              {"bytes_per_case", result.bytes_per_case},
+              {"plan_seconds", result.plan_seconds},
+              {"resume_seconds", result.resume_seconds},
+              {"peak_memory_bytes", result.peak_memory}};
 }
 
 void print_pipeline(std::ostream& stream, const PipelineResult& result) {

@@ -12,39 +12,35 @@ namespace {
 Json make_json(const BenchResult& result) {
   Json single = Json::object();
   for (const Figure& f : result.single_core) {
-    Json figure = Json::object()
-                      .set("runs_per_s", f.runs_per_s)
-                      .set("real_time_factor", f.real_time_factor)
-                      .set("setting", f.setting.text)
-                      .set("body_acceleration_rms_relative", f.error)
-                      .set("share_of_peak", result.share_of_peak(f))
-                      .set("spin_control", f.spin_control);
+    Json figure = Json{{"runs_per_s", f.runs_per_s},
+                       {"real_time_factor", f.real_time_factor},
+                       {"setting", f.setting.text},
+                       {"body_acceleration_rms_relative", f.error},
+                       {"share_of_peak", result.share_of_peak(f)},
+                       {"spin_control", f.spin_control}};
     if (f.setting.label == "lanes") {
-      figure.set("speedup_over_double", result.speedup_over_double(f));
+      figure["speedup_over_double"] = result.speedup_over_double(f);
     }
-    single.set(f.setting.label, figure);
+    single[f.setting.label] = figure;
   }
   Json threads = Json::array();
   for (const ThreadFigure& t : result.threads) {
-    threads.push(Json::object()
-                     .set("threads", t.threads)
-                     .set("runs_per_s", t.runs_per_s)
-                     .set("spin_control", t.spin_control));
+    threads.push_back(Json{
+        {"threads", t.threads}, {"runs_per_s", t.runs_per_s}, {"spin_control", t.spin_control}});
   }
-  return Json::object()
-      .set("single_core", single)
-      .set("threads", threads)
-      .set("accuracy",
-           Json::object().set("body_acceleration_rms_relative", result.single_core.back().error))
-      .set("flops_per_rhs", result.newton.arithmetic)
-      .set("flops_per_rhs_tabulated", result.table.arithmetic)
-      .set("transcendentals_per_rhs", result.newton.transcendental)
-      .set("share_of_peak", result.share_of_peak(result.figure("lanes")))
-      .set("peak_flops_per_s", result.peak)
-      .set("bytes_per_case", result.pipeline ? Json(result.pipeline->bytes_per_case) : Json())
-      .set("seconds_to_prepare_case", result.seconds_to_prepare)
-      .set("pipeline", result.pipeline ? make_json(*result.pipeline) : Json())
-      .set("machine", make_json(result.machine));
+  return Json{
+      {"single_core", single},
+      {"threads", threads},
+      {"accuracy", Json{{"body_acceleration_rms_relative", result.single_core.back().error}}},
+      {"flops_per_rhs", result.newton.arithmetic},
+      {"flops_per_rhs_tabulated", result.table.arithmetic},
+      {"transcendentals_per_rhs", result.newton.transcendental},
+      {"share_of_peak", result.share_of_peak(result.figure("lanes"))},
+      {"peak_flops_per_s", result.peak},
+      {"bytes_per_case", result.pipeline ? Json(result.pipeline->bytes_per_case) : Json()},
+      {"seconds_to_prepare_case", result.seconds_to_prepare},
+      {"pipeline", result.pipeline ? make_json(*result.pipeline) : Json()},
+      {"machine", make_json(result.machine)}};
 }
 
 template <class... Values>
@@ -98,10 +94,10 @@ void print_json(std::ostream& stream, const BenchResult& result,
   Json json = make_json(result);
   if (!ratios.empty()) {
     Json members = Json::object();
-    for (const FigureRatio& r : ratios) members.set(r.name, r.ratio);
-    json.set("ratios", members);
+    for (const FigureRatio& r : ratios) members[r.name] = r.ratio;
+    json["ratios"] = members;
   }
-  stream << json.dump() << "\n";
+  stream << format_json(json) << "\n";
 }
 
 Baseline read_baseline(const std::string& path) {
@@ -112,7 +108,7 @@ Baseline read_baseline(const std::string& path) {
     throw InputError("--baseline: " + std::string(e.what()) +
                      "; must be a file written by strut bench --json");
   }
-  if (!baseline.get_child_optional("single_core")) {
+  if (!baseline.is_object() || !baseline.contains("single_core")) {
     throw InputError("--baseline = " + path +
                      ": no \"single_core\" in it; must be a file written by strut bench --json");
   }
@@ -120,35 +116,36 @@ Baseline read_baseline(const std::string& path) {
 }
 
 std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& baseline) {
+  using Path = Json::json_pointer;
   std::vector<FigureRatio> ratios;
-  const auto add = [&](const std::string& name, const boost::optional<double>& old, double value) {
-    if (old && *old > 0.0) ratios.push_back({name, value / *old});
+  const auto add = [&](const std::string& name, const Json& old, double value) {
+    if (old.is_number() && old > 0.0) ratios.push_back({name, value / old.get<double>()});
   };
+  const auto list = [&](const char* path) { return baseline.value(Path(path), Json::array()); };
   for (const Figure& f : result.single_core) {
-    add(f.setting.label,
-        baseline.get_optional<double>("single_core." + f.setting.label + ".runs_per_s"),
-        f.runs_per_s);
+    const Json all = list("/single_core");
+    const auto of_label = all.is_object() ? all.find(f.setting.label) : all.end();
+    if (of_label == all.end() || !of_label->is_object()) continue;
+    add(f.setting.label, of_label->value("runs_per_s", Json()), f.runs_per_s);
   }
-  const auto threads = baseline.get_child_optional("threads");
   for (const ThreadFigure& t : result.threads) {
-    if (!threads) break;
-    for (const auto& [key, old] : *threads) {
-      if (old.get("threads", 0) != t.threads) continue;
-      add(std::to_string(t.threads) + " threads", old.get_optional<double>("runs_per_s"),
-          t.runs_per_s);
+    for (const Json& old : list("/threads")) {
+      if (!old.is_object() || old.value("threads", Json()) != t.threads) continue;
+      add(std::to_string(t.threads) + " threads", old.value("runs_per_s", Json()), t.runs_per_s);
     }
   }
-  const auto runs = baseline.get_child_optional("pipeline.runs");
   const auto sweeps = result.pipeline ? result.pipeline->figures : std::vector<PipelineFigure>();
   for (const PipelineFigure& f : sweeps) {
-    if (!runs) break;
-    for (const auto& [key, old] : *runs) {
-      if (old.get("isa", "") != f.isa || old.get("threads", 0) != f.threads) continue;
+    for (const Json& old : list("/pipeline/runs")) {
+      if (!old.is_object() || old.value("isa", Json()) != f.isa ||
+          old.value("threads", Json()) != f.threads) {
+        continue;
+      }
       add("sweep, " + f.isa + ", " + std::to_string(f.threads) + " threads",
-          old.get_optional<double>("runs_per_s"), f.runs_per_s);
+          old.value("runs_per_s", Json()), f.runs_per_s);
     }
   }
-  add("flops_per_rhs", baseline.get_optional<double>("flops_per_rhs"),
+  add("flops_per_rhs", baseline.value("flops_per_rhs", Json()),
       static_cast<double>(result.newton.arithmetic));
   return ratios;
 }

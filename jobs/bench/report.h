@@ -53,7 +53,7 @@ struct BenchResult {
 };
 
 /// The output of an earlier `strut bench --json`.
-using Baseline = JsonTree;
+using Baseline = Json;
 
 /// Throws InputError where the file is none.
 Baseline read_baseline(const std::string& path);

@@ -32,12 +32,11 @@ Machine read_machine(const Kernel& kernel) {
 }
 
 Json make_json(const Machine& machine) {
-  return Json::object()
-      .set("cpu", machine.cpu)
-      .set("cores", machine.cores)
-      .set("isa", machine.isa)
-      .set("compiler", machine.compiler)
-      .set("commit", machine.commit);
+  return Json{{"cpu", machine.cpu},
+              {"cores", machine.cores},
+              {"isa", machine.isa},
+              {"compiler", machine.compiler},
+              {"commit", machine.commit}};
 }
 
 double now() {

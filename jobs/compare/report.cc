@@ -26,9 +26,8 @@ ReportSection make_run_section(const CampaignData& data, const RunComparison& ru
 
 }  // namespace
 
-std::vector<std::string> write_compare_report(const CompareFolder& folder, const CampaignData& data,
-                                              const Comparison& comparison,
-                                              const std::vector<std::string>& tables) {
+void write_compare_report(const CompareFolder& folder, const CampaignData& data,
+                          const Comparison& comparison, const std::vector<std::string>& tables) {
   const FigureDrawer drawer(folder.make());
   ReportPage page;
   page.title = "Measured against simulated: " + data.campaign.path.filename().string();
@@ -41,7 +40,6 @@ std::vector<std::string> write_compare_report(const CompareFolder& folder, const
   page.of = kComparisonContent.name;
   page.tables = tables;
   write_page(folder, page);
-  return drawer.list_notes();
 }
 
 }  // namespace strut

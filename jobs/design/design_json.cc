@@ -9,19 +9,20 @@ Json make_bounds_json(const Sensitivity& s, const Bounds& bounds) {
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
     const SensitivityParameter& parameter = s.parameters[p];
     Json bound = Json::object();
-    bound.set("bound", to_unit(parameter, bounds.bound[p])).set("percent", bounds.bound[p]);
-    parameters.set(parameter.name, bound);
-    weakest.set(parameter.name, bounds.weakest[p]);
+    bound["bound"] = to_unit(parameter, bounds.bound[p]);
+    bound["percent"] = bounds.bound[p];
+    parameters[parameter.name] = bound;
+    weakest[parameter.name] = bounds.weakest[p];
   }
-  for (const std::string& name : list_free(s, bounds)) missing.push(name);
+  for (const std::string& name : list_free(s, bounds)) missing.push_back(name);
   Json json = Json::object();
-  json.set("rms_percent", bounds.rms)
-      .set("condition", bounds.condition)
-      .set("rank", bounds.rank)
-      .set("parameters", parameters)
-      .set("not_identifiable", missing)
-      .set("weakest", weakest)
-      .set("weakest_percent", bounds.weakest_bound);
+  json["rms_percent"] = bounds.rms;
+  json["condition"] = bounds.condition;
+  json["rank"] = bounds.rank;
+  json["parameters"] = parameters;
+  json["not_identifiable"] = missing;
+  json["weakest"] = weakest;
+  json["weakest_percent"] = bounds.weakest_bound;
   return json;
 }
 
@@ -29,7 +30,9 @@ Json make_instants_json(const std::vector<const Instant*>& instants) {
   Json list = Json::array();
   for (const Instant* instant : instants) {
     Json json = Json::object();
-    list.push(json.set("offset", instant->offset).set("time", instant->time));
+    json["offset"] = instant->offset;
+    json["time"] = instant->time;
+    list.push_back(json);
   }
   return list;
 }
@@ -39,22 +42,23 @@ Json make_choice_json(const Sensitivity& s, const DesignChoice& choice) {
   instants.reserve(choice.instants.size());
   for (const std::size_t i : choice.instants) instants.push_back(&s.instants[i]);
   Json json = make_bounds_json(s, choice.bounds);
-  return json.set("instants", make_instants_json(instants));
+  json["instants"] = make_instants_json(instants);
+  return json;
 }
 
 Json make_sensors_json(const DesignReport& report) {
   Json list = Json::array();
   for (const SensorSet& set : report.design.sensors) {
     Json channels = Json::array();
-    for (const int channel : set.channels) channels.push(get_channel(channel).name);
+    for (const int channel : set.channels) channels.push_back(get_channel(channel).name);
     Json json = Json::object();
-    json.set("label", set.label)
-        .set("channels", channels)
-        .set("snapshot_rms_percent", set.snapshot.rms)
-        .set("best_rms_percent", set.best.bounds.rms)
-        .set("best_offset", report.sensitivity.instants[set.best.instants[0]].offset)
-        .set("window_rms_percent", set.window.rms);
-    list.push(json);
+    json["label"] = set.label;
+    json["channels"] = channels;
+    json["snapshot_rms_percent"] = set.snapshot.rms;
+    json["best_rms_percent"] = set.best.bounds.rms;
+    json["best_offset"] = report.sensitivity.instants[set.best.instants[0]].offset;
+    json["window_rms_percent"] = set.window.rms;
+    list.push_back(json);
   }
   return list;
 }
@@ -66,30 +70,35 @@ Json make_scan_json(const DesignReport& report) {
   std::vector<Json> bound(s.parameters.size(), Json::array());
   for (std::size_t i = 0; i < s.instants.size(); ++i) {
     const Bounds& b = report.design.scan[i];
-    time.push(s.instants[i].time);
-    offset.push(s.instants[i].offset);
-    condition.push(b.condition);
-    rms.push(b.rms);
-    for (std::size_t p = 0; p < bound.size(); ++p) bound[p].push(b.bound[p]);
+    time.push_back(s.instants[i].time);
+    offset.push_back(s.instants[i].offset);
+    condition.push_back(b.condition);
+    rms.push_back(b.rms);
+    for (std::size_t p = 0; p < bound.size(); ++p) bound[p].push_back(b.bound[p]);
   }
-  for (std::size_t p = 0; p < bound.size(); ++p) bounds.set(s.parameters[p].name, bound[p]);
+  for (std::size_t p = 0; p < bound.size(); ++p) bounds[s.parameters[p].name] = bound[p];
   Json scan = Json::object();
-  scan.set("time", time).set("offset", offset).set("condition", condition);
-  return scan.set("rms_percent", rms).set("percent", bounds);
+  scan["time"] = time;
+  scan["offset"] = offset;
+  scan["condition"] = condition;
+  scan["rms_percent"] = rms;
+  scan["percent"] = bounds;
+  return scan;
 }
 
 Json make_head_json(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   Json base = Json::object(), noise = Json::object();
-  for (const SensitivityParameter& p : s.parameters) base.set(p.name, p.base);
+  for (const SensitivityParameter& p : s.parameters) base[p.name] = p.base;
   for (const int channel : report.channels) {
-    noise.set(get_channel(channel).name, report.noise[static_cast<std::size_t>(channel)]);
+    noise[get_channel(channel).name] = report.noise[static_cast<std::size_t>(channel)];
   }
   Json json = Json::object();
-  return json.set("base", base)
-      .set("noise", noise)
-      .set("rate", s.rate)
-      .set("half_step_error", find_worst_curve(s, report.channels).error);
+  json["base"] = base;
+  json["noise"] = noise;
+  json["rate"] = s.rate;
+  json["half_step_error"] = find_worst_curve(s, report.channels).error;
+  return json;
 }
 
 }  // namespace
@@ -98,22 +107,25 @@ Json make_design_json(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   const Design& design = report.design;
   Json snapshot = make_bounds_json(s, design.snapshot);
-  snapshot.set("offset", s.snapshot.offset).set("time", s.snapshot.time);
+  snapshot["offset"] = s.snapshot.offset;
+  snapshot["time"] = s.snapshot.time;
   Json window = make_bounds_json(s, design.window);
-  window.set("samples", static_cast<long>(s.instants.size()));
+  window["samples"] = s.instants.size();
   Json best = Json::array();
-  for (const DesignChoice& choice : design.best) best.push(make_choice_json(s, choice));
+  for (const DesignChoice& choice : design.best) best.push_back(make_choice_json(s, choice));
   const auto [first, last] = find_good_range(design);
   Json range = Json::array();
-  range.push(s.instants[first].offset).push(s.instants[last].offset);
+  range.push_back(s.instants[first].offset);
+  range.push_back(s.instants[last].offset);
   Json json = make_head_json(report);
-  return json.set("best_offset", s.instants[design.best[0].instants[0]].offset)
-      .set("best_range", range)
-      .set("snapshot", snapshot)
-      .set("best", best)
-      .set("window", window)
-      .set("sensors", make_sensors_json(report))
-      .set("scan", make_scan_json(report));
+  json["best_offset"] = s.instants[design.best[0].instants[0]].offset;
+  json["best_range"] = range;
+  json["snapshot"] = snapshot;
+  json["best"] = best;
+  json["window"] = window;
+  json["sensors"] = make_sensors_json(report);
+  json["scan"] = make_scan_json(report);
+  return json;
 }
 
 void write_design_csv(const std::filesystem::path& file, const DesignReport& report) {

@@ -75,15 +75,13 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
 
 }  // namespace
 
-std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
-                                               const CampaignData& data, const Diagnosis& diagnosis,
-                                               const std::vector<std::string>& tables) {
+void write_diagnose_report(const DiagnoseFolder& folder, const CampaignData& data,
+                           const Diagnosis& diagnosis, const std::vector<std::string>& tables) {
   const FigureDrawer drawer(folder.make());
   ReportPage page = make_page(data, diagnosis, drawer);
   page.of = kDiagnosisContent.name;
   page.tables = tables;
   write_page(folder, page);
-  return drawer.list_notes();
 }
 
 }  // namespace strut

@@ -9,10 +9,9 @@
 
 namespace strut {
 
-/// `tables`: names of those beside the page. Returns what could not be made, for the user. Throws
+/// `tables`: names of those beside the page. Throws
 /// EnvironmentError.
-std::vector<std::string> write_diagnose_report(const DiagnoseFolder& folder,
-                                               const CampaignData& data, const Diagnosis& diagnosis,
-                                               const std::vector<std::string>& tables);
+void write_diagnose_report(const DiagnoseFolder& folder, const CampaignData& data,
+                           const Diagnosis& diagnosis, const std::vector<std::string>& tables);
 
 }  // namespace strut

@@ -288,7 +288,7 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   const IdentifiedRow row = make_fit_row(fit, parameter_count);
   if (output) write_identified_csv(*output, {row});
   if (arguments.is_on("json")) {
-    std::cout << make_fit_json(fit, runs, parameter_count).dump() << "\n";
+    std::cout << format_json(make_fit_json(fit, runs, parameter_count)) << "\n";
   } else {
     print_fit(fit, runs, parameter_count);
   }

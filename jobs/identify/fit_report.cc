@@ -43,15 +43,15 @@ Json make_nuisances_json(const FitResult& fit, const std::vector<MeasuredRun>& r
   for (std::size_t i = first; i < fit.unknowns.size(); ++i) {
     const IdentifiedParameter p = make_estimate(fit, i);
     Json bounds = Json::array();
-    bounds.push(p.value - p.half_width);
-    bounds.push(p.value + p.half_width);
+    bounds.push_back(p.value - p.half_width);
+    bounds.push_back(p.value + p.half_width);
     Json json = Json::object();
-    json.set("file", get_run_name(fit, runs, i))
-        .set("name", p.name)
-        .set("value", p.value)
-        .set("ci95", bounds)
-        .set("unit", p.unit);
-    list.push(json);
+    json["file"] = get_run_name(fit, runs, i);
+    json["name"] = p.name;
+    json["value"] = p.value;
+    json["ci95"] = bounds;
+    json["unit"] = p.unit;
+    list.push_back(json);
   }
   return list;
 }
@@ -70,12 +70,12 @@ Json make_channels_json(const FitResult& fit, const std::vector<MeasuredRun>& ru
   Json list = Json::array();
   for (const ChannelFit& c : fit.channels) {
     Json json = Json::object();
-    json.set("file", get_file_name(runs, c))
-        .set("channel", get_channel_name(c))
-        .set("readings", c.count)
-        .set("chi2_per_reading", calc_chi2_per_reading(c))
-        .set("neighbor_correlation", c.neighbor_correlation);
-    list.push(json);
+    json["file"] = get_file_name(runs, c);
+    json["channel"] = get_channel_name(c);
+    json["readings"] = c.count;
+    json["chi2_per_reading"] = calc_chi2_per_reading(c);
+    json["neighbor_correlation"] = c.neighbor_correlation;
+    list.push_back(json);
   }
   return list;
 }
@@ -84,9 +84,9 @@ Json make_directions_json(const FitResult& fit) {
   Json list = Json::array();
   for (const NullDirection& d : fit.uncertainty.null_directions) {
     Json json = Json::object();
-    json.set("combination", describe_direction(d, fit.unknowns))
-        .set("sigma_percent", 100.0 * d.sigma);
-    list.push(json);
+    json["combination"] = describe_direction(d, fit.unknowns);
+    json["sigma_percent"] = 100.0 * d.sigma;
+    list.push_back(json);
   }
   return list;
 }
@@ -95,8 +95,8 @@ Json make_correlation_json(const FitResult& fit, std::size_t count) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < count; ++i) {
     Json row = Json::array();
-    for (std::size_t j = 0; j < count; ++j) row.push(fit.uncertainty.calc_correlation(i, j));
-    rows.push(row);
+    for (std::size_t j = 0; j < count; ++j) row.push_back(fit.uncertainty.calc_correlation(i, j));
+    rows.push_back(row);
   }
   return rows;
 }
@@ -167,19 +167,19 @@ IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count) {
 Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
                    std::size_t parameter_count) {
   Json json = make_identified_json({make_fit_row(fit, parameter_count)});
-  json.set("converged", fit.converged)
-      .set("distance", fit.distance)
-      .set("at_kink", fit.at_kink)
-      .set("chi2_per_dof", fit.chi2_per_degree())
-      .set("dof", fit.degrees)
-      .set("adequate", fit.is_adequate())
-      .set("nuisances", make_nuisances_json(fit, runs, parameter_count))
-      .set("channels", make_channels_json(fit, runs))
-      .set("not_identifiable", make_directions_json(fit))
-      .set("correlation", make_correlation_json(fit, parameter_count))
-      .set("iterations", fit.iterations)
-      .set("simulations", fit.simulations)
-      .set("left_aside", fit.outside);
+  json["converged"] = fit.converged;
+  json["distance"] = fit.distance;
+  json["at_kink"] = fit.at_kink;
+  json["chi2_per_dof"] = fit.chi2_per_degree();
+  json["dof"] = fit.degrees;
+  json["adequate"] = fit.is_adequate();
+  json["nuisances"] = make_nuisances_json(fit, runs, parameter_count);
+  json["channels"] = make_channels_json(fit, runs);
+  json["not_identifiable"] = make_directions_json(fit);
+  json["correlation"] = make_correlation_json(fit, parameter_count);
+  json["iterations"] = fit.iterations;
+  json["simulations"] = fit.simulations;
+  json["left_aside"] = fit.outside;
   return json;
 }
 

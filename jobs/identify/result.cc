@@ -54,27 +54,29 @@ Json make_row_json(const IdentifiedRow& row) {
   Json parameters = Json::object();
   for (const IdentifiedParameter& p : row.parameters) {
     Json bounds = Json::array();
-    bounds.push(get_low(p));
-    bounds.push(get_high(p));
+    bounds.push_back(get_low(p));
+    bounds.push_back(get_high(p));
     Json values = Json::object();
-    values.set("value", p.value)
-        .set("ci95", bounds)
-        .set("unit", p.unit)
-        .set("in_range", p.in_range);
-    parameters.set(p.name, values);
+    values["value"] = p.value;
+    values["ci95"] = bounds;
+    values["unit"] = p.unit;
+    values["in_range"] = p.in_range;
+    parameters[p.name] = values;
   }
   Json outside = Json::array();
   for (const OutsideChannel& channel : row.outside) {
     Json json = Json::object();
-    json.set("channel", channel.name)
-        .set("value", channel.value)
-        .set("low", channel.low)
-        .set("high", channel.high)
-        .set("excess", channel.excess);
-    outside.push(json);
+    json["channel"] = channel.name;
+    json["value"] = channel.value;
+    json["low"] = channel.low;
+    json["high"] = channel.high;
+    json["excess"] = channel.excess;
+    outside.push_back(json);
   }
   Json json = Json::object();
-  json.set("parameters", parameters).set("in_range", row.in_range()).set("outside", outside);
+  json["parameters"] = parameters;
+  json["in_range"] = row.in_range();
+  json["outside"] = outside;
   return json;
 }
 
@@ -166,11 +168,12 @@ Json make_identified_json(const std::vector<IdentifiedRow>& rows) {
   Json list = Json::array();
   for (const IdentifiedRow& row : rows) {
     Json json = make_row_json(row);
-    json.set("place", row.place);
-    list.push(json);
+    json["place"] = row.place;
+    list.push_back(json);
   }
   Json json = Json::object();
-  json.set("rows", list).set("in_range", are_in_range(rows));
+  json["rows"] = list;
+  json["in_range"] = are_in_range(rows);
   return json;
 }
 
@@ -221,7 +224,7 @@ int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>
     write_identified_csv(find_output_file(arguments, arguments.positional()), rows);
   }
   if (arguments.is_on("json")) {
-    std::cout << make_identified_json(rows).dump() << "\n";
+    std::cout << format_json(make_identified_json(rows)) << "\n";
   } else {
     print_identified(rows);
   }

@@ -223,7 +223,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
 
 }  // namespace
 
-std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
+void write_sweep_report(const SweepFolder& folder) {
   const Plan plan = open_sweep_folder(folder);
   note_unsealed(folder.plan(), kPlanSeal);
   const SweepStatus status = read_status(folder, plan);
@@ -248,7 +248,6 @@ std::vector<std::string> write_sweep_report(const SweepFolder& folder) {
   page.sections.push_back({"Plan", {}, {make_fact_table(plan)}});
   page.footer = make_report_footer();
   write_text_file_inside(folder.root, folder.root / "report.html", make_html(page));
-  return drawer.list_notes();
 }
 
 }  // namespace strut

@@ -8,8 +8,8 @@
 
 namespace strut {
 
-/// Writes DIR/report.html and its figures. Returns what could not be made, for the user. Throws
+/// Writes DIR/report.html and its figures. Throws
 /// InputError, EnvironmentError.
-std::vector<std::string> write_sweep_report(const SweepFolder& folder);
+void write_sweep_report(const SweepFolder& folder);
 
 }  // namespace strut

@@ -60,7 +60,7 @@ Json make_numbers(const std::vector<double>& values) {
   for (const double value : values) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", value);
-    list.push(std::strtod(text, nullptr));
+    list.push_back(std::strtod(text, nullptr));
   }
   return list;
 }
@@ -76,14 +76,15 @@ Json make_values(const std::vector<double>& all, const std::vector<std::size_t>&
 Json make_corners(const LaneResults& results, int channel, const std::vector<std::size_t>& frames) {
   Json list = Json::array();
   for (int corner = 0; corner < kCorners; ++corner) {
-    list.push(make_values(get_channel(results, get_corner_channel(corner, channel)), frames));
+    list.push_back(make_values(get_channel(results, get_corner_channel(corner, channel)), frames));
   }
   return list;
 }
 
 Json make_point(double x, double z) {
   Json point = Json::array();
-  point.push(x).push(z);
+  point.push_back(x);
+  point.push_back(z);
   return point;
 }
 
@@ -94,16 +95,15 @@ Json make_axle(const Case& c, int axle) {
   const auto place = [&](const Vec3<double>& p) {
     return make_point(wheel.x + p.x, wheel.z + p.z);
   };
-  return Json::object()
-      .set("wheel", make_point(wheel.x, wheel.z))
-      .set("upper", place(suspension.spring_upper.position))
-      .set("lower", place(suspension.spring_lower.position));
+  return Json{{"wheel", make_point(wheel.x, wheel.z)},
+              {"upper", place(suspension.spring_upper.position)},
+              {"lower", place(suspension.spring_lower.position)}};
 }
 
 Json make_road(const Case& c) {
   Json points = Json::array();
   for (const auto& [x, z] : list_profile(c.maneuver.road)) {
-    points.push(make_point(calc_bump_center(c) + x, z));
+    points.push_back(make_point(calc_bump_center(c) + x, z));
   }
   return points;
 }
@@ -149,23 +149,23 @@ std::vector<std::array<double, 2>> list_profile(const RoadSpec& road) {
 Json make_motion(const Case& c, const LaneResults& results) {
   const std::vector<std::size_t> frames = list_frames(c, results);
   const auto add = [&](Json& json, const char* name, std::size_t channel) {
-    json.set(name, make_values(get_channel(results, channel), frames));
+    json[name] = make_values(get_channel(results, channel), frames);
   };
   Json json = Json::object();
   add(json, "time", CarChannel::kTime);
   add(json, "forward", CarChannel::kForwardPosition);
   add(json, "height", CarChannel::kBodyPositionZ);
   add(json, "pitch", CarChannel::kPitchAngle);
-  json.set("wheel_height", make_corners(results, CarChannel::kWheelPositionZ, frames))
-      .set("deflection", make_corners(results, CarChannel::kSuspensionDeflection, frames))
-      .set("wheel_speed", make_corners(results, CarChannel::kWheelSpeed, frames))
-      .set("front", make_axle(c, kFront))
-      .set("rear", make_axle(c, kRear))
-      .set("radius", c.vehicle.tire.unloaded_radius)
-      .set("nominal_height", c.vehicle.whole.centroid_height)
-      .set("road", make_road(c))
-      .set("road_side", get_name(c.maneuver.road.side))
-      .set("snapshot_time", has_snapshot(results) ? Json(results.event_time[0]) : Json());
+  json["wheel_height"] = make_corners(results, CarChannel::kWheelPositionZ, frames);
+  json["deflection"] = make_corners(results, CarChannel::kSuspensionDeflection, frames);
+  json["wheel_speed"] = make_corners(results, CarChannel::kWheelSpeed, frames);
+  json["front"] = make_axle(c, kFront);
+  json["rear"] = make_axle(c, kRear);
+  json["radius"] = c.vehicle.tire.unloaded_radius;
+  json["nominal_height"] = c.vehicle.whole.centroid_height;
+  json["road"] = make_road(c);
+  json["road_side"] = get_name(c.maneuver.road.side);
+  json["snapshot_time"] = has_snapshot(results) ? Json(results.event_time[0]) : Json();
   return json;
 }
 

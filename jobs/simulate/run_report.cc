@@ -51,9 +51,8 @@ std::string describe(const Case& c) {
 
 }  // namespace
 
-std::vector<std::string> write_run_report(const std::filesystem::path& folder,
-                                          const CaseSource& source, const Case& c,
-                                          const RunRecord& run) {
+void write_run_report(const std::filesystem::path& folder, const CaseSource& source, const Case& c,
+                      const RunRecord& run) {
   const PageFolder out{folder};
   clear_page_folder(out, out.page());
   const FigureDrawer drawer(out.make());
@@ -71,7 +70,6 @@ std::vector<std::string> write_run_report(const std::filesystem::path& folder,
       make_report_footer()};
   page.of = kRunContent.name;
   write_page(out, page);
-  return drawer.list_notes();
 }
 
 }  // namespace strut

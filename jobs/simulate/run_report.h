@@ -10,10 +10,8 @@
 
 namespace strut {
 
-/// Writes FOLDER/report.html and what it is made of. Returns what could not be made, for the user.
-/// Throws EnvironmentError.
-std::vector<std::string> write_run_report(const std::filesystem::path& folder,
-                                          const CaseSource& source, const Case& c,
-                                          const RunRecord& run);
+/// Writes FOLDER/report.html and what it is made of. Throws EnvironmentError.
+void write_run_report(const std::filesystem::path& folder, const CaseSource& source, const Case& c,
+                      const RunRecord& run);
 
 }  // namespace strut

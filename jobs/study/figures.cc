@@ -89,21 +89,20 @@ std::vector<double> list_column(const Rows& rows, std::size_t column) {
 /// An input of the network over the ground: where the cases are, and where it takes them to be.
 ChartPanel make_state_panel(const Identified& data, const Ground& ground, std::size_t input) {
   const std::vector<ColumnInfo>& names = data.model.targets;
-  const std::vector<double> z = list_column(data.inputs, input);
-  ChartSeries network{"network", SeriesKind::kPoints3d, 2},
-      truth{"simulation", SeriesKind::kPoints3d, 1};
+  ChartSeries network{"network", SeriesKind::kPoints, 2},
+      truth{"simulation", SeriesKind::kPoints, 1};
   network.marker = Marker::kCross;
   truth.marker = Marker::kCircle;
   network.x = list_column(data.predicted, ground.x);
   network.y = list_column(data.predicted, ground.y);
   truth.x = list_column(data.reference, ground.x);
   truth.y = list_column(data.reference, ground.y);
-  network.z = truth.z = z;
+  network.value = truth.value = list_column(data.inputs, input);
   return {{make_title(names[ground.x])},
           {make_title(names[ground.y])},
           {std::move(network), std::move(truth)},
           make_words(data.model.inputs[input].name),
-          {make_title(data.model.inputs[input])}};
+          make_title(data.model.inputs[input])};
 }
 
 Chart make_state_chart(const Identified& data, const std::string& preload) {
@@ -113,11 +112,13 @@ Chart make_state_chart(const Identified& data, const std::string& preload) {
   for (std::size_t c = 0; c < data.model.inputs.size(); ++c) {
     chart.panels.push_back(make_state_panel(data, ground, c));
   }
-  chart.caption =
-      "As Figure 6 of the paper. The states of the " + std::to_string(data.inputs.size()) +
-      " test cases over " + make_words(data.model.targets[ground.x].name) + " and " +
-      make_words(data.model.targets[ground.y].name) +
-      ": circles at the true values, crosses at those that the network identifies from the states.";
+  chart.caption = "As Figure 6 of the paper. The states of the " +
+                  std::to_string(data.inputs.size()) + " test cases over " +
+                  make_words(data.model.targets[ground.x].name) + " and " +
+                  make_words(data.model.targets[ground.y].name) +
+                  ", by color: circles at the true values, crosses at those that the network "
+                  "identifies from the "
+                  "states.";
   return chart;
 }
 

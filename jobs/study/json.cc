@@ -9,12 +9,12 @@ namespace {
 
 Json list_hidden(const StudyRequest& request, const CellResult& cell) {
   Json hidden = Json::array();
-  for (const int size : request.networks[cell.cell.network].hidden) hidden.push(size);
+  for (const int size : request.networks[cell.cell.network].hidden) hidden.push_back(size);
   return hidden;
 }
 
 Json list_channels(const StudyRequest& request, const CellResult& cell) {
-  return Json::texts(request.inputs[cell.cell.inputs].channels);
+  return Json(request.inputs[cell.cell.inputs].channels);
 }
 
 Json make_spreads(const StudyRequest& request, const CellResult& cell) {
@@ -24,15 +24,17 @@ Json make_spreads(const StudyRequest& request, const CellResult& cell) {
     for (std::size_t m = 0; m < kMetrics.size(); ++m) {
       const Spread& spread = cell.spread[p][m];
       Json values = Json::object();
-      values.set("median", spread.median).set("low", spread.low).set("high", spread.high);
+      values["median"] = spread.median;
+      values["low"] = spread.low;
+      values["high"] = spread.high;
       const double published = find_published(request, cell, p, m);
       if (!std::isnan(published)) {
-        values.set("published", published);
-        if (m != kR2) values.set("ratio", spread.median / published);
+        values["published"] = published;
+        if (m != kR2) values["ratio"] = spread.median / published;
       }
-      metrics.set(kMetrics[m].name, values);
+      metrics[kMetrics[m].name] = values;
     }
-    parameters.set(cell.parameters[p].name, metrics);
+    parameters[cell.parameters[p].name] = metrics;
   }
   return parameters;
 }
@@ -44,20 +46,20 @@ Json make_trainings(const CellResult& cell) {
     for (std::size_t p = 0; p < cell.parameters.size(); ++p) {
       Json metrics = Json::object();
       for (const MetricInfo& metric : kMetrics) {
-        metrics.set(metric.name, seed.metrics[p].*metric.value);
+        metrics[metric.name] = seed.metrics[p].*metric.value;
       }
-      parameters.set(cell.parameters[p].name, metrics);
+      parameters[cell.parameters[p].name] = metrics;
     }
     Json training = Json::object();
-    training.set("seed", seed.seed)
-        .set("model", seed.model)
-        .set("samples", static_cast<long>(seed.tested))
-        .set("epochs", seed.epochs)
-        .set("stopped_by", get_name(seed.stop))
-        .set("best_validation", seed.best_validation)
-        .set("seconds", seed.seconds)
-        .set("parameters", parameters);
-    trainings.push(training);
+    training["seed"] = seed.seed;
+    training["model"] = seed.model;
+    training["samples"] = seed.tested;
+    training["epochs"] = seed.epochs;
+    training["stopped_by"] = get_name(seed.stop);
+    training["best_validation"] = seed.best_validation;
+    training["seconds"] = seed.seconds;
+    training["parameters"] = parameters;
+    trainings.push_back(training);
   }
   return trainings;
 }
@@ -66,20 +68,20 @@ Json make_summaries(const StudyRequest& request, const StudyResults& results) {
   Json summaries = Json::array();
   for (const StudySummary& s : summarize(request, results)) {
     Json json = Json::object();
-    json.set("preload", s.preload)
-        .set("errors", static_cast<long>(s.errors))
-        .set("errors_held", static_cast<long>(s.errors_held))
-        .set("smallest_ratio", s.smallest_ratio)
-        .set("median_ratio", s.median_ratio)
-        .set("largest_ratio", s.largest_ratio)
-        .set("largest_ratio_at", s.largest_at)
-        .set("R2", static_cast<long>(s.gaps))
-        .set("R2_held", static_cast<long>(s.gaps_held))
-        .set("smallest_R2_gap", s.smallest_gap)
-        .set("median_R2_gap", s.median_gap)
-        .set("largest_R2_gap", s.largest_gap)
-        .set("largest_R2_gap_at", s.largest_gap_at);
-    summaries.push(json);
+    json["preload"] = s.preload;
+    json["errors"] = s.errors;
+    json["errors_held"] = s.errors_held;
+    json["smallest_ratio"] = s.smallest_ratio;
+    json["median_ratio"] = s.median_ratio;
+    json["largest_ratio"] = s.largest_ratio;
+    json["largest_ratio_at"] = s.largest_at;
+    json["R2"] = s.gaps;
+    json["R2_held"] = s.gaps_held;
+    json["smallest_R2_gap"] = s.smallest_gap;
+    json["median_R2_gap"] = s.median_gap;
+    json["largest_R2_gap"] = s.largest_gap;
+    json["largest_R2_gap_at"] = s.largest_gap_at;
+    summaries.push_back(json);
   }
   return summaries;
 }
@@ -89,36 +91,35 @@ Json make_summaries(const StudyRequest& request, const StudyResults& results) {
 Json make_json(const StudyRequest& request, const StudyResults& results) {
   Json sweeps = Json::object();
   for (const SweepFacts& sweep : results.sweeps) {
-    sweeps.set(sweep.name, Json::object()
-                               .set("plan_hash", sweep.plan_hash)
-                               .set("cases", static_cast<long>(sweep.cases))
-                               .set("failed", static_cast<long>(sweep.failed))
-                               .set("offset", sweep.offset));
+    sweeps[sweep.name] = Json{{"plan_hash", sweep.plan_hash},
+                              {"cases", sweep.cases},
+                              {"failed", sweep.failed},
+                              {"offset", sweep.offset}};
   }
   Json cells = Json::array();
   for (const CellResult& cell : results.cells) {
     Json json = Json::object();
-    json.set("key", cell.key)
-        .set("preload", request.preloads[cell.cell.preload].name)
-        .set("best_instant", cell.cell.best_instant)
-        .set("offset", cell.offset)
-        .set("sweep", cell.sweep)
-        .set("samples", static_cast<long>(request.samples[cell.cell.samples]))
-        .set("network", request.networks[cell.cell.network].name)
-        .set("hidden", list_hidden(request, cell))
-        .set("inputs", list_channels(request, cell))
-        .set("parameters", make_spreads(request, cell))
-        .set("trainings", make_trainings(cell));
-    cells.push(json);
+    json["key"] = cell.key;
+    json["preload"] = request.preloads[cell.cell.preload].name;
+    json["best_instant"] = cell.cell.best_instant;
+    json["offset"] = cell.offset;
+    json["sweep"] = cell.sweep;
+    json["samples"] = request.samples[cell.cell.samples];
+    json["network"] = request.networks[cell.cell.network].name;
+    json["hidden"] = list_hidden(request, cell);
+    json["inputs"] = list_channels(request, cell);
+    json["parameters"] = make_spreads(request, cell);
+    json["trainings"] = make_trainings(cell);
+    cells.push_back(json);
   }
   Json json = Json::object();
-  json.set("title", request.title)
-      .set("published", request.published.source)
-      .set("seeds", request.seeds)
-      .set("summary", make_summaries(request, results))
-      .set("sweeps", sweeps)
-      .set("cells", cells);
-  if (results.noise) json.set("noise", make_json(*results.noise));
+  json["title"] = request.title;
+  json["published"] = request.published.source;
+  json["seeds"] = request.seeds;
+  json["summary"] = make_summaries(request, results);
+  json["sweeps"] = sweeps;
+  json["cells"] = cells;
+  if (results.noise) json["noise"] = make_json(*results.noise);
   return json;
 }
 

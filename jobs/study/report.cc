@@ -179,32 +179,30 @@ ReportSection make_limits() {
 
 }  // namespace
 
-StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& request) {
-  StudyOutput output{read_results(folder, request), {}};
+StudyResults write_study_output(const StudyFolder& folder, const StudyRequest& request) {
+  StudyResults results = read_results(folder, request);
   write_text_file_inside(folder.root, folder.results(),
-                         make_json(request, output.results).dump() + "\n");
-  write_text_file_inside(folder.root, folder.tables(), make_csv(request, output.results));
+                         format_json(make_json(request, results)) + "\n");
+  write_text_file_inside(folder.root, folder.tables(), make_csv(request, results));
   const FigureDrawer drawer(Folder(folder.root));
-  for (std::string& note : drawer.list_notes()) output.notes.push_back(std::move(note));
   ReportPage page;
   page.title = request.title;
-  for (const StudySummary& s : summarize(request, output.results))
-    page.lead.push_back(make_line(s));
-  page.sections = {make_summary(request, output.results), make_method(folder, request)};
+  for (const StudySummary& s : summarize(request, results)) page.lead.push_back(make_line(s));
+  page.sections = {make_summary(request, results), make_method(folder, request)};
   for (std::size_t p = 0; p < request.preloads.size(); ++p) {
-    page.sections.push_back(make_preload(folder, request, output.results, p, drawer));
+    page.sections.push_back(make_preload(folder, request, results, p, drawer));
   }
-  if (const auto& noise = output.results.noise) {
+  if (const auto& noise = results.noise) {
     page.lead.push_back(make_noise_line(*noise));
     page.sections.push_back(make_noise_section(*noise, drawer));
     write_text_file_inside(folder.root, folder.noise_table(), make_csv(*noise));
   }
   if (!request.published.source.empty()) page.sections.push_back(make_published(request));
-  page.sections.push_back(make_settings(request, output.results));
+  page.sections.push_back(make_settings(request, results));
   page.sections.push_back(make_limits());
   page.footer = make_report_footer();
   write_text_file_inside(folder.root, folder.report(), make_html(page));
-  return output;
+  return results;
 }
 
 }  // namespace strut

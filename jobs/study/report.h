@@ -8,12 +8,7 @@
 
 namespace strut {
 
-struct StudyOutput {
-  StudyResults results;
-  std::vector<std::string> notes;  // for the user: what could not be made
-};
-
 /// Evaluates all models and writes every output anew. Throws InputError, EnvironmentError.
-StudyOutput write_study_output(const StudyFolder& folder, const StudyRequest& request);
+StudyResults write_study_output(const StudyFolder& folder, const StudyRequest& request);
 
 }  // namespace strut

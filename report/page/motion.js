@@ -190,9 +190,9 @@ function markInstant(time) {
   if (!isWaiting) requestAnimationFrame(() => {
     const at = wantedInstant;
     wantedInstant = null;
-    for (const {div, plotly} of strutCharts) {
+    for (const {div} of strutCharts) {
       const axes = Object.keys(div.layout).filter((key) => key.startsWith("yaxis"));
-      plotly.relayout(div, {shapes: axes.map((axis) => ({
+      Plotly.relayout(div, {shapes: axes.map((axis) => ({
         type: "line", x0: at, x1: at, y0: 0, y1: 1, xref: "x" + axis.slice(5), yref: "y" + axis.slice(5) + " domain",
         line: {color: readColor("--soft"), width: 1}}))});
     }

@@ -25,13 +25,10 @@ function makeTemplate() {
   const line = readColor("--line");
   const axis = {gridcolor: line, zerolinecolor: line, linecolor: ink, showline: true, ticks: "outside",
                 automargin: false, title: {standoff: 8, font: {size: 12}}};
-  const solid = {gridcolor: line, zerolinecolor: line, showbackground: false, color: ink, nticks: 4,
-                 tickfont: {size: 10}, title: {font: {size: 12}}};
   return {layout: {
     font: {color: ink, size: 13, family: "system-ui, 'DejaVu Sans', Arial, sans-serif"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", xaxis: axis, yaxis: axis,
     modebar: {bgcolor: readColor("--paper"), color: readColor("--soft"), activecolor: ink},
-    scene: {xaxis: solid, yaxis: solid, zaxis: solid},
     hoverlabel: {namelength: -1}}};
 }
 
@@ -51,12 +48,12 @@ function quoteCsv(text) {
 
 // The numbers of a chart as drawn, a line a point; whiskers as what stands below and above y.
 function makeCsv(chart) {
-  const lines = ["panel,series,category,x,y,z,below,above"];
+  const lines = ["panel,series,category,x,y,value,below,above"];
   for (const trace of chart.data) {
-    const names = (trace.scene ? chart.layout[trace.scene].xaxis :
-      chart.layout[trace.xaxis.replace("x", "xaxis")]).ticktext;
+    const names = chart.layout[trace.xaxis.replace("x", "xaxis")].ticktext;
     const stands = trace.type !== "scatter" || trace.mode === "markers";  // at a place, or beside it
-    const columns = [trace.x, trace.y, trace.z, trace.error_y?.arrayminus, trace.error_y?.array];
+    const values = trace.marker?.showscale && trace.marker.color;
+    const columns = [trace.x, trace.y, values, trace.error_y?.arrayminus, trace.error_y?.array];
     trace.x.forEach((x, i) => {
       const place = stands && names?.[Math.round(x) - 1];
       const words = [trace.meta, trace.name, place || ""].map(quoteCsv);
@@ -79,14 +76,9 @@ function makeConfig(chart) {
   return {
     responsive: true, displaylogo: false,
     showSendToCloud: false, plotlyServerURL: "",  // a report's numbers stay where the report is
-    toImageButtonOptions: {format: chart.three_d ? "png" : "svg", filename: chart.name},
+    toImageButtonOptions: {format: "svg", filename: chart.name},
     modeBarButtonsToAdd: [{name: "Numbers as CSV", icon: icon,
                            click: () => saveText(chart.name + ".csv", makeCsv(chart))}]};
-}
-
-function hasWebGl() {
-  const canvas = document.createElement("canvas");
-  return Boolean(canvas.getContext("webgl2") ?? canvas.getContext("webgl"));
 }
 
 function explain(div, text) {
@@ -101,27 +93,20 @@ async function drawChart(div) {
   const chart = JSON.parse(div.querySelector("script").textContent);
   div.style.height = chart.height + buttonHeight + "px";
   div.style.minWidth = leastShare * chart.width + "px";
-  if (chart.three_d && !hasWebGl()) {
-    explain(div, "This chart needs WebGL, which this browser does not give; its numbers, and where " +
-                 "gnuplot was there its picture, are linked below.");
-    return false;
-  }
-  const plotly = chart.three_d ? window.PlotlyThreeD : window.Plotly;
   const margin = {...chart.layout.margin, t: buttonHeight};
   // A finger that moves a page must not zoom a chart.
-  const isTouched = !chart.three_d && window.matchMedia("(pointer: coarse)").matches;
+  const isTouched = window.matchMedia("(pointer: coarse)").matches;
   const layout = {...chart.layout, margin, ...(isTouched && {dragmode: false}), template: makeTemplate()};
-  await plotly.newPlot(div, paint(chart.data, readColor("--ink")), layout, makeConfig(chart));
-  strutCharts.push({div, chart, plotly});
-  return true;
+  await Plotly.newPlot(div, paint(chart.data, readColor("--ink")), layout, makeConfig(chart));
+  strutCharts.push({div, chart});
 }
 
 // Light, dark or paper: the same charts in other colors.
 function repaintAll(forPaper) {
   isForPaper = forPaper;
-  for (const {div, chart, plotly} of strutCharts) {
+  for (const {div, chart} of strutCharts) {
     const size = forPaper ? {autosize: false, width: paperWidth, height: chart.height + buttonHeight} : {autosize: true};
-    plotly.react(div, paint(chart.data, readColor("--ink")),
+    Plotly.react(div, paint(chart.data, readColor("--ink")),
                  {...div.layout, width: undefined, height: undefined, ...size, template: makeTemplate()},
                  makeConfig(chart));
   }
@@ -132,7 +117,8 @@ async function drawAll() {
   let drawn = 0;
   for (const div of divs) {
     try {
-      drawn += await drawChart(div) ? 1 : 0;
+      await drawChart(div);
+      ++drawn;
     } catch (error) {
       console.error(error);
       explain(div, "This chart could not be drawn: " + error.message);

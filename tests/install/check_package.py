@@ -31,7 +31,6 @@ def check_control(control, version):
     check(control["Architecture"] == run("dpkg", "--print-architecture").strip(), control)
     check(re.fullmatch(r"[^<]+ <[^@ ]+@[^> ]+>", control["Maintainer"]), control["Maintainer"])
     check(control["Section"] == "science" and control["Priority"] == "optional", control)
-    check(control["Recommends"] == "gnuplot-nox", control)
     depends = control["Depends"]
     for name in ("libc6", "libstdc++6", "libgomp1", "libhdf5-", "libsundials-cvode", "libssl3",
                  "zlib1g", "libboost-program-options"):

@@ -223,7 +223,7 @@ TEST_CASE("compare.json and the report have a car's balance", "[io]") {
   balance.parameters = {{"front_stiffness", "N/m", 37000.0, 100.0}};
   balance.chi2_per_reading = 4.0;
   comparison.runs.front().car_balance = balance;
-  const auto json = test::parse_json(make_compare_json(data, comparison).dump());
+  const auto json = test::parse_json(format_json(make_compare_json(data, comparison)));
   const auto& told = json.get_child("runs").front().second.get_child("balance");
   CHECK(told.get<double>("chi2_per_reading") == 4.0);
   CHECK(told.get<double>("parameters.front_stiffness.value") == 37000.0);

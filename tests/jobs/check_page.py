@@ -69,8 +69,8 @@ def refuse(constant):
 
 
 def count_series(chart):
-    """Those of a flat chart that plotly.js must draw: with any place, be it a gap."""
-    return 0 if chart["three_d"] else sum(bool(trace["x"]) for trace in chart["data"])
+    """Those that plotly.js must draw: with any place, be it a gap."""
+    return sum(bool(trace["x"]) for trace in chart["data"])
 
 
 def read_text(path):

@@ -148,7 +148,7 @@ TEST_CASE("Control characters and bytes that are not UTF-8 are shown as numbers"
         "a\\xe2\\x80\\xae"
         "b");  // right to left override
   const std::string hostile = "\x1b]0;x\x07\x7f\xc2\x85\xe2\x80\xa8\xff";
-  const std::string json = Json::object().set("name", hostile).dump();
+  const std::string json = format_json(Json{{"name", hostile}});
   CHECK(escape_controls(json) == json);
   CHECK(test::parse_json(json).get<std::string>("name") ==
         "\x1b]0;x\x07\x7f\xc2\x85\xe2\x80\xa8\xef\xbf\xbd");

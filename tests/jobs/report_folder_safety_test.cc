@@ -57,9 +57,7 @@ TEST_CASE("A report is made again without running what its folder holds", "[io]"
   const TemporaryFolder folder;
   const fs::path report = copy_report(folder);
   const std::string touch = "system(\"touch " + (folder / "PWNED").string() + "\")\n";
-  for (const auto& entry : fs::directory_iterator(report / "figures")) {
-    if (entry.path().extension() == ".gp") write(entry.path(), touch);
-  }
+  write(report / "figures/curves.gp", touch);
   write(report / "figures/.gnuplot", touch);
   fs::remove(report / "report.html");
   const Outcome outcome = run_program("report " + report.string());

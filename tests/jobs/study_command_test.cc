@@ -267,17 +267,6 @@ TEST_CASE("A study's report is one well-formed page that needs no other file", "
   }
 }
 
-TEST_CASE("Without gnuplot a study and its report say that pictures are left out", "[io][slow]") {
-  const StudyFiles& files = get_study();
-  const fs::path root = files.copy("bare");
-  const Outcome outcome = run_shell("PATH=" + (files / "nothing").string() +
-                                    " " STRUT_PROGRAM " report " + root.string());
-  CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.messages, Contains("gnuplot cannot be started") && Contains("no pictures"));
-  CHECK_THAT(test::read_text(root / "report.html"),
-             !Contains(".svg\"") && Contains("href=\"figures/training_trimmed.csv\""));
-}
-
 TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]") {
   const StudyFiles& files = get_study();
   const fs::path root = files / "sweep_copy";

@@ -234,7 +234,7 @@ TEST_CASE("noise.csv has a line for every number of the noise section", "[io][sl
 TEST_CASE("A report of a study with noise computes nothing and repeats its bytes", "[io][slow]") {
   const fs::path root = get_study().copy("reported");
   const auto before = read_folder(root);
-  for (const char* name : {"results.json", "noise.csv", "report.html", "figures/noise.svg"}) {
+  for (const char* name : {"results.json", "noise.csv", "report.html", "figures/noise.json"}) {
     REQUIRE(fs::remove(root / name));
   }
   std::ofstream(root / "results.json") << "{\"noise\": ";  // of a disk that was full
