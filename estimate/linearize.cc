@@ -188,8 +188,6 @@ void ReadingSimulator::sample(const std::vector<RunSetup>& setups, std::vector<S
         prepared[i] = preparer.prepare(remove_sensors(s.setup));
       } catch (const ModelError& e) {
         failures[begin + i] = runs_[s.run].name + ": " + e.what();
-      } catch (const std::invalid_argument& e) {  // the road's
-        failures[begin + i] = runs_[s.run].name + ": " + e.what();
       }
     };
     // Each run's first is the point that the others are near.

@@ -78,8 +78,6 @@ std::vector<PreparedCase> prepare_all(const std::vector<Variant>& variants, doub
       prepared.push_back(preparer.prepare(v.setup, offset));
     } catch (const ModelError& e) {
       throw InputError(v.label + ": " + e.what());
-    } catch (const std::invalid_argument& e) {
-      throw InputError(v.label + ": " + e.what());
     }
   }
   return prepared;

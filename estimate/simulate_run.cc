@@ -80,8 +80,6 @@ RunCurves simulate_crossing(const MeasuredRun& run, const std::vector<Unknown>& 
     read_history(simulated, c.vehicle.effects, run.times, hit_time, plan.interval, curves);
   } catch (const ModelError& e) {
     curves.failure = run.name + ": " + e.what();
-  } catch (const std::invalid_argument& e) {  // the road's
-    curves.failure = run.name + ": " + e.what();
   }
   return curves;
 }

@@ -1,12 +1,12 @@
 #include "model_files/read_maneuver.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "io/format/csv.h"
 #include "io/format/toml_document.h"
+#include "model/error/model_error.h"
 #include "model_files/parameters.h"
 
 namespace strut {
@@ -64,7 +64,7 @@ void read_bump(const Table& bump, ManeuverSpec& maneuver) {
   maneuver.bump_distance = read_parameter(bump, "distance", "bump_distance");
   try {
     validate(road);
-  } catch (const std::invalid_argument& e) {
+  } catch (const ModelError& e) {
     throw bump.error(e.what());
   }
 }

@@ -1,13 +1,13 @@
 #include "model_files/read_rig.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/range.h"
 #include "io/format/csv.h"
 #include "io/format/toml_document.h"
+#include "model/error/model_error.h"
 #include "model/rig/rig_system.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
@@ -126,7 +126,7 @@ InputSignal read_input(const Table& table, const std::string& channel, double du
   }
   try {
     return read_shape(table, channel, shape, duration);
-  } catch (const std::invalid_argument& e) {
+  } catch (const ModelError& e) {
     throw table.error(shape == kFile ? "file" : "shape", e.what());
   }
 }
@@ -208,7 +208,7 @@ RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {
   }
   try {
     assign_rig_inputs(kind, maneuver.inputs);
-  } catch (const std::invalid_argument& e) {
+  } catch (const ModelError& e) {
     throw InputError(path.string() + ": " + e.what());
   }
   return maneuver;

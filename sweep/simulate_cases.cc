@@ -123,9 +123,8 @@ std::optional<PreparedCase> CaseSimulator::prepare(std::int64_t case_id, ShardRo
   try {
     return preparer_.prepare(plan_.make_case(case_id), plan_.request().snapshot.offset);
   } catch (const ModelError& e) {
-    fail(rows, row, RunStatus::kNoEquilibrium, 0.0, e.what());
-  } catch (const std::invalid_argument& e) {  // the road's
-    fail(rows, row, RunStatus::kImpossible, 0.0, e.what());
+    const bool is_road = e.fault() == ModelFault::kRoad;
+    fail(rows, row, is_road ? RunStatus::kImpossible : RunStatus::kNoEquilibrium, 0.0, e.what());
   }
   return std::nullopt;
 }

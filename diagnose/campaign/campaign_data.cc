@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "base/error/check.h"
 #include "base/error/input_error.h"
@@ -110,7 +109,7 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
                                : choose_half_width(times, values, noise.sigma);
   try {
     return make_sampled_input(c.channel, times, values, noise.half_width);
-  } catch (const std::invalid_argument& e) {
+  } catch (const ModelError& e) {
     throw InputError(table.name + ": " + e.what());
   }
 }

@@ -65,7 +65,7 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  std::vector<Unknown> unknowns, int threads = 1);
 
 /// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
-/// std::invalid_argument as make_signal does.
+/// ModelError as make_signal does.
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
                                const std::vector<double>& values, double half_width);
 

@@ -6,21 +6,11 @@
 
 #include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
+#include "diagnose/hypothesis/search_starts.h"
 #include "model_files/read_model.h"
 
 namespace strut {
 namespace {
-
-/// How a strut moved, and what its springs and dampers did about it.
-struct StrutMotion {
-  double compression = 0.0;  // m, the most
-  double deflection = 0.0;   // m rms
-  double velocity = 0.0;     // m/s rms
-  double stiffness = 0.0, damping = 0.0, tire_deflection = 0.0;
-
-  double frequency() const { return velocity / std::max(deflection, 1e-9); }  // rad/s
-  double damper_force() const { return damping * velocity; }
-};
 
 bool starts_with(const std::string& text, const std::string& head) {
   return text.rfind(head, 0) == 0;
@@ -82,55 +72,6 @@ std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
   return motions;
 }
 
-using Beginnings = std::vector<std::map<std::string, double>>;
-
-/// Sizes by the names of the effect's parameters; what is left out is `kShare` of the typical.
-Beginnings choose_beginnings(const std::string& effect, const StrutMotion& m) {
-  if (effect == "damper_asymmetry") return {{{"asymmetry", 0.1}}};
-  if (effect == "damper_blow_off") {
-    return {{{"loss", 0.2}, {"knee", 0.3 * m.velocity}},
-            {{"loss", 0.2}, {"knee", m.velocity}},
-            {{"loss", 0.2}, {"knee", 3.0 * m.velocity}},
-            {{"loss", -2.0}, {"knee", 0.5 * m.velocity}}};  // a bleed that is soft at low speed
-  }
-  if (effect == "damper_hysteresis") return {{{"lag", 0.05 / m.frequency()}}};
-  if (effect == "damper_leak") return {{{"stroke", 0.02 * m.deflection}}};
-  if (effect == "damper_fade") return {{{"loss", 0.005}, {"rate", 0.005}}};
-  if (effect == "strut_friction") {
-    return {{{"force", 0.1 * m.damper_force()}, {"speed", 0.05 * m.velocity}}};
-  }
-  if (effect == "progressive_spring") {
-    return {{{"cubic", 0.05 / (m.compression * m.compression)}}};
-  }
-  if (effect == "bump_stop") {
-    Beginnings list;
-    for (const double gap : {0.3, 0.6, 0.85}) {
-      list.push_back({{"stiffness", 0.2 * m.stiffness},
-                      {"gap", gap * m.compression},
-                      {"progression", 0.5 / m.compression}});
-    }
-    return list;
-  }
-  if (effect == "top_mount_compliance") {
-    return {
-        {{"compliance", 0.05 / (m.damping * m.frequency())}, {"relaxation", 0.05 / m.frequency()}}};
-  }
-  if (effect == "joint_play") return {{{"play", 0.02 * m.deflection}}};
-  if (effect == "gas_force") return {{{"force", 0.05 * m.stiffness * m.deflection}}};
-  if (effect == "anti_roll_bar") return {{{"stiffness", 0.05 * m.stiffness}}};
-  if (effect == "tire_progressive") return {{{"progression", 0.05 / m.tire_deflection}}};
-  if (effect == "tire_damping") return {{{"rate", 0.1 * m.damping}}};
-  if (effect == "payload") {
-    return {
-        {{"mass", 10.0}, {"x", 0.0}}, {{"mass", 10.0}, {"x", -1.3}}, {{"mass", 10.0}, {"x", 1.3}}};
-  }
-  if (effect == "wheel_runout") return {{{"phase", 0.0}}, {{"phase", 1.5707963267948966}}};
-  if (effect == "sensor_gain") return {{{"gain", 0.01}}};
-  if (effect == "sensor_delay") return {{{"delay", 5e-4}}};
-  if (effect == "sensor_lowpass") return {{{"time", 5e-4}}};
-  return {{}};
-}
-
 /// Whether the model's own parameter says the same: a quarter car's tire stiffness is the effect's.
 bool is_own_parameter(const CampaignData& data, const std::string& name) {
   const auto parameters = list_parameters(data.model());
@@ -153,7 +94,7 @@ bool is_compared(const CampaignData& data, const std::string& channel) {
 }
 
 std::vector<std::vector<double>> make_beginnings(
-    const std::vector<const EffectParameter*>& parameters, const Beginnings& chosen) {
+    const std::vector<const EffectParameter*>& parameters, const SearchStarts& chosen) {
   constexpr double kShare = 0.2;
   std::vector<std::vector<double>> beginnings;
   for (const auto& values : chosen) {
@@ -236,8 +177,8 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       });
       if (is_free) continue;
       h.beginnings = make_beginnings(
-          parameters,
-          choose_beginnings(effect.name, motion == motions.end() ? StrutMotion{} : motion->second));
+          parameters, choose_search_starts(
+                          effect.name, motion == motions.end() ? StrutMotion{} : motion->second));
       list.push_back(std::move(h));
     }
   }

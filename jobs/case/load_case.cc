@@ -21,10 +21,8 @@ auto call_model(const CaseSource& source, const Function& function) {
   try {
     return function();
   } catch (const ModelError& e) {
-    throw InputError(source.vehicle.string() + describe_settings(source) + ": " + e.what());
-  } catch (const std::invalid_argument& e) {
-    // Everything else the model may refuse is the road.
-    const auto& file = source.maneuver.empty() ? source.vehicle : source.maneuver;
+    const bool is_road = e.fault() == ModelFault::kRoad && !source.maneuver.empty();
+    const auto& file = is_road ? source.maneuver : source.vehicle;
     throw InputError(file.string() + describe_settings(source) + ": " + e.what());
   }
 }

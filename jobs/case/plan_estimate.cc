@@ -10,6 +10,7 @@
 #include "base/text/format_number.h"
 #include "jobs/case/load_case.h"
 #include "jobs/case/step_check.h"
+#include "model/error/model_error.h"
 #include "sweep/simulate_cases.h"
 
 namespace strut {
@@ -42,7 +43,7 @@ void check_steps(const Plan& plan, const PreparedCase& c, const std::string& whi
 void check_point(const Plan& plan, CasePreparer& preparer, std::int64_t id) {
   try {
     check_steps(plan, preparer.prepare(plan.make_case(id)), "case " + std::to_string(id));
-  } catch (const std::invalid_argument&) {  // the car's or the road's
+  } catch (const ModelError&) {
   }
 }
 

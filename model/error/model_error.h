@@ -2,13 +2,27 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace strut {
 
-/// A vehicle that cannot be: the message names the field, its value and what is allowed.
+/// What cannot be.
+enum class ModelFault {
+  kModel,  // a vehicle or rig: its parameters, effects, maps, or no equilibrium
+  kRoad,   // the maneuver's road
+  kInput   // the samples of a recorded input
+};
+
+/// The message names the field, its value and what is allowed.
 class ModelError : public std::invalid_argument {
  public:
-  using std::invalid_argument::invalid_argument;
+  explicit ModelError(const std::string& message, ModelFault fault = ModelFault::kModel)
+      : std::invalid_argument(message), fault_(fault) {}
+
+  ModelFault fault() const { return fault_; }
+
+ private:
+  ModelFault fault_;
 };
 
 }  // namespace strut

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "model/error/model_error.h"
+
 namespace strut {
 
 namespace {
@@ -17,7 +19,9 @@ constexpr double kCellsPerPeriod = 128.0;
 constexpr std::size_t kBumpCells = 128;
 
 void check_samples(const std::string& channel, const Samples& times, const Samples& values) {
-  const auto fail = [&](const std::string& what) { throw std::invalid_argument(channel + what); };
+  const auto fail = [&](const std::string& what) {
+    throw ModelError(channel + what, ModelFault::kInput);
+  };
   if (times.size() != values.size()) {
     fail(": " + std::to_string(times.size()) + " times and " + std::to_string(values.size()) +
          " values: must be as many");

@@ -33,7 +33,7 @@ struct InputSignal {
   int search_steps = 0;
 };
 
-/// Interpolates samples. Throws std::invalid_argument that names the channel: fewer than two
+/// Interpolates samples. Throws ModelError that names the channel: fewer than two
 /// samples, times and values not of one length, not finite, times that do not increase.
 InputSignal make_signal(const std::string& channel, const std::vector<double>& times,
                         const std::vector<double>& values, Interpolation interpolation);

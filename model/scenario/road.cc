@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "model/error/model_error.h"
 #include "model/scenario/envelope.h"
 #include "model/scenario/footprint.h"
 #include "model/scenario/profile.h"
@@ -24,7 +25,7 @@ void require(bool ok, const std::string& field, double value, const std::string&
   if (ok) return;
   std::ostringstream message;
   message << field << " = " << value << " is not allowed: " << allowed;
-  throw std::invalid_argument(message.str());
+  throw ModelError(message.str(), ModelFault::kRoad);
 }
 
 void require_range(const char* field, double value, double lowest, double highest) {

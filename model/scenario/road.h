@@ -40,7 +40,7 @@ struct ContactGeometry {
   double footprint = 0.0;  // m, length averaged over, 0 or [0.02, 1]; 0: the bare disc, with kinks
 };
 
-/// Throws std::invalid_argument with field, value and allowed range.
+/// Throws ModelError with field, value and allowed range.
 void validate(const RoadSpec& spec);
 void validate(const ContactGeometry& contact);
 
@@ -78,7 +78,7 @@ struct Surface {
 /// Builds the surface a tire feels (a few milliseconds). Disc envelope
 /// z_e(x) = max over s of z(x + s) + sqrt(R^2 - s^2) - R, then averaged with the cubic B-spline
 /// kernel of total support `footprint` (four boxcars of a quarter of it); kPoint: the profile
-/// itself. Throws std::invalid_argument for a bad specification, and where events would be needed
+/// itself. Throws ModelError for a bad specification, and where events would be needed
 /// at more than 64 kinks.
 Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact);
 

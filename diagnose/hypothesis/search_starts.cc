@@ -1,0 +1,147 @@
+#include "diagnose/hypothesis/search_starts.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "base/error/check.h"
+#include "model/effects/catalogue.h"
+
+namespace strut {
+namespace {
+
+using Starts = SearchStarts;
+using Motion = const StrutMotion&;
+using Rule = Starts (*)(Motion);
+using Rules = std::map<std::string, Rule>;
+
+Starts start_blow_off(Motion m) {
+  return {{{"loss", 0.2}, {"knee", 0.3 * m.velocity}},
+          {{"loss", 0.2}, {"knee", m.velocity}},
+          {{"loss", 0.2}, {"knee", 3.0 * m.velocity}},
+          {{"loss", -2.0}, {"knee", 0.5 * m.velocity}}};  // a bleed that is soft at low speed
+}
+
+Starts start_bump_stop(Motion m) {
+  Starts starts;
+  for (const double gap : {0.3, 0.6, 0.85}) {
+    starts.push_back({{"stiffness", 0.2 * m.stiffness},
+                      {"gap", gap * m.compression},
+                      {"progression", 0.5 / m.compression}});
+  }
+  return starts;
+}
+
+Starts start_friction(Motion m) {
+  return {{{"force", 0.1 * m.damper_force()}, {"speed", 0.05 * m.velocity}}};
+}
+
+Starts start_top_mount(Motion m) {
+  return {
+      {{"compliance", 0.05 / (m.damping * m.frequency())}, {"relaxation", 0.05 / m.frequency()}}};
+}
+
+Starts start_progressive_spring(Motion m) {
+  return {{{"cubic", 0.05 / (m.compression * m.compression)}}};
+}
+
+/// On the body's middle, over the rear and over the front axle.
+Starts start_payload(Motion) {
+  return {
+      {{"mass", 10.0}, {"x", 0.0}}, {{"mass", 10.0}, {"x", -1.3}}, {{"mass", 10.0}, {"x", 1.3}}};
+}
+
+Starts start_runout(Motion) { return {{{"phase", 0.0}}, {{"phase", 0.5 * std::numbers::pi}}}; }
+
+/// By effect. Small sizes that the motion shows, so that a search begins where the effect is seen.
+const Rules kRules = {{"damper_asymmetry",
+                       [](Motion) -> Starts {
+                         return {{{"asymmetry", 0.1}}};
+                       }},
+                      {"damper_blow_off", start_blow_off},
+                      {"damper_hysteresis",
+                       [](Motion m) -> Starts {
+                         return {{{"lag", 0.05 / m.frequency()}}};
+                       }},
+                      {"damper_leak",
+                       [](Motion m) -> Starts {
+                         return {{{"stroke", 0.02 * m.deflection}}};
+                       }},
+                      {"damper_fade",
+                       [](Motion) -> Starts {
+                         return {{{"loss", 0.005}, {"rate", 0.005}}};
+                       }},
+                      {"strut_friction", start_friction},
+                      {"progressive_spring", start_progressive_spring},
+                      {"bump_stop", start_bump_stop},
+                      {"top_mount_compliance", start_top_mount},
+                      {"joint_play",
+                       [](Motion m) -> Starts {
+                         return {{{"play", 0.02 * m.deflection}}};
+                       }},
+                      {"gas_force",
+                       [](Motion m) -> Starts {
+                         return {{{"force", 0.05 * m.stiffness * m.deflection}}};
+                       }},
+                      {"anti_roll_bar",
+                       [](Motion m) -> Starts {
+                         return {{{"stiffness", 0.05 * m.stiffness}}};
+                       }},
+                      {"tire_progressive",
+                       [](Motion m) -> Starts {
+                         return {{{"progression", 0.05 / m.tire_deflection}}};
+                       }},
+                      {"tire_damping",
+                       [](Motion m) -> Starts {
+                         return {{{"rate", 0.1 * m.damping}}};
+                       }},
+                      {"payload", start_payload},
+                      {"wheel_runout", start_runout},
+                      {"sensor_gain",
+                       [](Motion) -> Starts {
+                         return {{{"gain", 0.01}}};
+                       }},
+                      {"sensor_delay",
+                       [](Motion) -> Starts {
+                         return {{{"delay", 5e-4}}};
+                       }},
+                      {"sensor_lowpass", [](Motion) -> Starts {
+                         return {{{"time", 5e-4}}};
+                       }}};
+
+bool has_parameter(const EffectInfo& effect, const std::string& name) {
+  return std::any_of(effect.parameters.begin(), effect.parameters.end(),
+                     [&](const EffectParameter& p) { return p.name == name; });
+}
+
+/// A name that the catalogue does not have would begin at a default in silence.
+const Rules& get_checked_rules() {
+  static const bool is_checked = [] {
+    for (const auto& [name, rule] : kRules) {
+      const EffectInfo* effect = find_effect(name);
+      STRUT_CHECK(effect != nullptr, "search starts: no effect " + name);
+      for (const auto& start : rule({})) {
+        for (const auto& [parameter, value] : start) {
+          STRUT_CHECK(has_parameter(*effect, parameter),
+                      "search starts: " + name + " has no parameter " + parameter);
+        }
+      }
+    }
+    return true;
+  }();
+  static_cast<void>(is_checked);
+  return kRules;
+}
+
+}  // namespace
+
+double StrutMotion::frequency() const { return velocity / std::max(deflection, 1e-9); }
+
+double StrutMotion::damper_force() const { return damping * velocity; }
+
+SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& motion) {
+  const Rules& rules = get_checked_rules();
+  const auto found = rules.find(effect);
+  return found == rules.end() ? SearchStarts{{}} : found->second(motion);
+}
+
+}  // namespace strut
