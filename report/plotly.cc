@@ -141,7 +141,8 @@ void set_values(const ChartSeries& s, Json& trace) {
 /// one; beside the panel their scale.
 Json make_value_scale(const Chart& chart, std::size_t panel, const ChartSeries& s) {
   const PanelPlace place = calc_place(chart, panel);
-  const Json title = Json{{"text", chart.panels[panel].value_label}, {"side", "right"}};
+  const Json title = Json{
+      {"text", chart.panels[panel].value_label}, {"side", "right"}, {"font", Json{{"size", 12}}}};
   const Json bar = Json{{"x", round(place.right)},
                         {"xanchor", "left"},
                         {"y", round(0.5 * (place.bottom + place.top))},

@@ -40,7 +40,7 @@ void add_integrate(const SolverOptions& request, Facts& facts) {
                        format_number(request.reference.absolute_tolerance));
   } else {
     const StepOptions& step = request.options.step;
-    facts.emplace_back("integrate.method", step.stepper == Stepper::kAbm4 ? "abm4" : "rk4");
+    facts.emplace_back("integrate.method", get_name(step.stepper));
     facts.emplace_back("integrate.step", format_number(step.step));
     facts.emplace_back("integrate.coarse_step", format_number(step.coarse_step));
     facts.emplace_back("integrate.locate_events", step.locate_events ? "true" : "false");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
@@ -16,7 +17,7 @@ namespace {
 
 using Spectrum = std::vector<std::complex<double>>;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 constexpr double kLongestResponse = 4.0;  // s, after which a car or a rig is at rest again
 
 Spectrum calc_transform(std::vector<double> series, std::size_t length) {

@@ -11,6 +11,7 @@
 #include "jobs/case/load_case.h"
 #include "jobs/case/step_check.h"
 #include "model/error/model_error.h"
+#include "sweep/choices.h"
 #include "sweep/simulate_cases.h"
 
 namespace strut {
@@ -28,8 +29,7 @@ void check_step(const Plan& plan, const PreparedCase& c, const std::string& whic
   if (!fault) return;
   throw InputError(plan.request().path.string() + ": integrate." + key + " = " +
                    format_number(step) + " s: unstable (" + fault->how + ") with " +
-                   (options.step.stepper == Stepper::kAbm4 ? "abm4" : "rk4") + " for " + which +
-                   "; " + fault->allowed);
+                   get_name(options.step.stepper) + " for " + which + "; " + fault->allowed);
 }
 
 void check_steps(const Plan& plan, const PreparedCase& c, const std::string& which) {

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "estimate/instants.h"
 #include "tests/support/test_car.h"
@@ -14,7 +15,7 @@ using Eigen::MatrixXd;
 using test::Random;
 using test::tolerance;
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 
 /// Sensitivity of one channel, body_position_z, with rows of derivatives by parameters of 100 %
 /// = `scale`.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ struct QuarterRecord {
 
 /// A chirp from 1 to 8 Hz that begins and ends gently.
 inline double calc_test_road(const QuarterTruth& truth, double t, double duration) {
-  constexpr double kPi = 3.14159265358979323846;
+  constexpr double kPi = std::numbers::pi;
   const double envelope = std::pow(std::sin(kPi * t / duration), 2.0);
   return truth.amplitude * envelope * std::sin(2.0 * kPi * (t + 3.5 * t * t / duration));
 }
@@ -46,7 +47,7 @@ inline double calc_test_road(const QuarterTruth& truth, double t, double duratio
 inline double calc_test_normal(std::uint64_t seed, std::uint64_t stream, std::uint64_t place) {
   const double u = calc_uniform(seed, stream, 2 * place);
   const double v = calc_uniform(seed, stream, 2 * place + 1);
-  return std::sqrt(-2.0 * std::log1p(-u)) * std::cos(2.0 * 3.14159265358979323846 * v);
+  return std::sqrt(-2.0 * std::log1p(-u)) * std::cos(2.0 * std::numbers::pi * v);
 }
 
 /// Ralston's third-order method at a twentieth of the sampling interval, written out: nothing of
@@ -87,7 +88,7 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
     const auto place = static_cast<std::uint64_t>(i);
     record.time.push_back(begin);
     record.road.push_back(calc_test_road(truth, begin, duration));
-    const double hum = truth.hum * std::sin(2.0 * 3.14159265358979323846 * 31.2 * begin);
+    const double hum = truth.hum * std::sin(2.0 * std::numbers::pi * 31.2 * begin);
     record.unsprung.push_back(x[0] + hum + truth.noise * calc_test_normal(truth.seed, 0, place));
     record.sprung.push_back(x[1] + truth.noise * calc_test_normal(truth.seed, 1, place));
     record.sprung_acceleration.push_back(derive(begin, x)[3]);
