@@ -1,6 +1,6 @@
-// What a sweep's snapshots can tell about its parameters, and what would tell more: the request's
-// instant, every instant along the way, the best one, two and three, the whole window, and what
-// each sensor is worth. docs/identifiability.md explains it.
+// Bounds of a sweep's parameters by its snapshots, and by measurements that tell more: the
+// request's instant, every instant along the way, the best one, two and three, the whole window,
+// and what each sensor is worth. docs/identifiability.md explains it.
 #pragma once
 
 #include <string>

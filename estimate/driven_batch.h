@@ -26,7 +26,7 @@ struct DrivenVariant {
 DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
                            const std::vector<Unknown>& unknowns, const std::vector<double>& values);
 
-/// How a run is sampled: at its own times where they are even, else finely enough to interpolate.
+/// The sampling of a run: its own times where they are even, else finely enough to interpolate.
 struct DrivenSampling {
   double interval = 0.0, step = 0.0;  // s; whole steps lie between samples
   bool even = false;
@@ -35,7 +35,7 @@ struct DrivenSampling {
 /// As its nominal setup needs.
 DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& options);
 
-/// What is to be simulated of a run; it must not outlive the run.
+/// A simulation of a run to be made; it must not outlive the run.
 struct DrivenTask {
   const MeasuredRun* run = nullptr;
   std::string failure;  // why it cannot be; empty: it can

@@ -197,7 +197,7 @@ std::vector<ChannelFit> judge_channels(const ReadingModel& simulator,
 Uncertainty calc_widened(const NormalEquations& normal, const FitResult& result) {
   const double misfit = std::max(1.0, result.chi2_per_degree());
   Eigen::MatrixXd priors = normal.of_priors;
-  // How large a map may be is known in units of what is left over (map_prior.h).
+  // The prior of a map is in units of the residual (map_prior.h).
   for (std::size_t i = 0; i < result.unknowns.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     if (result.unknowns[i].kind == UnknownKind::kForceMap) priors(at, at) /= misfit;

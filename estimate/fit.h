@@ -30,7 +30,7 @@ struct FitOptions {
   std::vector<double> start;  // values where the search begins; empty: the unknowns' own
 };
 
-/// How one channel of one run fits.
+/// The fit of one channel of one run.
 struct ChannelFit {
   int run = 0, channel = 0;  // of the model: CarChannel, or of list_rig_channels
   long count = 0;            // readings
@@ -51,8 +51,8 @@ struct FitResult {
   double chi2 = 0.0;  // readings and priors
   long degrees = 0;   // readings and priors less rank
   std::vector<ChannelFit> channels;
-  /// How far the linear model still sees the minimum, in standard deviations; those of a model that
-  /// leaves more than noise are sqrt(chi2 / degrees) times as large.
+  /// Distance to the minimum that the linear model sees, in standard deviations; those of a model
+  /// that leaves more than noise are sqrt(chi2 / degrees) times as large.
   double distance = 0.0;
   /// No step of any length lowers chi2 any more: a kink of it, where a contact event passes a
   /// reading and the linear model holds on one side only.
@@ -74,7 +74,7 @@ struct FitResult {
 /// the start cannot be simulated.
 FitResult fit_readings(ReadingModel& model, const FitOptions& options = {});
 
-/// Of the linear model without the unknowns that a bound holds.
+/// The normal equations without the unknowns that a bound holds.
 NormalEquations free_unknowns(NormalEquations normal, const std::vector<bool>& at_bound);
 
 /// sqrt(g' H^-1 g): how far the linear model sees its minimum, in standard deviations.

@@ -69,7 +69,7 @@ Case remove_sensors(Case c) {
   return c;
 }
 
-/// What the sensors make of the channels.
+/// The channels as their sensors read them.
 SampledRun read_sensors(const Case& setup, const MeasuredRun& run, double interval,
                         SampledRun sampled) {
   for (std::size_t c = 0; c < sampled.size(); ++c) {
@@ -163,7 +163,7 @@ Case ReadingSimulator::make_setup(std::size_t run, const std::vector<double>& va
       add_map_part(c.vehicle.force_maps, *u.part, values[i]);
       continue;
     }
-    // What stays as it is is not touched: a corner's neutral effect would replace the axle's.
+    // A value that does not change is not set: a corner's neutral effect would replace the axle's.
     if (values[i] != parameters_[i]->get(known)) parameters_[i]->set(c, values[i]);
   }
   return c;
@@ -263,7 +263,7 @@ std::vector<Evaluation> ReadingSimulator::evaluate(const std::vector<std::vector
     evaluations[i].residual = Eigen::VectorXd::Zero(rows);
     fill_prior_residuals(points[i], evaluations[i].residual);
   }
-  // Of a point and a run: its setup, and which of the cars it is without its sensors.
+  // The setup of a point in a run, and the number of its car without sensors among `cars`.
   struct Place {
     Case setup;
     std::size_t car = 0;

@@ -46,7 +46,8 @@ class ReadingSimulator : public ReadingModel {
     std::size_t run;
     Case setup;
   };
-  /// What is measured of some setups, simulated in lanes, before their sensors; of each why not.
+  /// Simulates setups in lanes and takes the measured channels, before their sensors; or the
+  /// reason of each that fails.
   void sample(const std::vector<RunSetup>& setups, std::vector<SampledRun>& sampled,
               std::vector<std::string>& failures);
   std::string sample_variants(const std::vector<double>& values, const std::vector<Unknown>& varied,

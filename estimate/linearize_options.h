@@ -1,4 +1,4 @@
-// How simulated readings are made: for fits, derivatives, bounds.
+// Options of simulated readings: for fits, derivatives, bounds.
 #pragma once
 
 #include "model/kernel/simulation.h"
@@ -16,7 +16,7 @@ inline SolverOptions make_fit_integration() {
 }
 
 struct LinearizeOptions {
-  /// Of a car on a road.
+  /// The integration of a car on a road.
   SolverOptions integrate = make_fit_integration();
   /// 1/s, samples of a car's simulation between which is interpolated: at 1000 the interpolation of
   /// a bump at 20 m/s errs by a tenth of a standard deviation of MEMS sensors, at 2000 by 3 %.

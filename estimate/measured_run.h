@@ -1,4 +1,4 @@
-// What was measured in one run: readings of some channels over the sensor's own clock, and the
+// One measured run: readings of some channels over the sensor's own clock, and the
 // model as far as it is known, with what drives it.
 #pragma once
 
@@ -18,7 +18,7 @@ struct MeasuredChannel {
   std::vector<double> values;  // one reading per time
 };
 
-/// What is not exact about a recorded input.
+/// The noise of a recorded input.
 struct InputNoise {
   double sigma = 0.0;       // 1 sigma per sample, in the input's unit
   double half_width = 0.0;  // s, of the local cubics that smoothed it; 0: none did

@@ -1,4 +1,4 @@
-// What is unknown about each run alone: its clock, its speed, where it starts, its sensors' biases.
+// Unknowns of one run alone: its clock, its speed, its start, the biases of its sensors.
 #pragma once
 
 #include <vector>
@@ -14,10 +14,10 @@ struct NuisanceSigmas {
   SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
 };
 
-/// Of every run. Of cars on a road: hit time, speed and biases, as far as their sigma is not 0. Of
-/// runs that recorded inputs drive: offsets from rest and velocities of the masses at the start,
-/// where the first readings are, with priors as wide as the simulated motion; biases with priors as
-/// wide as the channel's own spread. What `chosen` has for all runs is left out.
+/// The nuisances of every run. Of cars on a road: hit time, speed and biases, as far as their sigma
+/// is not 0. Of runs that recorded inputs drive: offsets from rest and velocities of the masses at
+/// the start, where the first readings are, with priors as wide as the simulated motion; biases
+/// with priors as wide as the channel's own spread. What `chosen` has for all runs is left out.
 std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
                                     const NuisanceSigmas& sigmas,
                                     const std::vector<Unknown>& chosen = {});

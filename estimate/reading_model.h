@@ -1,4 +1,4 @@
-// What can be fitted: readings of one or several runs against their simulation.
+// Readings of one or several runs against their simulation: the model that a fit adjusts.
 #pragma once
 
 #include <Eigen/Core>
@@ -50,7 +50,7 @@ class ReadingModel {
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  /// Of the first reading_count() residuals, run by run.
+  /// The places of the first reading_count() residuals, run by run.
   const std::vector<ReadingPlace>& readings() const { return readings_; }
   std::size_t reading_count() const { return readings_.size(); }
   std::size_t prior_count() const { return prior_count_; }

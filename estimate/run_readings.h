@@ -25,7 +25,7 @@ std::size_t find_hit_time(const std::vector<Unknown>& unknowns, std::size_t run)
 /// bounds.
 std::pair<double, double> calc_sides(const Unknown& u, double value, double relative_step);
 
-/// What the sensors of one run read of a simulation: a series by channel of the run, sample by
+/// The readings of one run's sensors in a simulation: a series by channel of the run, sample by
 /// sample.
 using SampledRun = std::vector<std::vector<double>>;
 
@@ -51,7 +51,7 @@ class RunReadings {
   double find_best_hit_time(const SampledRun& base) const;
 
  private:
-  /// What is known of a channel's bias: mean and 1 / variance, both in sigmas of its noise;
+  /// The prior of a channel's bias: mean and 1 / variance, both in sigmas of its noise;
   /// infinitely much where it is no unknown.
   struct Bias {
     double mean, information;

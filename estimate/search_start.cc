@@ -25,7 +25,7 @@ std::vector<double> draw(const std::vector<Unknown>& unknowns, std::uint64_t num
     const bool gain = u.kind == UnknownKind::kInputGain;
     if (number > 0 && (gain || u.kind == UnknownKind::kParameter)) {
       const double way = 2.0 * calc_uniform(kSeed, i, 2 * number) - 1.0;
-      // What is known well is drawn within that.
+      // A well-known value is drawn within its prior.
       const double known = u.prior.informs() ? 2.0 * u.prior.sigma / u.scale : 1e9;
       const double factor = std::pow(reach, way);
       value = u.start + std::clamp(u.scale * (factor - 1.0), -known * u.scale, known * u.scale);

@@ -1,4 +1,4 @@
-// How every channel reacts to the parameters of a grid, over the whole way across the bump.
+// Derivatives of every channel by the parameters of a grid, all the way across the bump.
 //
 // Central differences of simulations in lockstep lanes: base, base +- h and base +- h/2 in each
 // parameter. The instants are places, not times: the rear wheels' mean forward position ahead of

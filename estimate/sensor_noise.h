@@ -1,5 +1,5 @@
-// What sensors of a car can see: one standard deviation of white noise per channel and sample, and
-// of the constant bias of a record.
+// The sensors of a car and their noise: one standard deviation of white noise per channel and
+// sample, and of the constant bias of a record.
 #pragma once
 
 #include <string>

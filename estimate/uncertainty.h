@@ -1,4 +1,4 @@
-// What a Jacobian says about how well the unknowns are known.
+// Uncertainty of the unknowns from the Jacobian of the readings.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,9 +27,9 @@ struct Uncertainty {
   double calc_correlation(std::size_t i, std::size_t j) const;
 };
 
-/// Of unknowns whose scaled Jacobian (linearize.h) has the information J'J. Independent Gaussian
-/// noise; at the true values the Cramer-Rao bound (S. M. Kay, Estimation Theory, 1993, eq. 3.31;
-/// with priors the Bayesian one of H. L. Van Trees, 1968, section 2.4.3).
+/// The uncertainty of unknowns whose scaled Jacobian (linearize.h) has the information J'J.
+/// Independent Gaussian noise; at the true values the Cramer-Rao bound (S. M. Kay, Estimation
+/// Theory, 1993, eq. 3.31; with priors the Bayesian one of H. L. Van Trees, 1968, section 2.4.3).
 Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
                              const std::vector<Unknown>& unknowns);
 

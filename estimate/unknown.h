@@ -1,4 +1,4 @@
-// What a fit is to find: parameters of the model, and the nuisances of every measurement.
+// The unknowns of a fit: parameters of the model, and the nuisances of every measurement.
 #pragma once
 
 #include <limits>
@@ -20,7 +20,7 @@ enum class UnknownKind {
   kForceMap,      // how many times its part is in the force map of a strut
 };
 
-/// What is known beforehand: a Gaussian; sigma infinite: nothing.
+/// Prior knowledge: a Gaussian; sigma infinite: none.
 struct Prior {
   double mean = 0.0;
   double sigma = std::numeric_limits<double>::infinity();
@@ -60,8 +60,8 @@ inline bool is_of_simulation(const Unknown& u) {
 Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name,
                        int run = kEveryRun);
 
-/// What all runs share by its name: a parameter, NAME_gain of an input or NAME_bias of a channel
-/// that runs.front() has. Throws InputError with the nearest known name.
+/// An unknown that all runs share, by its name: a parameter, NAME_gain of an input or NAME_bias of
+/// a channel that runs.front() has. Throws InputError with the nearest known name.
 Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::string& name);
 
 /// Bounds mean +- kHitTimeReach sigma. sigma > 0.
@@ -71,7 +71,7 @@ inline constexpr double kHitTimeReach = 5.0;
 /// Without bounds. sigma > 0, may be infinite.
 Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);
 
-/// How many times a part is in the map at its place: begins at 0, without bounds.
+/// The factor of a part of the map at its place: begins at 0, without bounds.
 Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
                          const Prior& prior);
 

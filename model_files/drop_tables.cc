@@ -7,7 +7,7 @@
 namespace strut {
 namespace {
 
-/// How many brackets a line of values opens more than it closes; none counts in texts and comments.
+/// Brackets that a line opens less those that it closes, without those in texts and comments.
 int count_brackets(const std::string& line) {
   int open = 0;
   char quote = 0;

@@ -93,7 +93,7 @@ void add_sensor_and_steering(Parameters& list) {
       list, "rack_position", 0.0, between(-0.05, 0.05, "m"),
       "steering rack to the left, fixed during a run", kStrutChoice,
       [](auto& c) -> auto& { return c.vehicle.rack_position; });
-  // What the front wheels do not drive the rear wheels do.
+  // The rear wheels take the rest of the torque.
   list.push_back({{"front_drive_share", "1", 1.0, between(0.0, 1.0),
                    "share of the drive torque on the front wheels", kPaperText},
                   [](const Case& c) { return c.vehicle.suspension[kFront].drive_share; },

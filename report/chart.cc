@@ -17,7 +17,7 @@ int calc_legend_height(const Chart& chart) {
   return entries == 0 ? 0 : kLegendRow * (1 + (entries - 1) / kLegendColumns) + kLegendRow / 2;
 }
 
-/// Of a stretch of values its lowest, its highest and a gap, if there is one; in their order.
+/// The lowest and the highest of a stretch of values, and a gap, if there is one; in order.
 std::set<std::size_t> pick_points(const std::vector<double>& y, std::size_t begin,
                                   std::size_t end) {
   std::size_t low = end, high = end, gap = end;

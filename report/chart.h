@@ -26,7 +26,7 @@ enum class SeriesKind {
 
 enum class Marker { kDot, kCircle, kCross, kTriangle };
 
-/// Of bars at the places 1, 2, ...
+/// The width of bars at the places 1, 2, ...
 inline constexpr double kBarWidth = 0.7;
 
 /// Numbers that belong together. Not finite ones are gaps.
@@ -81,7 +81,7 @@ struct PanelPlace {
 int calc_height(const Chart& chart);
 PanelPlace calc_place(const Chart& chart, std::size_t panel);
 
-/// What a panel's numbers are called in tables: "states: pitch [rad] over time [s]".
+/// The name of a panel's numbers in tables: "states: pitch [rad] over time [s]".
 std::string name_panel(const ChartPanel& panel);
 
 /// A curve of about `most` points at most: of each stretch its lowest and its highest, so that no

@@ -42,7 +42,7 @@ bool has_categories(const Chart& chart) {
                      [](const ChartPanel& panel) { return !panel.x.categories.empty(); });
 }
 
-/// Of what stands at a place or beside it, the place's name; lines lead across all of them.
+/// The name of the place where bars, boxes and points stand; empty for lines, which cross places.
 std::string name_place(const ChartPanel& panel, const ChartSeries& s, double x) {
   const bool stands =
       s.kind == SeriesKind::kBars || s.kind == SeriesKind::kBoxes || s.kind == SeriesKind::kPoints;

@@ -1,4 +1,4 @@
-// What a folder with a report holds.
+// The kinds of folders that a report can be made of.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ inline constexpr FolderContent kRunContent{"simulated run", "report.json"};
 inline constexpr const FolderContent* kFolderContents[] = {
     &kStudyContent, &kSweepContent, &kDiagnosisContent, &kComparisonContent, &kRunContent};
 
-/// What `strut report` reports on; nullptr: nothing.
+/// The kind of a folder; nullptr where `strut report` cannot report on it.
 const FolderContent* find_content(const std::filesystem::path& folder);
 
 }  // namespace strut

@@ -107,7 +107,7 @@ std::string make_section(const ReportSection& section, const std::string& id) {
   return text + "</section>\n";
 }
 
-/// What of a page needs scripts.
+/// The parts of a page that need scripts.
 struct Moving {
   bool charts = false, motions = false;
 };

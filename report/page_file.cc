@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of each element what `make` makes of it.
+/// A list of `make(element)`.
 template <class T, class Make>
 Json make_list(const std::vector<T>& elements, const Make& make) {
   Json list = Json::array();
@@ -92,7 +92,7 @@ bool is_page_name(const std::string& name) {
          (is_of_run || std::find(kNames.begin(), kNames.end(), name) != kNames.end());
 }
 
-/// What a page is written of, a later one can remove.
+/// Checks that a later page will recognize these names, and so can remove their files.
 void check_names(const ReportPage& page) {
   const auto check = [](const std::string& name) {
     STRUT_CHECK(is_page_name(name), "report: '" + name + "' is not in kNames");
@@ -125,7 +125,7 @@ std::vector<fs::path> list_files(const PageFolder& folder, const Json& page) {
   return files;
 }
 
-/// What an earlier command left in a folder.
+/// The page that an earlier command left in a folder.
 struct EarlierPage {
   std::string of;               // "": there is no page of ours
   std::vector<fs::path> files;  // beside it

@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// What an exception of the library says, without the number that it begins with.
+/// The text of an exception of the library, without the number that it begins with.
 std::string explain(const Json::exception& e);
 
 /// Throws InputError, which names `path`, where a text is nested more than 64 levels deep or not

@@ -41,7 +41,7 @@ class CasePoints {
   void calc_coordinates(std::int64_t id, std::span<std::int64_t> coordinates) const;
   /// One value per axis.
   void calc_values(std::int64_t id, std::span<double> values) const;
-  /// What of an axis a case has: its level, its cell, its coordinate.
+  /// The part of an axis that a case has: its level, its cell or its coordinate.
   AxisPart calc_part(std::int64_t id, std::size_t axis) const;
 
  private:

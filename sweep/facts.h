@@ -1,4 +1,4 @@
-// What a sweep's results depend on, as text: the identity of a plan.
+// Everything that a sweep's results depend on, as text: the identity of a plan.
 #pragma once
 
 #include <string>

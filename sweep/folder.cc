@@ -84,8 +84,7 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
   }
   make_folder(folder.root);
   make_subfolders(folder);
-  // Of two that plan into one folder at once, one goes on. Dying without a word it keeps nobody
-  // out.
+  // One of two processes that plan into a folder at once goes on. If it dies, it locks nobody out.
   Claims claims(folder.open(folder.claims()), ClaimOptions());
   if (claims.claim(kPlanUnit) != Claims::Answer::kMine) {
     throw EnvironmentError(folder.root.string() +

@@ -25,7 +25,7 @@ struct Layer {
 
 class LayerRule {
  public:
-  /// Of samples all are looked at once. Throws InputError where a layer is empty.
+  /// Visits every point of a sample once. Throws InputError where a layer is empty.
   LayerRule(const SweepRequest& request, const CasePoints& points);
 
   int calc_layer(std::int64_t id) const;

@@ -1,4 +1,4 @@
-// What killed runners have left in a sweep folder.
+// Files that killed runners left in a sweep folder.
 #pragma once
 
 #include "io/store/claims.h"

@@ -13,7 +13,7 @@
 
 namespace strut {
 
-/// What of a plan a merge must know.
+/// The part of a plan that a merge needs.
 struct MergeInput {
   SweepExtent extent;
   ShardSchema schema;

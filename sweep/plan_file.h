@@ -10,7 +10,7 @@
 
 namespace strut {
 
-/// What plan.h5 says.
+/// The content of plan.h5.
 struct PlanRecord {
   SweepExtent extent;
   Facts facts;

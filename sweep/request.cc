@@ -20,7 +20,7 @@
 namespace strut {
 namespace {
 
-/// How far, in steps, `to` may be off the last level: decimal fractions are not exact.
+/// Distance, in steps, that `to` may be off the last level: decimal fractions are not exact.
 constexpr double kLevelSlack = 1e-6;
 constexpr double kMostLevels = 9e15;  // integers that a double counts
 constexpr std::int64_t kMostLayers = 100000;
@@ -179,7 +179,7 @@ void limit_default_strata(const std::optional<Table>& table, const Grid& grid,
   sample.strata = static_cast<int>(std::min<std::int64_t>(sample.strata, most));
 }
 
-/// Of all cases.
+/// The longest of all cases [s].
 double find_longest_duration(const SweepRequest& request) {
   double longest = request.base.maneuver.duration;
   for (const Axis& axis : request.grid.axes()) {

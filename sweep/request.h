@@ -1,4 +1,4 @@
-// What a sweep file asks for.
+// A sweep file as data.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +49,7 @@ struct SweepRequest {
 /// value and what is allowed.
 SweepRequest read_request(const std::filesystem::path& path);
 
-/// What simulations of this request record.
+/// The samples that simulations of this request record.
 SamplePlan make_sample_plan(const SweepRequest& request);
 
 }  // namespace strut

@@ -35,7 +35,7 @@ struct RunOptions {
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 
-/// What a run has reached; read by other threads while it lasts.
+/// The progress of a run; read by other threads while it lasts.
 struct RunProgress {
   std::atomic<std::int64_t> cases{0};      // of the shards asked for
   std::atomic<std::int64_t> present{0};    // done before this run began

@@ -10,7 +10,7 @@
 namespace strut {
 namespace {
 
-/// How often the shards in other runners' hands are looked at.
+/// Time between looks at the shards that other runners work on.
 constexpr std::chrono::milliseconds kPoll{100};
 
 }  // namespace

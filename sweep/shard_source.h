@@ -43,7 +43,7 @@ class ShardSource {
   ShardSource(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
               Claims& claims, RunProgress& progress);
 
-  /// What was moved aside, and why.
+  /// The files that were moved aside, and why.
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// Up to `size` cases to simulate. Waits where all that is left is in other runners' hands.

@@ -20,13 +20,13 @@ std::string find_seal_fault(const SweepFolder& folder, const Plan& plan, std::in
 /// Moves a file aside, into `quarantine/`, under a name that is free there. Nothing is deleted.
 void quarantine(const SweepFolder& folder, const std::filesystem::path& file);
 
-/// What the journal says of each file, or the file itself where the journal is silent.
+/// The record of each shard: the journal's, or the file's own where the journal has none.
 class ShardRecords {
  public:
   ShardRecords(const SweepFolder& folder, SweepExtent extent);
 
-  /// Of a shard that is there; failures as the last retry left them. Throws InputError where its
-  /// seal or size is wrong, or not the plan's or the journal's.
+  /// The record of a shard that exists; failures as the last retry left them. Throws InputError
+  /// where its seal or size is wrong, or not the plan's or the journal's.
   JournalEntry get(std::int64_t shard) const;
   /// Why a file with this seal, a shard or a retry of it, is not the plan's or not what the journal
   /// says was published; empty where it is. A shard that was moved aside and made again by a runner

@@ -16,7 +16,7 @@ namespace strut {
 /// "0 done, 1 diverged, ..."
 std::string describe_case_status();
 
-/// What another try with a smaller step may mend.
+/// Whether another try with a smaller step may mend a failure.
 bool may_retry(std::int32_t status);
 
 /// Retries divide the step by 4 each; the last one still allowed.

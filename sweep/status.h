@@ -1,4 +1,4 @@
-// How far a sweep has come, from its folder alone.
+// The progress of a sweep, from its folder alone.
 #pragma once
 
 #include <cstdint>

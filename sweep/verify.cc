@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 /// Two instruction sets agree to this, relative.
 constexpr double kAcrossInstructionSets = 1e-9;
-/// Of the random choice of cases to simulate again.
+/// Stream of the random choice of cases to simulate again.
 constexpr std::uint64_t kSampleStream = 0x7665726966790000;
 
 bool same_columns(const std::vector<ColumnInfo>& a, const std::vector<ColumnInfo>& b) {
@@ -85,7 +85,7 @@ class Verification {
 
  private:
   void add_damage(const fs::path& file, const std::string& what) {
-    // What a reader says begins with the file's path.
+    // A reader's message begins with the file's path.
     const std::string path = file.string() + ": ";
     const std::size_t skipped = what.rfind(path, 0) == 0 ? path.size() : 0;
     report_.damaged.push_back(folder_.name_of(file) + ": " + what.substr(skipped));

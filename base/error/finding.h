@@ -1,4 +1,4 @@
-// What a check found, and what it means for a sweep.
+// The result of a check, and its meaning for a sweep.
 #pragma once
 
 #include <string>

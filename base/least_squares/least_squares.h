@@ -1,4 +1,4 @@
-// What Levenberg-Marquardt asks of a problem: minimize e'e over the weights w.
+// The interface of a problem to Levenberg-Marquardt: minimize e'e over the weights w.
 #pragma once
 
 #include <cstddef>

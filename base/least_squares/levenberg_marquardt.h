@@ -77,7 +77,7 @@ enum class StopReason {
 /// "epochs", "validation failures", ...
 const char* get_name(StopReason reason);
 
-/// What one epoch was about: before its step.
+/// The state of the search at an epoch, before its step.
 struct EpochRecord {
   int epoch = 0;
   double loss = 0.0;        // e'e / residual_count()

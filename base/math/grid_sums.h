@@ -36,7 +36,7 @@ class GridSums {
   std::int64_t size() const { return size_; }
   /// The point with `rank` points before it, 0 <= rank < size().
   RankedPoint find(std::int64_t rank) const;
-  /// How many points have a sum of at most `sum`.
+  /// The number of points that have a sum of at most `sum`.
   std::int64_t count_up_to(std::int64_t sum) const;
 
  private:

@@ -17,7 +17,7 @@ class Permutation {
   std::int64_t size() const { return size_; }
   /// Where `index` of [0, n) goes.
   std::int64_t apply(std::int64_t index) const;
-  /// What goes to `value`.
+  /// The number that the permutation maps to `value`.
   std::int64_t invert(std::int64_t value) const;
 
  private:

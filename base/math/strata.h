@@ -24,7 +24,7 @@ int find_layer(std::int64_t level, std::int64_t levels, int layers);
 /// The first level in layer `layer`; find_first_level(layers, ...) == levels.
 std::int64_t find_first_level(int layer, std::int64_t levels, int layers);
 
-/// How many of `count` each layer gives: proportional to its population, whole numbers by the
+/// The share of `count` that each layer gives: proportional to its population, whole numbers by the
 /// largest remainder, ties to the lower index. None gives more than it has. Throws
 /// std::invalid_argument where `count` is negative or more than all have.
 std::vector<std::int64_t> allocate_proportionally(std::int64_t count,

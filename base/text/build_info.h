@@ -1,4 +1,5 @@
-// How this program was built, for `--version` and for the provenance of what it writes.
+// Version, commit and compiler of this program, for `--version` and for the provenance of what it
+// writes.
 #pragma once
 
 namespace strut {
@@ -10,7 +11,7 @@ struct BuildInfo {
   const char* build_type;  // e.g. "Release"
 };
 
-/// What was true when the program was linked.
+/// As they were when the program was linked.
 const BuildInfo& get_build_info();
 
 }  // namespace strut
