@@ -43,11 +43,9 @@ bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
 /// The run's inputs, times their gains.
 std::vector<InputSignal> scale_inputs(const DrivenTask& task) {
   std::vector<InputSignal> scaled = task.run->setup.rig().inputs;
-  const std::vector<InputInfo>& inputs = task.run->setup.info().inputs;
   for (InputSignal& signal : scaled) {
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      if (inputs[i].name == signal.channel) scale_signal(signal, task.variant.gain[i]);
-    }
+    const int input = find_input(task.run->setup.info(), signal.channel);
+    scale_signal(signal, task.variant.gain[static_cast<std::size_t>(input)]);
   }
   return scaled;
 }

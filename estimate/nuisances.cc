@@ -43,11 +43,10 @@ double read_first_offset(const MeasuredRun& run, int position) {
         std::find_if(c.values.begin(), c.values.end(), [](double v) { return std::isfinite(v); });
     if (there == c.values.end()) return 0.0;
     double ground = 0.0;
-    for (const InputInfo& info : run.setup.info().inputs) {
-      for (const InputSignal& input : run.setup.rig().inputs) {
-        const bool is_it = info.is_ground && input.channel == info.name;
-        if (is_it) ground = calc_signal(input, 0.0).value;
-      }
+    const ModelInfo& model = run.setup.info();
+    for (const InputSignal& signal : run.setup.rig().inputs) {
+      const auto input = static_cast<std::size_t>(find_input(model, signal.channel));
+      if (model.inputs[input].is_ground) ground = calc_signal(signal, 0.0).value;
     }
     return *there - ground;
   }

@@ -50,9 +50,7 @@ void read_history(const LaneRun& simulated, const EffectSettings& effects,
 /// The car in the run, with the maneuver as long as the readings need.
 Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                const std::vector<double>& values, double hit_time) {
-  MeasuredRun changed{run.name, run.setup, {}, {}};
-  set_unknowns(changed, unknowns, values, 0);
-  Case& c = changed.setup.car();
+  Case c = set_unknowns({run.name, run.setup, {}, {}}, unknowns, values, 0).setup.car();
   constexpr double kMargin = 0.02;  // s
   const Range& allowed = find_parameter("duration").allowed;
   const double last = std::min(run.times.back() + hit_time + kMargin, c.maneuver.duration);

@@ -61,8 +61,7 @@ Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& 
   u.unit = info.unit;
   u.run = run;
   u.start = get_parameter(setup, name);
-  Model probe = setup;
-  set_parameter(probe, name, u.start);  // refuses what this maneuver does not have
+  require_settable(setup, name);
   const double ordinary =
       info.typical > 0.0 ? info.typical : 0.5 * (info.allowed.high - info.allowed.low);
   u.scale = u.start != 0.0 ? std::abs(u.start) : ordinary;
@@ -163,8 +162,8 @@ std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
   return values;
 }
 
-void set_unknowns(MeasuredRun& measured, const std::vector<Unknown>& unknowns,
-                  const std::vector<double>& values, int run) {
+MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unknowns,
+                         const std::vector<double>& values, int run) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
     if (u.run != kEveryRun && u.run != run) continue;
@@ -186,6 +185,7 @@ void set_unknowns(MeasuredRun& measured, const std::vector<Unknown>& unknowns,
         break;
     }
   }
+  return measured;
 }
 
 void set_initial_state(RigSpec& rig, int channel, double value) {

@@ -82,11 +82,11 @@ void add_map_part(ForceMaps& maps, const ForceMap& part, double factor);
 /// Where the search of each begins.
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
 
-/// Sets the parameters, force maps, gains of inputs and initial states among the unknowns that
-/// belong to a run: to all of them, or to that alone. The noise of an input is scaled with it; hit
-/// times and biases are left out. Throws what set_parameter throws.
-void set_unknowns(MeasuredRun& measured, const std::vector<Unknown>& unknowns,
-                  const std::vector<double>& values, int run = kEveryRun);
+/// The run with the parameters, force maps, gains of inputs and initial states among the unknowns
+/// that belong to it: to all runs, or to number `run` alone. The noise of an input is scaled with
+/// it; hit times and biases are left out. Throws what set_parameter throws.
+MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unknowns,
+                         const std::vector<double>& values, int run = kEveryRun);
 
 /// Sets a rig's initial state: a kInitialState's `channel` and value.
 void set_initial_state(RigSpec& rig, int channel, double value);

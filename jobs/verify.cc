@@ -25,11 +25,11 @@ Json make_json(const VerifyReport& report) {
   json["missing"] = report.missing;
   json["double"] = report.twice;
   json["foreign"] = report.foreign;
-  json["damaged"] = Json(report.damaged);
+  json["damaged"] = report.damaged;
   json["shards"] = report.shards;
   json["resimulated"] = report.resimulated;
   json["compared_by_tolerance"] = report.compared_by_tolerance;
-  json["differing"] = Json(report.differing);
+  json["differing"] = report.differing;
   return json;
 }
 

@@ -1,5 +1,5 @@
-// What is simulated: a car in a maneuver, or a rig under its inputs. What works with measured runs
-// has a Model, asks its ModelInfo what it can do, and leaves what it is to this door.
+// The subject of a simulation: a car in a maneuver, or a rig under its inputs. Its ModelInfo says
+// what it can do.
 #pragma once
 
 #include <utility>

@@ -31,6 +31,13 @@ struct Get {
   }
 };
 
+/// Setting its own value refuses what a bump has no number for; every number of a rig can be set.
+struct RequireSettable {
+  const std::string& name;
+  void operator()(Case c) const { set_parameter(c, name, get_parameter(c, name)); }
+  void operator()(const RigCase&) const {}
+};
+
 struct Set {
   const std::string& name;
   double value;
@@ -61,6 +68,10 @@ const Parameter& find_parameter(const ModelInfo& model, const std::string& name)
 }
 
 double get_parameter(const Model& model, const std::string& name) { return model.visit(Get{name}); }
+
+void require_settable(const Model& model, const std::string& name) {
+  model.visit(RequireSettable{name});
+}
 
 void set_parameter(Model& model, const std::string& name, double value) {
   model.visit(Set{name, value});

@@ -26,6 +26,9 @@ const Parameter& find_parameter(const ModelInfo& model, const std::string& name)
 
 double get_parameter(const Model& model, const std::string& name);
 
+/// Throws InputError for a parameter that this model's maneuver does not have.
+void require_settable(const Model& model, const std::string& name);
+
 /// Throws InputError with name, value and allowed range.
 void set_parameter(Model& model, const std::string& name, double value);
 

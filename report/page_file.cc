@@ -26,13 +26,11 @@ Json make_list(const std::vector<T>& elements, const Make& make) {
   return list;
 }
 
-Json make_texts(const std::vector<std::string>& texts) { return texts; }
-
 Json make_table_json(const ReportTable& table) {
   return Json{{"caption", table.caption},
-              {"header", Json(table.header)},
-              {"rows", make_list(table.rows, &make_texts)},
-              {"notes", Json(table.notes)},
+              {"header", table.header},
+              {"rows", table.rows},
+              {"notes", table.notes},
               {"text_columns", table.text_columns}};
 }
 
@@ -44,19 +42,16 @@ Json make_named(const T& figure) {
 
 Json make_section_json(const ReportSection& section) {
   return Json{{"heading", section.heading},
-              {"paragraphs", Json(section.paragraphs)},
+              {"paragraphs", section.paragraphs},
               {"tables", make_list(section.tables, &make_table_json)},
               {"figures", make_list(section.figures, &make_named<ReportFigure>)},
               {"motions", make_list(section.motions, &make_named<ReportMotion>)}};
 }
 
 Json make_page_json(const ReportPage& page) {
-  return Json{{"of", page.of},
-              {"title", page.title},
-              {"lead", Json(page.lead)},
-              {"sections", make_list(page.sections, &make_section_json)},
-              {"tables", Json(page.tables)},
-              {"footer", page.footer}};
+  return Json{{"of", page.of},         {"title", page.title},
+              {"lead", page.lead},     {"sections", make_list(page.sections, &make_section_json)},
+              {"tables", page.tables}, {"footer", page.footer}};
 }
 
 /// The elements of a list, each read by `read`.

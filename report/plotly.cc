@@ -205,7 +205,7 @@ Json make_axis(const ChartAxis& axis) {
     }
     json["tickmode"] = "array";
     json["tickvals"] = make_numbers(places);
-    json["ticktext"] = Json(axis.categories);
+    json["ticktext"] = axis.categories;
   }
   return json;
 }

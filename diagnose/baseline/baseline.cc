@@ -41,7 +41,7 @@ void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& eva
 
 CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared) {
   CampaignData one = take_run(data, run);
-  set_unknowns(one.runs[0], shared.unknowns, shared.values);
+  one.runs[0] = set_unknowns(std::move(one.runs[0]), shared.unknowns, shared.values);
   for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
     const Unknown& u = shared.unknowns[i];
     if (u.kind == UnknownKind::kBias) shift_readings(one.runs[0].channels, u, shared.values[i]);

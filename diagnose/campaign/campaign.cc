@@ -22,20 +22,12 @@ constexpr char kHitTime[] = "hit_time";
 const std::vector<std::string> kManeuverKeys = {"speed",       "drive_torque", "bump_distance",
                                                 "bump_height", "bump_length",  kHitTime};
 
-/// Null where the channel is no input.
-const InputInfo* find_input(const ModelInfo& model, const std::string& channel) {
-  const auto found = std::find_if(model.inputs.begin(), model.inputs.end(),
-                                  [&](const InputInfo& input) { return input.name == channel; });
-  return found == model.inputs.end() ? nullptr : &*found;
-}
-
 const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& model,
                                      const std::string& channel) {
+  const int found = find_channel(model, channel);
+  if (found >= 0) return model.channels[static_cast<std::size_t>(found)];
   std::vector<std::string> names;
-  for (const ChannelInfo& info : model.channels) {
-    if (info.name == channel) return info;
-    names.push_back(info.name);
-  }
+  for (const ChannelInfo& info : model.channels) names.push_back(info.name);
   const std::string nearest = suggest_name(channel, names);
   throw columns.error(channel,
                       "no channel of this model" +
@@ -43,7 +35,7 @@ const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& mode
 }
 
 ColumnRole read_role(const Table& table, const ModelInfo& model, const std::string& channel) {
-  const bool drives = find_input(model, channel) != nullptr;
+  const bool drives = find_input(model, channel) >= 0;
   const auto role = static_cast<ColumnRole>(table.choice_or("role", drives ? 0 : 1, kRoles));
   if (role == ColumnRole::kInput && !drives) {
     std::vector<std::string> names;
@@ -80,7 +72,8 @@ Prior read_known(const Table& table, const std::string& key) {
 /// in sign, unless the campaign says so.
 void read_input(const Table& table, const ModelInfo& model, CampaignColumn& c) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  if (find_input(model, c.channel)->is_command) c.gain.sigma = kUnknown;
+  const auto input = static_cast<std::size_t>(find_input(model, c.channel));
+  if (model.inputs[input].is_command) c.gain.sigma = kUnknown;
   if (table.has("gain")) c.gain = read_known(table, "gain");
   if (table.has("smooth")) c.smooth = table.number("smooth", at_least(0.0, "s"));
 }

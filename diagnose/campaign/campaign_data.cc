@@ -175,10 +175,8 @@ void turn_force(CampaignData& data) {
   }
 }
 
-/// A run that recorded inputs drive, on a clock that begins at 0.
-MeasuredRun make_driven_run(const CampaignData& data, const Model& model,
-                            const MeasuredTable& table) {
-  MeasuredRun run{table.name, model, table.times, make_channels(data, table)};
+/// The recorded inputs of a run, on a clock that begins at 0.
+void add_inputs(const CampaignData& data, const MeasuredTable& table, MeasuredRun& run) {
   for (double& t : run.times) t -= table.times.front();
   std::vector<InputSignal>& inputs = run.setup.rig().inputs;
   for (const MeasuredColumn& column : table.columns) {
@@ -192,38 +190,25 @@ MeasuredRun make_driven_run(const CampaignData& data, const Model& model,
   } catch (const ModelError& e) {
     throw InputError(data.campaign.path.string() + ": columns: " + e.what());
   }
-  return run;
-}
-
-/// A run over a road, on the clock of its own.
-MeasuredRun make_crossing(const CampaignData& data, const Model& model, const MeasuredTable& table,
-                          const CampaignRun& about) {
-  MeasuredRun run{table.name, model, table.times, make_channels(data, table)};
-  run.setup.car().maneuver = read_maneuver(about.maneuver);
-  name_table(data, "fit.fix", [&] {
-    for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);
-  });
-  name_table(data, "run " + about.name, [&] {
-    for (const auto& [name, known] : about.known) {
-      if (name != "hit_time") set_parameter(run.setup, name, known.mean);
-    }
-  });
-  return run;
 }
 
 void make_runs(CampaignData& data) {
-  Model model = read_model(data.campaign.model);
-  const bool is_driven = data.has_inputs();
-  if (is_driven) {
-    name_table(data, "fit.fix", [&] {
-      for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(model, name, value);
-    });
-  }
+  const Model model = read_model(data.campaign.model);
   for (std::size_t r = 0; r < data.run_count(); ++r) {
-    data.runs.push_back(is_driven
-                            ? make_driven_run(data, model, data.tables[r])
-                            : make_crossing(data, model, data.tables[r], data.campaign.runs[r]));
-    data.runs.back().may_miss = true;
+    const CampaignRun& about = data.campaign.runs[r];
+    const MeasuredTable& table = data.tables[r];
+    MeasuredRun run{table.name, model, table.times, make_channels(data, table), true};
+    if (!data.has_inputs()) run.setup.car().maneuver = read_maneuver(about.maneuver);
+    name_table(data, "fit.fix", [&] {
+      for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);
+    });
+    name_table(data, "run " + about.name, [&] {
+      for (const auto& [name, known] : about.known) {
+        if (name != "hit_time") set_parameter(run.setup, name, known.mean);
+      }
+    });
+    if (data.has_inputs()) add_inputs(data, table, run);
+    data.runs.push_back(std::move(run));
   }
   turn_force(data);
 }

@@ -53,8 +53,8 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
 /// What an unknown that all runs share is in the model's file.
 double get_nominal(const CampaignData& data, const Unknown& unknown);
 
-/// What is unknown about each of `runs` alone (make_nuisances), and what the campaign gives with an
-/// uncertainty. Unknown::run counts within `runs`. What is in `chosen` is left out.
+/// The nuisances of `runs` (make_nuisances), with the priors that the campaign gives for single
+/// runs. Unknown::run counts within `runs`. What is in `chosen` is left out.
 std::vector<Unknown> make_run_unknowns(const CampaignData& data,
                                        const std::vector<std::size_t>& runs,
                                        const std::vector<Unknown>& chosen);

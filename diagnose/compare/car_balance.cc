@@ -74,8 +74,8 @@ Start make_start(const CampaignData& data, const SharedValues& shared, const Run
     const Unknown u = make_parameter(data.runs, name);
     start.add(u, u.start);
   }
-  std::vector<MeasuredRun> cars = data.runs;
-  set_unknowns(cars.front(), at.unknowns, at.values, 0);
+  const std::vector<MeasuredRun> cars = {
+      set_unknowns(data.runs.front(), at.unknowns, at.values, 0)};
   for (const Below& below : kBelow) {
     if (below.is_bump && !cars.front().setup.car().maneuver.road.has_formula()) continue;
     Unknown u = make_parameter(cars, below.name);

@@ -88,9 +88,8 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
     run.windows = make_time_windows(data, r);
     run.nominal = compare_run(data, r, baseline.nominal, run.windows, threads);
     run.calibrated = compare_run(data, r, baseline.calibrated, run.windows, threads);
-    MeasuredRun calibrated = data.runs[r];
-    set_unknowns(calibrated, baseline.calibrated.unknowns, baseline.calibrated.values);
-    run.balance = calc_body_balance(calibrated);
+    run.balance = calc_body_balance(
+        set_unknowns(data.runs[r], baseline.calibrated.unknowns, baseline.calibrated.values));
     run.car_balance =
         calc_car_balance(data, r, baseline.calibrated, run.calibrated.evaluation, threads);
     comparison.runs.push_back(std::move(run));

@@ -42,9 +42,8 @@ void add_amplitudes(const CampaignData& data, std::size_t run, std::vector<Propo
   for (const double factor : {0.3, 2.0, 4.0}) {
     CampaignData one = take_run(data, run);
     for (InputSignal& signal : one.runs[0].setup.rig().inputs) {
-      for (const InputInfo& input : data.model().inputs) {
-        if (input.moves && input.name == signal.channel) scale_signal(signal, factor);
-      }
+      const auto input = static_cast<std::size_t>(find_input(data.model(), signal.channel));
+      if (data.model().inputs[input].moves) scale_signal(signal, factor);
     }
     menu.push_back({"repeat " + data.campaign.runs[run].name + " at " + format_rounded(factor) +
                         " times its amplitude",

@@ -143,9 +143,7 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h,
 bool is_corner(const std::string& place) { return find_corner(place) >= 0; }
 
 EffectSettings list_effects_on(const CampaignData& data, const SharedValues& shared) {
-  MeasuredRun run = data.runs[0];
-  set_unknowns(run, shared.unknowns, shared.values);
-  return run.setup.effects();
+  return set_unknowns(data.runs[0], shared.unknowns, shared.values).setup.effects();
 }
 
 std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,

@@ -52,84 +52,84 @@ Starts start_payload(Motion) {
 
 Starts start_runout(Motion) { return {{{"phase", 0.0}}, {{"phase", 0.5 * std::numbers::pi}}}; }
 
-/// By effect. Small sizes that the motion shows, so that a search begins where the effect is seen.
-const Rules kRules = {{"damper_asymmetry",
-                       [](Motion) -> Starts {
-                         return {{{"asymmetry", 0.1}}};
-                       }},
-                      {"damper_blow_off", start_blow_off},
-                      {"damper_hysteresis",
-                       [](Motion m) -> Starts {
-                         return {{{"lag", 0.05 / m.frequency()}}};
-                       }},
-                      {"damper_leak",
-                       [](Motion m) -> Starts {
-                         return {{{"stroke", 0.02 * m.deflection}}};
-                       }},
-                      {"damper_fade",
-                       [](Motion) -> Starts {
-                         return {{{"loss", 0.005}, {"rate", 0.005}}};
-                       }},
-                      {"strut_friction", start_friction},
-                      {"progressive_spring", start_progressive_spring},
-                      {"bump_stop", start_bump_stop},
-                      {"top_mount_compliance", start_top_mount},
-                      {"joint_play",
-                       [](Motion m) -> Starts {
-                         return {{{"play", 0.02 * m.deflection}}};
-                       }},
-                      {"gas_force",
-                       [](Motion m) -> Starts {
-                         return {{{"force", 0.05 * m.stiffness * m.deflection}}};
-                       }},
-                      {"anti_roll_bar",
-                       [](Motion m) -> Starts {
-                         return {{{"stiffness", 0.05 * m.stiffness}}};
-                       }},
-                      {"tire_progressive",
-                       [](Motion m) -> Starts {
-                         return {{{"progression", 0.05 / m.tire_deflection}}};
-                       }},
-                      {"tire_damping",
-                       [](Motion m) -> Starts {
-                         return {{{"rate", 0.1 * m.damping}}};
-                       }},
-                      {"payload", start_payload},
-                      {"wheel_runout", start_runout},
-                      {"sensor_gain",
-                       [](Motion) -> Starts {
-                         return {{{"gain", 0.01}}};
-                       }},
-                      {"sensor_delay",
-                       [](Motion) -> Starts {
-                         return {{{"delay", 5e-4}}};
-                       }},
-                      {"sensor_lowpass", [](Motion) -> Starts {
-                         return {{{"time", 5e-4}}};
-                       }}};
-
 bool has_parameter(const EffectInfo& effect, const std::string& name) {
   return std::any_of(effect.parameters.begin(), effect.parameters.end(),
                      [&](const EffectParameter& p) { return p.name == name; });
 }
 
-/// A name that the catalogue does not have would begin at a default in silence.
-const Rules& get_checked_rules() {
-  static const bool is_checked = [] {
-    for (const auto& [name, rule] : kRules) {
-      const EffectInfo* effect = find_effect(name);
-      STRUT_CHECK(effect != nullptr, "search starts: no effect " + name);
-      for (const auto& start : rule({})) {
-        for (const auto& [parameter, value] : start) {
-          STRUT_CHECK(has_parameter(*effect, parameter),
-                      "search starts: " + name + " has no parameter " + parameter);
-        }
+/// The same rules. A name that the catalogue does not have would begin at a default in silence.
+Rules check_rules(Rules rules) {
+  for (const auto& [name, rule] : rules) {
+    const EffectInfo* effect = find_effect(name);
+    STRUT_CHECK(effect != nullptr, "search starts: no effect " + name);
+    for (const auto& start : rule({})) {
+      for (const auto& [parameter, value] : start) {
+        STRUT_CHECK(has_parameter(*effect, parameter),
+                    "search starts: " + name + " has no parameter " + parameter);
       }
     }
-    return true;
-  }();
-  static_cast<void>(is_checked);
-  return kRules;
+  }
+  return rules;
+}
+
+/// By effect. Small sizes that the motion shows, so that a search begins where the effect is seen.
+const Rules& list_rules() {
+  static const Rules rules =
+      check_rules({{"damper_asymmetry",
+                    [](Motion) -> Starts {
+                      return {{{"asymmetry", 0.1}}};
+                    }},
+                   {"damper_blow_off", start_blow_off},
+                   {"damper_hysteresis",
+                    [](Motion m) -> Starts {
+                      return {{{"lag", 0.05 / m.frequency()}}};
+                    }},
+                   {"damper_leak",
+                    [](Motion m) -> Starts {
+                      return {{{"stroke", 0.02 * m.deflection}}};
+                    }},
+                   {"damper_fade",
+                    [](Motion) -> Starts {
+                      return {{{"loss", 0.005}, {"rate", 0.005}}};
+                    }},
+                   {"strut_friction", start_friction},
+                   {"progressive_spring", start_progressive_spring},
+                   {"bump_stop", start_bump_stop},
+                   {"top_mount_compliance", start_top_mount},
+                   {"joint_play",
+                    [](Motion m) -> Starts {
+                      return {{{"play", 0.02 * m.deflection}}};
+                    }},
+                   {"gas_force",
+                    [](Motion m) -> Starts {
+                      return {{{"force", 0.05 * m.stiffness * m.deflection}}};
+                    }},
+                   {"anti_roll_bar",
+                    [](Motion m) -> Starts {
+                      return {{{"stiffness", 0.05 * m.stiffness}}};
+                    }},
+                   {"tire_progressive",
+                    [](Motion m) -> Starts {
+                      return {{{"progression", 0.05 / m.tire_deflection}}};
+                    }},
+                   {"tire_damping",
+                    [](Motion m) -> Starts {
+                      return {{{"rate", 0.1 * m.damping}}};
+                    }},
+                   {"payload", start_payload},
+                   {"wheel_runout", start_runout},
+                   {"sensor_gain",
+                    [](Motion) -> Starts {
+                      return {{{"gain", 0.01}}};
+                    }},
+                   {"sensor_delay",
+                    [](Motion) -> Starts {
+                      return {{{"delay", 5e-4}}};
+                    }},
+                   {"sensor_lowpass", [](Motion) -> Starts {
+                      return {{{"time", 5e-4}}};
+                    }}});
+  return rules;
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ double StrutMotion::frequency() const { return velocity / std::max(deflection, 1
 double StrutMotion::damper_force() const { return damping * velocity; }
 
 SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& motion) {
-  const Rules& rules = get_checked_rules();
+  const Rules& rules = list_rules();
   const auto found = rules.find(effect);
   return found == rules.end() ? SearchStarts{{}} : found->second(motion);
 }

@@ -7,7 +7,7 @@
 
 namespace strut {
 
-/// How the struts of a place move, and what their springs, dampers and tires do about it.
+/// The motion of the struts at a place, and their spring and damper rates.
 struct StrutMotion {
   double compression = 0.0;      // m, the largest
   double deflection = 0.0;       // m, rms

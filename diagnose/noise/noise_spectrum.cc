@@ -224,9 +224,7 @@ NoiseSpectrum make_road_spectrum(const CampaignData& data, std::size_t run, int 
   NoiseSpectrum s = make_white(data, run);
   s.level = 0.0;
   s.fades = true;
-  MeasuredRun measured = data.runs[run];
-  set_unknowns(measured, unknowns, values, number);
-  Case& c = measured.setup.car();
+  Case c = set_unknowns(data.runs[run], unknowns, values, number).setup.car();
   // The road's faults have no place on this one, and at rest friction would hold the car.
   c.vehicle.effects.clear();
   c.vehicle.force_maps.clear();
@@ -269,8 +267,7 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
                                    const std::vector<Unknown>& unknowns,
                                    const std::vector<double>& values) {
   NoiseSpectrum s = make_white(data, run);
-  MeasuredRun measured = data.runs[run];
-  set_unknowns(measured, unknowns, values);
+  MeasuredRun measured = set_unknowns(data.runs[run], unknowns, values);
   const std::vector<double> times = measured.times;
   auto& [rig, inputs] = measured.setup.rig();
   rig.effects.clear();

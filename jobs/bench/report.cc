@@ -115,37 +115,44 @@ Baseline read_baseline(const std::string& path) {
   return baseline;
 }
 
+namespace {
+
+/// The member of an object; null where there is none.
+const Json& get_member(const Json& json, const std::string& key) {
+  static const Json kNone;
+  if (!json.is_object()) return kNone;
+  const auto found = json.find(key);
+  return found == json.end() ? kNone : *found;
+}
+
+}  // namespace
+
 std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& baseline) {
-  using Path = Json::json_pointer;
   std::vector<FigureRatio> ratios;
   const auto add = [&](const std::string& name, const Json& old, double value) {
     if (old.is_number() && old > 0.0) ratios.push_back({name, value / old.get<double>()});
   };
-  const auto list = [&](const char* path) { return baseline.value(Path(path), Json::array()); };
+  const Json& single = get_member(baseline, "single_core");
   for (const Figure& f : result.single_core) {
-    const Json all = list("/single_core");
-    const auto of_label = all.is_object() ? all.find(f.setting.label) : all.end();
-    if (of_label == all.end() || !of_label->is_object()) continue;
-    add(f.setting.label, of_label->value("runs_per_s", Json()), f.runs_per_s);
+    const std::string& label = f.setting.label;
+    add(label, get_member(get_member(single, label), "runs_per_s"), f.runs_per_s);
   }
   for (const ThreadFigure& t : result.threads) {
-    for (const Json& old : list("/threads")) {
-      if (!old.is_object() || old.value("threads", Json()) != t.threads) continue;
-      add(std::to_string(t.threads) + " threads", old.value("runs_per_s", Json()), t.runs_per_s);
+    for (const Json& old : get_member(baseline, "threads")) {
+      if (get_member(old, "threads") != t.threads) continue;
+      add(std::to_string(t.threads) + " threads", get_member(old, "runs_per_s"), t.runs_per_s);
     }
   }
+  const Json& runs = get_member(get_member(baseline, "pipeline"), "runs");
   const auto sweeps = result.pipeline ? result.pipeline->figures : std::vector<PipelineFigure>();
   for (const PipelineFigure& f : sweeps) {
-    for (const Json& old : list("/pipeline/runs")) {
-      if (!old.is_object() || old.value("isa", Json()) != f.isa ||
-          old.value("threads", Json()) != f.threads) {
-        continue;
-      }
+    for (const Json& old : runs) {
+      if (get_member(old, "isa") != f.isa || get_member(old, "threads") != f.threads) continue;
       add("sweep, " + f.isa + ", " + std::to_string(f.threads) + " threads",
-          old.value("runs_per_s", Json()), f.runs_per_s);
+          get_member(old, "runs_per_s"), f.runs_per_s);
     }
   }
-  add("flops_per_rhs", baseline.value("flops_per_rhs", Json()),
+  add("flops_per_rhs", get_member(baseline, "flops_per_rhs"),
       static_cast<double>(result.newton.arithmetic));
   return ratios;
 }

@@ -125,7 +125,7 @@ std::vector<ForceLaw> list_laws(const CampaignData& data, const RunCurves& curve
   return laws;
 }
 
-/// What a stand measures of the whole strut, over the motion that it imposes.
+/// The measured force of the whole strut over the motion that a stand imposes.
 void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
                         std::vector<ChartPanel>& panels) {
   const ModelInfo& model = data.model();
@@ -166,9 +166,7 @@ std::optional<BodyBalance> calc_balance(const CampaignData& data, std::size_t ru
                                         const WhitenedFit& fit) {
   if (fit.runs.empty()) return std::nullopt;
   const SharedValues shared = fit.shared();
-  MeasuredRun measured = data.runs[run];
-  set_unknowns(measured, shared.unknowns, shared.values);
-  return calc_body_balance(measured);
+  return calc_body_balance(set_unknowns(data.runs[run], shared.unknowns, shared.values));
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 
 namespace strut {
 
-/// Writes DIR/report.html and its figures. Throws
-/// InputError, EnvironmentError.
+/// Writes DIR/report.html and its figures. Throws InputError, EnvironmentError.
 void write_sweep_report(const SweepFolder& folder);
 
 }  // namespace strut

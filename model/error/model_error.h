@@ -6,7 +6,7 @@
 
 namespace strut {
 
-/// What cannot be.
+/// The part of a model that cannot be simulated.
 enum class ModelFault {
   kModel,  // a vehicle or rig: its parameters, effects, maps, or no equilibrium
   kRoad,   // the maneuver's road

@@ -3,6 +3,16 @@
 #include <algorithm>
 
 namespace strut {
+namespace {
+
+template <class Named>
+int find_named(const std::vector<Named>& list, const std::string& name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const Named& one) { return one.name == name; });
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+}  // namespace
 
 std::vector<double> calc_sum(const ChannelSum& sum,
                              const std::vector<std::vector<double>>& channel) {
@@ -16,9 +26,11 @@ std::vector<double> calc_sum(const ChannelSum& sum,
 }
 
 int find_channel(const ModelInfo& model, const std::string& name) {
-  const auto found = std::find_if(model.channels.begin(), model.channels.end(),
-                                  [&](const ChannelInfo& info) { return info.name == name; });
-  return found == model.channels.end() ? -1 : static_cast<int>(found - model.channels.begin());
+  return find_named(model.channels, name);
+}
+
+int find_input(const ModelInfo& model, const std::string& name) {
+  return find_named(model.inputs, name);
 }
 
 }  // namespace strut

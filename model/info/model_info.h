@@ -1,5 +1,5 @@
-// What a model says about itself: its channels, what drives it, what moves in it. What works with
-// measured runs asks this table and not which model it has.
+// The description of a kind of model: its channels, inputs, masses, struts and states. Estimation
+// and diagnosis read this table and do not ask which kind they have.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// What a model has that effects act on or show in; bits of a set.
+/// Parts of a model that effects act on or show in; bits of a set.
 enum ModelPart : unsigned {
   kHasCar = 1,                 // axles, corners, a body of six degrees of freedom, a maneuver
   kHasTire = 2,                // between wheel and ground
@@ -55,7 +55,7 @@ enum class StateKind {
   kGuideVelocity,  // of a mass along what guides it
 };
 
-/// What residuals are looked at by.
+/// A motion or load of the model over which residuals are sorted.
 struct StateInfo {
   StateKind kind;
   std::string place;  // as StrutInfo's
@@ -85,7 +85,8 @@ struct ModelInfo {
 std::vector<double> calc_sum(const ChannelSum& sum,
                              const std::vector<std::vector<double>>& channel);
 
-/// The number of the channel of this name, -1 where there is none.
+/// The number of the channel or input of this name, -1 where there is none.
 int find_channel(const ModelInfo& model, const std::string& name);
+int find_input(const ModelInfo& model, const std::string& name);
 
 }  // namespace strut

@@ -15,11 +15,6 @@
 
 namespace strut {
 
-/// Number of moving masses.
-inline int count_coordinates(RigKind kind) {
-  return static_cast<int>(get_rig_info(kind).masses.size());
-}
-
 /// Everything the equations find on their way.
 template <class T>
 struct RigWorkspace {
@@ -44,7 +39,7 @@ class RigSystem {
   RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs)
       : rig_(rig),
         inputs_(inputs),
-        count_(count_coordinates(rig.layout.kind)),
+        count_(static_cast<int>(get_rig_info(rig.layout.kind).masses.size())),
         on_ground_(get_rig_info(rig.layout.kind).has(kHasGroundInput)) {}
 
   int size() const { return 2 * count_ + stiff_count(); }

@@ -10,14 +10,10 @@ namespace strut {
 
 namespace {
 
-int find_input(RigKind kind, const std::string& name) {
-  const std::vector<InputInfo>& known = get_rig_info(kind).inputs;
+[[noreturn]] void refuse_input(const RigInfo& rig, const std::string& name) {
   std::string names;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (known[i].name == name) return static_cast<int>(i);
-    names += (i > 0 ? ", " : "") + known[i].name;
-  }
-  throw ModelError("input " + name + ": a " + get_rig_info(kind).name + " is driven by " + names);
+  for (const InputInfo& input : rig.inputs) names += (names.empty() ? "" : ", ") + input.name;
+  throw ModelError("input " + name + ": a " + rig.name + " is driven by " + names);
 }
 
 /// The rig with its masses as effects make them.
@@ -56,13 +52,16 @@ double calc_static_deflection(double load, double stiffness, double progression)
 
 std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
     RigKind kind, const std::vector<InputSignal>& inputs) {
+  const RigInfo& rig = get_rig_info(kind);
+  const std::vector<InputInfo>& known = rig.inputs;
   std::array<const InputSignal*, kMaxRigInputs> assigned{};
   for (const InputSignal& signal : inputs) {
-    const auto at = static_cast<std::size_t>(find_input(kind, signal.channel));
+    const int found = find_input(rig, signal.channel);
+    if (found < 0) refuse_input(rig, signal.channel);
+    const auto at = static_cast<std::size_t>(found);
     if (assigned[at]) throw ModelError("input " + signal.channel + ": is given twice");
     assigned[at] = &signal;
   }
-  const std::vector<InputInfo>& known = get_rig_info(kind).inputs;
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!known[i].required || assigned[i]) continue;
     throw ModelError("input " + known[i].name + ": is missing, nothing else moves the rig");

@@ -249,8 +249,8 @@ TEST_CASE("The noise of an input is scaled with it", "[unit]") {
   Unknown gain;
   gain.kind = UnknownKind::kInputGain;
   gain.channel = 0;
-  set_unknowns(run, {gain}, {-4.6});
-  CHECK(run.input_noise[0].sigma == Approx(4.6e-5).epsilon(test::tolerance(1e-12)));
+  const MeasuredRun scaled = set_unknowns(run, {gain}, {-4.6});
+  CHECK(scaled.input_noise[0].sigma == Approx(4.6e-5).epsilon(test::tolerance(1e-12)));
 }
 
 }  // namespace
