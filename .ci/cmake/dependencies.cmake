@@ -24,6 +24,7 @@ find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
 set_property(TARGET Boost::headers APPEND PROPERTY
   INTERFACE_COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)
 find_package(nlohmann_json 3.11 REQUIRED)
+find_package(fmt 9.1 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_package(ZLIB 1.2 REQUIRED)
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto)

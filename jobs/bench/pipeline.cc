@@ -81,7 +81,7 @@ PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, doub
   result.compress = summary.compress;
   result.write = summary.write;
   const auto cases = static_cast<double>(result.cases);
-  result.bytes_per_case = std::round(static_cast<double>(summary.bytes) / cases);
+  result.bytes_per_case = std::llround(static_cast<double>(summary.bytes) / cases);
   result.resume_seconds = time_sweep(folder, plan, options, halt).seconds;
   return {kernel.isa, kernel.lanes, threads, cases / time.seconds, spin};
 }
@@ -146,9 +146,10 @@ void print_pipeline(std::ostream& stream, const PipelineResult& result) {
   const double all = result.prepare + result.integrate + result.compress + result.write;
   std::snprintf(line, sizeof line,
                 "of the last: prepare %.1f %%, integrate %.1f %%, compress %.2f %%, write %.2f "
-                "%%; %.0f bytes a case\n",
+                "%%; %lld bytes a case\n",
                 100.0 * result.prepare / all, 100.0 * result.integrate / all,
-                100.0 * result.compress / all, 100.0 * result.write / all, result.bytes_per_case);
+                100.0 * result.compress / all, 100.0 * result.write / all,
+                static_cast<long long>(result.bytes_per_case));
   stream << line;
   std::snprintf(line, sizeof line,
                 "planning %.0f ms, running the finished sweep again %.0f ms, peak memory %.0f MB\n",

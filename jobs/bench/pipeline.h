@@ -26,7 +26,7 @@ struct PipelineResult {
   std::vector<PipelineFigure> figures;
   /// Thread-seconds of the run with the widest lanes on all cores.
   double prepare = 0.0, integrate = 0.0, compress = 0.0, write = 0.0;
-  double bytes_per_case = 0.0;
+  std::int64_t bytes_per_case = 0;  // mean, rounded
   double plan_seconds = 0.0;    // from request to folder
   double resume_seconds = 0.0;  // of running the finished sweep again
   double peak_memory = 0.0;     // bytes, of this process so far
