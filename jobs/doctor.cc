@@ -8,6 +8,7 @@
 
 #include "base/text/nearest_name.h"
 #include "cluster/dispatcher.h"
+#include "io/format/json.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
@@ -15,7 +16,6 @@
 #include "jobs/cli/progress.h"
 #include "jobs/cli/standard_output.h"
 #include "jobs/doctor/file_checks.h"
-#include "report/json.h"
 
 namespace strut {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "io/format/json.h"
 #include "jobs/cli/arguments.h"
-#include "report/json.h"
 #include "train/model/evaluate.h"
 
 namespace strut {

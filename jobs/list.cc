@@ -5,12 +5,12 @@
 
 #include "base/text/format_number.h"
 #include "base/text/range.h"
+#include "io/format/json.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/commands.h"
 #include "model/effects/catalogue.h"
 #include "model_files/model_tables.h"
-#include "report/json.h"
 
 namespace strut {
 namespace {

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "base/text/build_info.h"
+#include "io/format/json.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/machine.h"
@@ -12,7 +13,6 @@
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
-#include "report/json.h"
 #include "sweep/merge.h"
 
 namespace strut {

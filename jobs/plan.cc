@@ -4,6 +4,7 @@
 #include <iostream>
 #include <optional>
 
+#include "io/format/json.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
@@ -11,7 +12,6 @@
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
 #include "model_files/parameters.h"
-#include "report/json.h"
 #include "sweep/case_order.h"
 #include "sweep/folder.h"
 

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "base/text/format_number.h"
+#include "io/format/json.h"
 #include "jobs/case/run_file.h"
 #include "jobs/case/step_check.h"
 #include "jobs/cli/arguments.h"
@@ -22,7 +23,6 @@
 #include "jobs/simulate/run_report.h"
 #include "model_files/parameters.h"
 #include "model_files/read_model.h"
-#include "report/json.h"
 #include "report/page_file.h"
 #include "sweep/simulate_case.h"
 

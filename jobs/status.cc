@@ -8,13 +8,13 @@
 #include <thread>
 
 #include "cluster/follow.h"
+#include "io/format/json.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/standard_output.h"
 #include "jobs/cli/terminal.h"
-#include "report/json.h"
 #include "sweep/status.h"
 
 namespace strut {

@@ -14,6 +14,7 @@
 #include "cluster/scripts.h"
 #include "cluster/slurm.h"
 #include "io/file/atomic_file.h"
+#include "io/format/json.h"
 #include "io/store/claims.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/command.h"
@@ -22,7 +23,6 @@
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
-#include "report/json.h"
 #include "sweep/status.h"
 
 namespace strut {

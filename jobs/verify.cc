@@ -4,13 +4,13 @@
 #include <iostream>
 #include <limits>
 
+#include "io/format/json.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/machine.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/standard_output.h"
-#include "report/json.h"
 #include "sweep/shard_store.h"
 #include "sweep/verify.h"
 

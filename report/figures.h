@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "io/file/folder.h"
+#include "io/format/json.h"
 #include "report/chart.h"
 #include "report/html.h"
-#include "report/json.h"
 
 namespace strut {
 

@@ -9,9 +9,9 @@
 #include "base/error/input_error.h"
 #include "base/text/shorten.h"
 #include "io/file/atomic_file.h"
+#include "io/format/json.h"
+#include "io/format/read_json.h"
 #include "report/figures.h"
-#include "report/json.h"
-#include "report/read_json.h"
 
 namespace strut {
 namespace {

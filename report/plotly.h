@@ -1,8 +1,8 @@
 // Charts for plotly.js, which draws them on a page.
 #pragma once
 
+#include "io/format/json.h"
 #include "report/chart.h"
-#include "report/json.h"
 
 namespace strut {
 

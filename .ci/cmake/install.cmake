@@ -27,7 +27,8 @@ install(CODE "file(CREATE_LINK ${strut_examples_link}
 # Headers that need libraries which only our sources are given stay here.
 set(strut_inner_headers
   base/math/matrix_map base/math/xsimd_backend base/parallel/team model/kernel/run_cases
-  model/integrate/sundials train/network/block_layers io/format/hdf5_calls io/format/parse_toml)
+  model/integrate/sundials train/network/block_layers io/format/hdf5_calls io/format/json io/format/parse_toml
+  io/format/read_json)
 list(JOIN strut_inner_headers "|" strut_inner_headers)
 set(strut_rooms base model kernel io model_files estimate sweep train diagnose)
 foreach(room IN LISTS strut_rooms)

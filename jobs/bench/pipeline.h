@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "io/format/json.h"
 #include "model/kernel/simulation.h"
-#include "report/json.h"
 
 namespace strut {
 
@@ -27,9 +27,9 @@ struct PipelineResult {
   /// Thread-seconds of the run with the widest lanes on all cores.
   double prepare = 0.0, integrate = 0.0, compress = 0.0, write = 0.0;
   std::int64_t bytes_per_case = 0;  // mean, rounded
-  double plan_seconds = 0.0;    // from request to folder
-  double resume_seconds = 0.0;  // of running the finished sweep again
-  double peak_memory = 0.0;     // bytes, of this process so far
+  double plan_seconds = 0.0;        // from request to folder
+  double resume_seconds = 0.0;      // of running the finished sweep again
+  double peak_memory = 0.0;         // bytes, of this process so far
 
   /// Compression and disk over all work.
   double output_share() const {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "io/format/read_json.h"
 #include "jobs/bench/cases.h"
 #include "jobs/bench/count_flops.h"
 #include "jobs/bench/pipeline.h"
 #include "jobs/cli/machine.h"
-#include "report/read_json.h"
 
 namespace strut {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "io/format/json.h"
 #include "model/kernel/simulation.h"
-#include "report/json.h"
 
 namespace strut {
 

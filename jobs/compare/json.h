@@ -2,7 +2,7 @@
 #pragma once
 
 #include "diagnose/compare/compare.h"
-#include "report/json.h"
+#include "io/format/json.h"
 
 namespace strut {
 

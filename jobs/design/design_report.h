@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "estimate/design.h"
-#include "report/json.h"
+#include "io/format/json.h"
 
 namespace strut {
 

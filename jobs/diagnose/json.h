@@ -2,7 +2,7 @@
 #pragma once
 
 #include "diagnose/decide/diagnosis.h"
-#include "report/json.h"
+#include "io/format/json.h"
 
 namespace strut {
 

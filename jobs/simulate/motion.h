@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
+#include "io/format/json.h"
 #include "model/car/case.h"
 #include "model/kernel/simulation.h"
 #include "report/chart.h"
-#include "report/json.h"
 
 namespace strut {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/format/json.h"
 #include "jobs/study/noise_trainings.h"
-#include "report/json.h"
 
 namespace strut {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "io/format/json.h"
 #include "jobs/study/folder.h"
 #include "jobs/study/noise_study.h"
-#include "report/json.h"
 #include "train/data/metrics.h"
 #include "train/model/model_file.h"
 

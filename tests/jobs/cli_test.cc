@@ -5,9 +5,9 @@
 
 #include "io/format/csv.h"
 #include "io/format/hdf5.h"
+#include "io/format/json.h"
 #include "jobs/bench/cases.h"
 #include "model/channel/car_channels.h"
-#include "report/json.h"
 #include "tests/jobs/check_hint.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"

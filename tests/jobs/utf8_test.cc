@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/format/json.h"
 #include "report/html.h"
-#include "report/json.h"
 
 namespace strut {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/error/input_error.h"
-#include "report/json.h"
+#include "io/format/json.h"
 
 namespace strut {
 

@@ -1,4 +1,4 @@
-#include "report/read_json.h"
+#include "io/format/read_json.h"
 
 #include "io/file/folder.h"
 

@@ -1,4 +1,4 @@
-#include "report/json.h"
+#include "io/format/json.h"
 
 #include <algorithm>
 
