@@ -108,7 +108,7 @@ class BenchProgress {
       : total_(total), line_([this, start = now()] { return describe(now() - start); }) {}
 
   void begin(const std::string& doing) {
-    tell_detail(doing);
+    print_detail(doing);
     const std::lock_guard lock(mutex_);
     doing_ = doing;
     ++begun_;
@@ -185,8 +185,8 @@ std::filesystem::path find_sweep(bool must) {
   } catch (const InputError&) {
     if (must) throw;
   }
-  tell_note("examples/" + std::string(name) +
-            ": not found above the program or the working directory; no sweep is measured");
+  print_note("examples/" + std::string(name) +
+             ": not found above the program or the working directory; no sweep is measured");
   return {};
 }
 
@@ -231,14 +231,14 @@ std::string name_again(const Arguments& arguments) {
   return line;
 }
 
-void tell_next_of(const Arguments& arguments) {
+void suggest_next_step(const Arguments& arguments) {
   const std::string again = name_again(arguments);
   if (arguments.has("baseline")) {
-    tell_next_line(again + " --json > new.json", "a baseline for later; docs/performance.md");
+    suggest_next_line(again + " --json > new.json", "a baseline for later; docs/performance.md");
   } else if (arguments.is_on("json")) {
-    tell_next_line(again + " --baseline OLD.json", "this output, in a file");
+    suggest_next_line(again + " --baseline OLD.json", "this output, in a file");
   } else {
-    tell_next_line(again + " --json > old.json", "then the same with --baseline old.json");
+    suggest_next_line(again + " --json > old.json", "then the same with --baseline old.json");
   }
 }
 
@@ -276,15 +276,15 @@ int run_bench(const Arguments& arguments) {
   InterruptWatcher watcher;
   const BenchResult result = run_benchmark(request, watcher.halt());
   if (watcher.signal() != 0) {
-    tell_error("interrupted");
-    tell_next_again(arguments, "begins anew");
+    print_error("interrupted");
+    suggest_again(arguments, "starts over");
     return 128 + watcher.signal();
   }
   const std::vector<FigureRatio> ratios =
       baseline ? compare(result, *baseline) : std::vector<FigureRatio>{};
   arguments.is_on("json") ? print_json(std::cout, result, ratios)
                           : print_table(std::cout, result, ratios);
-  tell_next_of(arguments);
+  suggest_next_step(arguments);
   return kExitDone;
 }
 

@@ -51,9 +51,9 @@ int run_cancel(const Arguments& arguments) {
     const SubmissionState state = follow(submission);
     if (state.queue == QueueState::kEnded) continue;
     if (state.queue == QueueState::kUnknown) {
-      tell_error("submission " + submission.name() +
-                 ": whether it still runs is unknown: " + state.why +
-                 "; nothing of it is cancelled; try again later, or stop its job by hand");
+      print_error("submission " + submission.name() +
+                  ": whether it still runs is unknown: " + state.why +
+                  "; nothing of it is cancelled; try again later, or stop its job by hand");
       is_unknown = true;
       continue;
     }
@@ -63,9 +63,9 @@ int run_cancel(const Arguments& arguments) {
   if (is_unknown) return kExitEnvironment;
   if (dispatcher.empty()) {
     std::cout << "nothing to cancel: no submission waits or runs\n";
-    tell_next({"strut", "status", root});
+    suggest_next({"strut", "status", root});
   } else {
-    tell_next({"strut", "submit", root, "--to", dispatcher}, "goes on from here");
+    suggest_next({"strut", "submit", root, "--to", dispatcher}, "goes on from here");
   }
   return kExitDone;
 }

@@ -30,13 +30,13 @@ bool is_whole(const Comparison& comparison) {
 
 void tell(const Comparison& comparison) {
   if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) {
-    tell_error("the calibration has not converged: its minimum is " +
-               format_rounded(comparison.baseline.fit.distance) + " standard deviations away");
+    print_error("the calibration has not converged: its minimum is " +
+                format_rounded(comparison.baseline.fit.distance) + " standard deviations away");
   }
   for (const RunComparison& run : comparison.runs) {
     for (const ModelComparison* model : {&run.nominal, &run.calibrated}) {
       const std::string& failure = model->evaluation.failure;
-      if (!failure.empty()) tell_error(failure);
+      if (!failure.empty()) print_error(failure);
     }
   }
 }
@@ -67,9 +67,9 @@ int run_compare(const Arguments& arguments) {
   }
   const CampaignData data = read_campaign_data(arguments.positional().front());
   const CompareFolder folder = find_compare_folder(arguments, data);
-  tell_notes(data.notes);
+  print_notes(data.notes);
   const int threads = find_threads(arguments);
-  tell_detail(std::to_string(data.run_count()) + " runs, " + std::to_string(threads) + " threads");
+  print_detail(std::to_string(data.run_count()) + " runs, " + std::to_string(threads) + " threads");
   const Comparison comparison = [&] {
     const Stage stage("calibration and comparison");
     const ProgressLine line("calibrating, then comparing " + std::to_string(data.run_count()) +
@@ -84,7 +84,7 @@ int run_compare(const Arguments& arguments) {
     const std::vector<std::string> tables = write_compare_tables(folder, data, comparison);
     write_compare_report(folder, data, comparison, tables);
     write_text_file_inside(folder.root, folder.json(), json);
-    tell_detail("written: " + folder.json().string() + ", " + folder.report().string());
+    print_detail("written: " + folder.json().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {
     std::cout << json;
@@ -95,11 +95,11 @@ int run_compare(const Arguments& arguments) {
     std::cout << make_verdict_text(data, comparison) << "\n" << folder.report().string() << "\n";
   }
   if (comparison.is_adequate()) {
-    tell_next_page(folder.report().string());
+    suggest_page(folder.report().string());
   } else {
-    tell_next({"strut", "diagnose", arguments.positional().front(), "-o", "diagnosis"});
+    suggest_next({"strut", "diagnose", arguments.positional().front(), "-o", "diagnosis"});
   }
-  return is_whole(comparison) ? kExitDone : kExitNo;
+  return is_whole(comparison) ? kExitDone : kExitNegative;
 }
 
 }  // namespace strut

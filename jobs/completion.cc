@@ -207,7 +207,7 @@ int run_completion(const Arguments& arguments) {
   }
   std::cout << make_bash_completion();
   // A script that a shell reads as it starts is no place for a hint.
-  if (isatty(STDOUT_FILENO) == 1) tell_next_line("source <(strut completion bash)");
+  if (isatty(STDOUT_FILENO) == 1) suggest_next_line("source <(strut completion bash)");
   return kExitDone;
 }
 

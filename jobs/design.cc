@@ -72,15 +72,15 @@ SensitivityOptions read_options(const Arguments& arguments, const SweepRequest& 
   return options;
 }
 
-void tell_next_of(const std::string& sweep, const DesignReport& report) {
+void suggest_next_step(const std::string& sweep, const DesignReport& report) {
   const Design& design = report.design;
   const Instant& best = report.sensitivity.instants[design.best[0].instants[0]];
   char offset[32];
   std::snprintf(offset, sizeof offset, "%.3f", best.offset);
-  tell_next({"strut", "plan", sweep, "-o", "cars"},
-            design.best[0].bounds.rms < design.snapshot.rms
-                ? std::string("with offset = ") + offset + " in its [record]"
-                : "its instant is the best one");
+  suggest_next({"strut", "plan", sweep, "-o", "cars"},
+               design.best[0].bounds.rms < design.snapshot.rms
+                   ? std::string("with offset = ") + offset + " in its [record]"
+                   : "its instant is the best one");
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ int run_design(const Arguments& arguments) {
   } else {
     print_design(report);
   }
-  tell_next_of(arguments.positional().front(), report);
+  suggest_next_step(arguments.positional().front(), report);
   return kExitDone;
 }
 

@@ -32,7 +32,7 @@ Diagnosis diagnose(const CampaignData& data, int threads) {
   DiagnoseOptions options;
   options.threads = threads;
   options.progress = [&](const std::string& what) {
-    tell_detail(what);
+    print_detail(what);
     const std::lock_guard lock(mutex);
     doing = what;
   };
@@ -51,18 +51,18 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
 }
 
 /// The loop goes on with the extended model, or, where there is none, with other measurements.
-void tell_next_of(const Arguments& arguments, const DiagnoseFolder& folder,
-                  const CampaignData& data, const Diagnosis& diagnosis) {
+void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
+                       const CampaignData& data, const Diagnosis& diagnosis) {
   if (diagnosis.is_extended() && data.has_inputs()) {
-    tell_next({"strut", "simulate", folder.extended_model().string(), "MANEUVER.toml", "-o",
-               "extended.csv"});
+    suggest_next({"strut", "simulate", folder.extended_model().string(), "MANEUVER.toml", "-o",
+                  "extended.csv"});
   } else if (diagnosis.is_extended()) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
-              "with vehicle = \"" + folder.extended_model().string() + "\"");
+    suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
+                 "with vehicle = \"" + folder.extended_model().string() + "\"");
   } else if (diagnosis.kind == VerdictKind::kAdequate || diagnosis.next_measurement.empty()) {
-    tell_next_page(folder.report().string());
+    suggest_page(folder.report().string());
   } else {
-    tell_next_again(arguments, "with one more run: " + diagnosis.next_measurement);
+    suggest_again(arguments, "with one more run: " + diagnosis.next_measurement);
   }
 }
 
@@ -95,9 +95,9 @@ int run_diagnose(const Arguments& arguments) {
   }
   const CampaignData data = read_campaign_data(arguments.positional().front());
   const DiagnoseFolder folder = find_diagnose_folder(arguments, data);
-  tell_notes(data.notes);
+  print_notes(data.notes);
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
-  tell_notes(diagnosis.notes);
+  print_notes(diagnosis.notes);
   const std::string json = format_json(make_verdict_json(data, diagnosis)) + "\n";
   {
     const InterruptGuard guard;
@@ -106,15 +106,15 @@ int run_diagnose(const Arguments& arguments) {
     const std::vector<std::string> tables = write_diagnose_tables(folder, data, diagnosis);
     write_diagnose_report(folder, data, diagnosis, tables);
     write_text_file_inside(folder.root, folder.verdict(), json);
-    tell_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
+    print_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
   }
   if (arguments.is_on("json")) {
     std::cout << json;
   } else {
     std::cout << make_diagnose_text(diagnosis) << "\n" << folder.report().string() << "\n";
   }
-  tell_next_of(arguments, folder, data, diagnosis);
-  return diagnosis.is_whole ? kExitDone : kExitNo;
+  suggest_next_step(arguments, folder, data, diagnosis);
+  return diagnosis.is_whole ? kExitDone : kExitNegative;
 }
 
 }  // namespace strut

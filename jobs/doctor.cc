@@ -102,16 +102,16 @@ void print_text(const Findings& findings) {
   }
 }
 
-void tell_next_of(const Arguments& arguments, bool holds) {
+void suggest_next_step(const Arguments& arguments, bool holds) {
   const std::string root = arguments.positional().front();
   if (!holds) {
-    tell_next_again(arguments, "once what is bad above is mended");
+    suggest_again(arguments, "once what is bad above is mended");
   } else if (!fs::exists(SweepFolder{root}.plan())) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", root});
+    suggest_next({"strut", "plan", "SWEEP.toml", "-o", root});
   } else if (choose_dispatcher(arguments) == "slurm") {
-    tell_next({"strut", "submit", root, "--to", "slurm"});
+    suggest_next({"strut", "submit", root, "--to", "slurm"});
   } else {
-    tell_next({"strut", "run", root});
+    suggest_next({"strut", "run", root});
   }
 }
 
@@ -152,8 +152,8 @@ int run_doctor(const Arguments& arguments) {
   }
   const bool holds = std::none_of(findings.begin(), findings.end(),
                                   [](const Finding& f) { return f.health == Health::kBad; });
-  tell_next_of(arguments, holds);
-  return holds ? kExitDone : kExitNo;
+  suggest_next_step(arguments, holds);
+  return holds ? kExitDone : kExitNegative;
 }
 
 }  // namespace strut

@@ -43,19 +43,19 @@ void print_table(const TrainedModel& model, const ModelEvaluation& evaluation) {
                  m.mean_absolute_percentage, m.rms_error, 1.0 - m.r2);
   }
   if (evaluation.out_of_range > 0) {
-    tell_note(format_count(evaluation.out_of_range) + " of " + format_count(evaluation.samples) +
-              " cases have inputs outside of the range trained on");
+    print_note(format_count(evaluation.out_of_range) + " of " + format_count(evaluation.samples) +
+               " cases have inputs outside of the range trained on");
   }
 }
 
-void tell_next_identify(const std::string& file, const TrainedModel& model) {
+void suggest_next_identify(const std::string& file, const TrainedModel& model) {
   std::vector<std::string> columns = list_names(model.inputs);
   if (model.window) {
     columns = list_names(model.window->channels);
     columns.insert(columns.begin(), "time");
   }
-  tell_next({"strut", "identify", file, "MEASURED.csv"},
-            "a table with columns " + join_names(columns));
+  suggest_next({"strut", "identify", file, "MEASURED.csv"},
+               "a table with columns " + join_names(columns));
 }
 
 Arguments describe_evaluate() {
@@ -102,7 +102,7 @@ int run_evaluate(const Arguments& arguments) {
               << (all ? " cases\n" : " cases of the test part\n");
     print_table(model, evaluation);
   }
-  tell_next_identify(names.front(), model);
+  suggest_next_identify(names.front(), model);
   return kExitDone;
 }
 

@@ -19,6 +19,6 @@ Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation);
 void print_table(const TrainedModel& model, const ModelEvaluation& evaluation);
 
 /// Names `strut identify` as what comes after a model in `file`, and what it takes.
-void tell_next_identify(const std::string& file, const TrainedModel& model);
+void suggest_next_identify(const std::string& file, const TrainedModel& model);
 
 }  // namespace strut

@@ -54,19 +54,19 @@ std::string make_text(const Arguments& arguments, const TrainedModel& model,
 }
 
 /// How other programs call it.
-void tell_next_of(const Arguments& arguments, const fs::path& output) {
+void suggest_next_step(const Arguments& arguments, const fs::path& output) {
   const std::string file = output.string();
   if (find_format(output) == ExportFormat::kOnnx) {
-    tell_next(
+    suggest_next(
         {"python3", "-c", "import onnx, sys; print(onnx.load(sys.argv[1]).graph.input)", file},
         "its input; onnxruntime and others run it");
     return;
   }
   const std::string call = "then call strut_identify_" + find_name(arguments, output) + "(in, out)";
   if (find_format(output) == ExportFormat::kHeader) {
-    tell_next({"cc", "-x", "c", "-fsyntax-only", file}, "#include it, " + call);
+    suggest_next({"cc", "-x", "c", "-fsyntax-only", file}, "#include it, " + call);
   } else {
-    tell_next({"cc", "-c", file}, call);
+    suggest_next({"cc", "-c", file}, call);
   }
 }
 
@@ -103,7 +103,7 @@ int run_export(const Arguments& arguments) {
   }
   write_text_file(output, make_text(arguments, model, output));
   std::cout << output.string() << "\n";
-  tell_next_of(arguments, output);
+  suggest_next_step(arguments, output);
   return kExitDone;
 }
 

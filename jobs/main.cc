@@ -68,13 +68,13 @@ std::string name_example(const std::string& name) {
 
 /// What `strut` alone answers: three commands to begin with.
 int show_beginning() {
-  strut::tell_error("which command? `strut --help` lists them all; to begin with:");
-  strut::tell_next({"strut", "simulate", name_example("vehicles/paper_sedan.toml"),
-                    name_example("maneuvers/bump_20mps.toml"), "-o", "run.csv"},
-                   "one car over one bump");
-  strut::tell_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "cars"},
-                   "many cars, to train a network on");
-  strut::tell_next(
+  strut::print_error("which command? `strut --help` lists them all; to begin with:");
+  strut::suggest_next({"strut", "simulate", name_example("vehicles/paper_sedan.toml"),
+                       name_example("maneuvers/bump_20mps.toml"), "-o", "run.csv"},
+                      "one car over one bump");
+  strut::suggest_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "cars"},
+                      "many cars, to train a network on");
+  strut::suggest_next(
       {"strut", "compare", name_example("extended_loop/campaign.toml"), "-o", "comparison"},
       "measured runs against simulated ones: docs/diagnosis.md");
   return strut::kExitInput;
@@ -83,12 +83,12 @@ int show_beginning() {
 int run_command(const Command& command, const std::vector<std::string>& words) {
   strut::Arguments arguments = command.describe();
   if (!arguments.parse(words)) return strut::kExitDone;
-  if (arguments.is_on("quiet")) set_loudness(strut::Loudness::kQuiet);
-  if (arguments.is_on("verbose")) set_loudness(strut::Loudness::kVerbose);
+  if (arguments.is_on("quiet")) set_verbosity(strut::Verbosity::kQuiet);
+  if (arguments.is_on("verbose")) set_verbosity(strut::Verbosity::kVerbose);
   strut::prepare_interrupt(arguments);
   const strut::BuildInfo& build = strut::get_build_info();
-  strut::tell_detail("version " + std::string(build.version) + " (" + build.commit +
-                     "), instruction set " + strut::list_kernels().front().isa);
+  strut::print_detail("version " + std::string(build.version) + " (" + build.commit +
+                      "), instruction set " + strut::list_kernels().front().isa);
   const strut::Stage stage("all of " + arguments.command());
   return command.run(arguments);
 }
@@ -143,12 +143,12 @@ int run_and_flush(const std::vector<std::string>& words) {
     throw strut::EnvironmentError(
         "standard output: cannot be written; is its disk full, or what reads it gone?");
   }
-  strut::say_next();
+  strut::print_suggestions();
   return code;
 }
 
 int fail(strut::ExitCode code, const std::string& text) {
-  strut::tell_error(text);
+  strut::print_error(text);
   return code;
 }
 

@@ -135,7 +135,7 @@ Arguments describe_man_page() {
 int run_man_page(const Arguments& arguments) {
   if (!arguments.positional().empty()) throw arguments.usage_error("expected no arguments");
   std::cout << make_man_page();
-  if (isatty(STDOUT_FILENO) == 1) tell_next_line("strut man | man -l -");
+  if (isatty(STDOUT_FILENO) == 1) suggest_next_line("strut man | man -l -");
   return kExitDone;
 }
 

@@ -84,7 +84,7 @@ int run_merge(const Arguments& arguments) {
   {
     const double start = now();
     const ProgressLine line([&] {
-      return describe_share(done, sweep.plan.case_count(), "cases merged", now() - start);
+      return format_progress(done, sweep.plan.case_count(), "cases merged", now() - start);
     });
     report =
         merge_sweep(sweep.folder, make_input(sweep.plan), output, options, [&](std::int64_t cases) {
@@ -93,12 +93,12 @@ int run_merge(const Arguments& arguments) {
         });
   }
   if (report.data_digest.empty()) {
-    tell_error("interrupted; nothing is written");
-    tell_next_again(arguments, "begins anew");
+    print_error("interrupted; nothing is written");
+    suggest_again(arguments, "starts over");
     return 128 + interrupt.signal();
   }
   print(report, output, arguments.is_on("json"));
-  tell_next({"strut", "train", output.string(), "-o", "model.h5"});
+  suggest_next({"strut", "train", output.string(), "-o", "model.h5"});
   return kExitDone;
 }
 

@@ -92,12 +92,12 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
 
 void warn(const SweepEstimate& estimate) {
   if (estimate.without_event == estimate.measured) {
-    tell_note("warning: none of the " + std::to_string(estimate.measured) +
-              " cases looked at meets the snapshot's line; a longer duration may");
+    print_note("warning: none of the " + std::to_string(estimate.measured) +
+               " cases looked at meets the snapshot's line; a longer duration may");
   }
   if (estimate.failed == estimate.measured) {
-    tell_note("warning: all of the " + std::to_string(estimate.measured) +
-              " cases looked at fail; `strut simulate` on one of them says why");
+    print_note("warning: all of the " + std::to_string(estimate.measured) +
+               " cases looked at fail; `strut simulate` on one of them says why");
   }
 }
 
@@ -144,11 +144,11 @@ int run_plan(const Arguments& arguments) {
   arguments.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
   warn(estimate);
   if (folder) {
-    tell_note(folder->root.string() + ": planned");
-    tell_next({"strut", "run", folder->root.string()});
+    print_note(folder->root.string() + ": planned");
+    suggest_next({"strut", "run", folder->root.string()});
   } else {
-    tell_next({"strut", "plan", arguments.positional().front(), "-o",
-               arguments.text_or("output", "cars")});
+    suggest_next({"strut", "plan", arguments.positional().front(), "-o",
+                  arguments.text_or("output", "cars")});
   }
   return kExitDone;
 }

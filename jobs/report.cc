@@ -82,7 +82,7 @@ int run_report(const Arguments& arguments) {
     return report(content, root);
   }();
   std::cout << page.string() << "\n";
-  tell_next_page(page.string());
+  suggest_page(page.string());
   return kExitDone;
 }
 

@@ -151,8 +151,8 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
 }
 
 void tell(const RunSummary& summary) {
-  tell_notes(summary.notes);
-  for (const auto& [shard, what] : summary.damaged) tell_error(what);
+  print_notes(summary.notes);
+  for (const auto& [shard, what] : summary.damaged) print_error(what);
 }
 
 /// The task of --task, whose shards are then those to be done.
@@ -203,13 +203,13 @@ RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& opt
 /// What is said, and done, where a scheduler's warning ended the run.
 void leave_drained(const OpenSweep& sweep, const std::optional<TaskRun>& task) {
   const std::string root = sweep.folder.root.string();
-  tell_error("warned of a time limit (SIGUSR1); what is written is whole");
+  print_error("warned of a time limit (SIGUSR1); what is written is whole");
   const std::string why = task ? task->requeue() : "";
-  if (task) tell_note(why.empty() ? "queued again" : "not queued again: " + why);
+  if (task) print_note(why.empty() ? "queued again" : "not queued again: " + why);
   if (task && why.empty()) {
-    tell_next({"strut", "status", root, "--watch"});
+    suggest_next({"strut", "status", root, "--watch"});
   } else {
-    tell_next({"strut", "run", root}, "goes on from here");
+    suggest_next({"strut", "run", root}, "goes on from here");
   }
 }
 
@@ -219,19 +219,19 @@ bool has_untried(const OpenSweep& sweep) {
 }
 
 /// What is to be done with the sweep as it is now.
-void tell_next_of(const OpenSweep& sweep, const RunProgress& progress, const RunSummary& summary,
-                  bool retries) {
+void suggest_next_step(const OpenSweep& sweep, const RunProgress& progress,
+                       const RunSummary& summary, bool retries) {
   const std::string root = sweep.folder.root.string();
   if (!summary.damaged.empty()) {
-    tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside, then run");
+    suggest_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside, then run");
   } else if (summary.failed > 0 && !retries && has_untried(sweep)) {
-    tell_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
+    suggest_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
   } else if (!is_complete_sweep(sweep, progress)) {
-    tell_next({"strut", "status", root});
+    suggest_next({"strut", "status", root});
   } else if (summary.failed > 0) {
-    tell_next_of_failed(root, summary.failed);
+    suggest_next_after_failures(root, summary.failed);
   } else {
-    tell_next({"strut", "verify", root});
+    suggest_next({"strut", "verify", root});
   }
 }
 
@@ -240,13 +240,13 @@ int run(bool retries, const Arguments& arguments) {
   RunOptions options = read_options(arguments, sweep.plan, retries);
   std::optional<TaskRun> task = find_task(arguments, sweep, options);
   if (task && task->is_cancelled()) {
-    tell_note("its submission is cancelled");
-    tell_next({"strut", "status", sweep.folder.root.string()});
+    print_note("its submission is cancelled");
+    suggest_next({"strut", "status", sweep.folder.root.string()});
     return kExitDone;
   }
-  tell_detail(std::to_string(options.threads) + " threads, instruction set " + options.kernel->isa +
-              ", shards " + std::to_string(options.first_shard) + " to " +
-              std::to_string(options.end_shard - 1));
+  print_detail(std::to_string(options.threads) + " threads, instruction set " +
+               options.kernel->isa + ", shards " + std::to_string(options.first_shard) + " to " +
+               std::to_string(options.end_shard - 1));
   prepare_interrupt(arguments, "goes on from here");
   InterruptWatcher watcher;
   options.drain = &watcher.warned();
@@ -266,16 +266,16 @@ int run(bool retries, const Arguments& arguments) {
     print_summary(sweep, progress, summary, seconds);
   }
   if (watcher.signal() != 0) {
-    tell_error("interrupted; what is written is whole");
-    tell_next_again(arguments, "goes on from here");
+    print_error("interrupted; what is written is whole");
+    suggest_again(arguments, "goes on from here");
     return 128 + watcher.signal();
   }
   if (watcher.warned() && !is_complete(progress)) {
     leave_drained(sweep, task);
     return 128 + SIGUSR1;
   }
-  tell_next_of(sweep, progress, summary, retries);
-  return summary.failed > 0 || !summary.damaged.empty() ? kExitNo : kExitDone;
+  suggest_next_step(sweep, progress, summary, retries);
+  return summary.failed > 0 || !summary.damaged.empty() ? kExitNegative : kExitDone;
 }
 
 }  // namespace

@@ -129,15 +129,16 @@ int explain_failure(const Arguments& arguments, const PreparedCase& c,
                                 "runs through");
     }
   }
-  tell_error("the run failed at t = " + at + ": " +
-             (out ? "a wheel left the +-100 mm over which its suspension is modeled; a lower bump, "
-                    "a lower speed or a stiffer spring keeps it inside"
-                  : "the motion is no longer finite; a shorter --step does not help") +
-             "; nothing was written");
-  tell_next_with_setting(
+  print_error(
+      "the run failed at t = " + at + ": " +
+      (out ? "a wheel left the +-100 mm over which its suspension is modeled; a lower bump, "
+             "a lower speed or a stiffer spring keeps it inside"
+           : "the motion is no longer finite; a shorter --step does not help") +
+      "; nothing was written");
+  suggest_again_with_setting(
       arguments, out ? "bump_height=VALUE" : "NAME=VALUE",
       out ? "with less of a bump, or --set speed=VALUE" : "with a parameter nearer to a car's");
-  return kExitNo;
+  return kExitNegative;
 }
 
 std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOptions& options,
@@ -215,7 +216,7 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
                 "simulated in %.3g s (%.4g x real time)",
                 results.sample_count, results.event_count, 1e3 * travel, duration, seconds,
                 duration / seconds);
-  tell_note(options.output.string() + line);
+  print_note(options.output.string() + line);
 }
 
 int run_case(const Arguments& arguments, const SimulateOptions& options) {
@@ -245,13 +246,13 @@ int run_case(const Arguments& arguments, const SimulateOptions& options) {
   write_run(options.output, format, run);
   if (!options.report.empty()) {
     write_run_report(options.report, options.source, input, run);
-    tell_next_page((options.report / "report.html").string());
+    suggest_page((options.report / "report.html").string());
   }
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
   print_summary(options, run.results, duration, seconds);
   if (options.report.empty()) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
-              "many such runs; or this one with --report DIR, to see it");
+    suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
+                 "many such runs; or this one with --report DIR, to see it");
   }
   return kExitDone;
 }
@@ -263,8 +264,8 @@ int run_kinematics(const SimulateOptions& options) {
   check_output_file("output", options.output, list_files_read({options.source.vehicle}),
                     options.force);
   write_kinematics(options.source, options.output);
-  tell_note(options.output.string() + ": front and rear left corner, -100 to +100 mm");
-  tell_next(
+  print_note(options.output.string() + ": front and rear left corner, -100 to +100 mm");
+  suggest_next(
       {"strut", "simulate", options.source.vehicle.string(), "MANEUVER.toml", "-o", "run.csv"});
   return kExitDone;
 }
@@ -314,7 +315,7 @@ Arguments describe_simulate() {
 int run_simulate(const Arguments& arguments) {
   const SimulateOptions options = read_options(arguments);
   if (options.kinematics) return run_kinematics(options);
-  tell_detail("integrator " + options.integrator_name());
+  print_detail("integrator " + options.integrator_name());
   if (read_model_info(options.source.vehicle).is_driven_by_inputs()) {
     refuse_options(arguments, {"coarse-step", "closure", "spin", "report"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");

@@ -136,8 +136,8 @@ void print_text(const SweepStatus& status, const Submissions& submissions) {
                      format_bytes(static_cast<double>(status.bytes)));
   if (status.duplicates > 0) line("made twice", format_count(status.duplicates) + " shards");
   for (const Followed& followed : submissions.followed) line("submitted", describe(followed));
-  for (const std::string& fault : status.faults) tell_error(fault);
-  for (const std::string& fault : submissions.faults) tell_error(fault);
+  for (const std::string& fault : status.faults) print_error(fault);
+  for (const std::string& fault : submissions.faults) print_error(fault);
 }
 
 /// Whether somebody works on it, or is about to.
@@ -149,22 +149,22 @@ bool is_under_way(const SweepStatus& status, const Submissions& submissions) {
   return false;
 }
 
-void tell_next_of(const Arguments& arguments, const std::string& root, const SweepStatus& status,
-                  const Submissions& submissions) {
+void suggest_next_step(const Arguments& arguments, const std::string& root,
+                       const SweepStatus& status, const Submissions& submissions) {
   if (!status.faults.empty()) {
-    tell_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside");
+    suggest_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside");
   } else if (!submissions.faults.empty()) {
-    tell_next_again(arguments, "once what is named above is moved away");
+    suggest_again(arguments, "once what is named above is moved away");
   } else if (!status.complete() && is_under_way(status, submissions)) {
-    tell_next({"strut", "status", root, "--watch"});
+    suggest_next({"strut", "status", root, "--watch"});
   } else if (!status.complete()) {
-    tell_next({"strut", "run", root});
+    suggest_next({"strut", "run", root});
   } else if (status.untried > 0) {
-    tell_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
+    suggest_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
   } else if (status.failed > 0) {
-    tell_next_of_failed(root, status.failed);
+    suggest_next_after_failures(root, status.failed);
   } else {
-    tell_next({"strut", "verify", root});
+    suggest_next({"strut", "verify", root});
   }
 }
 
@@ -200,9 +200,9 @@ int run_status(const Arguments& arguments) {
       std::cout << std::flush;
     }
     if (!arguments.is_on("watch") || status.complete()) {
-      tell_next_of(arguments, sweep.folder.root.string(), status, submissions);
+      suggest_next_step(arguments, sweep.folder.root.string(), status, submissions);
       const bool is_readable = status.faults.empty() && submissions.faults.empty();
-      return is_readable && status.failed == 0 ? kExitDone : kExitNo;
+      return is_readable && status.failed == 0 ? kExitDone : kExitNegative;
     }
     std::this_thread::sleep_for(std::chrono::seconds(1));
   }

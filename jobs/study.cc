@@ -38,17 +38,17 @@ bool run_study_sweep(const SweepFolder& folder, const Plan& plan, int threads,
     const ProgressLine line([&, start = now()] {
       const std::int64_t left = plan.case_count() - progress.present;
       return name + ": " +
-             describe_share(progress.simulated, left, "cases simulated", now() - start);
+             format_progress(progress.simulated, left, "cases simulated", now() - start);
     });
     summary = run_sweep(folder, plan, options, progress, halt);
   }
-  tell_notes(summary.notes);
+  print_notes(summary.notes);
   for (const auto& [shard, what] : summary.damaged) {
     throw InputError(what + "; `strut verify " + folder.root.string() +
                      " --quarantine` moves it aside, then run this again");
   }
   if (summary.failed > 0) {
-    tell_note(name + ": " + format_count(summary.failed) + " cases failed and are left out");
+    print_note(name + ": " + format_count(summary.failed) + " cases failed and are left out");
   }
   return !halt;
 }
@@ -78,10 +78,10 @@ bool train_all(const StudyFolder& folder, const StudyRequest& request, int threa
     const ProgressLine line([&] { return describe_progress(progress, start); });
     summary = run_training_table(trainings, options, progress, halt);
   }
-  tell_notes(summary.notes);
-  tell_note(std::to_string(summary.trained) + " networks trained in " +
-            format_duration(now() - start) + ", " + std::to_string(summary.kept) +
-            " were there already");
+  print_notes(summary.notes);
+  print_note(std::to_string(summary.trained) + " networks trained in " +
+             format_duration(now() - start) + ", " + std::to_string(summary.kept) +
+             " were there already");
   return !summary.stopped;
 }
 
@@ -95,14 +95,14 @@ bool fit_all(const StudyFolder& folder, const StudyRequest& request, int threads
   {
     const Stage stage("noise");
     const ProgressLine line([&, start = now()] {
-      return "noise: " + describe_share(static_cast<std::int64_t>(progress.done),
-                                        static_cast<std::int64_t>(progress.total),
-                                        "bounds and fits", now() - start);
+      return "noise: " + format_progress(static_cast<std::int64_t>(progress.done),
+                                         static_cast<std::int64_t>(progress.total),
+                                         "bounds and fits", now() - start);
     });
     whole =
         update_noise_limits(*request.noise, data, folder.noise(), threads, progress, notes, halt);
   }
-  tell_notes(notes);
+  print_notes(notes);
   return whole;
 }
 
@@ -175,8 +175,8 @@ int run_study(const Arguments& arguments) {
   const StudyFolder folder = make_study_folder(arguments.text("output"), asked);
   const StudyRequest request = open_study_folder(folder);
   if (!work(folder, request, threads, watcher.halt())) {
-    tell_error("interrupted; what is simulated and trained is kept, the same command goes on");
-    tell_next_again(arguments, "goes on");
+    print_error("interrupted; what is simulated and trained is kept, the same command goes on");
+    suggest_again(arguments, "goes on");
     return 128 + watcher.signal();
   }
   const StudyResults results = [&] {
@@ -189,8 +189,8 @@ int run_study(const Arguments& arguments) {
   } else {
     print_tables(request, results);
   }
-  tell_note(folder.report().string());
-  tell_next_page(folder.report().string());
+  print_note(folder.report().string());
+  suggest_page(folder.report().string());
   return kExitDone;
 }
 

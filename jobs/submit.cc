@@ -80,19 +80,19 @@ class Submitter {
     }
     measure_cost();
     pack(missing);
-    tell_detail("a shard takes some " + format_duration(shard_seconds_) + " on " +
-                std::to_string(resources_.threads) + " threads");
+    print_detail("a shard takes some " + format_duration(shard_seconds_) + " on " +
+                 std::to_string(resources_.threads) + " threads");
     if (arguments_.is_on("dry-run")) {
       show();
       std::vector<std::string> words = {"strut", "submit"};
       std::copy_if(arguments_.words().begin(), arguments_.words().end(), std::back_inserter(words),
                    [](const std::string& word) { return word != "--dry-run"; });
-      tell_next(words);
+      suggest_next(words);
     } else {
       submit();
       const std::string root = sweep_.folder.root.string();
-      tell_note("`strut cancel " + quote_if_needed(root) + "` stops it");
-      tell_next({"strut", "status", root, "--watch"});
+      print_note("`strut cancel " + quote_if_needed(root) + "` stops it");
+      suggest_next({"strut", "status", root, "--watch"});
     }
     return kExitDone;
   }
@@ -148,11 +148,11 @@ class Submitter {
     const std::string root = sweep_.folder.root.string();
     if (status_.failed > 0) {
       std::cout << format_count(status_.failed) << " cases failed; --retry tries them once more\n";
-      tell_next_again(arguments_, "tries what failed once more", {"--retry"});
+      suggest_again(arguments_, "tries what failed once more", {"--retry"});
     } else if (status_.complete()) {
-      tell_next({"strut", "verify", root});
+      suggest_next({"strut", "verify", root});
     } else {
-      tell_next({"strut", "status", root, "--watch"});
+      suggest_next({"strut", "status", root, "--watch"});
     }
   }
 

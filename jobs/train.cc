@@ -215,15 +215,15 @@ std::string describe(const TrainingRequest& request) {
 
 void tell_interrupted(const Arguments& arguments, const fs::path& checkpoint) {
   if (checkpoint.empty()) {
-    tell_error("interrupted; no model is written");
-    tell_next_again(arguments, "keeps what is trained from now on",
-                    {"--checkpoint", "training.checkpoint"});
+    print_error("interrupted; no model is written");
+    suggest_again(arguments, "keeps what is trained from now on",
+                  {"--checkpoint", "training.checkpoint"});
     return;
   }
-  tell_error("interrupted; no model is written, --resume goes on from the checkpoint");
+  print_error("interrupted; no model is written, --resume goes on from the checkpoint");
   const bool resumes = arguments.is_on("resume");
-  tell_next_again(arguments, "goes on",
-                  resumes ? std::vector<std::string>() : std::vector<std::string>{"--resume"});
+  suggest_again(arguments, "goes on",
+                resumes ? std::vector<std::string>() : std::vector<std::string>{"--resume"});
 }
 
 }  // namespace
@@ -301,7 +301,7 @@ int run_train(const Arguments& arguments) {
     training.resume(checkpoint, read_checkpoint(checkpoint));
     note_unsealed(checkpoint, kCheckpointSeal);
   }
-  tell_detail(describe(request));
+  print_detail(describe(request));
   if (!train(training, request.options, checkpoint, watcher.halt())) {
     tell_interrupted(arguments, checkpoint);
     return 128 + watcher.signal();
@@ -311,7 +311,7 @@ int run_train(const Arguments& arguments) {
   model.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
   write_trained_model(output, model);
   print(training, model, output, arguments.is_on("json"));
-  tell_next_identify(output.string(), model);
+  suggest_next_identify(output.string(), model);
   return kExitDone;
 }
 

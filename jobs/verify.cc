@@ -66,25 +66,26 @@ void move_aside(const SweepFolder& folder, const VerifyReport& report) {
     const auto file = folder.root / what.substr(0, what.find(": "));
     if (!std::filesystem::exists(file)) continue;
     quarantine(folder, file);
-    tell_note("moved to quarantine: " + file.string());
+    print_note("moved to quarantine: " + file.string());
   }
 }
 
-void tell_next_of(const Arguments& arguments, const std::string& root, const VerifyReport& report) {
+void suggest_next_step(const Arguments& arguments, const std::string& root,
+                       const VerifyReport& report) {
   const bool is_moved = arguments.is_on("quarantine");
   if (report.ok()) {
-    tell_next({"strut", "train", root, "-o", "model.h5"},
-              "or strut merge, for one file for other tools");
+    suggest_next({"strut", "train", root, "-o", "model.h5"},
+                 "or strut merge, for one file for other tools");
   } else if (!report.damaged.empty() && !is_moved) {
-    tell_next({"strut", "verify", root, "--quarantine"},
-              report.missing > 0 ? "moves damaged files aside, then run"
-                                 : "moves what is not the plan's aside");
+    suggest_next({"strut", "verify", root, "--quarantine"},
+                 report.missing > 0 ? "moves damaged files aside, then run"
+                                    : "moves what is not the plan's aside");
   } else if (report.missing > 0) {
-    tell_next({"strut", "run", root}, "simulates what is missing");
+    suggest_next({"strut", "run", root}, "simulates what is missing");
   } else if (!report.damaged.empty()) {
-    tell_next({"strut", "verify", root}, "nothing is missing: looks at what is left");
+    suggest_next({"strut", "verify", root}, "nothing is missing: looks at what is left");
   } else {
-    tell_next({"strut", "doctor", root}, "what of this machine cannot be relied upon");
+    suggest_next({"strut", "doctor", root}, "what of this machine cannot be relied upon");
   }
 }
 
@@ -117,7 +118,7 @@ int run_verify(const Arguments& arguments) {
     const double start = now();
     const ProgressLine line([&] {
       return read < sweep.plan.case_count() || options.sample == 0
-                 ? describe_share(read, sweep.plan.case_count(), "cases verified", now() - start)
+                 ? format_progress(read, sweep.plan.case_count(), "cases verified", now() - start)
                  : "simulating " + format_count(options.sample) + " cases again";
     });
     report =
@@ -126,8 +127,8 @@ int run_verify(const Arguments& arguments) {
   arguments.is_on("json") ? void(std::cout << format_json(make_json(report)) << "\n")
                           : print_text(report);
   if (arguments.is_on("quarantine")) move_aside(sweep.folder, report);
-  tell_next_of(arguments, sweep.folder.root.string(), report);
-  return report.ok() ? kExitDone : kExitNo;
+  suggest_next_step(arguments, sweep.folder.root.string(), report);
+  return report.ok() ? kExitDone : kExitNegative;
 }
 
 }  // namespace strut

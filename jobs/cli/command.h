@@ -8,7 +8,7 @@ namespace strut {
 /// What the program's caller learns from its exit code; 128 + the signal where one stopped it.
 enum ExitCode : int {
   kExitDone = 0,
-  kExitNo = 1,           // it ran, and the answer is no
+  kExitNegative = 1,     // it ran, and the answer is no
   kExitInput = 2,        // the user's input is wrong
   kExitEnvironment = 3,  // disk full, file unreadable, ...
   kExitBug = 70,         // an invariant of the program is broken (EX_SOFTWARE of sysexits.h)

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kEraseLine = "\r\033[K";
 
-std::atomic<Loudness> loudness{Loudness::kNormal};
+std::atomic<Verbosity> verbosity{Verbosity::kNormal};
 /// Of standard error; what it holds back is the line shown there last.
 std::mutex mutex;
 std::string live_line;
@@ -85,31 +85,31 @@ void say(const std::string& line) {
 
 }  // namespace
 
-void set_loudness(Loudness value) { loudness = value; }
+void set_verbosity(Verbosity value) { verbosity = value; }
 
-Loudness get_loudness() { return loudness; }
+Verbosity get_verbosity() { return verbosity; }
 
-void tell_error(const std::string& text) { say(make_error(text)); }
+void print_error(const std::string& text) { say(make_error(text)); }
 
-void tell_note(const std::string& text) {
-  if (loudness != Loudness::kQuiet) say("strut: " + make_shown(text));
+void print_note(const std::string& text) {
+  if (verbosity != Verbosity::kQuiet) say("strut: " + make_shown(text));
 }
 
-void tell_notes(const std::vector<std::string>& texts) {
-  for (const std::string& text : texts) tell_note(text);
+void print_notes(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) print_note(text);
 }
 
-void tell_detail(const std::string& text) {
-  if (loudness == Loudness::kVerbose) say(paint("strut: " + text, Style::kDim));
+void print_detail(const std::string& text) {
+  if (verbosity == Verbosity::kVerbose) say(paint("strut: " + text, Style::kDim));
 }
 
-void tell_next_line(const std::string& line, const std::string& why) {
-  if (loudness == Loudness::kQuiet) return;
+void suggest_next_line(const std::string& line, const std::string& why) {
+  if (verbosity == Verbosity::kQuiet) return;
   const std::lock_guard lock(mutex);
   next_lines.push_back(make_next_line(line, why));
 }
 
-void say_next() {
+void print_suggestions() {
   std::vector<std::string> lines;
   {
     const std::lock_guard lock(mutex);
@@ -118,34 +118,34 @@ void say_next() {
   for (const std::string& line : lines) say(line);
 }
 
-void tell_next(const std::vector<std::string>& words, const std::string& why) {
-  tell_next_line(join_quoted(words), why);
+void suggest_next(const std::vector<std::string>& words, const std::string& why) {
+  suggest_next_line(join_quoted(words), why);
 }
 
-void tell_next_again(const Arguments& arguments, const std::string& why,
-                     const std::vector<std::string>& added) {
+void suggest_again(const Arguments& arguments, const std::string& why,
+                   const std::vector<std::string>& added) {
   std::vector<std::string> words = arguments.words();
   words.insert(words.end(), added.begin(), added.end());
-  tell_next(name_command(arguments, words), why);
+  suggest_next(name_command(arguments, words), why);
 }
 
-void tell_next_with_setting(const Arguments& arguments, const std::string& setting,
-                            const std::string& why) {
-  tell_next(name_command(arguments, arguments.words_with_setting(setting)), why);
+void suggest_again_with_setting(const Arguments& arguments, const std::string& setting,
+                                const std::string& why) {
+  suggest_next(name_command(arguments, arguments.words_with_setting(setting)), why);
 }
 
-void tell_next_of_failed(const std::string& root, std::int64_t failed) {
-  tell_next({"strut", "verify", root},
-            format_count(failed) + (failed == 1 ? " case stays failed" : " cases stay failed") +
-                "; strut train leaves out what failed");
+void suggest_next_after_failures(const std::string& root, std::int64_t failed) {
+  suggest_next({"strut", "verify", root},
+               format_count(failed) + (failed == 1 ? " case stays failed" : " cases stay failed") +
+                   "; strut train leaves out what failed");
 }
 
-void tell_next_page(const std::string& file) { tell_next({"xdg-open", file}); }
+void suggest_page(const std::string& file) { suggest_next({"xdg-open", file}); }
 
 void prepare_interrupt(const Arguments& arguments, const std::string& what) {
   std::string text = is_live_terminal(STDERR_FILENO) ? kEraseLine : "";
   text += make_error("interrupted") + "\n";
-  if (loudness != Loudness::kQuiet) {
+  if (verbosity != Verbosity::kQuiet) {
     const std::vector<std::string> line = name_command(arguments, arguments.words());
     text += make_next_line(join_quoted(line), what) + "\n";
   }
@@ -154,7 +154,7 @@ void prepare_interrupt(const Arguments& arguments, const std::string& what) {
 
 Stage::Stage(std::string name) : name_(std::move(name)), start_(now()) {}
 
-Stage::~Stage() { tell_detail(name_ + ": " + format_duration(now() - start_)); }
+Stage::~Stage() { print_detail(name_ + ": " + format_duration(now() - start_)); }
 
 void show_line(const std::string& text) { say(make_shown(text)); }
 

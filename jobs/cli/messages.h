@@ -1,5 +1,5 @@
-// What the program says on standard error: errors, notes, details, the next command. Whatever was
-// printed to standard output before comes before it.
+// Messages on standard error: errors, notes, details, suggested next commands. Standard output is
+// flushed first, so that data precedes the messages about it.
 #pragma once
 
 #include <cstdint>
@@ -11,42 +11,45 @@
 namespace strut {
 
 /// --quiet, neither, --verbose.
-enum class Loudness { kQuiet, kNormal, kVerbose };
+enum class Verbosity { kQuiet, kNormal, kVerbose };
 
-/// One for the program; kNormal at its start.
-void set_loudness(Loudness loudness);
-Loudness get_loudness();
+/// One setting for the whole program; initially kNormal.
+void set_verbosity(Verbosity verbosity);
+Verbosity get_verbosity();
 
-/// "strut: text". What is wrong, or why the exit code is not 0: said however quiet.
-void tell_error(const std::string& text);
-/// "strut: text". Not said with --quiet.
-void tell_note(const std::string& text);
-void tell_notes(const std::vector<std::string>& texts);
-/// "strut: text". Said with --verbose: settings, files, seconds.
-void tell_detail(const std::string& text);
+/// Prints "strut: TEXT", at every verbosity: an error, or the reason for an exit code other than 0.
+void print_error(const std::string& text);
+/// Prints "strut: TEXT" unless --quiet is given.
+void print_note(const std::string& text);
+void print_notes(const std::vector<std::string>& texts);
+/// Prints "strut: TEXT" only with --verbose: settings, files, durations.
+void print_detail(const std::string& text);
 
-/// "next: strut run sweep  # why": the command that is to follow, quoted for a shell where it must
-/// be; by say_next(), as the last that a command says. Not said with --quiet. Words in capitals
-/// stand for what only the user knows.
-void tell_next(const std::vector<std::string>& words, const std::string& why = "");
-/// The same with a line of shell as it stands.
-void tell_next_line(const std::string& line, const std::string& why = "");
-/// The command under way once more, with `added` words.
-void tell_next_again(const Arguments& arguments, const std::string& why,
-                     const std::vector<std::string>& added = {});
-/// The same with `setting`, NAME=VALUE, in place of what --set said of that name.
-void tell_next_with_setting(const Arguments& arguments, const std::string& setting,
-                            const std::string& why);
-/// The sweep in `root` is whole, some cases `failed` and no resume is to mend them: on to the rest.
-void tell_next_of_failed(const std::string& root, std::int64_t failed);
-/// How to look at a page.
-void tell_next_page(const std::string& file);
-void say_next();
-/// Lets a signal that ends the program say that it did, and the command once more, which then does
-/// `what`.
-void prepare_interrupt(const Arguments& arguments, const std::string& what = "begins anew");
+/// Stores a suggestion, "next: strut run sweep  # WHY", for print_suggestions(). Words are quoted
+/// for a shell where necessary; words in capitals are placeholders that only the user can fill in.
+/// Ignored with --quiet.
+void suggest_next(const std::vector<std::string>& words, const std::string& why = "");
+/// The same for a complete shell command line, which is not quoted.
+void suggest_next_line(const std::string& line, const std::string& why = "");
+/// Suggests the current command again, with the words `added` appended.
+void suggest_again(const Arguments& arguments, const std::string& why,
+                   const std::vector<std::string>& added = {});
+/// Suggests the current command again, with `setting` ("NAME=VALUE") replacing --set of that name.
+void suggest_again_with_setting(const Arguments& arguments, const std::string& setting,
+                                const std::string& why);
+/// Suggests how to continue with the complete sweep in `root`, of which `failed` cases failed and
+/// no resume will repair them.
+void suggest_next_after_failures(const std::string& root, std::int64_t failed);
+/// Suggests a command that opens a page.
+void suggest_page(const std::string& file);
+/// Prints the stored suggestions; called once, at the end of a command.
+void print_suggestions();
 
-/// Tells, with --verbose, how long it lived: "NAME: 1.2 s".
+/// Prepares the message printed if a signal ends the program: "interrupted", and the same command
+/// again, which then does `what`.
+void prepare_interrupt(const Arguments& arguments, const std::string& what = "starts over");
+
+/// Prints its own lifetime on destruction, with --verbose: "NAME: 1.2 s".
 class Stage {
  public:
   explicit Stage(std::string name);
@@ -59,8 +62,8 @@ class Stage {
   const double start_;
 };
 
-/// For ProgressLine: a line, and the one that stands in place on a terminal, above which messages
-/// appear.
+/// For ProgressLine: an ordinary line, and the live line of a terminal, which is rewritten in place
+/// and above which messages appear.
 void show_line(const std::string& text);
 void show_live_line(const std::string& text);
 void erase_live_line();

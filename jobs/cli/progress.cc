@@ -24,7 +24,7 @@ std::function<std::string()> describe_elapsed(const std::string& doing) {
 
 ProgressLine::ProgressLine(std::function<std::string()> line)
     : line_(std::move(line)), live_(is_live_terminal(STDERR_FILENO)) {
-  if (get_loudness() == Loudness::kQuiet) return;
+  if (get_verbosity() == Verbosity::kQuiet) return;
   // A signal is for the threads that work: this one would end the program amid what they guard.
   const InterruptGuard guard;
   thread_ = std::thread([this] { work(); });
@@ -51,8 +51,8 @@ void ProgressLine::work() {
   }
 }
 
-std::string describe_share(std::int64_t done, std::int64_t total, const std::string& what,
-                           double seconds) {
+std::string format_progress(std::int64_t done, std::int64_t total, const std::string& what,
+                            double seconds) {
   std::string line = format_count(done) + "/" + format_count(total) + " " + what;
   if (done > 0 && done < total) {
     const double left = static_cast<double>(total - done) / static_cast<double>(done);

@@ -33,8 +33,8 @@ class ProgressLine {
 };
 
 /// "1,200/4,800 cases verified, 12 s to go" where `seconds` were spent on those done.
-std::string describe_share(std::int64_t done, std::int64_t total, const std::string& what,
-                           double seconds);
+std::string format_progress(std::int64_t done, std::int64_t total, const std::string& what,
+                            double seconds);
 
 /// "12 s", "3 min 20 s", "5 h 12 min", "9 d 4 h"; "unknown" where not finite.
 std::string format_duration(double seconds);

@@ -12,10 +12,10 @@ namespace fs = std::filesystem;
 void note_unsealed(const fs::path& file, const SealKind& kind) {
   static std::set<fs::path> told;
   if (is_sealed(file) || !told.insert(file).second) return;
-  tell_note(file.string() +
-            ": has no seal, as an earlier version wrote it: not every damage to it "
-            "can be found; " +
-            kind.sealing);
+  print_note(file.string() +
+             ": has no seal, as an earlier version wrote it: not every damage to it "
+             "can be found; " +
+             kind.sealing);
 }
 
 void note_unsealed_data(const std::vector<std::string>& paths) {

@@ -105,9 +105,9 @@ void tell_constant(const MeasuredRun& run) {
     const bool constant = std::all_of(c.values.begin(), c.values.end(),
                                       [first](double value) { return value == first; });
     if (!constant || c.values.size() < 2) continue;
-    tell_note(run.name + ": " + list_car_channels()[static_cast<std::size_t>(c.channel)].name +
-              " is " + format_number(first) + " in all " + std::to_string(c.values.size()) +
-              " readings: does its sensor work?");
+    print_note(run.name + ": " + list_car_channels()[static_cast<std::size_t>(c.channel)].name +
+               " is " + format_number(first) + " in all " + std::to_string(c.values.size()) +
+               " readings: does its sensor work?");
   }
 }
 
@@ -277,8 +277,8 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   }
   FitOptions options;
   options.linearize.threads = static_cast<int>(arguments.integer_or("threads", 1, 1, 1024));
-  tell_detail(std::to_string(unknowns.size()) + " unknowns, " +
-              std::to_string(options.linearize.threads) + " threads");
+  print_detail(std::to_string(unknowns.size()) + " unknowns, " +
+               std::to_string(options.linearize.threads) + " threads");
   const FitResult fit = [&] {
     const Stage stage("fit");
     const ProgressLine line("fitting the simulation to " + std::to_string(runs.size()) + " runs");
@@ -294,14 +294,15 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   }
   const bool held = std::find(fit.at_bound.begin(), fit.at_bound.end(), true) != fit.at_bound.end();
   if (!row.in_range()) {
-    tell_next({"strut", "design", "SWEEP.toml"}, "which channels and instants tell what is open");
+    suggest_next({"strut", "design", "SWEEP.toml"},
+                 "which channels and instants tell what is open");
   } else if (fit.converged && fit.is_adequate()) {
-    tell_next_simulation({row}, vehicle.string(), arguments.list("maneuver").front());
+    suggest_next_simulation({row}, vehicle.string(), arguments.list("maneuver").front());
   } else {
-    tell_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
-              "which channel the model gets wrong, and when");
+    suggest_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
+                 "which channel the model gets wrong, and when");
   }
-  return fit.converged && row.in_range() && !held ? kExitDone : kExitNo;
+  return fit.converged && row.in_range() && !held ? kExitDone : kExitNegative;
 }
 
 }  // namespace strut

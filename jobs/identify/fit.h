@@ -16,8 +16,8 @@ void add_fit_options(Arguments& arguments);
 void refuse_fit_options(const Arguments& arguments);
 
 /// Fits the car in `vehicle` to the histories in `files`, prints and writes. Returns an exit code:
-/// kExitNo where the fit has not converged, leaves a parameter open, or anything at a bound. Throws
-/// InputError.
+/// kExitNegative where the fit has not converged, leaves a parameter open, or anything at a bound.
+/// Throws InputError.
 int identify_by_fit(const Arguments& arguments, const std::filesystem::path& vehicle,
                     const std::vector<std::filesystem::path>& files);
 

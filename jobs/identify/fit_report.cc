@@ -102,40 +102,40 @@ Json make_correlation_json(const FitResult& fit, std::size_t count) {
 }
 
 void tell_quality(const FitResult& fit) {
-  tell_note("chi2 per degree of freedom " + format_short(fit.chi2_per_degree()) + " (" +
-            std::to_string(fit.degrees) + " degrees), " + std::to_string(fit.iterations) +
-            " iterations, " + std::to_string(fit.simulations) + " simulations");
+  print_note("chi2 per degree of freedom " + format_short(fit.chi2_per_degree()) + " (" +
+             std::to_string(fit.degrees) + " degrees), " + std::to_string(fit.iterations) +
+             " iterations, " + std::to_string(fit.simulations) + " simulations");
   if (fit.outside > 0) {
-    tell_note(std::to_string(fit.outside) +
-              " readings left aside: before the maneuver or after its duration for some possible "
-              "hit time");
+    print_note(std::to_string(fit.outside) +
+               " readings left aside: before the maneuver or after its duration for some possible "
+               "hit time");
   }
   if (!fit.converged) {
-    tell_error("not converged: the minimum is some " + format_short(fit.distance) +
-               " standard deviations away; either the model does not fit at all, or it needs a "
-               "nearer start (--set, --prior)");
+    print_error("not converged: the minimum is some " + format_short(fit.distance) +
+                " standard deviations away; either the model does not fit at all, or it needs a "
+                "nearer start (--set, --prior)");
   } else if (fit.at_kink) {
-    tell_note("ends at a kink of chi2, where a contact event passes a reading, some " +
-              format_short(fit.distance) + " standard deviations from the minimum");
+    print_note("ends at a kink of chi2, where a contact event passes a reading, some " +
+               format_short(fit.distance) + " standard deviations from the minimum");
   }
 }
 
 /// Whether the noise is what it is said to be.
 void tell_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
   if (fit.is_quiet()) {
-    tell_note(
+    print_note(
         "the residuals are smaller than the noise, which seems to be smaller than assumed "
         "(--noise); the intervals are too wide");
   }
   if (fit.is_adequate()) return;
-  tell_note(
+  print_note(
       "the residuals are larger than the noise: the model lacks something or the noise is "
       "larger (--noise); the intervals are too narrow");
   for (const ChannelFit& c : fit.channels) {
-    tell_note("  " + get_file_name(runs, c) + ": " + get_channel_name(c) + ": chi2 " +
-              format_short(calc_chi2_per_reading(c)) +
-              " per reading, neighboring residuals correlate by " +
-              format_short(c.neighbor_correlation));
+    print_note("  " + get_file_name(runs, c) + ": " + get_channel_name(c) + ": chi2 " +
+               format_short(calc_chi2_per_reading(c)) +
+               " per reading, neighboring residuals correlate by " +
+               format_short(c.neighbor_correlation));
   }
 }
 
@@ -144,14 +144,14 @@ void tell_open(const FitResult& fit) {
     if (!fit.at_bound[i]) continue;
     const std::string beyond =
         fit.unknowns[i].prior.informs() ? ", beyond what --prior says of it" : "";
-    tell_error(fit.unknowns[i].name + " = " + format_number(fit.values[i]) + " " +
-               fit.unknowns[i].unit + ": held by its bound" + beyond);
+    print_error(fit.unknowns[i].name + " = " + format_number(fit.values[i]) + " " +
+                fit.unknowns[i].unit + ": held by its bound" + beyond);
   }
   for (const NullDirection& d : fit.uncertainty.null_directions) {
-    tell_error("not identifiable: " + describe_direction(d, fit.unknowns) +
-               (std::isfinite(d.sigma)
-                    ? ", known to " + format_short(100.0 * d.sigma) + " % (1 sigma) only"
-                    : ", which moves no reading"));
+    print_error("not identifiable: " + describe_direction(d, fit.unknowns) +
+                (std::isfinite(d.sigma)
+                     ? ", known to " + format_short(100.0 * d.sigma) + " % (1 sigma) only"
+                     : ", which moves no reading"));
   }
 }
 

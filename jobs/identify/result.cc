@@ -132,13 +132,13 @@ std::string describe_excess(const OutsideChannel& channel) {
 
 void tell_outside(const IdentifiedRow& row) {
   for (const OutsideChannel& channel : row.outside) {
-    tell_error(row.place + ": " + channel.name + " = " + format_number(channel.value) + " " +
-               channel.unit + ": " + describe_excess(channel));
+    print_error(row.place + ": " + channel.name + " = " + format_number(channel.value) + " " +
+                channel.unit + ": " + describe_excess(channel));
   }
   for (const IdentifiedParameter& p : row.parameters) {
     if (p.in_range || !row.outside.empty()) continue;
-    tell_error(row.place + ": " + p.name + " = " + format_number(p.value) + " " + p.unit +
-               " lies outside of the range trained on");
+    print_error(row.place + ": " + p.name + " = " + format_number(p.value) + " " + p.unit +
+                " lies outside of the range trained on");
   }
 }
 
@@ -150,9 +150,9 @@ void tell_trouble(const std::vector<IdentifiedRow>& rows) {
     if (told++ < kMostTold) tell_outside(row);
   }
   if (rows.size() > 1 && troubled > 0) {
-    tell_error(format_count(static_cast<std::int64_t>(troubled)) + " of " +
-               format_count(static_cast<std::int64_t>(rows.size())) +
-               " rows are outside of the range trained on");
+    print_error(format_count(static_cast<std::int64_t>(troubled)) + " of " +
+                format_count(static_cast<std::int64_t>(rows.size())) +
+                " rows are outside of the range trained on");
   }
 }
 
@@ -210,13 +210,13 @@ void add_result_options(Arguments& arguments) {
   arguments.add_switch("json", "print JSON");
 }
 
-void tell_next_simulation(const std::vector<IdentifiedRow>& rows, const std::string& vehicle,
-                          const std::string& maneuver) {
+void suggest_next_simulation(const std::vector<IdentifiedRow>& rows, const std::string& vehicle,
+                             const std::string& maneuver) {
   std::vector<std::string> words = {"strut", "simulate", vehicle, maneuver, "-o", "identified.csv"};
   for (const IdentifiedParameter& p : rows.front().parameters) {
     words.insert(words.end(), {"--set", p.name + "=" + format_value(p)});
   }
-  tell_next(words, rows.size() == 1 ? "" : "the first of these rows");
+  suggest_next(words, rows.size() == 1 ? "" : "the first of these rows");
 }
 
 int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& rows) {
@@ -229,11 +229,11 @@ int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>
     print_identified(rows);
   }
   if (!are_in_range(rows)) {
-    tell_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
-              "a sweep whose grid reaches to what was measured, for a network that knows it");
-    return kExitNo;
+    suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
+                 "a sweep whose grid reaches to what was measured, for a network that knows it");
+    return kExitNegative;
   }
-  tell_next_simulation(rows);
+  suggest_next_simulation(rows);
   return kExitDone;
 }
 

@@ -55,12 +55,12 @@ void add_result_options(Arguments& arguments);
 
 /// Names as next command the simulation of what was identified, in place of the words
 /// "VEHICLE.toml" and "MANEUVER.toml" of one of these where they are known.
-void tell_next_simulation(const std::vector<IdentifiedRow>& rows,
-                          const std::string& vehicle = "VEHICLE.toml",
-                          const std::string& maneuver = "MANEUVER.toml");
+void suggest_next_simulation(const std::vector<IdentifiedRow>& rows,
+                             const std::string& vehicle = "VEHICLE.toml",
+                             const std::string& maneuver = "MANEUVER.toml");
 
 /// As those options ask, for one row or more: JSON or a table to standard output, CSV into a file.
-/// Returns kExitDone, kExitNo where a row is not in range.
+/// Returns kExitDone, kExitNegative where a row is not in range.
 int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& rows);
 
 }  // namespace strut

@@ -37,11 +37,11 @@ int explain_failure(const Arguments& arguments, const SimulateOptions& options, 
                      options.source.maneuver.string() + " diverged at t = " + at + "; a step of " +
                      format_number(shorter.step) + " s runs through");
   }
-  tell_error("the run failed at t = " + at +
-             ": the motion is no longer finite, nor with a step of " + format_number(shorter.step) +
-             " s; nothing was written");
-  tell_next_with_setting(arguments, "NAME=VALUE", "with a parameter nearer to a rig's");
-  return kExitNo;
+  print_error("the run failed at t = " + at +
+              ": the motion is no longer finite, nor with a step of " +
+              format_number(shorter.step) + " s; nothing was written");
+  suggest_again_with_setting(arguments, "NAME=VALUE", "with a parameter nearer to a rig's");
+  return kExitNegative;
 }
 
 void describe_run(const SimulateOptions& options, const RigSpec& rig, RunRecord& run) {
@@ -94,9 +94,9 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options) {
   char line[160];
   std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s",
                 run.results.sample_count, run.channels->size(), maneuver.duration, seconds);
-  tell_note(options.output.string() + line);
-  tell_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
-            "measured runs against this rig");
+  print_note(options.output.string() + line);
+  suggest_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
+               "measured runs against this rig");
   return kExitDone;
 }
 

@@ -541,9 +541,9 @@ TEST_CASE("A command that a signal ended is named again", "[io]") {
 }
 
 TEST_CASE("Progress tells the share done and the time to go once that is known", "[unit]") {
-  CHECK(describe_share(0, 5000, "cases", 3.0) == "0/5,000 cases");
-  CHECK(describe_share(1250, 5000, "cases", 100.0) == "1,250/5,000 cases, 5 min 0 s to go");
-  CHECK(describe_share(5000, 5000, "cases", 100.0) == "5,000/5,000 cases");
+  CHECK(format_progress(0, 5000, "cases", 3.0) == "0/5,000 cases");
+  CHECK(format_progress(1250, 5000, "cases", 100.0) == "1,250/5,000 cases, 5 min 0 s to go");
+  CHECK(format_progress(5000, 5000, "cases", 100.0) == "5,000/5,000 cases");
 }
 
 TEST_CASE("Words are quoted for a shell where they must be", "[unit]") {
