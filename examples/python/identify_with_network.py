@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Asks a network of `strut train` for a car's parameters, with h5py and numpy alone.
+"""Identifies a car's parameters with a network of `strut train`, using only h5py and numpy.
 
 usage: identify_with_network.py MODEL.h5 MEASURED.csv
 
-MEASURED.csv: a line with the names of the columns, then a snapshot a row, as for `strut identify`.
-Prints a table of parameters with the half widths of their 95 % intervals.
+MEASURED.csv: a line with the names of the columns, then one snapshot per row, as for `strut identify`.
+Prints a table of parameters with the half-widths of their 95 % intervals.
 """
 
 import sys
@@ -14,7 +14,7 @@ import numpy as np
 
 
 def calc_outputs(model, inputs):
-    """The network's outputs for rows of inputs, both in their own units. `model`: the open file."""
+    """Returns the network's outputs for rows of inputs, both in their own units. `model`: the open file."""
     low, high = model["inputs"][()]
     a = 2.0 * (inputs - low) / (high - low) - 1.0  # onto [-1, 1]
     sizes, weights, at = model["layer_sizes"][()], model["weights"][()], 0
@@ -23,7 +23,7 @@ def calc_outputs(model, inputs):
         b = weights[at + n * m:at + n * m + m]
         at += n * m + m
         a = a @ w.T + b
-        if layer < len(sizes) - 2:  # all but the last are hidden
+        if layer < len(sizes) - 2:  # all layers except the last are hidden
             a = np.tanh(a)
     low, high = model["targets"][()]
     return low + 0.5 * (a + 1.0) * (high - low)
@@ -34,8 +34,8 @@ def list_names(table):
 
 
 def identify(model, snapshots):
-    """Values of `snapshots`, a dict of columns, and which rows lie in the range trained on; beyond
-    it the network knows nothing, and its values there are NaN."""
+    """Returns the parameters for `snapshots` (a dict of columns), and which rows lie in the training
+    range. Outside it the network is not valid, and the parameters are NaN."""
     inputs = np.column_stack([snapshots[name] for name in list_names(model["inputs"])])
     low, high = model["inputs"][()]
     in_range = ((inputs >= low) & (inputs <= high)).all(axis=1)

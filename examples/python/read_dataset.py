@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads the cases of a sweep with h5py and numpy: from its folder, a shard, or a merged file.
+"""Reads the cases of a sweep with h5py and numpy, from its folder, a shard, or a merged file.
 
 usage: read_dataset.py SWEEP_FOLDER|FILE.h5
 """
@@ -15,21 +15,21 @@ TABLES = ("case_id", "parameters", "snapshot", "layer", "status", "attempt", "ev
 
 
 def read_file(path):
-    """The tables of a shard or a merged file, by name: arrays with a row for each case."""
+    """Returns the tables of a shard or a merged file by name: arrays with a row for each case."""
     with h5py.File(path) as file:
         return {name: file[name][()] for name in TABLES if name in file}
 
 
 def list_columns(path, table):
-    """Names and units of the columns of `parameters` or `snapshot`."""
+    """Returns names and units of the columns of `parameters` or `snapshot`."""
     with h5py.File(path) as file:
         attributes = file[table].attrs
         return list(zip(attributes["names"].astype(str), attributes["units"].astype(str)))
 
 
 def read_folder(folder):
-    """All cases of a sweep's folder. Rows of retries replace those of their shard, later ones those
-    of earlier ones."""
+    """Returns all cases of a sweep's folder. Rows of retries replace those of their shard; later
+    retries replace earlier ones."""
     pieces = []
     for shard in sorted((folder / "shards").glob("*.h5")):
         rows = read_file(shard)
@@ -45,7 +45,7 @@ def read_folder(folder):
 
 
 def read_dataset(path):
-    """The tables in the order of the cases, and the file whose columns are those of all."""
+    """Returns the tables in the order of the cases, and a file that has their column names and units."""
     path = pathlib.Path(path)
     tables = read_folder(path) if path.is_dir() else read_file(path)
     order = np.argsort(tables["case_id"])
