@@ -1,7 +1,7 @@
 # strut_add_build_info(TARGET) adds base/text/build_info.h's definition to TARGET.
 #
-# The commit is asked for at every build, not only when CMake configures; the generated source is
-# written only when something in it changed, so an unchanged checkout compiles and links nothing.
+# The commit is read at every build, not only when CMake configures; the generated source is written
+# only if its content changed, so an unchanged checkout compiles and links nothing.
 function(strut_add_build_info target)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/build_info.cc)
   set(script ${PROJECT_SOURCE_DIR}/.ci/cmake/write_build_info.cmake)

@@ -1,6 +1,6 @@
-# Every outside library, once. The Debian packages they come from: .ci/packages
+# All external libraries. Their Debian packages: .ci/packages
 
-# xsimd's own package file asks for a link with xtl, which its headers do not need.
+# xsimd's own package file requires linking xtl, which its headers do not need.
 find_path(STRUT_XSIMD_INCLUDE_DIR xsimd/xsimd.hpp REQUIRED)
 add_library(strut_xsimd INTERFACE)
 target_include_directories(strut_xsimd SYSTEM INTERFACE ${STRUT_XSIMD_INCLUDE_DIR})
@@ -12,15 +12,15 @@ target_include_directories(strut_random123 SYSTEM INTERFACE ${STRUT_RANDOM123_IN
 add_library(strut::random123 ALIAS strut_random123)
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-# Else its products take threads of their own wherever OpenMP is on: more than --threads allows, and
-# blocks, and so bits, that depend on their number.
+# Otherwise Eigen's products use their own threads wherever OpenMP is on: more than --threads allows, and
+# with blocks, and therefore bits, that depend on the number of threads.
 set_property(TARGET Eigen3::Eigen APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_PARALLELIZE)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 find_package(SUNDIALS 6.4 REQUIRED
   COMPONENTS kinsol cvode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
 find_package(tomlplusplus 3.3 REQUIRED)
 find_package(Boost 1.74 REQUIRED COMPONENTS program_options)
-# Asked for by Boost 1.74's own JSON parser, which tests read by and which uses the names that it deprecates.
+# Required by the JSON parser of Boost 1.74, which the tests use: it uses names that it deprecates itself.
 set_property(TARGET Boost::headers APPEND PROPERTY
   INTERFACE_COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)
 find_package(nlohmann_json 3.11 REQUIRED)

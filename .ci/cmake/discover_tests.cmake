@@ -1,5 +1,5 @@
 # strut_discover_tests(TARGET) makes one ctest of each Catch2 test case of TARGET, with the labels
-# among its tags, after every link of TARGET. (The Catch.cmake of Catch2 2.13 knows no labels.)
+# among its tags, after every link of TARGET. (The Catch.cmake of Catch2 2.13 does not support labels.)
 set(STRUT_TEST_LABELS unit property reference regression io cluster statistical threads slow)
 
 function(strut_discover_tests target)

@@ -1,12 +1,12 @@
-# What `cmake --install` puts where, for whoever uses strut from elsewhere: docs/api.md, docs/install.md.
+# The installed files, for use outside of the build folder: docs/api.md, docs/install.md.
 #
 #   bin/strut                        the program
-#   share/man, share/bash-completion the manual page, and what completes commands (jobs/)
-#   share/strut/examples             what the documentation names examples/
+#   share/man, share/bash-completion the manual page, and command completion (jobs/)
+#   share/strut/examples             called examples/ in the documentation
 #   share/doc/strut                  the documentation
 #   include/strut, lib, lib/cmake    the rooms as libraries: find_package(strut)
 #
-# Nothing of it knows its prefix: a tree that is moved still works.
+# No file contains its prefix: the tree can be moved.
 include(CMakePackageConfigHelpers)
 
 set(strut_of_programs OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
@@ -24,7 +24,7 @@ file(RELATIVE_PATH strut_examples_link ${CMAKE_INSTALL_FULL_DOCDIR}
 install(CODE "file(CREATE_LINK ${strut_examples_link}
   \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/examples\" SYMBOLIC)")
 
-# Headers that need libraries which only our sources are given stay here.
+# Headers that are not installed, since they need libraries that only our sources link.
 set(strut_inner_headers
   base/math/matrix_map base/math/xsimd_backend base/parallel/team model/kernel/run_cases
   model/integrate/sundials train/network/block_layers io/format/hdf5_calls io/format/json io/format/parse_toml
@@ -36,16 +36,17 @@ foreach(room IN LISTS strut_rooms)
   target_compile_features(strut_${room} INTERFACE cxx_std_20)
   target_include_directories(strut_${room} INTERFACE
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/strut>)
-  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${room})  # the kernel's headers are within the model's
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${room})  # the kernel's headers are part of the model's
     install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/strut
       FILES_MATCHING PATTERN *.h
       REGEX "/(${strut_inner_headers})\\.h$" EXCLUDE)
   endif()
 endforeach()
 
-# Matrices of Eigen are allocated here and freed there, and of its inline functions the linker keeps
-# one of each: both sides must agree on threads, on alignment, which Eigen takes from -march and which
-# base/math/eigen_abi.h compares, and on the heap, which Eigen takes otherwise for -fsanitize=address.
+# Eigen's matrices may be allocated in strut and freed in a project that uses it, and the linker keeps one
+# copy of each inline function. Both sides must therefore agree on threads, on alignment (Eigen derives it
+# from -march; base/math/eigen_abi.h compares it), and on the heap (Eigen's choice depends on
+# -fsanitize=address).
 separate_arguments(strut_flags UNIX_COMMAND "${CMAKE_CXX_FLAGS}")
 get_target_property(strut_eigen_folders Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 list(TRANSFORM strut_eigen_folders PREPEND -I)
@@ -73,7 +74,7 @@ install(TARGETS ${strut_libraries} EXPORT strut ARCHIVE DESTINATION ${CMAKE_INST
 install(EXPORT strut NAMESPACE strut:: FILE strutTargets.cmake DESTINATION ${strut_package})
 configure_package_config_file(.ci/cmake/strutConfig.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/strutConfig.cmake INSTALL_DESTINATION ${strut_package})
-# Below 1.0 the second number counts.
+# Before 1.0, a change of the second number breaks compatibility.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/strutConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/strutConfig.cmake

@@ -1,11 +1,11 @@
-# strut::options carries what every source of ours is compiled with.
+# strut::options holds the compile options of all our sources.
 add_library(strut_options INTERFACE)
 add_library(strut::options ALIAS strut_options)
 target_include_directories(strut_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_features(strut_options INTERFACE cxx_std_20)
 
-# Nobody reads errno after sqrt or exp, and writing it costs a branch and a call on every one. No
-# other floating-point license is given: -ffast-math would break the guards against NaN.
+# No code reads errno after sqrt or exp, and setting it costs a branch and a call each time. No other
+# floating-point relaxation is enabled: -ffast-math would break the guards against NaN.
 target_compile_options(strut_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -fno-math-errno
   $<$<BOOL:${STRUT_WARNINGS_AS_ERRORS}>:-Werror>)
@@ -18,7 +18,7 @@ endif()
 if(STRUT_SANITIZE)
   set(sanitize -fsanitize=${STRUT_SANITIZE} -fno-sanitize-recover=all)
   if(STRUT_SANITIZE MATCHES address AND STRUT_SANITIZE MATCHES undefined)
-    # Bad pointers are the address sanitizer's; checked a second time they double the compile time.
+    # The address sanitizer detects bad pointers; a second check doubles the compile time.
     list(APPEND sanitize -fno-sanitize=null,alignment,object-size,vptr)
   endif()
   # A target with the property STRUT_UNCHECKED is compiled without.

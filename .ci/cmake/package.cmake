@@ -14,7 +14,7 @@ set(CPACK_GENERATOR DEB)
 
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # Depends: what the program's shared libraries are in
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # Depends: packages of the program's shared libraries
 # For the libraries, which are static, and for examples/python.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, libeigen3-dev, libhdf5-dev, libsundials-dev, \
 libtomlplusplus-dev, libfmt-dev, libssl-dev, zlib1g-dev, python3-h5py, python3-numpy")

@@ -1,11 +1,11 @@
 # strut_room(NAME [SUBFOLDERS a b ...] [EXCLUDE file ...] [LINK lib ...] [INSIDE lib ...] [HEADERS lib ...])
 #
 # Makes strut::NAME, the library of one room: the .cc files of this folder and of its SUBFOLDERS.
-# A room without sources is its headers and what it links.
+# A room without sources consists of its headers and its linked libraries.
 #
-# LINK: what its headers need. INSIDE: what only its sources need; who uses the installed room links
-# it without seeing it. HEADERS: the same of libraries that are headers alone; who uses the installed
-# room does without.
+# LINK: libraries that its headers need. INSIDE: libraries that only its sources need; users of the
+# installed room link them without their headers. HEADERS: header-only libraries that only its sources
+# need; users of the installed room do not need them.
 function(strut_room name)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SUBFOLDERS;EXCLUDE;LINK;INSIDE;HEADERS")
   set(patterns ${room_SUBFOLDERS})
@@ -23,8 +23,8 @@ function(strut_room name)
     set(scope INTERFACE)
     add_library(strut_${name} INTERFACE)
   endif()
-  # Warnings and sanitizers are ours; of strut::options an installed room keeps what its headers ask
-  # for (install.cmake).
+  # Warnings and sanitizers apply to our build only; an installed room keeps those of strut::options that
+  # its headers need (install.cmake).
   target_link_libraries(strut_${name} ${scope} $<BUILD_INTERFACE:strut::options> ${room_LINK})
   foreach(library IN LISTS room_INSIDE)
     target_link_libraries(strut_${name} ${scope}

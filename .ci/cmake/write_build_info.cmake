@@ -1,7 +1,7 @@
 # Run at build time by strut_build_info_source; see build_info.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(STRUT_COMMIT unknown)
-# Without .git here, git would describe whatever checkout this folder happens to lie in.
+# Without .git here, git would describe an enclosing checkout.
 if(EXISTS ${STRUT_SOURCE_DIR}/.git)
   find_program(git git)
   if(git)

@@ -7,7 +7,7 @@ function(list_tests specification output)
     COMMAND ${STRUT_TEST_PROGRAM} ${specification} --list-test-names-only
     WORKING_DIRECTORY ${STRUT_WORKING_DIRECTORY}
     OUTPUT_VARIABLE names RESULT_VARIABLE count ERROR_VARIABLE errors)
-  # Catch2 2 exits with the number of tests it listed.
+  # The exit code of Catch2 2 is the number of listed tests.
   if(NOT count MATCHES "^[0-9]+$" OR errors)
     message(FATAL_ERROR "${STRUT_TEST_PROGRAM} ${specification}: ${count}\n${names}${errors}")
   endif()
@@ -19,7 +19,7 @@ function(list_tests specification output)
   set(${output} "${names}" PARENT_SCOPE)
 endfunction()
 
-list_tests("~[.]" all)  # hidden ones are helpers of other tests
+list_tests("~[.]" all)  # hidden tests are helpers of other tests
 foreach(label IN LISTS STRUT_TEST_LABELS)
   list_tests("[${label}]" with_${label})
 endforeach()
@@ -37,7 +37,7 @@ foreach(name IN LISTS all)
     message(FATAL_ERROR "Test \"${name}\" carries none of the tags: ${known}")
   endif()
   set(lock "")
-  if("cluster" IN_LIST labels)  # two Slurms at once on one machine are late in everything
+  if("cluster" IN_LIST labels)  # two Slurm instances at once on one machine slow each other down
     set(lock " RESOURCE_LOCK cluster")
   endif()
   string(REPLACE "," "\\," specification "${name}")
