@@ -1,5 +1,7 @@
 #include "estimate/design.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error/input_error.h"
@@ -9,16 +11,17 @@
 namespace strut {
 namespace {
 
-constexpr int kMostInstants = 3;
-constexpr int kMoreSensors = 3;
+constexpr int kMaxInstants = 3;
+constexpr int kAddedSensors = 3;
 
 void check_axis(const Grid& grid, const std::string& name) {
   std::vector<std::string> names;
   names.reserve(grid.axes().size());
   for (const Axis& axis : grid.axes()) names.push_back(axis.name);
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  throw InputError("--at " + name + ": no axis of this sweep" + suggest_name(name, names) +
-                   "; axes: " + join_names(names) + "; other parameters by --set");
+  throw InputError(
+      fmt::format("--at {}: not an axis of this sweep{}; axes: {}; set other parameters by --set",
+                  name, suggest_name(name, names), join_names(names)));
 }
 
 const std::string& get_name(int channel) {
@@ -40,14 +43,14 @@ SensorSet make_sensor_set(const Sensitivity& s, const std::string& label,
 std::vector<SensorSet> make_sensor_sets(const Sensitivity& s, const std::vector<int>& channels,
                                         const SensorNoise& noise) {
   std::vector<SensorSet> sets{make_sensor_set(s, "the channels", channels, noise)};
-  sets.reserve(1 + channels.size() + kMoreSensors);
+  sets.reserve(1 + channels.size() + kAddedSensors);
   for (std::size_t i = 0; i < channels.size() && channels.size() > 1; ++i) {
     std::vector<int> fewer = channels;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
     sets.push_back(make_sensor_set(s, "without " + get_name(channels[i]), fewer, noise));
   }
   std::vector<int> more = channels;
-  for (int i = 0; i < kMoreSensors; ++i) {
+  for (int i = 0; i < kAddedSensors; ++i) {
     const int sensor = choose_sensor(s, s.snapshot, more, list_sensors(noise), noise);
     if (sensor < 0) break;
     more.push_back(sensor);
@@ -85,12 +88,13 @@ Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
                    const SensorNoise& noise) {
   for (const int channel : channels) {
     if (noise[static_cast<std::size_t>(channel)] > 0.0) continue;
-    throw InputError("channel " + get_name(channel) + ": no sensor noise is known; give --noise " +
-                     get_name(channel) + "=SIGMA");
+    throw InputError(fmt::format("channel {0}: has no default sensor noise; give --noise {0}=SIGMA",
+                                 get_name(channel)));
   }
   if (channels.empty()) throw InputError("no channels: give --channels");
-  if (s.instants.size() < kMostInstants) {
-    throw InputError("fewer than three instants on the way: a longer duration or a higher --rate");
+  if (s.instants.size() < kMaxInstants) {
+    throw InputError(
+        "fewer than three instants along the way; choose a longer duration or a higher --rate");
   }
   Design design;
   design.snapshot = calc_bounds(calc_information(s, s.snapshot, channels, noise));
@@ -99,8 +103,8 @@ Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
   for (const Eigen::MatrixXd& information : informations) {
     design.scan.push_back(calc_bounds(information));
   }
-  design.best.reserve(kMostInstants);
-  for (int count = 1; count <= kMostInstants; ++count) {
+  design.best.reserve(kMaxInstants);
+  for (int count = 1; count <= kMaxInstants; ++count) {
     design.best.push_back(make_choice(informations, count));
   }
   design.window = calc_bounds(sum_informations(informations));
@@ -109,10 +113,10 @@ Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
 }
 
 std::pair<std::size_t, std::size_t> find_good_range(const Design& design) {
-  const double most = 1.1 * design.best[0].bounds.rms;
+  const double max_rms = 1.1 * design.best[0].bounds.rms;
   std::size_t first = design.best[0].instants[0], last = first;
-  while (first > 0 && design.scan[first - 1].rms < most) --first;
-  while (last + 1 < design.scan.size() && design.scan[last + 1].rms < most) ++last;
+  while (first > 0 && design.scan[first - 1].rms < max_rms) --first;
+  while (last + 1 < design.scan.size() && design.scan[last + 1].rms < max_rms) ++last;
   return {first, last};
 }
 

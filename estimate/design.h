@@ -1,6 +1,6 @@
-// Bounds of a sweep's parameters by its snapshots, and by measurements that tell more: the
-// request's instant, every instant along the way, the best one, two and three, the whole window,
-// and what each sensor is worth. docs/identifiability.md explains it.
+// Bounds of a sweep's parameters for several designs of its measurement: the request's snapshot,
+// every instant along the way, the best one, two and three instants, the whole window, and fewer or
+// more sensors. Explained in docs/identifiability.md.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace strut {
 
-/// The middle of each axis, other parameters as in `base`; then `at` ("axis=value"), then
-/// `settings` ("parameter=value"). Throws InputError.
+/// Sets in `base` each axis to its middle; then `at` ("axis=value"), then `settings`
+/// ("parameter=value"). Throws InputError.
 Case make_base_point(const Case& base, const Grid& grid, const std::vector<std::string>& at,
                      const std::vector<std::string>& settings);
 
-/// RK4 with Newton closure, contact events located, and a step of 1 ms or the request's where that
-/// is shorter: what differences need, however coarse the sweep itself is.
+/// The integration that differences need, however coarse the sweep's own: RK4 with Newton closure,
+/// contact events located, and a step of 1 ms or the request's where that is shorter.
 SolverOptions make_accurate(const SolverOptions& requested);
 
 struct DesignChoice {
@@ -25,7 +25,7 @@ struct DesignChoice {
   Bounds bounds;
 };
 
-/// A set of channels and what it reaches.
+/// A set of channels and its bounds.
 struct SensorSet {
   std::string label;
   std::vector<int> channels;
@@ -39,16 +39,17 @@ struct Design {
   std::vector<Bounds> scan;        // every instant alone
   std::vector<DesignChoice> best;  // of 1, 2, 3 instants
   Bounds window;                   // all instants together
-  std::vector<SensorSet> sensors;  // the channels, then less one each, then with the most useful
-                                   // others at the request's instant added one after the other
+  /// All channels; all but one of them, for each; then with the most useful other sensors at the
+  /// request's instant, added one by one.
+  std::vector<SensorSet> sensors;
 };
 
-/// Throws InputError for a channel without noise, and where there are fewer than three instants.
+/// Throws InputError for a channel without noise, and for fewer than three instants.
 Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
                    const SensorNoise& noise);
 
-/// First and last instant around the best one between which the rms of the bounds is less than a
-/// tenth above its.
+/// First and last instant around the best one between which the rms of the bounds is less than 10 %
+/// above its minimum.
 std::pair<std::size_t, std::size_t> find_good_range(const Design& design);
 
 /// The largest half-step error among the curves of `channels`.

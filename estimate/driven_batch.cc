@@ -1,5 +1,7 @@
 #include "estimate/driven_batch.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,18 +22,18 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// The sampling with as many more steps as a lost stroke of the strut takes: a short one is crossed
-/// in a fraction of a millisecond, and what a step passes over it never feels. Masses do not feel
-/// the shortest, a dynamometer's force shows them all.
+/// The sampling with as many more steps as a lost stroke of the strut needs: a short stroke is
+/// crossed in a fraction of a millisecond, and a longer step would pass over it. Masses do not
+/// respond to the shortest strokes; a dynamometer's force shows them all.
 DrivenSampling refine(DrivenSampling sampling, const RigSpec& spec) {
   constexpr double kStepsOfContact = 4.0;
   const RigInfo& info = get_rig_info(spec.kind);
-  const double most = info.masses.empty() ? 16.0 : 8.0;
+  const double max_refinement = info.masses.empty() ? 16.0 : 8.0;
   const EffectValues values{spec.effects, info};
   const double play = make_strut_effect_numbers(values, "", {}).series.play;
   if (play <= 0.0) return sampling;
   const double longest = kStepsOfContact / calc_contact_rate(play);
-  sampling.step /= std::clamp(std::ceil(sampling.step / longest), 1.0, most);
+  sampling.step /= std::clamp(std::ceil(sampling.step / longest), 1.0, max_refinement);
   return sampling;
 }
 
@@ -40,7 +42,7 @@ bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
          a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step;
 }
 
-/// The run's inputs, times their gains.
+/// The run's inputs times their gains.
 std::vector<InputSignal> scale_inputs(const DrivenTask& task) {
   std::vector<InputSignal> scaled = task.run->setup.rig().inputs;
   for (InputSignal& signal : scaled) {
@@ -52,31 +54,31 @@ std::vector<InputSignal> scale_inputs(const DrivenTask& task) {
 
 using Take = std::function<void(std::size_t, const DrivenResult&)>;
 
-/// Simulates tasks that may share lanes, from number `first` up to `end`, together. One alone takes
-/// a lane, too, so that it gives the same bits.
+/// Simulates tasks [first, end), which may share lanes, together. A single task takes a lane, too,
+/// so that its result has the same bits.
 void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, std::size_t end,
                        const Take& take) {
   constexpr double kMarginSteps = 4.0;
-  const DrivenTask& any = tasks[first];
+  const DrivenTask& common = tasks[first];
   StepOptions step;
-  step.step = any.sampling.step;
+  step.step = common.sampling.step;
   SamplePlan plan;
-  plan.interval = any.sampling.interval;
-  plan.duration =
-      any.run->times.back() + (any.sampling.even ? 0.0 : kMarginSteps * any.sampling.interval);
+  plan.interval = common.sampling.interval;
+  plan.duration = common.run->times.back() +
+                  (common.sampling.even ? 0.0 : kMarginSteps * common.sampling.interval);
   plan.snapshot = false;
   std::vector<const RigSpec*> specs;
   specs.reserve(end - first);
   for (std::size_t i = first; i < end; ++i) specs.push_back(&tasks[i].variant.rig);
   try {
     const LaneResults lanes = list_kernels().front().run_rigs(
-        specs.data(), static_cast<int>(specs.size()), scale_inputs(any), step, plan);
+        specs.data(), static_cast<int>(specs.size()), scale_inputs(common), step, plan);
     for (std::size_t i = first; i < end; ++i) {
       take(i, DrivenResult(tasks[i], lanes, static_cast<int>(i - first)));
     }
   } catch (const ModelError& e) {
     if (end - first == 1) {
-      take(first, DrivenResult(any.run->name + ": " + e.what()));
+      take(first, DrivenResult(fmt::format("{}: {}", common.run->name, e.what())));
       return;
     }
     for (std::size_t i = first; i < end; ++i) simulate_together(tasks, i, i + 1, take);
@@ -98,10 +100,10 @@ DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
       add_map_part(variant.rig.force_maps, *u.part, values[i]);
     }
     if (u.kind == UnknownKind::kInputGain) {
-      variant.gain[static_cast<std::size_t>(u.channel)] *= values[i];
+      variant.gain[static_cast<std::size_t>(u.input)] *= values[i];
     }
     if (u.kind == UnknownKind::kInitialState) {
-      set_initial_state(variant.rig, u.channel, values[i]);
+      set_initial_state(variant.rig, u.state, values[i]);
     }
   }
   return variant;
@@ -122,33 +124,32 @@ DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& o
   return s;
 }
 
-DrivenTask::DrivenTask(const MeasuredRun& of, std::size_t index,
+DrivenTask::DrivenTask(const MeasuredRun& measured, std::size_t index,
                        const std::vector<Unknown>& unknowns, const std::vector<double>& values,
                        const LinearizeOptions& options)
-    : run(&of) {
+    : run(&measured), run_index(index) {
   try {
-    variant = make_variant(of, index, unknowns, values);
-    sampling = refine(choose_sampling(of, options), variant.rig);
+    variant = make_variant(measured, index, unknowns, values);
+    sampling = refine(choose_sampling(measured, options), variant.rig);
   } catch (const InputError& e) {  // out of a parameter's range
-    failure = of.name + ": " + e.what();
+    failure = fmt::format("{}: {}", measured.name, e.what());
   }
 }
 
-DrivenResult::DrivenResult(const DrivenTask& of, const LaneResults& results, int lane)
-    : run_(of.run),
-      sampling_(of.sampling),
-      channels_(of.run->setup.info().channels.size()),
+DrivenResult::DrivenResult(const DrivenTask& task, const LaneResults& results, int lane)
+    : run_(task.run),
+      sampling_(task.sampling),
+      channels_(task.run->setup.info().channels.size()),
       count_(static_cast<std::size_t>(results.sample_count)) {
   const auto at = static_cast<std::size_t>(lane), lanes = static_cast<std::size_t>(results.lanes);
   if (results.status[at] != 0) {
-    failure_ = run_->name +
-               ": the simulation ends at t = " + format_rounded(results.failure_time[at]) +
-               " s: the motion is not finite";
+    failure_ = fmt::format("{}: the simulation ends at t = {} s: the motion is not finite",
+                           run_->name, format_rounded(results.failure_time[at]));
     return;
   }
   history_.resize(count_ * channels_);
   for (std::size_t i = 0; i < history_.size(); ++i) history_[i] = results.history[i * lanes + at];
-  read_sensors(of.variant.rig);
+  read_sensors(task.variant.rig);
 }
 
 double DrivenResult::read(std::size_t time, std::size_t channel) const {
@@ -160,7 +161,7 @@ double DrivenResult::read(std::size_t time, std::size_t channel) const {
   return interpolate_curve(get, index, at - static_cast<double>(index), sampling_.interval).value;
 }
 
-/// Replaces what the channels are by what their sensors read.
+/// Replaces the channels by the readings of their sensors.
 void DrivenResult::read_sensors(const RigSpec& spec) {
   if (spec.effects.empty()) return;
   for (std::size_t c = 0; c < channels_; ++c) {

@@ -1,5 +1,5 @@
 // Runs that recorded inputs drive, simulated in many variants, as many at once as the processor has
-// SIMD lanes, in steps that feel the stroke which a worn strut has lost.
+// SIMD lanes, in steps short enough for the lost stroke of a worn strut.
 #pragma once
 
 #include <array>
@@ -15,34 +15,36 @@
 
 namespace strut {
 
-/// A run's rig with its unknowns set, and what its inputs are multiplied by.
+/// A run's rig with its unknowns set, and the factors on its inputs.
 struct DrivenVariant {
   RigSpec rig;
   std::array<double, kMaxRigInputs> gain{};  // in the order of ModelInfo::inputs
 };
 
-/// With those of `values` that belong to run number `index`; biases are no part of it. Throws
-/// InputError where a value is out of its range.
+/// Sets those of `values` that belong to run number `index`, except biases. Throws InputError where
+/// a value is out of its range.
 DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
                            const std::vector<Unknown>& unknowns, const std::vector<double>& values);
 
-/// The sampling of a run: its own times where they are even, else finely enough to interpolate.
+/// Sampling of a simulated run: at the run's own times where they are evenly spaced, else finely
+/// enough to interpolate.
 struct DrivenSampling {
   double interval = 0.0, step = 0.0;  // s; whole steps lie between samples
   bool even = false;
 };
 
-/// As its nominal setup needs.
+/// The sampling that the run's nominal setup needs.
 DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& options);
 
-/// A simulation of a run to be made; it must not outlive the run.
+/// A simulation to be made of a run. It must not outlive the run.
 struct DrivenTask {
   const MeasuredRun* run = nullptr;
-  std::string failure;  // why it cannot be; empty: it can
+  std::size_t run_index = 0;
+  std::string failure;  // reason for which it is infeasible; empty: it is feasible
   DrivenVariant variant;
   DrivenSampling sampling;
 
-  DrivenTask(const MeasuredRun& of, std::size_t index, const std::vector<Unknown>& unknowns,
+  DrivenTask(const MeasuredRun& measured, std::size_t index, const std::vector<Unknown>& unknowns,
              const std::vector<double>& values, const LinearizeOptions& options);
 };
 
@@ -50,7 +52,7 @@ struct DrivenTask {
 class DrivenResult {
  public:
   explicit DrivenResult(std::string failure) : failure_(std::move(failure)) {}
-  DrivenResult(const DrivenTask& of, const LaneResults& results, int lane);
+  DrivenResult(const DrivenTask& task, const LaneResults& results, int lane);
 
   const std::string& failure() const { return failure_; }
   /// NaN where the simulation cannot be interpolated.
@@ -66,8 +68,8 @@ class DrivenResult {
   std::vector<double> history_;  // [sample][channel]
 };
 
-/// Simulates each task and hands its result to `take`, once and from any thread, with the task's
-/// number. What a task gives depends on no other task. Histories are long: none outlives its call.
+/// Simulates each task and passes its result to `take`, once and from any thread, with the task's
+/// number. A task's result depends on no other task. Histories are long, so none outlives its call.
 void simulate_tasks(const std::vector<DrivenTask>& tasks, int threads,
                     const std::function<void(std::size_t, const DrivenResult&)>& take);
 

@@ -1,149 +1,111 @@
 #include "estimate/driven_readings.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "base/error/input_error.h"
-#include "estimate/run_readings.h"
+#include "estimate/driven_batch.h"
 #include "estimate/sampled_curve.h"
 
 namespace strut {
+namespace {
 
-DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
-                               const LinearizeOptions& options)
-    : ReadingModel(std::move(unknowns)), runs_(std::move(runs)), options_(options) {
-  if (runs_.empty()) throw InputError("fit: no measurement");
-  check_unknowns(unknowns_, runs_.size());
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const MeasuredRun& run = runs_[r];
-    check_measured_run(run);
-    channels_.emplace_back();
-    for (const MeasuredChannel& c : run.channels) channels_[r].push_back(c.channel);
-    begin_.push_back(readings_.size());
-    const DrivenSampling sampling = choose_sampling(run, options_);
-    const double margin = static_cast<double>(kCurveMargin) * sampling.interval;
-    for (std::size_t t = 0; t < run.times.size(); ++t) {
-      const bool inside = sampling.even || run.times[t] >= margin;
-      if (!inside) outside_count_ += run.channels.size();
-      for (std::size_t c = 0; inside && c < run.channels.size(); ++c) {
-        if (std::isfinite(run.channels[c].values[t])) readings_.push_back({r, t, c});
-      }
-    }
-  }
-  begin_.push_back(readings_.size());
-  finish(runs_.front().name);
-}
-
-std::vector<DrivenReadings::Task> DrivenReadings::list_tasks(
-    const std::vector<double>& values) const {
-  std::vector<Task> tasks;
-  tasks.reserve(runs_.size() * (1 + 2 * unknowns_.size()));
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    tasks.push_back({&values, r, kNoUnknown, 0.0});
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-      const Unknown& u = unknowns_[i];
-      if (!belongs(u, r) || u.kind == UnknownKind::kBias) continue;
-      const auto [upper, lower] = calc_sides(u, values[i], options_.relative_step);
-      tasks.push_back({&values, r, i, upper});
-      tasks.push_back({&values, r, i, lower});
-    }
-  }
-  return tasks;
-}
-
-std::vector<DrivenReadings::Simulated> DrivenReadings::simulate(const std::vector<Task>& tasks) {
-  std::vector<DrivenTask> simulations;
-  simulations.reserve(tasks.size());
-  for (const Task& task : tasks) {
-    std::vector<double> varied = *task.values;
-    if (task.unknown != kNoUnknown) varied[task.unknown] = task.value;
-    simulations.emplace_back(runs_[task.run], task.run, unknowns_, varied, options_);
-  }
-  // Both sides of a difference go in the same steps, or it would be one of steps, too.
+/// Lets both sides of each difference take equal steps, or the difference would include that of the
+/// steps.
+void match_steps(const std::vector<RunVariant>& variants, std::vector<DrivenTask>& tasks) {
   for (std::size_t k = 0; k + 1 < tasks.size(); ++k) {
-    if (tasks[k].unknown == kNoUnknown) continue;
-    DrivenTask &upper = simulations[k], &lower = simulations[k + 1];
+    if (variants[k].unknown == kNoUnknown) continue;
+    DrivenTask &upper = tasks[k], &lower = tasks[k + 1];
     if (upper.failure.empty() && lower.failure.empty()) {
       upper.sampling.step = lower.sampling.step =
           std::min(upper.sampling.step, lower.sampling.step);
     }
     ++k;
   }
+}
+
+class DrivenReadings final : public ReadingModel {
+ public:
+  DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
+                 const LinearizeOptions& options);
+
+  Linearization linearize(const std::vector<double>& values) override;
+  using ReadingModel::evaluate;
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
+
+ private:
+  struct Simulated {
+    std::string failure;           // reason for which there is no simulation
+    std::vector<double> readings;  // of the task's run
+  };
+  DrivenTask make_task(std::size_t run, const std::vector<double>& values) const {
+    return {runs_[run], run, unknowns_, values, options_};
+  }
+  std::vector<Simulated> simulate(const std::vector<DrivenTask>& tasks);
+  void fill_column(const RunVariant& upper, const RunVariant& lower, const Simulated& above,
+                   const Simulated& below, Linearization& out) const;
+
+  LinearizeOptions options_;
+};
+
+DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
+                               const LinearizeOptions& options)
+    : ReadingModel(std::move(runs), std::move(unknowns)), options_(options) {
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const DrivenSampling sampling = choose_sampling(runs_[r], options_);
+    const double margin = static_cast<double>(kCurveMargin) * sampling.interval;
+    add_readings(r, [&](double time) { return sampling.even || time >= margin; });
+  }
+  finish();
+}
+
+std::vector<DrivenReadings::Simulated> DrivenReadings::simulate(
+    const std::vector<DrivenTask>& tasks) {
   std::vector<Simulated> simulated(tasks.size());
-  simulate_tasks(simulations, options_.threads, [&](std::size_t k, const DrivenResult& result) {
+  simulate_tasks(tasks, options_.threads, [&](std::size_t k, const DrivenResult& result) {
     simulated[k].failure = result.failure();
     if (!result.failure().empty()) return;
-    const std::size_t run = tasks[k].run;
-    simulated[k].read.reserve(begin_[run + 1] - begin_[run]);
-    for (std::size_t i = begin_[run]; i < begin_[run + 1]; ++i) {
-      const ReadingPlace& place = readings_[i];
-      simulated[k].read.push_back(result.read(
-          place.time, static_cast<std::size_t>(runs_[run].channels[place.channel].channel)));
+    const std::size_t run = tasks[k].run_index;
+    simulated[k].readings.reserve(begin_row(run + 1) - begin_row(run));
+    for (std::size_t i = begin_row(run); i < begin_row(run + 1); ++i) {
+      const auto channel = static_cast<std::size_t>(get_channel(readings_[i]).channel);
+      simulated[k].readings.push_back(result.read(readings_[i].time, channel));
     }
   });
   simulation_count_ += static_cast<long>(tasks.size());
   return simulated;
 }
 
-/// Residuals of a run, biases included.
-void DrivenReadings::fill_residual(std::size_t run, const std::vector<double>& values,
-                                   const std::vector<double>& read,
-                                   Eigen::VectorXd& residual) const {
-  std::vector<double> bias(runs_[run].channels.size(), 0.0);
-  for (std::size_t u = 0; u < unknowns_.size(); ++u) {
-    if (unknowns_[u].kind != UnknownKind::kBias) continue;
-    if (!belongs(unknowns_[u], run)) continue;
-    for (std::size_t c = 0; c < bias.size(); ++c) {
-      if (runs_[run].channels[c].channel == unknowns_[u].channel) bias[c] += values[u];
-    }
-  }
-  for (std::size_t i = begin_[run]; i < begin_[run + 1]; ++i) {
-    const MeasuredChannel& c = runs_[run].channels[readings_[i].channel];
-    const double simulated = read[i - begin_[run]] + bias[readings_[i].channel];
-    residual(static_cast<Eigen::Index>(i)) = (simulated - c.values[readings_[i].time]) / c.sigma;
-  }
-}
-
-void DrivenReadings::fill_bias_columns(Linearization& out) const {
-  for (std::size_t u = 0; u < unknowns_.size(); ++u) {
-    if (unknowns_[u].kind != UnknownKind::kBias) continue;
-    for (std::size_t i = 0; i < readings_.size(); ++i) {
-      const ReadingPlace& place = readings_[i];
-      const MeasuredChannel& c = runs_[place.run].channels[place.channel];
-      if (c.channel != unknowns_[u].channel) continue;
-      if (!belongs(unknowns_[u], place.run)) continue;
-      out.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(u)) =
-          unknowns_[u].scale / c.sigma;
-    }
+void DrivenReadings::fill_column(const RunVariant& upper, const RunVariant& lower,
+                                 const Simulated& above, const Simulated& below,
+                                 Linearization& out) const {
+  const double width = upper.value - lower.value;
+  const std::size_t begin = begin_row(upper.run);
+  for (std::size_t i = begin; i < begin_row(upper.run + 1); ++i) {
+    const double rise = above.readings[i - begin] - below.readings[i - begin];
+    out.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(upper.unknown)) =
+        rise / width * unknowns_[upper.unknown].scale / get_channel(readings_[i]).sigma;
   }
 }
 
 Linearization DrivenReadings::linearize(const std::vector<double>& values) {
-  const std::vector<Task> tasks = list_tasks(values);
+  const std::vector<RunVariant> variants =
+      list_variants(unknowns_, runs_.size(), values, options_.relative_step);
+  std::vector<DrivenTask> tasks;
+  tasks.reserve(variants.size());
+  for (const RunVariant& v : variants) tasks.push_back(make_task(v.run, set_variant(values, v)));
+  match_steps(variants, tasks);
   const std::vector<Simulated> simulated = simulate(tasks);
-  Linearization out;
-  for (const Simulated& one : simulated) {
-    if (out.failure.empty()) out.failure = one.failure;
-  }
+  const auto failed = std::find_if(simulated.begin(), simulated.end(),
+                                   [](const Simulated& s) { return !s.failure.empty(); });
+  Linearization out = make_linearization(failed == simulated.end() ? "" : failed->failure);
   if (!out.failure.empty()) return out;
-  const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
-  out.residual = Eigen::VectorXd::Zero(rows);
-  out.jacobian = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(unknowns_.size()));
-  for (std::size_t k = 0; k < tasks.size(); ++k) {
-    const Task& task = tasks[k];
-    if (task.unknown == kNoUnknown) {
-      fill_residual(task.run, values, simulated[k].read, out.residual);
-      continue;
+  for (std::size_t k = 0; k < variants.size(); ++k) {
+    if (variants[k].unknown == kNoUnknown) {
+      fill_residual(variants[k].run, values, simulated[k].readings, out.residual);
+    } else {
+      fill_column(variants[k], variants[k + 1], simulated[k], simulated[k + 1], out);
+      ++k;  // the lower side
     }
-    const double width = task.value - tasks[k + 1].value;
-    for (std::size_t i = begin_[task.run]; i < begin_[task.run + 1]; ++i) {
-      const MeasuredChannel& c = runs_[task.run].channels[readings_[i].channel];
-      const std::size_t at = i - begin_[task.run];
-      const double rise = simulated[k].read[at] - simulated[k + 1].read[at];
-      out.jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(task.unknown)) =
-          rise / width * unknowns_[task.unknown].scale / c.sigma;
-    }
-    ++k;  // its lower side
   }
   fill_bias_columns(out);
   fill_priors(values, out);
@@ -151,25 +113,32 @@ Linearization DrivenReadings::linearize(const std::vector<double>& values) {
 }
 
 std::vector<Evaluation> DrivenReadings::evaluate(const std::vector<std::vector<double>>& points) {
-  std::vector<Task> tasks;  // run by run, since those of one may share lanes
+  std::vector<DrivenTask> tasks;  // run by run: those of one run may share lanes
   tasks.reserve(points.size() * runs_.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    for (const auto& point : points) tasks.push_back({&point, r, kNoUnknown, 0.0});
+    for (const auto& point : points) tasks.push_back(make_task(r, point));
   }
   const std::vector<Simulated> simulated = simulate(tasks);
   std::vector<Evaluation> evaluations(points.size());
-  const auto rows = static_cast<Eigen::Index>(reading_count() + prior_count_);
   for (std::size_t p = 0; p < points.size(); ++p) {
     Evaluation& e = evaluations[p];
-    e.residual = Eigen::VectorXd::Zero(rows);
+    e.residual = Eigen::VectorXd::Zero(row_count());
     for (std::size_t r = 0; r < runs_.size() && e.failure.empty(); ++r) {
       const Simulated& one = simulated[r * points.size() + p];
       e.failure = one.failure;
-      if (e.failure.empty()) fill_residual(r, points[p], one.read, e.residual);
+      if (e.failure.empty()) fill_residual(r, points[p], one.readings, e.residual);
     }
     fill_prior_residuals(points[p], e.residual);
   }
   return evaluations;
+}
+
+}  // namespace
+
+std::unique_ptr<ReadingModel> make_driven_readings(std::vector<MeasuredRun> runs,
+                                                   std::vector<Unknown> unknowns,
+                                                   const LinearizeOptions& options) {
+  return std::make_unique<DrivenReadings>(std::move(runs), std::move(unknowns), options);
 }
 
 }  // namespace strut

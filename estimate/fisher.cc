@@ -11,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
-/// 1 / sqrt(diagonal), zero where a parameter has no information at all.
+/// 1 / sqrt(diagonal); 0 where a parameter has no information.
 Eigen::VectorXd calc_scales(const Eigen::MatrixXd& information) {
   return information.diagonal().unaryExpr(
       [](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
@@ -20,23 +20,23 @@ Eigen::VectorXd calc_scales(const Eigen::MatrixXd& information) {
 }  // namespace
 
 InformationInverse invert_information(const Eigen::MatrixXd& information) {
-  constexpr double kPart = 1e-6;  // share of a free direction above rounding
+  constexpr double kMinPart = 1e-6;  // of a parameter in a free direction, above rounding
   const Eigen::Index n = information.rows();
   const Eigen::VectorXd scale = calc_scales(information);
   const Solver solver(scale.asDiagonal() * information * scale.asDiagonal());
-  const double least = kLeastInformation * solver.eigenvalues()(n - 1);
+  const double min_eigenvalue = kMinInformation * solver.eigenvalues()(n - 1);
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(n);
   InformationInverse result;
   result.free.resize(static_cast<std::size_t>(n));
   for (Eigen::Index i = 0; i < n; ++i) result.free[static_cast<std::size_t>(i)] = !(scale(i) > 0.0);
   for (Eigen::Index k = 0; k < n; ++k) {
-    if (solver.eigenvalues()(k) > least) {
+    if (solver.eigenvalues()(k) > min_eigenvalue) {
       ++result.rank;
       inverse(k) = 1.0 / solver.eigenvalues()(k);
       continue;
     }
     for (Eigen::Index i = 0; i < n; ++i) {
-      if (std::abs(solver.eigenvectors()(i, k)) > kPart) {
+      if (std::abs(solver.eigenvectors()(i, k)) > kMinPart) {
         result.free[static_cast<std::size_t>(i)] = true;
       }
     }
@@ -75,7 +75,7 @@ SpreadCriterion::SpreadCriterion(Eigen::Index size) : factor_(size), inverse_(si
 
 double SpreadCriterion::calc(const Eigen::MatrixXd& information) {
   constexpr double kPrior = 1e-8;      // 1/%^2
-  constexpr double kRounding = 1e-13;  // of F, so that it stays positive definite
+  constexpr double kRounding = 1e-13;  // fraction of F's trace; keeps F positive definite
   const Eigen::Index n = information.rows();
   inverse_ = information;
   inverse_.diagonal().array() += kPrior + kRounding * information.trace();

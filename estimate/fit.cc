@@ -8,117 +8,133 @@
 #include "base/error/input_error.h"
 #include "base/least_squares/levenberg_marquardt.h"
 #include "estimate/fisher.h"
+#include "estimate/readings.h"
 
 namespace strut {
 namespace {
 
-/// Weights are (value - start) / scale. Beyond a bound the value stays on it.
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The value at a weight (value - start) / scale, which may lie beyond a bound.
+double calc_free_value(const Unknown& u, double weight) { return u.start + weight * u.scale; }
+
+/// Values at weights; beyond a bound a value stays on it.
+std::vector<double> calc_values(const std::vector<Unknown>& unknowns, const double* weights) {
+  std::vector<double> values;
+  values.reserve(unknowns.size());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    values.push_back(std::clamp(calc_free_value(u, weights[i]), u.low, u.high));
+  }
+  return values;
+}
+
+/// Weights where the search starts: the unknowns' own initial guesses, with aligned clocks.
+std::vector<double> make_start(ReadingModel& model, const FitOptions& options) {
+  std::vector<double> weights =
+      model.align(options.start.empty() ? list_starts(model.unknowns()) : options.start);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const Unknown& u = model.unknowns()[i];
+    weights[i] = (weights[i] - u.start) / u.scale;
+  }
+  return weights;
+}
+
+/// Which weights lie beyond a bound.
+std::vector<bool> list_beyond(const std::vector<Unknown>& unknowns, const double* weights) {
+  std::vector<bool> beyond;
+  beyond.reserve(unknowns.size());
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const double value = calc_free_value(unknowns[i], weights[i]);
+    beyond.push_back(value < unknowns[i].low || value > unknowns[i].high);
+  }
+  return beyond;
+}
+
+/// The linear model at one point.
+struct FitPoint {
+  std::vector<double> values;
+  Linearization at;
+  NormalEquations normal;  // empty where `at` failed
+
+  bool failed() const { return !at.failure.empty(); }
+};
+
+/// The model as the search sees it, by weights. Keeps the last point: a search asks for the loss of
+/// a point, and for its gradient if it accepts it.
 class FitProblem : public LeastSquaresProblem {
  public:
-  explicit FitProblem(ReadingModel& simulator) : simulator_(simulator) {}
+  explicit FitProblem(ReadingModel& model) : model_(model) {}
 
-  std::size_t weight_count() const override { return simulator_.unknowns().size(); }
+  std::size_t weight_count() const override { return model_.unknowns().size(); }
   double residual_count() const override {
-    return static_cast<double>(simulator_.reading_count() + simulator_.prior_count());
+    return static_cast<double>(model_.reading_count() + model_.prior_count());
   }
 
   double calc_gram(const double* weights, int /*epoch*/, double* h, double* gradient) override {
     const auto n = static_cast<Eigen::Index>(weight_count());
-    const Linearization& at = linearize(weights);
-    if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
-    const NormalEquations normal = free_unknowns(normal_, list_beyond(weights));
+    const FitPoint& point = linearize(weights);
+    if (point.failed()) return kInfinity;
+    const NormalEquations normal =
+        free_unknowns(point.normal, list_beyond(model_.unknowns(), weights));
     Eigen::Map<Eigen::MatrixXd>(h, n, n) = normal.information;
     Eigen::Map<Eigen::VectorXd>(gradient, n) = normal.gradient;
-    return at.residual.squaredNorm();
+    return point.at.residual.squaredNorm();
   }
 
-  /// Where there is no simulation, or none beside it, the loss is infinite: a step that is not
-  /// taken. Trial points are linearized at once: most are accepted, and then their Jacobian is
-  /// there.
+  /// Infinite where there is no simulation, or none beside it: such a step is not taken. Trial
+  /// points are linearized at once: most are accepted, and then need their Jacobian.
   double calc_loss(const double* weights) override {
-    const Linearization& at = linearize(weights);
-    return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
+    const FitPoint& point = linearize(weights);
+    return point.failed() ? kInfinity : point.at.residual.squaredNorm();
   }
 
-  const Linearization& linearize(const double* weights) {
-    const std::vector<double> values = calc_values(weights);
-    if (values != last_values_) {
-      last_ = simulator_.linearize(values);
-      last_values_ = values;
-      if (last_.failure.empty()) normal_ = calc_normal_equations(simulator_, last_);
-    }
+  const FitPoint& linearize(const double* weights) {
+    std::vector<double> values = calc_values(model_.unknowns(), weights);
+    if (values == last_.values) return last_;
+    last_.at = model_.linearize(values);
+    last_.values = std::move(values);
+    if (!last_.failed()) last_.normal = calc_normal_equations(model_, last_.at);
     return last_;
   }
 
-  std::vector<double> calc_values(const double* weights) const {
-    std::vector<double> values;
-    values.reserve(weight_count());
-    for (std::size_t i = 0; i < weight_count(); ++i) {
-      const Unknown& u = simulator_.unknowns()[i];
-      values.push_back(std::clamp(u.start + weights[i] * u.scale, u.low, u.high));
-    }
-    return values;
-  }
-
-  bool is_beyond(const double* weights, std::size_t i) const {
-    const Unknown& u = simulator_.unknowns()[i];
-    const double value = u.start + weights[i] * u.scale;
-    return value < u.low || value > u.high;
-  }
-
-  double calc_distance(const double* weights) {
-    const Linearization& at = linearize(weights);
-    if (!at.failure.empty()) return std::numeric_limits<double>::infinity();
-    return strut::calc_distance(free_unknowns(normal_, list_beyond(weights)));
-  }
-
-  double calc_widening(const double* weights) {
-    const Linearization& at = linearize(weights);
-    return at.failure.empty() ? strut::calc_widening(simulator_, at) : 1.0;
-  }
-
-  std::vector<bool> list_beyond(const double* weights) const {
-    std::vector<bool> beyond;
-    beyond.reserve(weight_count());
-    for (std::size_t i = 0; i < weight_count(); ++i) beyond.push_back(is_beyond(weights, i));
-    return beyond;
-  }
-
-  /// Brings weights beyond a bound back to it; returns whether the slope would lead inwards from
-  /// one.
-  bool release(std::vector<double>& weights) {
-    const Linearization& at = linearize(weights.data());
-    if (!at.failure.empty()) return false;
-    const Eigen::VectorXd& gradient = normal_.gradient;
-    bool inwards = false;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (!is_beyond(weights.data(), i)) continue;
-      const Unknown& u = simulator_.unknowns()[i];
-      const bool above = u.start + weights[i] * u.scale > u.high;
-      const double slope = gradient(static_cast<Eigen::Index>(i));
-      if ((above && slope <= 0.0) || (!above && slope >= 0.0)) continue;
-      weights[i] = ((above ? u.high : u.low) - u.start) / u.scale * (1.0 - 1e-12);
-      inwards = true;
-    }
-    return inwards;
-  }
+  const ReadingModel& model() const { return model_; }
 
  private:
-  ReadingModel& simulator_;
-  std::vector<double> last_values_;
-  Linearization last_;
-  NormalEquations normal_;  // of last_
+  ReadingModel& model_;
+  FitPoint last_;
 };
 
-/// Weights where the search begins: the unknowns' own start, the measuring clocks set.
-std::vector<double> make_start(ReadingModel& simulator, const FitOptions& options) {
-  std::vector<double> weights =
-      simulator.align(options.start.empty() ? list_starts(simulator.unknowns()) : options.start);
+double calc_distance(FitProblem& problem, const double* weights) {
+  const FitPoint& point = problem.linearize(weights);
+  if (point.failed()) return kInfinity;
+  return calc_distance(
+      free_unknowns(point.normal, list_beyond(problem.model().unknowns(), weights)));
+}
+
+double calc_widening(FitProblem& problem, const double* weights) {
+  const FitPoint& point = problem.linearize(weights);
+  return point.failed() ? 1.0 : calc_widening(problem.model(), point.at);
+}
+
+/// Moves those weights beyond a bound back to it from which the slope leads inwards; returns
+/// whether there were any.
+bool release_bounds(FitProblem& problem, std::vector<double>& weights) {
+  const FitPoint& point = problem.linearize(weights.data());
+  if (point.failed()) return false;
+  const std::vector<Unknown>& unknowns = problem.model().unknowns();
+  const std::vector<bool> beyond = list_beyond(unknowns, weights.data());
+  bool inwards = false;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    const Unknown& u = simulator.unknowns()[i];
-    weights[i] = (weights[i] - u.start) / u.scale;
+    if (!beyond[i]) continue;
+    const Unknown& u = unknowns[i];
+    const bool above = calc_free_value(u, weights[i]) > u.high;
+    const double slope = point.normal.gradient(static_cast<Eigen::Index>(i));
+    if ((above && slope <= 0.0) || (!above && slope >= 0.0)) continue;
+    weights[i] = ((above ? u.high : u.low) - u.start) / u.scale * (1.0 - 1e-12);
+    inwards = true;
   }
-  return weights;
+  return inwards;
 }
 
 LevenbergMarquardtOptions make_search_options(int iterations, double first_damping,
@@ -133,53 +149,63 @@ LevenbergMarquardtOptions make_search_options(int iterations, double first_dampi
   return search;
 }
 
-/// Steps until the minimum is within `near` standard deviations (`widened`: of those that what the
-/// model leaves widens); false where no damping helps any
-/// more.
-bool approach(FitProblem& problem, const FitOptions& options, double near, bool widened,
-              double max_damping, std::vector<double>& weights, int& iterations) {
-  LevenbergMarquardt search(
-      problem, nullptr,
-      make_search_options(options.iterations - iterations, options.first_damping, max_damping));
-  search.start(weights);
+/// When a search stops.
+struct Goal {
+  double distance = 0.0;  // from the minimum, in standard deviations
+  bool widened = false;   // which calc_widening widens
+  double max_damping = 0.0;
+};
+
+/// State of a search.
+struct SearchState {
+  std::vector<double> weights;
+  int iterations = 0;
+};
+
+/// Steps until the goal is reached; returns false where no damping lowers chi2 any more.
+bool approach(FitProblem& problem, const FitOptions& options, const Goal& goal,
+              SearchState& state) {
+  LevenbergMarquardt search(problem, nullptr,
+                            make_search_options(options.iterations - state.iterations,
+                                                options.first_damping, goal.max_damping));
+  search.start(state.weights);
   const auto is_far = [&] {
     const double* at = search.state().weights.data();
-    return problem.calc_distance(at) > near * (widened ? problem.calc_widening(at) : 1.0);
+    return calc_distance(problem, at) >
+           goal.distance * (goal.widened ? calc_widening(problem, at) : 1.0);
   };
   while (is_far() && search.step()) {
   }
-  weights = search.state().weights;
-  iterations += search.state().epoch;
+  state.weights = search.state().weights;
+  state.iterations += search.state().epoch;
   return search.state().stop != StopReason::kDamping;
 }
 
-/// Approaches the minimum; near it no longer insists: there the loss has kinks, where a contact
-/// event passes a reading, and the linear model's last hundredths of a standard deviation may not
-/// be there.
-std::vector<double> search(FitProblem& problem, const FitOptions& options,
-                           std::vector<double> weights, FitResult& result) {
+/// Approaches the minimum; returns whether it ends at a kink. Close to the minimum it gives up
+/// sooner: there the loss has kinks, where a contact event passes a reading, and the last
+/// hundredths of a standard deviation of the linear model may not exist.
+bool search_minimum(FitProblem& problem, const FitOptions& options, SearchState& state) {
   constexpr int kReleases = 3;
-  constexpr double kNear = 0.01 * kFitTolerance, kPatience = 1e6, kNoPatience = 1e-3;
+  constexpr Goal kNear{kFitTolerance, true, 1e6}, kNearest{0.01 * kFitTolerance, false, 1e-3};
+  bool at_kink = false;
   for (int pass = 0; pass <= kReleases; ++pass) {
-    int& iterations = result.iterations;
-    result.at_kink =
-        !approach(problem, options, kFitTolerance, true, kPatience, weights, iterations);
-    approach(problem, options, kNear, false, kNoPatience, weights, iterations);
-    if (!problem.release(weights)) break;
+    at_kink = !approach(problem, options, kNear, state);
+    approach(problem, options, kNearest, state);
+    if (!release_bounds(problem, state.weights)) break;
   }
-  return weights;
+  return at_kink;
 }
 
-std::vector<ChannelFit> judge_channels(const ReadingModel& simulator,
-                                       const Eigen::VectorXd& residual) {
+std::vector<ChannelFit> describe_channels(const ReadingModel& model,
+                                          const Eigen::VectorXd& residual) {
   std::vector<ChannelFit> fits;
-  for (std::size_t r = 0; r < simulator.channels().size(); ++r) {
-    const std::vector<int>& channels = simulator.channels()[r];
+  for (std::size_t r = 0; r < model.channels().size(); ++r) {
+    const std::vector<int>& channels = model.channels()[r];
     for (std::size_t c = 0; c < channels.size(); ++c) {
       ChannelFit fit{static_cast<int>(r), channels[c]};
       double last = 0.0, products = 0.0;
-      for (std::size_t k = 0; k < simulator.reading_count(); ++k) {
-        const ReadingPlace& place = simulator.readings()[k];
+      for (std::size_t k = 0; k < model.reading_count(); ++k) {
+        const ReadingPlace& place = model.readings()[k];
         if (place.run != r || place.channel != c) continue;
         const double e = residual(static_cast<Eigen::Index>(k));
         ++fit.count;
@@ -197,7 +223,7 @@ std::vector<ChannelFit> judge_channels(const ReadingModel& simulator,
 Uncertainty calc_widened(const NormalEquations& normal, const FitResult& result) {
   const double misfit = std::max(1.0, result.chi2_per_degree());
   Eigen::MatrixXd priors = normal.of_priors;
-  // The prior of a map is in units of the residual (map_prior.h).
+  // The prior of a force map is in units of the residual (map_prior.h).
   for (std::size_t i = 0; i < result.unknowns.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     if (result.unknowns[i].kind == UnknownKind::kForceMap) priors(at, at) /= misfit;
@@ -243,7 +269,7 @@ FitResult describe_fit(const ReadingModel& model, const Linearization& at,
   result.degrees =
       static_cast<long>(model.reading_count() + model.prior_count()) - result.uncertainty.rank;
   result.widened = calc_widened(normal, result);
-  result.channels = judge_channels(model, at.residual);
+  result.channels = describe_channels(model, at.residual);
   result.distance =
       calc_distance(free_unknowns(normal, result.at_bound)) / calc_widening(model, at);
   result.converged = result.distance < (at_kink ? kKinkTolerance : kFitTolerance);
@@ -263,30 +289,30 @@ double FitResult::calc_excess() const {
 
 FitResult fit_readings(ReadingModel& model, const FitOptions& options) {
   FitProblem problem(model);
-  const std::vector<double> start = make_start(model, options);
-  const std::string failure = problem.linearize(start.data()).failure;
-  if (!failure.empty()) throw InputError(failure + "; the fit starts there: start it elsewhere");
-  FitResult ended;
-  const std::vector<double> weights = search(problem, options, start, ended);
-  FitResult result =
-      describe_fit(model, problem.linearize(weights.data()), problem.calc_values(weights.data()),
-                   problem.list_beyond(weights.data()), ended.at_kink);
-  result.iterations = ended.iterations;
+  SearchState state{make_start(model, options), 0};
+  const std::string failure = problem.linearize(state.weights.data()).at.failure;
+  if (!failure.empty()) {
+    throw InputError(failure + "; the fit starts there: start it from other values");
+  }
+  const bool at_kink = search_minimum(problem, options, state);
+  const FitPoint& end = problem.linearize(state.weights.data());
+  FitResult result = describe_fit(model, end.at, end.values,
+                                  list_beyond(model.unknowns(), state.weights.data()), at_kink);
+  result.iterations = state.iterations;
   return result;
 }
 
 FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
                          const FitOptions& options) {
-  ReadingSimulator simulator(runs, unknowns, options.linearize);
-  return fit_readings(simulator, options);
+  return fit_readings(*make_readings(runs, unknowns, options.linearize), options);
 }
 
 Uncertainty calc_fit_bounds(const std::vector<MeasuredRun>& runs,
                             const std::vector<Unknown>& unknowns, const LinearizeOptions& options) {
-  ReadingSimulator simulator(runs, unknowns, options);
-  const Linearization at = simulator.linearize(list_starts(unknowns));
+  const auto model = make_readings(runs, unknowns, options);
+  const Linearization at = model->linearize(list_starts(unknowns));
   if (!at.failure.empty()) throw InputError(at.failure);
-  return calc_uncertainty(calc_normal_equations(simulator, at).information, unknowns);
+  return calc_uncertainty(calc_normal_equations(*model, at).information, unknowns);
 }
 
 }  // namespace strut

@@ -2,70 +2,61 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace strut {
 namespace {
 
-/// Searches sets of instants; keeps the sum of the information of the set in hand.
-class InstantSearch {
- public:
-  explicit InstantSearch(const std::vector<Eigen::MatrixXd>& informations)
-      : informations_(informations),
-        criterion_(informations.front().rows()),
-        trial_(informations.front()) {}
-
-  /// The instant that adds most to `sum`, none of `taken`.
-  std::size_t find_best(const Eigen::MatrixXd& sum, const std::vector<std::size_t>& taken) {
-    std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < informations_.size(); ++i) {
-      if (std::find(taken.begin(), taken.end(), i) != taken.end()) continue;
-      trial_ = sum + informations_[i];
-      const double value = criterion_.calc(trial_);
-      if (value < least) {
-        least = value;
-        best = i;
-      }
+/// The instant, none of `taken`, whose information added to `sum` minimizes the criterion.
+std::size_t find_best(const std::vector<Eigen::MatrixXd>& informations, const Eigen::MatrixXd& sum,
+                      const std::vector<std::size_t>& taken, SpreadCriterion& criterion) {
+  std::size_t best = 0;
+  double min_value = std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd trial(sum.rows(), sum.cols());
+  for (std::size_t i = 0; i < informations.size(); ++i) {
+    if (std::find(taken.begin(), taken.end(), i) != taken.end()) continue;
+    trial = sum + informations[i];
+    const double value = criterion.calc(trial);
+    if (value < min_value) {
+      min_value = value;
+      best = i;
     }
-    return best;
   }
+  return best;
+}
 
-  /// Greedy from `first`, then exchanges until none helps.
-  InstantChoice improve(std::size_t first, std::size_t count) {
-    InstantChoice choice{{first}, informations_[first]};
-    while (choice.instants.size() < count) {
-      choice.instants.push_back(find_best(choice.information, choice.instants));
-      choice.information += informations_[choice.instants.back()];
-    }
-    std::size_t unchanged = 0;
-    for (std::size_t slot = 0; unchanged < count; slot = (slot + 1) % count) {
-      unchanged = exchange(choice, slot) ? 0 : unchanged + 1;
-    }
-    std::sort(choice.instants.begin(), choice.instants.end());
-    return choice;
+/// Exchanges one instant of a choice for a better one, if there is one; returns whether it did.
+bool exchange(const std::vector<Eigen::MatrixXd>& informations, std::size_t slot,
+              SpreadCriterion& criterion, InstantChoice& choice) {
+  constexpr double kMaxRatio = 1.0 - 1e-9;  // beyond is rounding, and might go round in circles
+  std::vector<std::size_t> others = choice.instants;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(slot));
+  Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(choice.information.rows(), choice.information.cols());
+  for (const std::size_t i : others) rest += informations[i];
+  const std::size_t best = find_best(informations, rest, others, criterion);
+  const Eigen::MatrixXd sum = rest + informations[best];
+  if (!(criterion.calc(sum) < kMaxRatio * criterion.calc(choice.information))) return false;
+  choice.instants[slot] = best;
+  choice.information = sum;
+  return true;
+}
+
+/// Adds instants greedily to `first`, then exchanges until no exchange helps.
+InstantChoice search_from(const std::vector<Eigen::MatrixXd>& informations, std::size_t first,
+                          std::size_t count, SpreadCriterion& criterion) {
+  InstantChoice choice{{first}, informations[first]};
+  while (choice.instants.size() < count) {
+    choice.instants.push_back(
+        find_best(informations, choice.information, choice.instants, criterion));
+    choice.information += informations[choice.instants.back()];
   }
-
-  double calc_criterion(const InstantChoice& choice) { return criterion_.calc(choice.information); }
-
- private:
-  bool exchange(InstantChoice& choice, std::size_t slot) {
-    constexpr double kGain = 1.0 - 1e-9;  // less would be rounding, and might go round in circles
-    std::vector<std::size_t> others = choice.instants;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(slot));
-    Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(trial_.rows(), trial_.cols());
-    for (const std::size_t i : others) rest += informations_[i];
-    const std::size_t best = find_best(rest, others);
-    const Eigen::MatrixXd sum = rest + informations_[best];
-    if (!(criterion_.calc(sum) < kGain * criterion_.calc(choice.information))) return false;
-    choice.instants[slot] = best;
-    choice.information = sum;
-    return true;
+  std::size_t unchanged = 0;
+  for (std::size_t slot = 0; unchanged < count; slot = (slot + 1) % count) {
+    unchanged = exchange(informations, slot, criterion, choice) ? 0 : unchanged + 1;
   }
-
-  const std::vector<Eigen::MatrixXd>& informations_;
-  SpreadCriterion criterion_;
-  Eigen::MatrixXd trial_;
-};
+  std::sort(choice.instants.begin(), choice.instants.end());
+  return choice;
+}
 
 }  // namespace
 
@@ -105,14 +96,18 @@ Eigen::MatrixXd sum_informations(const std::vector<Eigen::MatrixXd>& information
 
 InstantChoice choose_instants(const std::vector<Eigen::MatrixXd>& informations, int count) {
   constexpr std::size_t kStarts = 6;
-  InstantSearch search(informations);
+  const auto size = static_cast<std::size_t>(count);
+  SpreadCriterion criterion(informations.front().rows());
   const Eigen::MatrixXd none = 0.0 * informations.front();
-  InstantChoice best = search.improve(search.find_best(none, {}), static_cast<std::size_t>(count));
+  const std::size_t alone = find_best(informations, none, {}, criterion);
+  InstantChoice best = search_from(informations, alone, size, criterion);
   if (count == 1) return best;
   for (std::size_t start = 0; start < kStarts; ++start) {
     const std::size_t first = (2 * start + 1) * informations.size() / (2 * kStarts);
-    InstantChoice other = search.improve(first, static_cast<std::size_t>(count));
-    if (search.calc_criterion(other) < search.calc_criterion(best)) best = std::move(other);
+    InstantChoice other = search_from(informations, first, size, criterion);
+    if (criterion.calc(other.information) < criterion.calc(best.information)) {
+      best = std::move(other);
+    }
   }
   return best;
 }
@@ -122,12 +117,12 @@ int choose_sensor(const Sensitivity& s, const Instant& instant, const std::vecto
   const Eigen::MatrixXd present = calc_information(s, instant, channels, noise);
   SpreadCriterion criterion(present.rows());
   int best = -1;
-  double least = std::numeric_limits<double>::infinity();
+  double min_value = std::numeric_limits<double>::infinity();
   for (const int candidate : candidates) {
     if (std::find(channels.begin(), channels.end(), candidate) != channels.end()) continue;
     const double value = criterion.calc(present + calc_information(s, instant, {candidate}, noise));
-    if (value < least) {
-      least = value;
+    if (value < min_value) {
+      min_value = value;
       best = candidate;
     }
   }

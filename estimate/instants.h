@@ -1,4 +1,4 @@
-// Where along the way, and with which sensors, measurements say most about the parameters.
+// Chooses the instants and sensors whose readings identify the parameters best.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,12 +11,12 @@
 
 namespace strut {
 
-/// Fisher information of one reading of `channels` at `instant`, noise independent between channels
-/// [1/%^2].
+/// Fisher information of one reading of `channels` at `instant`, with noise independent between
+/// channels [1/%^2].
 Eigen::MatrixXd calc_information(const Sensitivity& s, const Instant& instant,
                                  const std::vector<int>& channels, const SensorNoise& noise);
 
-/// The same at every instant of `s`.
+/// Fisher information at every instant of `s`.
 std::vector<Eigen::MatrixXd> calc_informations(const Sensitivity& s,
                                                const std::vector<int>& channels,
                                                const SensorNoise& noise);
@@ -25,16 +25,17 @@ Eigen::MatrixXd sum_informations(const std::vector<Eigen::MatrixXd>& information
 
 struct InstantChoice {
   std::vector<std::size_t> instants;  // ascending, all different
-  Eigen::MatrixXd information;        // their sum
+  Eigen::MatrixXd information;        // sum over them
 };
 
-/// The `count` instants with the least mean square bound (A-optimal): one is searched exhaustively;
-/// more are added greedily and exchanged one by one until no exchange helps, from several starts
-/// (V. V. Fedorov, Theory of Optimal Experiments, 1972). A local optimum, deterministic.
+/// The `count` instants with the minimum mean square bound (A-optimal). One is searched
+/// exhaustively; more are added greedily and exchanged one by one until no exchange helps, from
+/// several starts (V. V. Fedorov, Theory of Optimal Experiments, 1972). A local optimum,
+/// deterministic.
 InstantChoice choose_instants(const std::vector<Eigen::MatrixXd>& informations, int count);
 
 /// The channel of `candidates` outside of `channels` whose reading at `instant` lowers the mean
-/// square bound most; -1 where none is left.
+/// square bound most; -1 where there is none.
 int choose_sensor(const Sensitivity& s, const Instant& instant, const std::vector<int>& channels,
                   const std::vector<int>& candidates, const SensorNoise& noise);
 

@@ -9,41 +9,47 @@ namespace {
 
 using C = CarChannel;
 
-/// Place of the spring's length and of the wheel center in CornerCoefficients::once.
+/// Indices of the spring's length and of the wheel center in CornerCoefficients::once.
 constexpr std::size_t kCenterFunction = kInertiaFunctions + 1;
 constexpr std::size_t kSpringFunction = kCenterFunction + 6 + kSpringLine;
 
-/// One rear wheel: its center as a function of its spring's shortening.
-class WheelPlace {
- public:
-  WheelPlace(const PreparedCase& c, int corner)
-      : table_(c.mechanism->tables.corner[corner]),
-        degree_(c.mechanism->tables.degree[corner].place),
-        nominal_length_(c.vehicle.numbers.nominal_length[corner * kLines + kSpringLine]) {}
-
-  /// Chassis axes. Newton's method from the last call's solution.
-  Vec3<double> calc_center(double deflection) {
-    constexpr int kIterations = 6;
-    constexpr double kTolerance = 1e-12;  // m, far below what moves an instant
-    double length = 0.0, slope = 0.0;
-    double* const none = nullptr;
-    for (int i = 0; i < kIterations; ++i) {
-      evaluate_group<1, 1>(table_.once, kSpringFunction, degree_, q_, &length, &slope, none);
-      const double error = length - (nominal_length_ - deflection);
-      q_ -= error / slope;
-      if (std::abs(error) < kTolerance) break;
-    }
-    double center[3], unused[3];
-    evaluate_group<1, 3>(table_.once, kCenterFunction, degree_, q_, center, unused, none);
-    return {center[0], center[1], center[2]};
-  }
-
- private:
-  const CornerCoefficients<double>& table_;
-  int degree_;
-  double nominal_length_;
-  double q_ = 0.0;
+/// Tabulated kinematics of one rear wheel.
+struct RearWheel {
+  int corner;
+  const CornerCoefficients<double>* table;
+  int degree;
+  double nominal_length;  // of the spring [m]
 };
+
+RearWheel make_rear_wheel(const PreparedCase& c, int corner) {
+  return {corner, &c.mechanism->tables.corner[corner], c.mechanism->tables.degree[corner].place,
+          c.vehicle.numbers.nominal_length[corner * kLines + kSpringLine]};
+}
+
+/// Solves for the corner coordinate at which the spring is shorter by `deflection` [m], by Newton's
+/// method from `q`.
+double solve_coordinate(const RearWheel& wheel, double deflection, double q) {
+  constexpr int kIterations = 6;
+  constexpr double kTolerance = 1e-12;  // m, far below what moves an instant
+  double length = 0.0, slope = 0.0;
+  double* const none = nullptr;
+  for (int i = 0; i < kIterations; ++i) {
+    evaluate_group<1, 1>(wheel.table->once, kSpringFunction, wheel.degree, q, &length, &slope,
+                         none);
+    const double error = length - (wheel.nominal_length - deflection);
+    q -= error / slope;
+    if (std::abs(error) < kTolerance) break;
+  }
+  return q;
+}
+
+/// Center of the wheel in chassis axes.
+Vec3<double> calc_center(const RearWheel& wheel, double q) {
+  double center[3], unused[3];
+  double* const none = nullptr;
+  evaluate_group<1, 3>(wheel.table->once, kCenterFunction, wheel.degree, q, center, unused, none);
+  return {center[0], center[1], center[2]};
+}
 
 /// d(yaw)/dt from chassis-fixed rates (x forward, y left, z up).
 double calc_yaw_rate(double pitch, double roll, double rate_y, double rate_z) {
@@ -57,7 +63,7 @@ double calc_world_x(double yaw, double pitch, double roll, const Vec3<double>& r
   return std::cos(yaw) * (std::cos(pitch) * r.x + std::sin(pitch) * up) - std::sin(yaw) * side;
 }
 
-/// The rear wheels that see the bump; both where both or none do.
+/// The rear wheels on the bump; both where both or none are.
 std::vector<int> list_trigger_corners(const PreparedCase& c) {
   const auto& on_bump = c.vehicle.layout.on_bump;
   if (on_bump[kRearLeft] == on_bump[kRearRight]) return {kRearLeft, kRearRight};
@@ -69,11 +75,10 @@ std::vector<int> list_trigger_corners(const PreparedCase& c) {
 std::vector<double> calc_line_positions(const PreparedCase& c, const LaneResults& results,
                                         int lane) {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  const std::vector<int> corners = list_trigger_corners(c);
-  std::vector<WheelPlace> wheels;
-  wheels.reserve(corners.size());
-  for (const int corner : corners) wheels.emplace_back(c, corner);
+  std::vector<RearWheel> wheels;
+  for (const int corner : list_trigger_corners(c)) wheels.push_back(make_rear_wheel(c, corner));
 
+  std::vector<double> coordinates(wheels.size(), 0.0);  // the last sample's, for the next
   std::vector<double> positions(at(results.sample_count));
   double yaw = 0.0, last_rate = 0.0, last_time = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -87,8 +92,9 @@ std::vector<double> calc_line_positions(const PreparedCase& c, const LaneResults
     double sum = 0.0;
     for (std::size_t w = 0; w < wheels.size(); ++w) {
       const int channel =
-          C::kCornerBegin + corners[w] * C::kCornerChannels + C::kSuspensionDeflection;
-      sum += calc_world_x(yaw, pitch, roll, wheels[w].calc_center(get(channel)));
+          C::kCornerBegin + wheels[w].corner * C::kCornerChannels + C::kSuspensionDeflection;
+      coordinates[w] = solve_coordinate(wheels[w], get(channel), coordinates[w]);
+      sum += calc_world_x(yaw, pitch, roll, calc_center(wheels[w], coordinates[w]));
     }
     positions[i] =
         get(C::kForwardPosition) + sum / static_cast<double>(wheels.size()) - c.bump_center;

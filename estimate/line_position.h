@@ -1,4 +1,4 @@
-// Where the wheels that trigger the snapshot are, from a run's recorded channels.
+// Position of the wheels that trigger the snapshot, from a run's recorded channels.
 #pragma once
 
 #include <vector>

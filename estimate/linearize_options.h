@@ -1,13 +1,13 @@
-// Options of simulated readings: for fits, derivatives, bounds.
+// Options of simulated readings, for fits, derivatives and bounds.
 #pragma once
 
 #include "model/kernel/simulation.h"
 
 namespace strut {
 
-/// RK4 1 ms, 4 ms away from the bump, contact events located; corners tabulated, which takes half
-/// the time of closing loops, moves no estimate by 1e-6 sigma, and lets cases of different
-/// hardpoints share lanes.
+/// RK4 with steps of 1 ms, 4 ms away from the bump, and located contact events. Corners are
+/// tabulated: that takes half the time of closing loops, moves no estimate by 1e-6 sigma, and lets
+/// cases with different hardpoints share lanes.
 inline SolverOptions make_fit_integration() {
   SolverOptions request;
   request.options.closure = Closure::kTable;
@@ -16,19 +16,20 @@ inline SolverOptions make_fit_integration() {
 }
 
 struct LinearizeOptions {
-  /// The integration of a car on a road.
+  /// Integration of a car on a road.
   SolverOptions integrate = make_fit_integration();
-  /// 1/s, samples of a car's simulation between which is interpolated: at 1000 the interpolation of
-  /// a bump at 20 m/s errs by a tenth of a standard deviation of MEMS sensors, at 2000 by 3 %.
+  /// 1/s, rate of the samples of a car's simulation, between which readings are interpolated. At
+  /// 1000 the interpolation over a bump at 20 m/s errs by a tenth of a standard deviation of MEMS
+  /// sensors, at 2000 by 3 % of one.
   double rate = 2000.0;
-  /// s at most between steps of a run that recorded inputs drive; a tenth of a radian of the
-  /// fastest natural frequency is kept, too: RK4 then errs by 1e-6 of a phase.
+  /// s, maximum step of a run that recorded inputs drive; a step is also at most a tenth of a
+  /// radian of the fastest natural mode, where RK4 errs by 1e-6 of a phase.
   double longest_step = 2e-3;
-  /// h of the central differences as a share of the scale. Short, since readings near a contact
+  /// h of the central differences as a fraction of the scale. Short, since readings near a contact
   /// event are kinked in the unknowns: at 1e-4 the speed moves an event across them. Rounding is
   /// 1e-7.
   double relative_step = 1e-5;
-  int threads = 1;  // no result depends on it
+  int threads = 1;  // results do not depend on it
 };
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "estimate/measured_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,10 +19,10 @@ void check_times(const MeasuredRun& run) {
   for (std::size_t i = 0; i < run.times.size(); ++i) {
     const bool ascends = std::isfinite(run.times[i]) && (i == 0 || run.times[i] > run.times[i - 1]);
     if (ascends) continue;
-    throw InputError(run.name + ": time = " + format_number(run.times[i]) + " s in sample " +
-                     std::to_string(i + 1) + (i == 0 ? "" : " after ") +
-                     (i == 0 ? "" : format_number(run.times[i - 1]) + " s") +
-                     ": must be finite and ascend");
+    const std::string after =
+        i == 0 ? "" : fmt::format(" after {} s", format_number(run.times[i - 1]));
+    throw InputError(fmt::format("{}: time = {} s in sample {}{}: must be finite and ascend",
+                                 run.name, format_number(run.times[i]), i + 1, after));
   }
 }
 
@@ -28,22 +30,23 @@ void check_channel(const MeasuredRun& run, const MeasuredChannel& c) {
   const std::string& name = get_channel_name(run, c);
   const auto same = [&](const MeasuredChannel& other) { return other.channel == c.channel; };
   if (std::count_if(run.channels.begin(), run.channels.end(), same) > 1) {
-    throw InputError(run.name + ": channel '" + name + "' twice; allowed: once");
+    throw InputError(
+        fmt::format("{}: channel '{}' is given twice; must be given once", run.name, name));
   }
   if (!(c.sigma > 0.0) || !std::isfinite(c.sigma)) {
-    throw InputError(run.name + ": noise of " + name + " = " + format_number(c.sigma) +
-                     ": must be > 0 and finite");
+    throw InputError(fmt::format("{}: noise of {} = {}: must be > 0 and finite", run.name, name,
+                                 format_number(c.sigma)));
   }
   if (c.values.size() != run.times.size()) {
-    throw InputError(run.name + ": " + name + " has " + std::to_string(c.values.size()) +
-                     " readings at " + std::to_string(run.times.size()) + " times");
+    throw InputError(fmt::format("{}: {} has {} readings at {} times; must be one at each",
+                                 run.name, name, c.values.size(), run.times.size()));
   }
   const auto bad = std::find_if_not(c.values.begin(), c.values.end(), [&](double v) {
     return std::isfinite(v) || (run.may_miss && std::isnan(v));
   });
   if (bad != c.values.end()) {
-    throw InputError(run.name + ": " + name + " in sample " +
-                     std::to_string(bad - c.values.begin() + 1) + ": must be a finite number");
+    throw InputError(fmt::format("{}: {} in sample {}: must be a finite number", run.name, name,
+                                 bad - c.values.begin() + 1));
   }
 }
 
@@ -63,6 +66,7 @@ void cut_window(MeasuredRun& run, double from, double to) {
 
 void check_measured_run(const MeasuredRun& run) {
   if (run.channels.empty()) throw InputError(run.name + ": no channel to compare");
+  if (run.times.empty()) throw InputError(run.name + ": no samples");
   check_times(run);
   for (const MeasuredChannel& c : run.channels) check_channel(run, c);
 }

@@ -1,5 +1,5 @@
-// One measured run: readings of some channels over the sensor's own clock, and the
-// model as far as it is known, with what drives it.
+// One measured run: readings of some channels over the sensor's own clock, and the model with its
+// known or supposed setup and inputs.
 #pragma once
 
 #include <cstddef>
@@ -11,38 +11,38 @@
 
 namespace strut {
 
-/// One sensor.
+/// The readings of one sensor.
 struct MeasuredChannel {
-  int channel = 0;             // of ModelInfo::channels
-  double sigma = 0.0;          // 1 sigma of its white noise per sample, in the channel's unit
+  int channel = 0;             // index in ModelInfo::channels
+  double sigma = 0.0;          // standard deviation of its white noise, in the channel's unit
   std::vector<double> values;  // one reading per time
 };
 
 /// The noise of a recorded input.
 struct InputNoise {
-  double sigma = 0.0;       // 1 sigma per sample, in the input's unit
-  double half_width = 0.0;  // s, of the local cubics that smoothed it; 0: none did
+  double sigma = 0.0;       // standard deviation per sample, in the input's unit
+  double half_width = 0.0;  // of the local cubics that smoothed it [s]; 0: not smoothed
 };
 
 struct MeasuredRun {
   std::string name;           // the file, for messages
-  Model setup;                // known or supposed; a maneuver's duration is the fit's own
+  Model setup;                // known or supposed; fits replace a maneuver's duration
   std::vector<double> times;  // s, ascending
   std::vector<MeasuredChannel> channels;
   bool may_miss = false;                  // readings may be NaN: missing
-  std::vector<InputNoise> input_noise{};  // of each recorded input
+  std::vector<InputNoise> input_noise{};  // by recorded input
 };
 
-/// Keeps the times in [from, to] s.
+/// Keeps the readings in [from, to] s.
 void cut_window(MeasuredRun& run, double from, double to);
 
-/// Throws InputError, naming run and place, unless there are channels with a positive sigma, none
-/// of them twice, as many readings as times, every number finite (or missing, where it may be), and
-/// times that ascend.
+/// Throws InputError, with the run and the sample, unless the run has times that ascend and
+/// channels, each once, with a positive sigma and as many readings as times, all finite (or
+/// missing, where they may be).
 void check_measured_run(const MeasuredRun& run);
 
-/// A measurement yet to be made, for bounds: the channels that have a sensor, every 1 / rate s from
-/// `from` to `to`, readings zero.
+/// A planned measurement, for bounds: the channels that have a sensor, every 1 / rate s from `from`
+/// to `to`, with readings of zero.
 MeasuredRun make_planned_run(const Case& setup, const SensorNoise& noise, double rate, double from,
                              double to);
 

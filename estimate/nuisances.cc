@@ -14,7 +14,7 @@ bool is_among(const std::vector<Unknown>& unknowns, const std::string& name) {
                      [&](const Unknown& u) { return u.name == name; });
 }
 
-// --- on a road -------------------------------------------------------------------------------
+// --- cars on a road --------------------------------------------------------------------------
 
 void add_crossing(const std::vector<MeasuredRun>& runs, std::size_t r, const NuisanceSigmas& sigmas,
                   const std::vector<Unknown>& chosen, std::vector<Unknown>& list) {
@@ -33,9 +33,9 @@ void add_crossing(const std::vector<MeasuredRun>& runs, std::size_t r, const Nui
   }
 }
 
-// --- by recorded inputs ----------------------------------------------------------------------
+// --- runs that recorded inputs drive ---------------------------------------------------------
 
-/// The first reading of a position, less the ground's; 0 where it is not measured.
+/// The first reading of a position less that of the ground; 0 where it is not measured.
 double read_first_offset(const MeasuredRun& run, int position) {
   for (const MeasuredChannel& c : run.channels) {
     if (c.channel != position) continue;
@@ -53,12 +53,12 @@ double read_first_offset(const MeasuredRun& run, int position) {
   return 0.0;
 }
 
-/// `number` counts the masses' positions, then their velocities.
-Unknown make_initial_state(const MeasuredRun& run, int index, const RunCurves& curves, int number) {
+/// `state` as in Unknown::state.
+Unknown make_initial_state(const MeasuredRun& run, int index, const RunCurves& curves, int state) {
   const ModelInfo& model = run.setup.info();
   const int masses = static_cast<int>(model.masses.size());
-  const bool is_rate = number >= masses;
-  const MassInfo& mass = model.masses[static_cast<std::size_t>(number % masses)];
+  const bool is_rate = state >= masses;
+  const MassInfo& mass = model.masses[static_cast<std::size_t>(state % masses)];
   const int channel = is_rate ? mass.velocity : mass.position;
   const auto at = static_cast<std::size_t>(channel);
   Unknown u;
@@ -66,11 +66,11 @@ Unknown make_initial_state(const MeasuredRun& run, int index, const RunCurves& c
   u.name = "initial_" + model.channels[at].name;
   u.unit = model.channels[at].unit;
   u.run = index;
-  u.channel = number;
+  u.state = state;
   const double spread = curves.failure.empty() ? calc_spread(curves.channel[at]) : 0.0;
   u.start = is_rate ? 0.0 : read_first_offset(run, channel);
   u.scale = std::max(spread, std::abs(u.start));
-  if (u.scale == 0.0) u.scale = 1e-3;  // nothing moves: any small number
+  if (u.scale == 0.0) u.scale = 1e-3;  // nothing moves; any small number
   u.prior = {u.start, u.scale};
   u.low = u.start - 100.0 * u.scale;
   u.high = u.start + 100.0 * u.scale;

@@ -1,4 +1,4 @@
-// Unknowns of one run alone: its clock, its speed, its start, the biases of its sensors.
+// Unknowns of a single run: its clock, its speed, its initial state, the biases of its sensors.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace strut {
 
-/// 1 sigma of what is not known about each crossing of a road; 0: known.
+/// Prior standard deviations of the nuisances of a crossing of a road; 0: known.
 struct NuisanceSigmas {
   double hit_time = 0.005;  // s, a trigger at one frame of a 100 Hz bus
   double speed = 0.2;       // m/s, a wheel speed sensor and the tire's effective radius
   SensorNoise bias;         // per CarChannel, in its unit; empty: make_default_bias()
 };
 
-/// The nuisances of every run. Of cars on a road: hit time, speed and biases, as far as their sigma
-/// is not 0. Of runs that recorded inputs drive: offsets from rest and velocities of the masses at
-/// the start, where the first readings are, with priors as wide as the simulated motion; biases
-/// with priors as wide as the channel's own spread. What `chosen` has for all runs is left out.
+/// Lists the nuisances of every run, except those in `chosen`. A car on a road has a hit time, a
+/// speed and biases where their sigma is not 0. A run that recorded inputs drive has initial
+/// positions and velocities of its masses, with priors at the first readings and as wide as the
+/// simulated motion, and biases with priors as wide as the channel's own spread.
 std::vector<Unknown> make_nuisances(const std::vector<MeasuredRun>& runs,
                                     const NuisanceSigmas& sigmas,
                                     const std::vector<Unknown>& chosen = {});

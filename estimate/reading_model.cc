@@ -1,10 +1,103 @@
 #include "estimate/reading_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "base/error/input_error.h"
 
 namespace strut {
+
+std::vector<double> set_variant(std::vector<double> values, const RunVariant& variant) {
+  if (variant.unknown != kNoUnknown) values[variant.unknown] = variant.value;
+  return values;
+}
+
+std::vector<RunVariant> list_variants(const std::vector<Unknown>& unknowns, std::size_t run_count,
+                                      const std::vector<double>& values, double relative_step) {
+  std::vector<RunVariant> variants;
+  variants.reserve(run_count * (1 + 2 * unknowns.size()));
+  for (std::size_t run = 0; run < run_count; ++run) {
+    variants.push_back({run, kNoUnknown, 0.0});
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      if (!is_simulated(unknowns[i]) || !belongs(unknowns[i], run)) continue;
+      const auto [upper, lower] = calc_sides(unknowns[i], values[i], relative_step);
+      variants.push_back({run, i, upper});
+      variants.push_back({run, i, lower});
+    }
+  }
+  return variants;
+}
+
+std::pair<double, double> calc_sides(const Unknown& u, double value, double relative_step) {
+  const double h = relative_step * u.scale;
+  const double center = std::max(u.low + h, std::min(u.high - h, value));
+  return {center + h, center - h};
+}
+
+ReadingModel::ReadingModel(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns)
+    : runs_(std::move(runs)), unknowns_(std::move(unknowns)) {
+  if (runs_.empty()) throw InputError("fit: no measurement");
+  check_unknowns(unknowns_, runs_.size());
+  for (const MeasuredRun& run : runs_) {
+    check_measured_run(run);
+    channels_.emplace_back();
+    for (const MeasuredChannel& c : run.channels) channels_.back().push_back(c.channel);
+  }
+}
+
+void ReadingModel::add_reading_rows(std::size_t run, std::size_t time) {
+  const std::vector<MeasuredChannel>& channels = runs_[run].channels;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (std::isfinite(channels[c].values[time])) readings_.push_back({run, time, c});
+  }
+}
+
+void ReadingModel::finish() {
+  prior_count_ = static_cast<std::size_t>(std::count_if(
+      unknowns_.begin(), unknowns_.end(), [](const Unknown& u) { return u.prior.informs(); }));
+  if (reading_count() + prior_count_ >= unknowns_.size()) return;
+  throw InputError(
+      fmt::format("{}: {} readings within the simulated time are too few for {} unknowns",
+                  runs_.front().name, reading_count(), unknowns_.size()));
+}
+
+Linearization ReadingModel::make_linearization(std::string failure) const {
+  if (!failure.empty()) return {std::move(failure), {}, {}};
+  return {"", Eigen::VectorXd::Zero(row_count()),
+          Eigen::MatrixXd::Zero(row_count(), static_cast<Eigen::Index>(unknowns_.size()))};
+}
+
+void ReadingModel::fill_residual(std::size_t run, const std::vector<double>& values,
+                                 const std::vector<double>& simulated,
+                                 Eigen::VectorXd& residual) const {
+  std::vector<double> bias(runs_[run].channels.size(), 0.0);
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    if (u.kind != UnknownKind::kBias || !belongs(u, run)) continue;
+    for (std::size_t c = 0; c < bias.size(); ++c) {
+      if (runs_[run].channels[c].channel == u.channel) bias[c] += values[i];
+    }
+  }
+  for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
+    const MeasuredChannel& c = get_channel(readings_[k]);
+    const double reading = simulated[k - begin_row(run)] + bias[readings_[k].channel];
+    residual(static_cast<Eigen::Index>(k)) = (reading - c.values[readings_[k].time]) / c.sigma;
+  }
+}
+
+void ReadingModel::fill_bias_columns(Linearization& out) const {
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    if (u.kind != UnknownKind::kBias) continue;
+    for (std::size_t k = 0; k < readings_.size(); ++k) {
+      const MeasuredChannel& c = get_channel(readings_[k]);
+      if (c.channel != u.channel || !belongs(u, readings_[k].run)) continue;
+      out.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = u.scale / c.sigma;
+    }
+  }
+}
 
 void ReadingModel::fill_prior_residuals(const std::vector<double>& values,
                                         Eigen::VectorXd& residual) const {
@@ -25,18 +118,9 @@ void ReadingModel::fill_priors(const std::vector<double>& values, Linearization&
   }
 }
 
-void ReadingModel::finish(const std::string& name) {
-  prior_count_ = static_cast<std::size_t>(std::count_if(
-      unknowns_.begin(), unknowns_.end(), [](const Unknown& u) { return u.prior.informs(); }));
-  if (reading_count() + prior_count_ >= unknowns_.size()) return;
-  throw InputError(name + ": " + std::to_string(reading_count()) +
-                   " readings within the simulated time, too few for " +
-                   std::to_string(unknowns_.size()) + " unknowns");
-}
-
 namespace {
 
-/// Rows of readings of one run, and the unknowns that meet them.
+/// Rows of the readings of one run, and the unknowns they depend on.
 struct RunBlock {
   Eigen::Index begin = 0, count = 0;
   std::vector<Eigen::Index> unknowns;
@@ -52,8 +136,7 @@ std::vector<RunBlock> list_blocks(const ReadingModel& model) {
     while (k < readings.size() && readings[k].run == run) ++k;
     block.count = static_cast<Eigen::Index>(k) - block.begin;
     for (std::size_t i = 0; i < model.unknowns().size(); ++i) {
-      const int of = model.unknowns()[i].run;
-      if (of == kEveryRun || of == static_cast<int>(run)) {
+      if (belongs(model.unknowns()[i], run)) {
         block.unknowns.push_back(static_cast<Eigen::Index>(i));
       }
     }

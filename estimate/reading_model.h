@@ -14,75 +14,140 @@ namespace strut {
 
 /// Residuals and their derivatives at one point.
 struct Linearization {
-  std::string failure;  // why there is no simulation here; empty: all runs got through
+  std::string failure;  // reason for which a run cannot be simulated here; empty: none
   /// (y_sim(t + hit_time) + bias - y_measured) / sigma by run, time and channel; then
   /// (value - mean) / sigma of every prior.
   Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;  // by unknowns counted in their scale
+  Eigen::MatrixXd jacobian;  // by unknowns, in units of their scale
 };
 
-/// Residuals alone, at one of several points.
+/// Residuals alone, at one of several points; as in Linearization.
 struct Evaluation {
-  std::string failure;       // as Linearization's
-  Eigen::VectorXd residual;  // as Linearization's
+  std::string failure;
+  Eigen::VectorXd residual;
 };
 
-/// Which reading a residual is.
+/// Indices of the reading that a residual belongs to.
 struct ReadingPlace {
-  std::size_t run, time, channel;  // the latter of the run's channels
+  std::size_t run, time, channel;  // the latter in MeasuredRun::channels
 };
 
-/// Simulated readings of all runs against the measured ones, of a car (linearize.h) or a rig
-/// (rig_readings.h), by whatever is unknown about them.
+inline constexpr std::size_t kNoUnknown = static_cast<std::size_t>(-1);
+
+/// One simulation of a run that a Jacobian needs: its base point, or one unknown beside it.
+struct RunVariant {
+  std::size_t run = 0;
+  std::size_t unknown = kNoUnknown;  // kNoUnknown: the base point
+  double value = 0.0;                // that unknown's
+};
+
+/// `values` with the variant's unknown at the variant's value.
+std::vector<double> set_variant(std::vector<double> values, const RunVariant& variant);
+
+/// Lists by run: the base point, then the upper and the lower side of each unknown that its
+/// simulation depends on (calc_sides).
+std::vector<RunVariant> list_variants(const std::vector<Unknown>& unknowns, std::size_t run_count,
+                                      const std::vector<double>& values, double relative_step);
+
+/// Returns the upper and the lower side of an unknown's central difference: `relative_step` of its
+/// scale away from `value`, moved inwards at the bounds.
+std::pair<double, double> calc_sides(const Unknown& u, double value, double relative_step);
+
+/// Simulated readings of all runs against the measured ones, as a function of the unknowns.
+/// make_readings (readings.h) chooses the implementation: cars on a road or runs that recorded
+/// inputs drive.
 class ReadingModel {
  public:
   virtual ~ReadingModel() = default;
 
   /// `values` in the unknowns' own units. Deterministic.
   virtual Linearization linearize(const std::vector<double>& values) = 0;
-  /// The residuals at several points, simulated together; each has a failure of its own.
+  /// Residuals at several points, simulated together; a point that fails affects no other.
   virtual std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) = 0;
-  /// At one point.
+  /// Residuals at one point.
   Evaluation evaluate(const std::vector<double>& values) {
     return evaluate(std::vector<std::vector<double>>{values}).front();
   }
-  /// `values` with what costs no search set right, such as the clocks.
+  /// `values` with those unknowns improved that need no search, such as the hit times.
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  /// The places of the first reading_count() residuals, run by run.
+  /// Indices of the first reading_count() residuals, run by run.
   const std::vector<ReadingPlace>& readings() const { return readings_; }
   std::size_t reading_count() const { return readings_.size(); }
   std::size_t prior_count() const { return prior_count_; }
-  /// Readings left aside because they lie outside of what is simulated.
+  /// Number of readings left out because they lie outside of the simulated time.
   std::size_t outside_count() const { return outside_count_; }
-  /// Cases simulated so far.
+  /// Number of cases simulated so far.
   long simulation_count() const { return simulation_count_; }
-  /// By run: the model's channels that are compared.
+  /// The compared channels by run, as indices in ModelInfo::channels.
   const std::vector<std::vector<int>>& channels() const { return channels_; }
 
  protected:
   explicit ReadingModel(std::vector<Unknown> unknowns) : unknowns_(std::move(unknowns)) {}
+  /// Throws InputError for unusable runs or unknowns.
+  ReadingModel(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns);
   ReadingModel(const ReadingModel&) = default;
   ReadingModel& operator=(const ReadingModel&) = default;
 
-  /// Fills in the residuals of the priors, after the readings'; and their derivatives.
+  /// Adds the readings of the next run; `is_inside(time)`: whether the simulation covers it.
+  template <class IsInside>
+  void add_readings(std::size_t run, const IsInside& is_inside);
+  /// To be called once all readings are added. Throws InputError where there are fewer readings
+  /// than unknowns.
+  void finish();
+
+  Eigen::Index row_count() const {
+    return static_cast<Eigen::Index>(reading_count() + prior_count_);
+  }
+  /// First row of a run's readings; of one past the last run, their end.
+  std::size_t begin_row(std::size_t run) const { return begin_[run]; }
+  const MeasuredChannel& get_channel(const ReadingPlace& place) const {
+    return runs_[place.run].channels[place.channel];
+  }
+
+  /// A Linearization of zeros, or one that failed.
+  Linearization make_linearization(std::string failure) const;
+  /// Fills in the residuals of a run from its simulated readings, to which it adds the biases.
+  void fill_residual(std::size_t run, const std::vector<double>& values,
+                     const std::vector<double>& simulated, Eigen::VectorXd& residual) const;
+  /// Fills in the columns of the biases.
+  void fill_bias_columns(Linearization& out) const;
+  /// Fills in the residuals of the priors, after those of the readings; fill_priors also their
+  /// derivatives.
   void fill_prior_residuals(const std::vector<double>& values, Eigen::VectorXd& residual) const;
   void fill_priors(const std::vector<double>& values, Linearization& out) const;
-  /// Throws InputError where there are fewer readings than unknowns; sets prior_count_.
-  void finish(const std::string& name);
 
+  std::vector<MeasuredRun> runs_;
   std::vector<Unknown> unknowns_;
   std::vector<ReadingPlace> readings_;
   std::vector<std::vector<int>> channels_;
   std::size_t prior_count_ = 0, outside_count_ = 0;
   long simulation_count_ = 0;
+
+ private:
+  void add_reading_rows(std::size_t run, std::size_t time);
+
+  std::vector<std::size_t> begin_ = {0};
 };
 
-/// J'J and J'r of a linearization. Unknowns of one run meet only that run's readings, which is
-/// most of the work saved.
+template <class IsInside>
+void ReadingModel::add_readings(std::size_t run, const IsInside& is_inside) {
+  const std::vector<double>& times = runs_[run].times;
+  for (std::size_t t = 0; t < times.size(); ++t) {
+    if (is_inside(times[t])) {
+      add_reading_rows(run, t);
+    } else {
+      outside_count_ += runs_[run].channels.size();
+    }
+  }
+  begin_.push_back(readings_.size());
+}
+
+/// J'J and J'r of a linearization. Unknowns of one run meet only that run's readings, which saves
+/// most of the work.
 struct NormalEquations {
-  Eigen::MatrixXd information, of_priors;  // the latter: the priors' share of it
+  Eigen::MatrixXd information, of_priors;  // the latter: the part of the former from the priors
   Eigen::VectorXd gradient;
 };
 NormalEquations calc_normal_equations(const ReadingModel& model, const Linearization& at);

@@ -1,4 +1,4 @@
-// The one door to simulated readings.
+// Makes the model of a fit's readings, for cars and rigs alike.
 #pragma once
 
 #include <memory>

@@ -10,7 +10,7 @@ namespace {
 
 using Group = std::vector<std::size_t>;
 
-/// Cases that share lanes, up to `width`, in order; every case in one group.
+/// Groups cases that may share lanes, at most `width` a group, in order.
 std::vector<Group> group_cases(const std::vector<PreparedCase>& cases, Closure closure,
                                std::size_t width) {
   std::vector<Group> groups;
@@ -50,7 +50,7 @@ std::vector<double> LaneRun::get_series(int channel) const {
     row = recorded.size();
     column = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), channel) -
                                       recorded.begin());
-    STRUT_CHECK(column != row, "history: a channel that was not recorded");
+    STRUT_CHECK(column != row, "history: the channel was not recorded");
   }
   std::vector<double> series(static_cast<std::size_t>(results->sample_count));
   for (std::size_t i = 0; i < series.size(); ++i) {

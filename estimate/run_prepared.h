@@ -1,5 +1,4 @@
-// Prepared cases through the simulation, in lockstep lanes or by CVODE: what compares runs with
-// each other starts here.
+// Simulates prepared cases in lockstep lanes or by CVODE, for comparisons of runs with each other.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +9,7 @@
 
 namespace strut {
 
-/// One simulation among the lanes that ran with it.
+/// One simulation among the lanes that ran together.
 struct LaneRun {
   std::shared_ptr<const LaneResults> results;
   int lane = 0;
@@ -18,19 +17,19 @@ struct LaneRun {
   RunStatus status() const {
     return static_cast<RunStatus>(results->status[static_cast<std::size_t>(lane)]);
   }
-  /// A car channel of a history sample, of a plan that records all.
+  /// A car channel of a history sample; for plans that record all channels.
   double get(std::size_t sample, std::size_t channel) const {
     const auto lanes = static_cast<std::size_t>(results->lanes);
     return results
         ->history[(sample * CarChannel::kCount + channel) * lanes + static_cast<std::size_t>(lane)];
   }
-  /// The history of a car channel that the plan records.
+  /// The history of a car channel; for plans that record it.
   std::vector<double> get_series(int channel) const;
 };
 
-/// All runs, in the cases' order, on some threads; no result depends on how many. Always in lanes,
-/// even alone: lanes agree with each other to the bit, with plain double only to 1e-9, which a
-/// difference would magnify. Runs that fail say so in their status.
+/// Runs all cases and returns them in the same order; results do not depend on the number of
+/// threads. A single case runs in a lane, too: lanes agree with each other to the bit, with plain
+/// double only to 1e-9, which a difference would magnify. A failed run reports its status.
 std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,
                                   const SolverOptions& integrate, const SamplePlan& plan,
                                   int threads = 1);

@@ -9,7 +9,7 @@ struct CurvePoint {
   double value = 0.0, slope = 0.0;
 };
 
-/// Samples needed on either side of the interval asked for.
+/// Number of samples needed on either side of the interval.
 inline constexpr std::size_t kCurveMargin = 2;
 
 /// Cubic Hermite interpolation at (index + theta) * step, theta in [0, 1], of the samples get(i),

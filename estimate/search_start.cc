@@ -22,14 +22,14 @@ std::vector<double> draw(const std::vector<Unknown>& unknowns, std::uint64_t num
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
     double value = u.start;
-    const bool gain = u.kind == UnknownKind::kInputGain;
-    if (number > 0 && (gain || u.kind == UnknownKind::kParameter)) {
-      const double way = 2.0 * calc_uniform(kSeed, i, 2 * number) - 1.0;
-      // A well-known value is drawn within its prior.
+    const bool is_gain = u.kind == UnknownKind::kInputGain;
+    if (number > 0 && (is_gain || u.kind == UnknownKind::kParameter)) {
+      const double exponent = 2.0 * calc_uniform(kSeed, i, 2 * number) - 1.0;
+      // A value with a narrow prior is drawn within it.
       const double known = u.prior.informs() ? 2.0 * u.prior.sigma / u.scale : 1e9;
-      const double factor = std::pow(reach, way);
+      const double factor = std::pow(reach, exponent);
       value = u.start + std::clamp(u.scale * (factor - 1.0), -known * u.scale, known * u.scale);
-      if (gain && calc_uniform(kSeed, i, 2 * number + 1) < 0.5) value = -value;
+      if (is_gain && calc_uniform(kSeed, i, 2 * number + 1) < 0.5) value = -value;
     }
     values.push_back(std::clamp(value, u.low, u.high));
   }
@@ -41,7 +41,7 @@ double calc_chi2(ReadingModel& model, const std::vector<double>& values) {
   return at.failure.empty() ? at.residual.squaredNorm() : std::numeric_limits<double>::infinity();
 }
 
-/// A few steps of the fit; whether they explain the readings.
+/// Takes a few steps of the fit; returns whether they explain the readings.
 bool improve(ReadingModel& model, int steps, Candidate& c) {
   constexpr double kExplained = 2.0;  // chi2 per degree
   if (!std::isfinite(c.chi2)) return false;

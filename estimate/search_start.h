@@ -1,4 +1,4 @@
-// Where a fit begins, if the model's own values may be far off.
+// Initial guess of a fit for models whose own values may be far off.
 #pragma once
 
 #include <vector>
@@ -8,18 +8,18 @@
 namespace strut {
 
 struct SearchOptions {
-  int draws = 64;      // points tried
-  int survivors = 2;   // of which a few steps are taken
-  int steps = 6;       // each
-  double reach = 4.0;  // of a parameter, up and down, as a factor
+  int draws = 64;      // number of points tried
+  int survivors = 2;   // number of them that are improved
+  int steps = 6;       // of the fit, for each survivor
+  double reach = 4.0;  // max factor on a parameter, up and down
 };
 
-/// The best of several beginnings: the unknowns' own start and points drawn around it, parameters
-/// and gains times log-uniform factors of at most `reach` (gains of either sign), all else as it
-/// is; each judged by chi2, the best after a few steps of the fit. Where such steps from the own
-/// start explain the readings, nothing else is tried. A simulation that is fitted over tens of
-/// periods has many minima; from nominal values alone it ends in one of them. Numbers are drawn by
-/// counter, so the same always come.
+/// Returns the best of several initial guesses: the unknowns' own and points drawn around it, with
+/// parameters and gains times log-uniform factors of at most `reach` (gains of either sign). Points
+/// are ranked by chi2, the best of them again after a few steps of the fit. If such steps from the
+/// unknowns' own guess explain the readings, nothing else is tried. A simulation fitted over tens
+/// of periods has many local minima, and a fit from nominal values alone ends in one of them.
+/// Deterministic: numbers are drawn by counter.
 std::vector<double> search_start(ReadingModel& model, const SearchOptions& options = {});
 
 }  // namespace strut

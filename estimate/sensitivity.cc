@@ -1,5 +1,7 @@
 #include "estimate/sensitivity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,10 +23,10 @@ using Channels = std::array<double, static_cast<std::size_t>(C::kCount)>;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Runs are sampled at least this often, so that interpolating between samples costs nothing.
-constexpr double kLeastRate = 1000.0;  // 1/s
+/// Minimum rate at which runs are sampled, so that interpolation between samples is exact enough.
+constexpr double kMinRate = 1000.0;  // 1/s
 
-/// One simulation, ready to be asked at any place.
+/// One simulation, to be read at any position.
 struct Trajectory : LaneRun {
   std::vector<double> offsets;  // ascending
 };
@@ -59,9 +61,9 @@ std::vector<Variant> list_variants(const Case& base, const std::vector<Sensitivi
   std::vector<Variant> variants{{base, "the base point"}};
   variants.reserve(1 + kRunsPerParameter * ps.size());
   for (const SensitivityParameter& p : ps) {
-    for (const double share : {1.0, -1.0, 0.5, -0.5}) {
-      const double value = calc_center(p) + share * p.step;
-      Variant v{base, p.name + " = " + format_number(value) + " " + p.unit};
+    for (const double steps : {1.0, -1.0, 0.5, -0.5}) {
+      const double value = calc_center(p) + steps * p.step;
+      Variant v{base, fmt::format("{} = {} {}", p.name, format_number(value), p.unit)};
       set_parameter(v.setup, p.name, value);
       variants.push_back(std::move(v));
     }
@@ -77,7 +79,7 @@ std::vector<PreparedCase> prepare_all(const std::vector<Variant>& variants, doub
     try {
       prepared.push_back(preparer.prepare(v.setup, offset));
     } catch (const ModelError& e) {
-      throw InputError(v.label + ": " + e.what());
+      throw InputError(fmt::format("{}: {}", v.label, e.what()));
     }
   }
   return prepared;
@@ -86,25 +88,27 @@ std::vector<PreparedCase> prepare_all(const std::vector<Variant>& variants, doub
 void check_run(const Trajectory& run, const std::string& label) {
   const LaneResults& r = *run.results;
   if (run.status() != RunStatus::kDone) {
-    throw InputError("the run at " + label +
-                     " failed at t = " + format_number(r.failure_time[at(run.lane)]) +
-                     " s; a design needs runs that get through: choose another base point");
+    throw InputError(fmt::format(
+        "the run at {} failed at t = {} s; a design needs complete runs: choose another base point",
+        label, format_number(r.failure_time[at(run.lane)])));
   }
   if (std::isnan(r.event_time[at(run.lane)])) {
-    throw InputError("the run at " + label +
-                     " never meets the snapshot's line: a longer duration or another offset does");
+    throw InputError(
+        fmt::format("the run at {} never meets the snapshot's line; choose a longer "
+                    "duration or another offset",
+                    label));
   }
 }
 
-/// Drops what comes after the wheels first stood still or rolled back.
+/// Drops all positions from where the wheels first stand still or roll back.
 void keep_ascending(std::vector<double>& offsets) {
   const auto end = std::adjacent_find(offsets.begin(), offsets.end(),
                                       [](double a, double b) { return !(b > a); });
   if (end != offsets.end()) offsets.erase(end + 1, offsets.end());
 }
 
-/// Channels where the run passes `offset`: cubic through the four nearest samples, with the place
-/// as the abscissa.
+/// Channels where the run passes `offset`: the cubic through the four nearest samples, over the
+/// position.
 void sample_at(const Trajectory& run, double offset, Channels& out) {
   constexpr std::size_t kNodes = 4;
   const auto above = std::upper_bound(run.offsets.begin(), run.offsets.end(), offset);
@@ -129,12 +133,13 @@ void get_snapshot(const Trajectory& run, Channels& out) {
   }
 }
 
-/// Both Jacobians, step h and h/2, of what `read` takes from each run.
+/// Jacobians by steps h and h/2.
 struct JacobianPair {
   Instant coarse;
   std::vector<double> fine;
 };
 
+/// `read(run, channels)` reads the channels of a run.
 template <class Read>
 JacobianPair calc_jacobians(const std::vector<SensitivityParameter>& parameters, double offset,
                             const Read& read) {
@@ -159,7 +164,7 @@ JacobianPair calc_jacobians(const std::vector<SensitivityParameter>& parameters,
   return pair;
 }
 
-/// Sums over the instants from which the error of each curve follows.
+/// Sums over the instants, for the error of each curve.
 struct ErrorSums {
   std::vector<double> difference, size;
 
@@ -174,13 +179,13 @@ struct ErrorSums {
   }
 };
 
-/// Fills Sensitivity::error and sets the curves that are nothing but rounding to zero.
-void judge_curves(const ErrorSums& sums, Sensitivity& s) {
-  constexpr double kNoise = 0.5;  // of a curve's rms: h and h/2 have nothing in common
+/// Fills in Sensitivity::error and sets curves that are rounding error to zero.
+void fill_errors(const ErrorSums& sums, Sensitivity& s) {
+  constexpr double kRounding = 0.5;  // of a curve's rms: h and h/2 have nothing in common
   s.error.assign(sums.size.size(), 0.0);
   for (std::size_t i = 0; i < s.error.size(); ++i) {
     const double ratio = std::sqrt(sums.difference[i] / sums.size[i]);
-    if (ratio <= kNoise) {
+    if (ratio <= kRounding) {
       s.error[i] = 4.0 / 3.0 * ratio;
       continue;
     }
@@ -189,8 +194,8 @@ void judge_curves(const ErrorSums& sums, Sensitivity& s) {
   }
 }
 
-/// Samples of the base run between which every run has been and will be.
-void calc_instants(const std::vector<Trajectory>& runs, std::size_t stride, Sensitivity& s) {
+/// Fills in the instants: samples of the base run whose position every run passes.
+void fill_instants(const std::vector<Trajectory>& runs, std::size_t stride, Sensitivity& s) {
   double first = runs[0].offsets.front(), last = runs[0].offsets.back();
   for (const Trajectory& run : runs) {
     first = std::max(first, run.offsets.front());
@@ -206,7 +211,7 @@ void calc_instants(const std::vector<Trajectory>& runs, std::size_t stride, Sens
     sums.add(pair);
     s.instants.push_back(std::move(pair.coarse));
   }
-  judge_curves(sums, s);
+  fill_errors(sums, s);
 }
 
 }  // namespace
@@ -221,7 +226,7 @@ Sensitivity calc_sensitivity(const Case& base, const std::vector<Axis>& axes, do
   }
   const std::vector<Variant> variants = list_variants(base, s.parameters);
   const std::vector<PreparedCase> cases = prepare_all(variants, offset);
-  const double stride = std::max(1.0, std::ceil(kLeastRate / options.rate));
+  const double stride = std::max(1.0, std::ceil(kMinRate / options.rate));
   SamplePlan plan;
   plan.interval = 1.0 / (options.rate * stride);
   std::vector<Trajectory> runs;
@@ -237,7 +242,7 @@ Sensitivity calc_sensitivity(const Case& base, const std::vector<Axis>& axes, do
   s.snapshot = calc_jacobians(s.parameters, offset, [&](std::size_t run, Channels& out) {
                  get_snapshot(runs[run], out);
                }).coarse;
-  calc_instants(runs, static_cast<std::size_t>(stride), s);
+  fill_instants(runs, static_cast<std::size_t>(stride), s);
   return s;
 }
 

@@ -1,10 +1,11 @@
-// Derivatives of every channel by the parameters of a grid, all the way across the bump.
+// Derivatives of every channel with respect to the parameters of a grid, along the whole way across
+// the bump.
 //
 // Central differences of simulations in lockstep lanes: base, base +- h and base +- h/2 in each
-// parameter. The instants are places, not times: the rear wheels' mean forward position ahead of
-// the bump's center, as the snapshot is taken (docs/identifiability.md). So each run is
-// interpolated at its own time of passage, which is dy/dp|t - (dy/dt) (dx/dp) / (dx/dt) without the
-// differentiation in time.
+// parameter. The instants are positions, not times: the rear wheels' mean forward position ahead of
+// the bump's center, as for the snapshot (docs/identifiability.md). Each run is interpolated at its
+// own time of passage, which gives dy/dp|t - (dy/dt) (dx/dp) / (dx/dt) without a differentiation in
+// time.
 #pragma once
 
 #include <string>
@@ -24,20 +25,20 @@ struct SensitivityParameter {
   double step = 0.0;   // h of the central difference
 };
 
-/// Derivatives at one place.
+/// Derivatives at one position.
 struct Instant {
-  double offset = 0.0;           // m, rear wheels ahead of the bump's center
-  double time = 0.0;             // s, at the base point
+  double offset = 0.0;           // rear wheels ahead of the bump's center [m]
+  double time = 0.0;             // of the base run [s]
   std::vector<double> jacobian;  // [channel][parameter], channel unit per parameter unit
 };
 
 struct Sensitivity {
   std::vector<SensitivityParameter> parameters;
   Instant snapshot;               // at the request's offset, from the integrator's own event
-  std::vector<Instant> instants;  // one per sample of the base run that every run passes
+  std::vector<Instant> instants;  // one per sample of the base run whose position every run passes
   double rate = 0.0;              // 1/s, of the samples
   /// [channel][parameter]: rms over the instants of 4/3 (J(h) - J(h/2)), the leading error of J(h),
-  /// relative to the rms of J(h). Zero where the curve is.
+  /// relative to the rms of J(h). Zero for a curve of zeros.
   std::vector<double> error;
 
   double get(const Instant& instant, int channel, std::size_t parameter) const {
@@ -47,15 +48,15 @@ struct Sensitivity {
 
 struct SensitivityOptions {
   double rate = 1000.0;  // 1/s, of the instants
-  /// h as a share of the parameter's scale. Truncation falls with h^2, rounding and the residue of
-  /// located contact events grow with 1/h; at 1e-4 both are below 2e-5 for the paper's sweep.
+  /// h as a fraction of the parameter's scale. Truncation falls with h^2; rounding and the error of
+  /// located contact events grow with 1/h. At 1e-4 both are below 2e-5 for the paper's sweep.
   double relative_step = 1e-4;
   SolverOptions integrate;  // default: RK4 1 ms, Newton closure, contact events located
 };
 
-/// The Jacobian of all car channels at `base` with respect to the axes' parameters. A curve of
-/// nothing but rounding (its half-step error exceeds half of its size) is set to zero. Throws
-/// InputError where a run cannot be made, fails, or never meets the snapshot's line.
+/// The Jacobian of all car channels at `base` with respect to the axes' parameters. A curve that is
+/// rounding error (its half-step error exceeds half of its size) is set to zero. Throws InputError
+/// where a run is infeasible, fails, or never reaches the snapshot's line.
 Sensitivity calc_sensitivity(const Case& base, const std::vector<Axis>& axes, double offset,
                              const SensitivityOptions& options);
 

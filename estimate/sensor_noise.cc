@@ -1,5 +1,7 @@
 #include "estimate/sensor_noise.h"
 
+#include <fmt/format.h>
+
 #include <span>
 
 #include "base/error/input_error.h"
@@ -18,8 +20,8 @@ struct ChannelNoise {
   double sigma;
 };
 
-/// Body motion as an inertial navigation or a fusion filter reports it; accelerometers and
-/// gyroscopes of the MEMS class over some 250 Hz.
+/// Body motion as reported by inertial navigation or a fusion filter; accelerometers and gyroscopes
+/// of the MEMS class with a bandwidth of about 250 Hz.
 constexpr ChannelNoise kBodyNoise[] = {
     {C::kBodyPositionZ, 1e-3},    {C::kBodyVelocityZ, 5e-3},    {C::kBodyAccelerationZ, 0.02},
     {C::kPitchAngle, 3.5e-4},     {C::kPitchRate, 1e-3},        {C::kRollAngle, 3.5e-4},
@@ -52,7 +54,7 @@ constexpr ChannelNoise kBodyBias[] = {{C::kBodyPositionZ, 5e-3},
 constexpr ChannelNoise kCornerBias[] = {{C::kWheelAccelerationZ, kAccelerationBias},
                                         {C::kSuspensionDeflection, 2e-3}};
 
-/// Sigmas of the body's channels and of each corner's; 0 elsewhere.
+/// Sigmas of the body's and each corner's channels; 0 elsewhere.
 SensorNoise make_sigmas(std::span<const ChannelNoise> body, std::span<const ChannelNoise> corner) {
   SensorNoise sigmas(C::kCount, 0.0);
   for (const ChannelNoise& n : body) sigmas[static_cast<std::size_t>(n.channel)] = n.sigma;
@@ -76,7 +78,7 @@ void apply_noise(SensorNoise& noise, const std::string& setting) {
   const auto channel = static_cast<std::size_t>(find_car_channel(name));
   const Range allowed = above(0.0, list_car_channels()[channel].unit);
   if (!allowed.contains(sigma)) {
-    throw InputError(name + " = " + format_number(sigma) + ": " + allowed.describe());
+    throw InputError(fmt::format("{} = {}: {}", name, format_number(sigma), allowed.describe()));
   }
   noise[channel] = sigma;
 }

@@ -1,5 +1,7 @@
 #include "estimate/simulate_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,16 +21,15 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// s by which simulated time is ahead of measured time.
-double find_hit_time_value(const std::vector<Unknown>& unknowns,
-                           const std::vector<double>& values) {
+/// Simulated time less measured time [s].
+double get_hit_time(const std::vector<Unknown>& unknowns, const std::vector<double>& values) {
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     if (unknowns[i].kind == UnknownKind::kHitTime && belongs(unknowns[i], 0)) return values[i];
   }
   return 0.0;
 }
 
-/// Interpolates what the sensors of every channel of a car read at the run's times.
+/// Interpolates the readings of the sensors of every channel of a car at the run's times.
 void read_history(const LaneRun& simulated, const EffectSettings& effects,
                   const std::vector<double>& times, double hit_time, double step,
                   RunCurves& curves) {
@@ -47,7 +48,7 @@ void read_history(const LaneRun& simulated, const EffectSettings& effects,
   }
 }
 
-/// The car in the run, with the maneuver as long as the readings need.
+/// The car of the run, in a maneuver as long as the readings need.
 Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                const std::vector<double>& values, double hit_time) {
   Case c = set_unknowns({run.name, run.setup, {}, {}}, unknowns, values, 0).setup.car();
@@ -61,7 +62,7 @@ Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
 RunCurves simulate_crossing(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                             const std::vector<double>& values) {
   RunCurves curves;
-  const double hit_time = find_hit_time_value(unknowns, values);
+  const double hit_time = get_hit_time(unknowns, values);
   const LinearizeOptions options;
   SamplePlan plan;
   plan.interval = 1.0 / options.rate;
@@ -72,22 +73,23 @@ RunCurves simulate_crossing(const MeasuredRun& run, const std::vector<Unknown>& 
     const std::vector<PreparedCase> cases = {preparer.prepare(c)};
     const LaneRun simulated = run_prepared(cases, options.integrate, plan).front();
     if (simulated.status() != RunStatus::kDone) {
-      curves.failure = run.name + ": the simulation fails: " + get_name(simulated.status());
+      curves.failure =
+          fmt::format("{}: the simulation fails: {}", run.name, get_name(simulated.status()));
       return curves;
     }
     read_history(simulated, c.vehicle.effects, run.times, hit_time, plan.interval, curves);
   } catch (const ModelError& e) {
-    curves.failure = run.name + ": " + e.what();
+    curves.failure = fmt::format("{}: {}", run.name, e.what());
   }
   return curves;
 }
 
 RunCurves simulate_driven(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                           const std::vector<double>& values) {
-  const DrivenTask only(run, 0, unknowns, values, {});
-  if (!only.failure.empty()) throw InputError(only.failure);
+  const DrivenTask task(run, 0, unknowns, values, {});
+  if (!task.failure.empty()) throw InputError(task.failure);
   RunCurves curves;
-  simulate_tasks({only}, 1, [&](std::size_t, const DrivenResult& result) {
+  simulate_tasks({task}, 1, [&](std::size_t, const DrivenResult& result) {
     curves.failure = result.failure();
     if (!curves.failure.empty()) return;
     const std::size_t count = run.setup.info().channels.size();

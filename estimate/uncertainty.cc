@@ -1,8 +1,9 @@
 #include "estimate/uncertainty.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "estimate/fisher.h"
@@ -12,16 +13,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Eigenvectors of the information that leave more than 100 % open.
+/// Eigenvectors of the information along which sigma exceeds 100 %.
 std::vector<NullDirection> find_null_directions(const Eigen::MatrixXd& information) {
-  // A nuisance known from its prior alone has 1 up to rounding.
-  constexpr double kLeast = 1.0 - 1e-6;
+  // A nuisance known from its prior alone has an eigenvalue of 1 up to rounding.
+  constexpr double kMinEigenvalue = 1.0 - 1e-6;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
-  const double rounding = kLeastInformation * solver.eigenvalues().maxCoeff();
+  const double rounding = kMinInformation * solver.eigenvalues().maxCoeff();
   std::vector<NullDirection> found;
   for (Eigen::Index k = 0; k < information.rows(); ++k) {
     const double value = solver.eigenvalues()(k);
-    if (value >= kLeast) break;  // ascending
+    if (value >= kMinEigenvalue) break;  // ascending
     Eigen::VectorXd v = solver.eigenvectors().col(k);
     Eigen::Index largest = 0;
     v.cwiseAbs().maxCoeff(&largest);
@@ -64,18 +65,15 @@ Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
 
 std::string describe_direction(const NullDirection& direction,
                                const std::vector<Unknown>& unknowns) {
-  constexpr double kLeastPart = 0.1;
+  constexpr double kMinPart = 0.1;
   std::string text;
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const double part = direction.parts[i];
-    if (std::abs(part) < kLeastPart) continue;
-    char number[32];
-    std::snprintf(number, sizeof number, "%.2g ", std::abs(part));
+    if (std::abs(part) < kMinPart) continue;
     text += text.empty() ? (part < 0.0 ? "-" : "") : (part < 0.0 ? " - " : " + ");
-    text += (std::abs(part) > 0.99 ? "" : std::string(number)) + unknowns[i].name;
-    if (unknowns[i].run != kEveryRun && unknowns[i].run > 0) {
-      text += " of run " + std::to_string(unknowns[i].run + 1);
-    }
+    if (std::abs(part) <= 0.99) text += fmt::format("{:.2g} ", std::abs(part));
+    text += unknowns[i].name;
+    if (unknowns[i].run > 0) text += fmt::format(" of run {}", unknowns[i].run + 1);
   }
   return text;
 }

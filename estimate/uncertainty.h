@@ -1,4 +1,4 @@
-// Uncertainty of the unknowns from the Jacobian of the readings.
+// Uncertainty of the unknowns, from the Jacobian of the readings.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,30 +10,30 @@
 
 namespace strut {
 
-/// A combination of unknowns that the readings leave open.
+/// A combination of unknowns that the readings do not identify.
 struct NullDirection {
-  std::vector<double> parts;  // of a unit vector, by unknowns in their scale
+  std::vector<double> parts;  // unit vector, by unknowns in units of their scale
   double sigma = 0.0;         // along it, in scales; infinite where nothing depends on it
 };
 
 struct Uncertainty {
-  /// (J'J)^-1 in the unknowns' own units; rows of unknowns that are not known at all are zero.
+  /// (J'J)^-1 in the unknowns' own units; zero rows for unknowns without information.
   Eigen::MatrixXd covariance;
-  std::vector<double> sigma;       // sqrt of its diagonal; infinite where not known at all
-  std::vector<bool> identifiable;  // sigma within the unknown's own size
-  int rank = 0;                    // unknowns less the null directions
+  std::vector<double> sigma;                   // sqrt of its diagonal; infinite without information
+  std::vector<bool> identifiable;              // sigma within the unknown's own size
+  int rank = 0;                                // number of unknowns less that of null directions
   std::vector<NullDirection> null_directions;  // sigma above 100 %, worst first
 
   double calc_correlation(std::size_t i, std::size_t j) const;
 };
 
-/// The uncertainty of unknowns whose scaled Jacobian (linearize.h) has the information J'J.
+/// The uncertainty of unknowns whose scaled Jacobian (reading_model.h) has the information J'J.
 /// Independent Gaussian noise; at the true values the Cramer-Rao bound (S. M. Kay, Estimation
 /// Theory, 1993, eq. 3.31; with priors the Bayesian one of H. L. Van Trees, 1968, section 2.4.3).
 Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
                              const std::vector<Unknown>& unknowns);
 
-/// "front_stiffness - 0.98 rear_stiffness": the parts above a tenth.
+/// "front_stiffness - 0.98 rear_stiffness": the parts above 0.1.
 std::string describe_direction(const NullDirection& direction,
                                const std::vector<Unknown>& unknowns);
 

@@ -1,5 +1,7 @@
 #include "estimate/unknown.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,13 +18,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr char kGain[] = "_gain", kBias[] = "_bias";
+constexpr char kGainSuffix[] = "_gain", kBiasSuffix[] = "_bias";
 
-/// Where the parameter's lower bound itself is not allowed, and how far a search may go, in scales.
+/// In scales: distance of the lower bound from an open end of the allowed range, and the farthest
+/// upper bound.
 constexpr double kAboveLow = 1e-4, kReach = 1e4;
 
 std::string describe_run(const Unknown& u) {
-  return u.run == kEveryRun ? "" : " of run " + std::to_string(u.run + 1);
+  return u.run == kEveryRun ? "" : fmt::format(" of run {}", u.run + 1);
 }
 
 Unknown make_gain(const std::string& name, int input) {
@@ -30,14 +33,14 @@ Unknown make_gain(const std::string& name, int input) {
   u.kind = UnknownKind::kInputGain;
   u.name = name;
   u.unit = "1";
-  u.channel = input;
+  u.input = input;
   u.start = 1.0;
   u.low = -100.0;
   u.high = 100.0;
   return u;
 }
 
-/// Multiplies a recorded input, and what is not exact about it, where the run has it.
+/// Multiplies a recorded input and its noise, where the run has it.
 void scale_input(MeasuredRun& measured, int input, double factor) {
   const std::string& name = measured.setup.info().inputs[static_cast<std::size_t>(input)].name;
   std::vector<InputSignal>& signals = measured.setup.rig().inputs;
@@ -54,7 +57,7 @@ Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& 
   const Model& setup = runs.at(run == kEveryRun ? 0 : static_cast<std::size_t>(run)).setup;
   const Parameter& info = find_parameter(setup.info(), name);
   if (name == "duration") {
-    throw InputError("duration: cannot be fitted, it is only how long is simulated");
+    throw InputError("duration: cannot be fitted; it is the length of the simulation");
   }
   Unknown u;
   u.name = name;
@@ -80,7 +83,7 @@ Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::str
     (p->is_effect ? names : plain).push_back(p->name);
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
-    plain.push_back(model.inputs[i].name + kGain);
+    plain.push_back(model.inputs[i].name + kGainSuffix);
     if (plain.back() == name) return make_gain(name, static_cast<int>(i));
   }
   for (const MeasuredChannel& c : run.channels) {
@@ -90,8 +93,8 @@ Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::str
     plain.push_back(u.name);
   }
   names.insert(names.end(), plain.begin(), plain.end());
-  throw InputError("'" + name + "' cannot be free; allowed: " + join_names(plain) +
-                   ", and parameters of effects" + suggest_name(name, names));
+  throw InputError(fmt::format("'{}' cannot be free; allowed: {}, and parameters of effects{}",
+                               name, join_names(plain), suggest_name(name, names)));
 }
 
 Unknown make_hit_time(int run, const Prior& prior) {
@@ -112,7 +115,7 @@ Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& pri
   const ChannelInfo& info = model.channels[static_cast<std::size_t>(channel)];
   Unknown u;
   u.kind = UnknownKind::kBias;
-  u.name = info.name + kBias;
+  u.name = info.name + kBiasSuffix;
   u.unit = info.unit;
   u.run = run;
   u.channel = channel;
@@ -147,8 +150,8 @@ void add_map_part(ForceMaps& maps, const ForceMap& part, double factor) {
   ForceMap grid = part;
   grid.coefficients = map.coefficients;
   if (!(grid == map)) {
-    throw ModelError("force map" + (part.place.empty() ? "" : " at " + part.place) +
-                     ": what is added has another grid");
+    throw ModelError(fmt::format("force map{}: the part to be added has a different grid",
+                                 part.place.empty() ? "" : " at " + part.place));
   }
   for (std::size_t i = 0; i < part.coefficients.size(); ++i) {
     map.coefficients[i] += factor * part.coefficients[i];
@@ -175,10 +178,10 @@ MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unkno
         add_map_part(measured.setup.force_maps(), *u.part, values[i]);
         break;
       case UnknownKind::kInputGain:
-        scale_input(measured, u.channel, values[i]);
+        scale_input(measured, u.input, values[i]);
         break;
       case UnknownKind::kInitialState:
-        set_initial_state(measured.setup.rig().rig, u.channel, values[i]);
+        set_initial_state(measured.setup.rig().rig, u.state, values[i]);
         break;
       case UnknownKind::kHitTime:
       case UnknownKind::kBias:
@@ -188,14 +191,14 @@ MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unkno
   return measured;
 }
 
-void set_initial_state(RigSpec& rig, int channel, double value) {
-  const auto at = static_cast<std::size_t>(channel);
+void set_initial_state(RigSpec& rig, int state, double value) {
+  const auto at = static_cast<std::size_t>(state);
   const std::size_t masses = get_rig_info(rig.kind).masses.size();
   (at < masses ? rig.initial_position[at] : rig.initial_velocity[at - masses]) = value;
 }
 
 void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count) {
-  if (unknowns.empty()) throw InputError("fit: nothing is free");
+  if (unknowns.empty()) throw InputError("fit: nothing is free; free at least one parameter");
   for (const Unknown& u : unknowns) {
     const auto same = [&](const Unknown& other) {
       return other.name == u.name &&
@@ -206,15 +209,16 @@ void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count)
       throw InputError(name + ": free twice; allowed: once");
     }
     if (u.run != kEveryRun && (u.run < 0 || static_cast<std::size_t>(u.run) >= run_count)) {
-      throw InputError(name + ": there are " + std::to_string(run_count) + " runs");
+      throw InputError(fmt::format("{}: there are only {} runs", name, run_count));
     }
     if (!(u.start >= u.low && u.start <= u.high)) {
-      throw InputError(name + " = " + format_number(u.start) + ": must start within [" +
-                       format_number(u.low) + ", " + format_number(u.high) + "]");
+      throw InputError(fmt::format("{} = {}: must start within [{}, {}]", name,
+                                   format_number(u.start), format_number(u.low),
+                                   format_number(u.high)));
     }
     if (!(u.prior.sigma > 0.0) || !(u.scale > 0.0)) {
-      throw InputError(name + ": sigma " + format_number(u.prior.sigma) +
-                       " of what is known must be > 0");
+      throw InputError(
+          fmt::format("{}: sigma {} of its prior must be > 0", name, format_number(u.prior.sigma)));
     }
   }
 }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "estimate/design.h"
-#include "estimate/linearize.h"
+#include "estimate/readings.h"
 #include "model_files/parameters.h"
 #include "train/data/split.h"
 #include "train/window/records.h"
@@ -58,8 +58,8 @@ Eigen::VectorXd simulate_readings(const MeasuredRun& run, const std::string& par
   options.integrate.options.step.coarse_step = 0.0;
   options.rate *= 4.0;
   // Any unknown will do: what is wanted are the residuals of readings that are zero.
-  ReadingSimulator simulator({run}, {make_parameter({run}, parameter)}, options);
-  const Linearization at = simulator.linearize({get_parameter(run.setup.car(), parameter)});
+  const auto model = make_readings({run}, {make_parameter({run}, parameter)}, options);
+  const Linearization at = model->linearize({get_parameter(run.setup.car(), parameter)});
   if (!at.failure.empty()) throw InputError(run.name + ": " + at.failure);
   return at.residual;
 }

@@ -1,6 +1,4 @@
 // Rigs fitted to what was measured: parameters of records by an integrator of the test's own.
-#include "estimate/driven_readings.h"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/baseline/baseline.h"
+#include "estimate/driven_batch.h"
 #include "model/rig/rig_system.h"
 #include "model_files/read_rig.h"
 #include "tests/support/campaign_files.h"
@@ -248,7 +247,7 @@ TEST_CASE("The noise of an input is scaled with it", "[unit]") {
   run.input_noise[0].sigma = 1e-5;
   Unknown gain;
   gain.kind = UnknownKind::kInputGain;
-  gain.channel = 0;
+  gain.input = 0;
   const MeasuredRun scaled = set_unknowns(run, {gain}, {-4.6});
   CHECK(scaled.input_noise[0].sigma == Approx(4.6e-5).epsilon(test::tolerance(1e-12)));
 }

@@ -94,7 +94,7 @@ TEST_CASE("Bounds do not depend on the scale of the parameters", "[property]") {
   CHECK(other.rank == 4);
 }
 
-TEST_CASE("A parameter without effect is free, the others are not", "[unit]") {
+TEST_CASE("A parameter without effect is not identifiable, the others are", "[unit]") {
   Random random(2);
   MatrixXd rows = make_random_rows(random, 9, 3);
   const Bounds alone = calc_bounds(calc_total(make_toy(rows.leftCols(2), {1.0, 1.0}), 0.1));
@@ -110,7 +110,7 @@ TEST_CASE("A parameter without effect is free, the others are not", "[unit]") {
   }
 }
 
-TEST_CASE("Parameters that act alike are free, only their sum is known", "[unit]") {
+TEST_CASE("Of parameters that act alike only the sum is identifiable", "[unit]") {
   Random random(3);
   MatrixXd rows = make_random_rows(random, 9, 3);
   rows.col(1) = rows.col(0);
@@ -123,7 +123,7 @@ TEST_CASE("Parameters that act alike are free, only their sum is known", "[unit]
   CHECK(std::abs(bounds.weakest[0]) == Approx(std::sqrt(0.5)));
 }
 
-TEST_CASE("No information at all leaves everything free", "[unit]") {
+TEST_CASE("Without information no parameter is identifiable", "[unit]") {
   const Bounds bounds = calc_bounds(MatrixXd::Zero(3, 3));
   CHECK(bounds.rank == 0);
   for (const double b : bounds.bound) CHECK(std::isinf(b));

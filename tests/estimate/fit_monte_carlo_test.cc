@@ -1,4 +1,4 @@
-// What a fit says about its own errors, against the errors it makes.
+// Reported errors of fits against their actual errors.
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
@@ -12,7 +12,7 @@
 namespace strut {
 namespace {
 
-/// A worn car with everything unknown drawn from what is known of it, measured with noise.
+/// Readings with noise of a worn car whose unknowns are drawn from their priors.
 struct Trial {
   Case truth;
   test::Distortion distortion;
@@ -78,8 +78,8 @@ TEST_CASE("Fits of MEMS sensors' readings reach the Cramer-Rao bound and know th
     CHECK(std::sqrt(squares(p) / kTrials) < 1.25);
     CHECK(std::sqrt(squares(p) / kTrials) > 0.65);
   }
-  // Sums of 160 squares of standard normal numbers: 160 +- 4 sqrt(320); of 160 intervals of 95 %
-  // 152 +- 4 * 2.8 hold the truth.
+  // Sums of 160 squares of standard normal numbers: 160 +/- 4 sqrt(320); of 160 intervals of 95 %
+  // 152 +/- 4 * 2.8 hold the truth.
   CHECK(distance == Approx(4.0 * kTrials).margin(4.0 * std::sqrt(8.0 * kTrials)));
   CHECK(covered >= 141);
   CHECK(chi2 / kTrials == Approx(1.0).margin(4.0 * std::sqrt(2.0 / 500.0 / kTrials)));

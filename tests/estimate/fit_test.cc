@@ -7,6 +7,7 @@
 
 #include "base/error/input_error.h"
 #include "estimate/nuisances.h"
+#include "estimate/readings.h"
 #include "estimate/sampled_curve.h"
 #include "tests/support/fit_case.h"
 
@@ -51,7 +52,7 @@ TEST_CASE("The error of a sampled curve falls with the fourth power of its step"
   CHECK(coarse.value == Approx(std::pow(0.1, 4) / 384.0).epsilon(tolerance(0.05)));
 }
 
-TEST_CASE("A measurement without noise gives the parameters back", "[reference]") {
+TEST_CASE("A fit of readings without noise recovers the parameters", "[reference]") {
   Case truth = test::make_bump_case();
   set_parameter(truth, "speed", 20.1);
   const Distortion distortion{0.0037, 0.1, -0.01, 0.0, 1};
@@ -61,7 +62,7 @@ TEST_CASE("A measurement without noise gives the parameters back", "[reference]"
   FitOptions options;
   options.linearize.integrate.options.step.step = 0.5e-3;
   options.linearize.rate = 4000.0;
-  // So weak that they do not pull.
+  // Too weak to bias the fit.
   std::vector<Unknown> unknowns = test::make_all_unknowns(runs);
   for (std::size_t i = 4; i < unknowns.size(); ++i) unknowns[i].prior.sigma *= 10.0;
   const FitResult fit = fit_simulation(runs, unknowns, options);
@@ -106,13 +107,13 @@ TEST_CASE("The Jacobian of a fit is that of CVODE runs", "[reference]") {
   std::vector<Unknown> unknowns = test::make_suspension(runs);
   unknowns.push_back(make_parameter(runs, "speed"));
   unknowns.push_back(make_parameter(runs, "bump_height"));  // shapes the mechanism
-  ReadingSimulator simulator(runs, unknowns, {});
+  const auto model = make_readings(runs, unknowns, {});
   std::vector<double> values;
   values.reserve(unknowns.size());
   for (const Unknown& u : unknowns) values.push_back(u.start);
-  const Linearization point = simulator.linearize(values);
+  const Linearization point = model->linearize(values);
   REQUIRE(point.failure.empty());
-  const std::size_t first = simulator.readings().front().time;
+  const std::size_t first = model->readings().front().time;
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     constexpr double kShare = 1e-5;
     std::vector<double> sides[2];
@@ -123,7 +124,7 @@ TEST_CASE("The Jacobian of a fit is that of CVODE runs", "[reference]") {
       sides[side] = read_cvode(c);
     }
     std::vector<double> expected, found;
-    for (std::size_t k = 0; k < simulator.reading_count(); ++k) {
+    for (std::size_t k = 0; k < model->reading_count(); ++k) {
       const std::size_t place = k + 2 * first;
       expected.push_back((sides[0][place] - sides[1][place]) / (2.0 * kShare));
       found.push_back(point.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)));
@@ -139,22 +140,22 @@ TEST_CASE("Hit time and bias have the derivatives of their definition", "[proper
   const std::vector<MeasuredRun> runs{test::measure(base, base, {})};
   const std::vector<Unknown> unknowns{make_hit_time(0, {0.0, 0.005}),
                                       make_bias(get_car_info(), 0, C::kImuRateY, {0.0, 0.02})};
-  ReadingSimulator simulator(runs, unknowns, {});
+  const auto model = make_readings(runs, unknowns, {});
   const double step = 1e-7;  // s
-  const Linearization point = simulator.linearize({0.0013, 0.004});
-  const Linearization later = simulator.linearize({0.0013 + step, 0.004});
-  const Linearization earlier = simulator.linearize({0.0013 - step, 0.004});
-  for (std::size_t k = 0; k < simulator.reading_count(); ++k) {
+  const Linearization point = model->linearize({0.0013, 0.004});
+  const Linearization later = model->linearize({0.0013 + step, 0.004});
+  const Linearization earlier = model->linearize({0.0013 - step, 0.004});
+  for (std::size_t k = 0; k < model->reading_count(); ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     const double slope = (later.residual(row) - earlier.residual(row)) / (2.0 * step) * 0.005;
     REQUIRE(point.jacobian(row, 0) == Approx(slope).margin(tolerance(1e-3)));
-    const bool biased = simulator.readings()[k].channel == 1;
+    const bool biased = model->readings()[k].channel == 1;
     REQUIRE(point.jacobian(row, 1) == Approx(biased ? 0.02 / 1e-3 : 0.0));
   }
   // Simulated time is measured time plus hit time: a clock that starts late reads small times.
-  const Linearization still = simulator.linearize({0.0, 0.0});
-  CHECK(still.residual.head(static_cast<Eigen::Index>(simulator.reading_count())).norm() <
-        point.residual.head(static_cast<Eigen::Index>(simulator.reading_count())).norm());
+  const Linearization still = model->linearize({0.0, 0.0});
+  CHECK(still.residual.head(static_cast<Eigen::Index>(model->reading_count())).norm() <
+        point.residual.head(static_cast<Eigen::Index>(model->reading_count())).norm());
 }
 
 TEST_CASE("A fit of a bias alone is the weighted mean", "[reference]") {
@@ -165,12 +166,12 @@ TEST_CASE("A fit of a bias alone is the weighted mean", "[reference]") {
   const FitResult fit = fit_simulation({run}, unknowns);
   REQUIRE(fit.converged);
   // Residuals without bias, by the same simulation.
-  ReadingSimulator simulator({run}, unknowns, {});
-  const Linearization point = simulator.linearize({0.0});
+  const auto model = make_readings({run}, unknowns, {});
+  const Linearization point = model->linearize({0.0});
   const double sigma = run.channels[0].sigma;
   double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < simulator.reading_count(); ++k) {
-    if (simulator.readings()[k].channel != 0) continue;
+  for (std::size_t k = 0; k < model->reading_count(); ++k) {
+    if (model->readings()[k].channel != 0) continue;
     sum -= point.residual(static_cast<Eigen::Index>(k)) * sigma;
     ++count;
   }
@@ -178,10 +179,10 @@ TEST_CASE("A fit of a bias alone is the weighted mean", "[reference]") {
   const double mean = (weight * sum / count + own * prior.mean) / (weight + own);
   CHECK(fit.values[0] == Approx(mean).epsilon(tolerance(1e-9)));
   CHECK(fit.uncertainty.sigma[0] == Approx(1.0 / std::sqrt(weight + own)).epsilon(tolerance(1e-9)));
-  CHECK(fit.degrees == static_cast<long>(simulator.reading_count()));  // with the prior, less one
+  CHECK(fit.degrees == static_cast<long>(model->reading_count()));  // with the prior, less one
 }
 
-TEST_CASE("Bounds are those of the information", "[property]") {
+TEST_CASE("Bounds agree with the information matrix", "[property]") {
   const Case base = test::make_bump_case();
   const MeasuredRun run = test::measure(base, base, {});
   const std::vector<Unknown> unknowns = test::make_suspension({run});
@@ -215,7 +216,8 @@ TEST_CASE("Bounds are those of the information", "[property]") {
   }
 }
 
-TEST_CASE("What no reading tells is reported as a direction", "[property]") {
+TEST_CASE("A combination that no reading identifies is reported as a null direction",
+          "[property]") {
   const Case base = test::make_bump_case();
   const MeasuredRun run = test::measure(base, base, {0.0, 0.0, 0.0, 1.0, 3});
   SECTION("a parameter without influence") {
@@ -240,7 +242,7 @@ TEST_CASE("What no reading tells is reported as a direction", "[property]") {
   }
 }
 
-TEST_CASE("A bound holds a parameter and lets the others go", "[property]") {
+TEST_CASE("A bound holds a parameter while the others are fitted", "[property]") {
   const Case truth = test::make_bump_case();
   const std::vector<MeasuredRun> runs{test::measure(test::make_known_case(), truth, {})};
   std::vector<Unknown> unknowns = test::make_suspension(runs);
@@ -257,19 +259,19 @@ TEST_CASE("A bound holds a parameter and lets the others go", "[property]") {
   CHECK(fit_simulation(runs, unknowns).values[0] == Approx(40000.0).epsilon(tolerance(1e-3)));
 }
 
-TEST_CASE("On a bound derivatives are taken from inside", "[property]") {
+TEST_CASE("Derivatives on a bound are taken from inside", "[property]") {
   const Case base = test::make_bump_case();
   const std::vector<MeasuredRun> runs{test::measure(base, base, {})};
   const std::vector<Unknown> unknowns{make_parameter(runs, "front_damping")};
   REQUIRE(unknowns[0].low == 0.0);
-  ReadingSimulator simulator(runs, unknowns, {});
-  const Linearization on = simulator.linearize({0.0}), near = simulator.linearize({1.0});
+  const auto model = make_readings(runs, unknowns, {});
+  const Linearization on = model->linearize({0.0}), near = model->linearize({1.0});
   REQUIRE(on.failure.empty());
   // The slope changes little over 1 N s/m of 1980.
   CHECK((on.jacobian - near.jacobian).norm() < tolerance(0.02) * near.jacobian.norm());
 }
 
-TEST_CASE("A bound that the search runs into on its way lets go again", "[property]") {
+TEST_CASE("A bound that the search meets on its way is released", "[property]") {
   const Case truth = test::make_bump_case();
   Case far = truth;
   const double damping = GENERATE(300.0, 8000.0);
@@ -291,7 +293,7 @@ TEST_CASE("A bound that the search runs into on its way lets go again", "[proper
   }
 }
 
-TEST_CASE("A far start arrives where a near one does", "[property]") {
+TEST_CASE("A far initial guess leads to the same minimum as a near one", "[property]") {
   const Case truth = test::make_bump_case();
   Case far = truth;
   set_parameter(far, "front_stiffness", 90000.0);
@@ -300,17 +302,16 @@ TEST_CASE("A far start arrives where a near one does", "[property]") {
   const FitResult fit = fit_simulation(runs, test::make_suspension(runs));
   CHECK(fit.converged);
   for (std::size_t i = 0; i < 4; ++i) {
-    // At 1 ms and 2 kHz the simulation itself is off by some hundredths of a sigma of 0.3 %.
+    // At 1 ms and 2 kHz the simulation itself is off by a few hundredths of a sigma of 0.3 %.
     CHECK(fit.values[i] ==
           Approx(get_parameter(truth, fit.unknowns[i].name)).epsilon(tolerance(3e-4)));
   }
 }
 
-TEST_CASE("A clock that is off by more than the bump lasts is set before the search",
-          "[property]") {
+TEST_CASE("A clock offset longer than the bump is removed before the search", "[property]") {
   Case truth = test::make_bump_case();
   set_parameter(truth, "speed", 19.8);
-  // Without a look at other hit times the search ends in another valley.
+  // Without other hit times the search ends in another local minimum.
   const double off = GENERATE(-0.0097, 0.09, -0.09);
   const std::vector<MeasuredRun> runs{
       test::measure(test::make_known_case(), truth, {off, 0.3, -0.02, 1.0, 2})};
@@ -324,7 +325,7 @@ TEST_CASE("A clock that is off by more than the bump lasts is set before the sea
   CHECK(fit.values[0] == Approx(40000.0).margin(5.0 * fit.uncertainty.sigma[0]));
 }
 
-TEST_CASE("Clocks are set to the step tried next to the truth, whatever the bias", "[property]") {
+TEST_CASE("Clocks are aligned to the nearest trial step, for any bias", "[property]") {
   const Case base = test::make_bump_case();
   MeasuredRun run = test::measure(base, base, {0.0067, 1.0, -0.1, 1.0, 3});
   cut_window(run, 0.3, 0.5);  // ends on the first pulse, so that its mean is not that of rest
@@ -338,15 +339,15 @@ TEST_CASE("Clocks are set to the step tried next to the truth, whatever the bias
   start.reserve(unknowns.size());
   for (const Unknown& u : unknowns) start.push_back(u.start);
   const auto align = [&](const MeasuredRun& r) {
-    return ReadingSimulator({r}, unknowns, {}).align(start)[0];
+    return make_readings({r}, unknowns, {})->align(start)[0];
   };
   CHECK(align(run) == Approx(0.0067).margin(tolerance(0.51e-3)));
-  // Readings that tell nothing leave what was known before.
+  // Readings without information leave the prior mean.
   for (MeasuredChannel& c : run.channels) c.sigma *= 1e6;
   CHECK(align(run) == 0.0);
 }
 
-TEST_CASE("Only what was measured during the maneuver is compared", "[unit]") {
+TEST_CASE("Only readings taken during the maneuver are compared", "[unit]") {
   const Case base = test::make_bump_case();  // 1.3 s
   const MeasuredRun run = test::measure(base, base, {});
   MeasuredRun longer = run;
@@ -355,24 +356,26 @@ TEST_CASE("Only what was measured during the maneuver is compared", "[unit]") {
     for (MeasuredChannel& c : longer.channels) c.values.push_back(0.0);
   }
   const std::vector<Unknown> unknowns{make_parameter({run}, "front_damping")};
-  const ReadingSimulator shorter({run}, unknowns, {}), simulator({longer}, unknowns, {});
-  CHECK(simulator.reading_count() == shorter.reading_count());
-  CHECK(simulator.outside_count() == shorter.outside_count() + 2000);
+  const auto shorter = make_readings({run}, unknowns, {});
+  const auto model = make_readings({longer}, unknowns, {});
+  CHECK(model->reading_count() == shorter->reading_count());
+  CHECK(model->outside_count() == shorter->outside_count() + 2000);
   // A known offset of the clock counts.
   for (double& t : longer.times) t += 100.0;
   const std::vector<Unknown> late{make_hit_time(0, {-100.0, 0.001})};
-  CHECK(ReadingSimulator({longer}, late, {}).outside_count() < 2010);
+  CHECK(make_readings({longer}, late, {})->outside_count() < 2010);
   CHECK_THROWS_WITH(
-      ReadingSimulator({longer}, unknowns, {}),
+      make_readings({longer}, unknowns, {}),
       Contains("truth: time runs from 100 to 1101.3 s, the maneuver from 0 to 1.3 s"));
 }
 
-TEST_CASE("A simulation that cannot be is told, not thrown, and no start", "[unit]") {
+TEST_CASE("An infeasible simulation is reported, not thrown, but refused as an initial guess",
+          "[unit]") {
   const Case base = test::make_bump_case();
   const MeasuredRun run = test::measure(base, base, {});
   std::vector<Unknown> unknowns{make_parameter({run}, "front_stiffness")};
-  ReadingSimulator simulator({run}, unknowns, {});
-  CHECK_THAT(simulator.linearize({1000.0}).failure, Contains("spring"));
+  const auto model = make_readings({run}, unknowns, {});
+  CHECK_THAT(model->linearize({1000.0}).failure, Contains("spring"));
   unknowns[0].start = 1000.0;
   CHECK_THROWS_WITH(fit_simulation({run}, unknowns), Contains("the fit starts there"));
 }
@@ -390,7 +393,7 @@ TEST_CASE("A fit has the same bits on any number of threads", "[property][thread
   CHECK(a.uncertainty.sigma == b.uncertainty.sigma);
 }
 
-TEST_CASE("Residuals that are not white show it", "[property]") {
+TEST_CASE("The neighbor correlation shows residuals that are not white", "[property]") {
   const Case base = test::make_bump_case();
   const MeasuredRun white = test::measure(base, base, {0.0, 0.0, 0.0, 1.0, 4});
   MeasuredRun wrong = white;
@@ -408,7 +411,7 @@ TEST_CASE("Residuals that are not white show it", "[property]") {
   CHECK(bad.channels[1].neighbor_correlation > limit);
 }
 
-TEST_CASE("Unusable measurements and unknowns are told", "[unit]") {
+TEST_CASE("Unusable measurements and unknowns are errors", "[unit]") {
   const Case base = test::make_bump_case();
   const MeasuredRun run = test::measure(base, base, {});
   const std::vector<Unknown> unknowns = test::make_suspension({run});

@@ -1,4 +1,4 @@
-// The Jacobian of the channels: against CVODE, in place and time, and what must vanish.
+// The Jacobian of the channels: against CVODE, by position and time, and derivatives that vanish.
 
 #include "estimate/sensitivity.h"
 
@@ -33,7 +33,7 @@ double get_scaled(const Sensitivity& s, const Instant& instant, int channel, std
   return s.get(instant, channel, p) * s.parameters[p].scale;
 }
 
-/// rms over the instants, of the parameter to which the channel reacts most.
+/// rms over the instants, of the parameter with the largest effect on the channel.
 double calc_size(const Sensitivity& s, int channel) {
   double size = 0.0;
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
@@ -71,7 +71,7 @@ TEST_CASE("The Jacobian at the snapshot is that of CVODE snapshots", "[reference
     const std::vector<double> truth = differentiate_cvode(base, s.parameters[p].name, offset);
     for (int channel = 1; channel < C::kCount; ++channel) {
       const double size = calc_size(s, channel);
-      if (size == 0.0) continue;  // no reaction at all: roll, yaw
+      if (size == 0.0) continue;  // no response: roll, yaw
       INFO(list_car_channels()[at(channel)].name << " by " << s.parameters[p].name);
       // RK4 rounds the edges of the bump; measured 7e-5, at 1 ms 2e-2.
       const double error = (get_scaled(s, s.snapshot, channel, p) - truth[at(channel)]) / size;
@@ -102,7 +102,7 @@ void check_place(const Case& base, const std::vector<Axis>& axes) {
   }
 }
 
-TEST_CASE("Interpolated places are the integrator's own", "[reference]") {
+TEST_CASE("Interpolated positions agree with the integrator's own", "[reference]") {
   SECTION("springs and dampers") { check_place(make_paper_case(), paper_axes()); }
   SECTION("speed, where time and place differ most") {
     check_place(make_paper_case(), {make_axis("speed"), make_axis("front_stiffness")});
@@ -121,7 +121,7 @@ TEST_CASE("Speed shifts the time of passage by -x / v^2", "[property]") {
   const Sensitivity s = calc_sensitivity(c, {make_axis("speed")}, 0.0, {});
   const double v = c.maneuver.speed;
   const double way = v * s.snapshot.time;
-  // Rolling resistance slows the car a little, not by the same share at every speed.
+  // Rolling resistance slows the car a little, not by the same fraction at every speed.
   CHECK(s.get(s.snapshot, C::kTime, 0) == Approx(-way / (v * v)).epsilon(tolerance(2e-2)));
 }
 
@@ -137,8 +137,8 @@ TEST_CASE("The error of the differences falls with the square of the step", "[pr
   CHECK(calc_error(SensitivityOptions{}.relative_step) < tolerance(1e-6));
 }
 
-TEST_CASE("A parameter that moves nothing has a Jacobian of zeros", "[property]") {
-  // The sensor's place changes the mechanism's key, so that these runs share no lanes.
+TEST_CASE("A parameter without effect has a Jacobian of zeros", "[property]") {
+  // The sensor's position changes the mechanism's key, so that these runs share no lanes.
   const Sensitivity s = calc_sensitivity(
       make_paper_case(), {{"imu_position_x", -0.5, 1.0, 2}, make_axis("rear_damping")}, 0.0, {});
   for (const Instant& instant : s.instants) {
@@ -151,7 +151,7 @@ TEST_CASE("A parameter that moves nothing has a Jacobian of zeros", "[property]"
   CHECK(calc_size(s, C::kBodyPositionZ) > 0.0);
 }
 
-TEST_CASE("Curves of nothing but rounding are zeros", "[property]") {
+TEST_CASE("Curves of rounding error are set to zero", "[property]") {
   // Yaw inertia turns up in every equation, but on a symmetric road nothing yaws.
   const Sensitivity s = calc_sensitivity(make_paper_case(), {make_axis("yaw_inertia")}, 0.0, {});
   for (const int channel : {C::kBodyPositionZ, C::kPitchRate}) CHECK(calc_size(s, channel) == 0.0);
@@ -164,7 +164,7 @@ TEST_CASE("Left and right suspension act on the body alike, on roll oppositely",
   const double height = calc_size(s, C::kBodyAccelerationZ), roll = calc_size(s, C::kRollRate);
   REQUIRE(roll > 0.0);
   for (const Instant& i : s.instants) {
-    // Differences of 1e-4 magnify rounding and Newton's residue to some 1e-8.
+    // Differences of 1e-4 magnify rounding and Newton's residue to about 1e-8.
     REQUIRE(std::abs(get_scaled(s, i, C::kBodyAccelerationZ, 0) -
                      get_scaled(s, i, C::kBodyAccelerationZ, 1)) < tolerance(1e-5) * height);
     REQUIRE(std::abs(get_scaled(s, i, C::kRollRate, 0) + get_scaled(s, i, C::kRollRate, 1)) <
@@ -172,7 +172,7 @@ TEST_CASE("Left and right suspension act on the body alike, on roll oppositely",
   }
 }
 
-TEST_CASE("Instants come at the rate asked for", "[unit]") {
+TEST_CASE("Instants come at the requested rate", "[unit]") {
   SensitivityOptions options;
   options.rate = 150.0;
   const Sensitivity s = calc_sensitivity(make_paper_case(), paper_axes(), 0.0, options);
@@ -183,7 +183,7 @@ TEST_CASE("Instants come at the rate asked for", "[unit]") {
   }
 }
 
-TEST_CASE("At the edge of what is allowed the differences stay inside", "[unit]") {
+TEST_CASE("At a bound the differences stay inside the allowed range", "[unit]") {
   Case c = make_paper_case();
   set_parameter(c, "front_damping", 0.0);
   const Sensitivity s = calc_sensitivity(c, {{"front_damping", 0.0, 1000.0, 2}}, 0.0, {});
@@ -191,7 +191,7 @@ TEST_CASE("At the edge of what is allowed the differences stay inside", "[unit]"
   CHECK(calc_size(s, C::kPitchRate) > 0.0);
 }
 
-TEST_CASE("Runs that fail or never arrive are told with their parameter", "[unit]") {
+TEST_CASE("Runs that fail or never arrive are reported with their parameter", "[unit]") {
   using Catch::Matchers::Contains;
   Case c = make_paper_case();
   CHECK_THROWS_WITH(calc_sensitivity(c, paper_axes(), 1000.0, {}),

@@ -1,0 +1,399 @@
+#include "estimate/crossing_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "estimate/crossing_batch.h"
+#include "estimate/sampled_curve.h"
+#include "model/error/model_error.h"
+#include "model_files/parameters.h"
+
+namespace strut {
+namespace {
+
+/// Interval of the hit times that are tried; a wheel is on the flank of a bump for about ten of
+/// them.
+constexpr double kAlignStep = 1e-3;  // s
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A Gaussian prior of a channel's bias in sigmas of its noise; infinite information: no unknown.
+struct BiasPrior {
+  double mean = 0.0, information = kInfinity;
+};
+
+BiasPrior find_bias_prior(const std::vector<Unknown>& unknowns, std::size_t run,
+                          const MeasuredChannel& channel) {
+  for (const Unknown& u : unknowns) {
+    if (u.kind != UnknownKind::kBias || u.channel != channel.channel || !belongs(u, run)) continue;
+    const double ratio = channel.sigma / u.prior.sigma;
+    return {u.prior.mean / channel.sigma, ratio * ratio};
+  }
+  return {};
+}
+
+class CrossingReadings final : public ReadingModel {
+ public:
+  CrossingReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
+                   const LinearizeOptions& options);
+
+  Linearization linearize(const std::vector<double>& values) override;
+  /// Points whose cars differ in nothing but their sensors share a simulation.
+  using ReadingModel::evaluate;
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
+  std::vector<double> align(const std::vector<double>& values) override;
+
+ private:
+  // Which readings are compared, and for how long is simulated.
+  void choose_readings(std::size_t run);
+  void align_durations();
+
+  // Simulations.
+  Case make_setup(std::size_t run, const std::vector<double>& values) const;
+  std::string try_setup(std::size_t run, const std::vector<double>& values, Case& setup) const;
+  std::vector<CrossingResult> simulate(const std::vector<CrossingTask>& tasks);
+  std::string sample_variants(const std::vector<double>& values,
+                              const std::vector<RunVariant>& variants,
+                              std::vector<SampledRun>& sampled);
+
+  // Readings of a simulated run.
+  std::size_t find_hit_time(std::size_t run) const;
+  double get_hit_time(std::size_t run, const std::vector<double>& values) const;
+  CurvePoint read(const SampledRun& sampled, const ReadingPlace& place, double hit_time) const;
+  std::vector<double> read_run(std::size_t run, const SampledRun& sampled, double hit_time) const;
+  void fill_hit_time(std::size_t run, const SampledRun& base, const std::vector<double>& values,
+                     Linearization& out) const;
+  void fill_column(const RunVariant& upper, const RunVariant& lower, const SampledRun& base,
+                   const SampledRun& above_run, const SampledRun& below_run,
+                   const std::vector<double>& values, Linearization& out) const;
+  double calc_chi2(std::size_t run, const SampledRun& base, double hit_time) const;
+  double find_best_hit_time(std::size_t run, const SampledRun& base, double start) const;
+
+  double interval() const { return 1.0 / options_.rate; }
+
+  LinearizeOptions options_;
+  std::vector<const ParameterInfo*> parameters_;  // by unknown; null where it is not a parameter
+  std::vector<CasePreparer> preparers_;           // by run, at the base point's mechanism
+};
+
+CrossingReadings::CrossingReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
+                                   const LinearizeOptions& options)
+    : ReadingModel(std::move(runs), std::move(unknowns)),
+      options_(options),
+      preparers_(runs_.size()) {
+  for (const Unknown& u : unknowns_) {
+    const bool is_parameter = u.kind == UnknownKind::kParameter;
+    parameters_.push_back(is_parameter ? &find_parameter(u.name) : nullptr);
+  }
+  for (std::size_t r = 0; r < runs_.size(); ++r) choose_readings(r);
+  align_durations();
+  finish();
+}
+
+void CrossingReadings::choose_readings(std::size_t r) {
+  MeasuredRun& run = runs_[r];
+  const double step = interval();
+  const std::size_t hit = find_hit_time(r);
+  const double shift = hit == kNoUnknown ? 0.0 : unknowns_[hit].start;
+  const double earliest = hit == kNoUnknown ? 0.0 : unknowns_[hit].low;
+  const double latest = hit == kNoUnknown ? 0.0 : unknowns_[hit].high;
+  const double margin = static_cast<double>(kCurveMargin) * step;
+  ManeuverSpec& maneuver = run.setup.car().maneuver;
+  const double driven = maneuver.duration;
+  const double last = std::min(run.times.back() + shift, driven) + latest - shift;
+  const Range& allowed = find_parameter("duration").allowed;
+  maneuver.duration = std::clamp(last + margin + 2.0 * step, allowed.low, allowed.high);
+  const double end = maneuver.duration - margin - step;
+  add_readings(r, [&](double time) { return time + earliest >= margin && time + latest <= end; });
+  if (begin_row(r + 1) > begin_row(r)) return;
+  throw InputError(fmt::format(
+      "{}: time runs from {} to {} s, the maneuver from 0 to {} s: no reading can be compared",
+      run.name, format_number(run.times.front()), format_number(run.times.back()),
+      format_number(driven)));
+}
+
+/// Only cases of one duration share lanes: runs nearly as long as the longest are simulated as
+/// long.
+void CrossingReadings::align_durations() {
+  constexpr double kNearly = 0.7;
+  double longest = 0.0;
+  for (const MeasuredRun& run : runs_) {
+    longest = std::max(longest, run.setup.car().maneuver.duration);
+  }
+  for (MeasuredRun& run : runs_) {
+    double& duration = run.setup.car().maneuver.duration;
+    if (duration > kNearly * longest) duration = longest;
+  }
+}
+
+/// The car and maneuver of a run at these values. Throws what the parameters throw.
+Case CrossingReadings::make_setup(std::size_t run, const std::vector<double>& values) const {
+  const Case& known = runs_[run].setup.car();
+  Case c = known;
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    const Unknown& u = unknowns_[i];
+    if (!is_simulated(u) || !belongs(u, run)) continue;
+    if (u.kind == UnknownKind::kForceMap) {
+      add_map_part(c.vehicle.force_maps, *u.part, values[i]);
+      continue;
+    }
+    // A value that does not change is not set: a corner's neutral effect would replace the axle's.
+    if (values[i] != parameters_[i]->get(known)) parameters_[i]->set(c, values[i]);
+  }
+  return c;
+}
+
+/// make_setup into `setup`, or the reason for which there is none.
+std::string CrossingReadings::try_setup(std::size_t run, const std::vector<double>& values,
+                                        Case& setup) const {
+  try {
+    setup = make_setup(run, values);
+    return "";
+  } catch (const ModelError& e) {
+    return fmt::format("{}: {}", runs_[run].name, e.what());
+  } catch (const InputError& e) {  // out of a parameter's range
+    return fmt::format("{}: {}", runs_[run].name, e.what());
+  }
+}
+
+std::vector<CrossingResult> CrossingReadings::simulate(const std::vector<CrossingTask>& tasks) {
+  std::vector<CrossingResult> results = simulate_crossings(runs_, tasks, options_, preparers_);
+  simulation_count_ += std::count_if(results.begin(), results.end(),
+                                     [](const CrossingResult& r) { return r.was_simulated; });
+  return results;
+}
+
+/// Simulates the variants as their sensors read them; returns the reason for which one fails.
+std::string CrossingReadings::sample_variants(const std::vector<double>& values,
+                                              const std::vector<RunVariant>& variants,
+                                              std::vector<SampledRun>& sampled) {
+  std::vector<CrossingTask> tasks;
+  tasks.reserve(variants.size());
+  for (const RunVariant& v : variants) {
+    tasks.push_back({v.run, {}});
+    std::string failure = try_setup(v.run, set_variant(values, v), tasks.back().setup);
+    if (!failure.empty()) return failure;
+  }
+  std::vector<CrossingResult> results = simulate(tasks);
+  sampled.reserve(tasks.size());
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (!results[i].failure.empty()) return results[i].failure;
+    sampled.push_back(read_sensors(tasks[i].setup, runs_[tasks[i].run], interval(),
+                                   std::move(results[i].sampled)));
+  }
+  return "";
+}
+
+std::size_t CrossingReadings::find_hit_time(std::size_t run) const {
+  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+    if (unknowns_[i].kind == UnknownKind::kHitTime && belongs(unknowns_[i], run)) return i;
+  }
+  return kNoUnknown;
+}
+
+double CrossingReadings::get_hit_time(std::size_t run, const std::vector<double>& values) const {
+  const std::size_t hit = find_hit_time(run);
+  return hit == kNoUnknown ? 0.0 : values[hit];
+}
+
+CurvePoint CrossingReadings::read(const SampledRun& sampled, const ReadingPlace& place,
+                                  double hit_time) const {
+  const double step = interval();
+  const double at = (runs_[place.run].times[place.time] + hit_time) / step;
+  const double index = std::floor(at);
+  const std::vector<double>& series = sampled[place.channel];
+  return interpolate_curve([&](std::size_t sample) { return series[sample]; },
+                           static_cast<std::size_t>(index), at - index, step);
+}
+
+std::vector<double> CrossingReadings::read_run(std::size_t run, const SampledRun& sampled,
+                                               double hit_time) const {
+  std::vector<double> readings;
+  readings.reserve(begin_row(run + 1) - begin_row(run));
+  for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
+    readings.push_back(read(sampled, readings_[k], hit_time).value);
+  }
+  return readings;
+}
+
+void CrossingReadings::fill_hit_time(std::size_t run, const SampledRun& base,
+                                     const std::vector<double>& values, Linearization& out) const {
+  const std::size_t hit = find_hit_time(run);
+  if (hit == kNoUnknown) return;
+  for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
+    const double slope = read(base, readings_[k], values[hit]).slope;
+    out.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(hit)) =
+        slope * unknowns_[hit].scale / get_channel(readings_[k]).sigma;
+  }
+}
+
+/// Central differences. The step is short, so a column whose second difference is as large as its
+/// first is rounding, and becomes zero.
+void CrossingReadings::fill_column(const RunVariant& upper, const RunVariant& lower,
+                                   const SampledRun& base, const SampledRun& above_run,
+                                   const SampledRun& below_run, const std::vector<double>& values,
+                                   Linearization& out) const {
+  constexpr double kRounding = 0.5;
+  const double hit_time = get_hit_time(upper.run, values);
+  const double width = upper.value - lower.value;
+  const double middle = 0.5 * (upper.value + lower.value);
+  const bool centered = std::abs(middle - values[upper.unknown]) < 1e-3 * width;
+  const std::size_t begin = begin_row(upper.run), end = begin_row(upper.run + 1);
+  const auto column = static_cast<Eigen::Index>(upper.unknown);
+  double slopes = 0.0, bends = 0.0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const double sigma = get_channel(readings_[k]).sigma;
+    const double above = read(above_run, readings_[k], hit_time).value;
+    const double below = read(below_run, readings_[k], hit_time).value;
+    const double here = read(base, readings_[k], hit_time).value;
+    const double slope = (above - below) / sigma, bend = (above - 2.0 * here + below) / sigma;
+    slopes += slope * slope;
+    bends += bend * bend;
+    out.jacobian(static_cast<Eigen::Index>(k), column) =
+        slope / width * unknowns_[upper.unknown].scale;
+  }
+  if (!centered || std::sqrt(bends) <= kRounding * std::sqrt(slopes)) return;
+  for (std::size_t k = begin; k < end; ++k) {
+    out.jacobian(static_cast<Eigen::Index>(k), column) = 0.0;
+  }
+}
+
+Linearization CrossingReadings::linearize(const std::vector<double>& values) {
+  const std::vector<RunVariant> variants =
+      list_variants(unknowns_, runs_.size(), values, options_.relative_step);
+  std::vector<SampledRun> sampled;
+  Linearization out = make_linearization(sample_variants(values, variants, sampled));
+  if (!out.failure.empty()) return out;
+  std::size_t base = 0;
+  for (std::size_t k = 0; k < variants.size(); ++k) {
+    const std::size_t run = variants[k].run;
+    if (variants[k].unknown == kNoUnknown) {
+      base = k;
+      fill_residual(run, values, read_run(run, sampled[k], get_hit_time(run, values)),
+                    out.residual);
+      fill_hit_time(run, sampled[k], values, out);
+    } else {
+      fill_column(variants[k], variants[k + 1], sampled[base], sampled[k], sampled[k + 1], values,
+                  out);
+      ++k;  // the lower side
+    }
+  }
+  fill_bias_columns(out);
+  fill_priors(values, out);
+  return out;
+}
+
+std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector<double>>& points) {
+  std::vector<Evaluation> evaluations(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    evaluations[i].residual = Eigen::VectorXd::Zero(row_count());
+    fill_prior_residuals(points[i], evaluations[i].residual);
+  }
+  // The setup of a point in a run, and the number of its car without sensors among `cars`.
+  struct PointSetup {
+    Case setup;
+    std::size_t car = 0;
+  };
+  std::vector<PointSetup> setups(points.size() * runs_.size());
+  std::vector<CrossingTask> cars;
+  for (std::size_t run = 0; run < runs_.size(); ++run) {
+    const std::size_t first = cars.size();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      PointSetup& point = setups[run * points.size() + i];
+      std::string failure = try_setup(run, points[i], point.setup);
+      if (!failure.empty()) evaluations[i].failure = std::move(failure);
+      if (!evaluations[i].failure.empty()) continue;
+      Case car = remove_sensors(point.setup);
+      point.car = first;
+      while (point.car < cars.size() && !(cars[point.car].setup == car)) ++point.car;
+      if (point.car == cars.size()) cars.push_back({run, std::move(car)});
+    }
+  }
+  const std::vector<CrossingResult> results = simulate(cars);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Evaluation& e = evaluations[i];
+    for (std::size_t run = 0; run < runs_.size() && e.failure.empty(); ++run) {
+      const PointSetup& point = setups[run * points.size() + i];
+      e.failure = results[point.car].failure;
+      if (!e.failure.empty()) break;
+      const SampledRun sampled =
+          read_sensors(point.setup, runs_[run], interval(), results[point.car].sampled);
+      fill_residual(run, points[i], read_run(run, sampled, get_hit_time(run, points[i])),
+                    e.residual);
+    }
+  }
+  return evaluations;
+}
+
+/// Sum over the channels of min over b of sum (e + b)^2 + information b^2, which is
+/// sum e^2 - (sum e)^2 / (count + information).
+double CrossingReadings::calc_chi2(std::size_t run, const SampledRun& base, double hit_time) const {
+  double chi2 = 0.0;
+  for (std::size_t channel = 0; channel < runs_[run].channels.size(); ++channel) {
+    const MeasuredChannel& c = runs_[run].channels[channel];
+    const BiasPrior bias = find_bias_prior(unknowns_, run, c);
+    double count = 0.0, sum = 0.0, squares = 0.0;
+    for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
+      if (readings_[k].channel != channel) continue;
+      const double simulated = read(base, readings_[k], hit_time).value;
+      const double e = (simulated - c.values[readings_[k].time]) / c.sigma + bias.mean;
+      ++count;
+      sum += e;
+      squares += e * e;
+    }
+    chi2 += squares - sum * sum / std::max(1.0, count + bias.information);
+  }
+  return chi2;
+}
+
+/// The hit time within its bounds at which `base`, shifted in time and with the best bias of each
+/// channel, comes nearest to the readings. A search that starts a flank of the bump away from the
+/// truth can end in another valley; trying all costs no simulation.
+double CrossingReadings::find_best_hit_time(std::size_t run, const SampledRun& base,
+                                            double start) const {
+  const Unknown& u = unknowns_[find_hit_time(run)];
+  // On a bound a search would be held there.
+  const auto first = static_cast<int>(std::floor((u.low - start) / kAlignStep)) + 1;
+  const auto last = static_cast<int>(std::ceil((u.high - start) / kAlignStep)) - 1;
+  double best = start, min_chi2 = kInfinity;
+  for (int k = first; k <= last; ++k) {
+    const double hit_time = start + k * kAlignStep;
+    const double off = u.prior.informs() ? (hit_time - u.prior.mean) / u.prior.sigma : 0.0;
+    const double chi2 = calc_chi2(run, base, hit_time) + off * off;
+    if (chi2 >= min_chi2) continue;
+    min_chi2 = chi2;
+    best = hit_time;
+  }
+  return best;
+}
+
+/// Returns `values` as they are where they cannot be simulated.
+std::vector<double> CrossingReadings::align(const std::vector<double>& values) {
+  std::vector<SampledRun> bases;
+  const std::vector<RunVariant> variants =
+      list_variants({}, runs_.size(), values, options_.relative_step);
+  if (!sample_variants(values, variants, bases).empty()) return values;
+  std::vector<double> aligned = values;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const std::size_t hit = find_hit_time(r);
+    if (hit == kNoUnknown || unknowns_[hit].run == kEveryRun) continue;
+    aligned[hit] = find_best_hit_time(r, bases[r], values[hit]);
+  }
+  return aligned;
+}
+
+}  // namespace
+
+std::unique_ptr<ReadingModel> make_crossing_readings(std::vector<MeasuredRun> runs,
+                                                     std::vector<Unknown> unknowns,
+                                                     const LinearizeOptions& options) {
+  return std::make_unique<CrossingReadings>(std::move(runs), std::move(unknowns), options);
+}
+
+}  // namespace strut
