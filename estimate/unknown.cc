@@ -100,7 +100,7 @@ Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::str
 Unknown make_hit_time(int run, const Prior& prior) {
   Unknown u;
   u.kind = UnknownKind::kHitTime;
-  u.name = "hit_time";
+  u.name = kHitTimeName;
   u.unit = "s";
   u.run = run;
   u.start = prior.mean;

@@ -68,6 +68,7 @@ Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::str
 /// A hit time, bounded by mean +/- kHitTimeReach sigma. sigma > 0.
 Unknown make_hit_time(int run, const Prior& prior);
 inline constexpr double kHitTimeReach = 5.0;
+inline constexpr char kHitTimeName[] = "hit_time";
 
 /// The bias of a channel, without bounds. sigma > 0, may be infinite.
 Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);

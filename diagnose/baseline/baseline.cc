@@ -16,7 +16,7 @@ void shift_readings(std::vector<MeasuredChannel>& channels, const Unknown& bias,
   }
 }
 
-/// Shared biases back on what is simulated, so that it can be compared with the readings.
+/// Adds shared biases to the simulated channels, for comparison with the readings.
 void add_shared_biases(const SharedValues& shared, RunCurves& curves) {
   for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
     const Unknown& u = shared.unknowns[i];
@@ -56,7 +56,7 @@ Baseline calibrate_baseline(const CampaignData& data, int threads, const FitOpti
   baseline.runs = data.list_runs(RunUse::kFit);
   baseline.nominal.unknowns = make_free_unknowns(data, baseline.runs);
   baseline.calibrated.unknowns = baseline.nominal.unknowns;
-  // A prior may begin the search elsewhere than the model's file.
+  // A prior may start the search elsewhere than at the value of the model's file.
   for (const Unknown& u : baseline.nominal.unknowns) {
     baseline.nominal.values.push_back(get_nominal(data, u));
   }

@@ -1,4 +1,4 @@
-// The model without any extension: as its file says, and with what the campaign lets it adjust.
+// The model without any extension: with the values of its file, and calibrated to the campaign.
 #pragma once
 
 #include <string>
@@ -18,35 +18,34 @@ struct SharedValues {
 
 struct Baseline {
   SharedValues nominal, calibrated;
-  /// Over the runs for fitting: the shared unknowns first, then each run's own. Empty where nothing
-  /// is free.
+  /// The fit to the runs for fitting: the shared unknowns first, then each run's own. Empty where
+  /// nothing is free.
   FitResult fit;
   bool is_fitted = false;
-  std::vector<std::size_t> runs;  // that were fitted
+  std::vector<std::size_t> runs;  // fitted runs
 
   std::size_t shared_count() const { return calibrated.unknowns.size(); }
-  /// 1 sigma of a shared value, where the model leaves more than noise with that
-  /// (FitResult::widened).
+  /// Standard error of a shared value, widened if the residuals exceed noise (FitResult::widened).
   double calc_sigma(std::size_t i) const;
 };
 
-/// Fits what `[fit] free` names to the runs for fitting, together with what is unknown about each
-/// of them. Throws InputError.
+/// Fits the parameters of `[fit] free` to the runs for fitting, together with the nuisances of
+/// each. Throws InputError.
 Baseline calibrate_baseline(const CampaignData& data, int threads = 1,
                             const FitOptions& options = {});
 
-/// The campaign of one run whose model and inputs have the shared values, biases taken off its
-/// readings: what is left unknown is the run's own.
+/// The campaign of a single run with the shared values set in its model and inputs, and shared
+/// biases subtracted from its readings. Only the run's own unknowns remain.
 CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared);
 
-/// One run against the model at given shared values. What is unknown about this run alone is fitted
-/// to it: a run that is held out tells where it started, not what the model is like.
+/// One run against the model at given shared values. Only the run's own unknowns are fitted to it:
+/// a held-out run determines its initial state, not the model.
 struct RunEvaluation {
-  std::string failure;  // empty: it could be simulated
+  std::string failure;  // empty: the run was simulated
   std::vector<Unknown> unknowns;
   std::vector<double> values;  // of the run's own unknowns
   RunCurves curves;
-  /// By channel of the run and time: measured less simulated; NaN: missing.
+  /// Measured less simulated, by channel of the run and time; NaN: missing.
   std::vector<std::vector<double>> residual;
 };
 

@@ -1,4 +1,4 @@
-// The states of a model against which residuals are looked at.
+// The states of a model over which residuals are binned.
 #pragma once
 
 #include "diagnose/campaign/campaign_data.h"

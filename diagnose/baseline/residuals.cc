@@ -1,5 +1,7 @@
 #include "diagnose/baseline/residuals.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -11,8 +13,7 @@
 namespace strut {
 namespace {
 
-/// The readings on an even clock of as many samples, gaps and uneven intervals interpolated
-/// linearly, the mean taken off.
+/// The readings less their mean on an even clock of as many samples, linearly interpolated.
 std::vector<double> make_even(std::span<const double> times, std::span<const double> values) {
   std::vector<double> t, v;
   t.reserve(times.size());
@@ -30,13 +31,13 @@ std::vector<double> make_even(std::span<const double> times, std::span<const dou
   for (std::size_t i = 0; i < even.size(); ++i) {
     const double at = t.front() + interval * static_cast<double>(i);
     while (k + 2 < t.size() && t[k + 1] <= at) ++k;
-    const double share = (at - t[k]) / (t[k + 1] - t[k]);
-    even[i] = v[k] + share * (v[k + 1] - v[k]) - mean;
+    const double theta = (at - t[k]) / (t[k + 1] - t[k]);
+    even[i] = v[k] + theta * (v[k + 1] - v[k]) - mean;
   }
   return even;
 }
 
-/// Mean square of `values` [even, every `interval` s] in each of the bands.
+/// Mean square by band of `values`, one every `interval` s.
 std::array<double, kBands.size()> calc_band_powers(const std::vector<double>& values,
                                                    double interval) {
   std::array<double, kBands.size()> powers{};
@@ -61,8 +62,8 @@ double calc_interval(std::span<const double> times) {
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-/// Readings that count as one, for neighbors that correlate by `rho`: an autoregressive process of
-/// first order has (1 + rho) / (1 - rho).
+/// Number of readings that carry the information of one, for neighbors correlated by `rho`:
+/// (1 + rho) / (1 - rho) for an autoregressive process of first order.
 double calc_correlation_length(double rho) {
   const double r = std::clamp(rho, 0.0, 0.999);
   return (1.0 + r) / (1.0 - r);
@@ -92,9 +93,9 @@ void fill_signs(std::span<const double> state, std::span<const double> residual,
 std::string describe(const FrequencyBand& band) {
   const bool is_open = band.to > 1e6;
   if (band.from == 0.0 && is_open) return "all frequencies";
-  if (band.from == 0.0) return "< " + format_rounded(band.to) + " Hz";
-  if (is_open) return "> " + format_rounded(band.from) + " Hz";
-  return format_rounded(band.from) + "-" + format_rounded(band.to) + " Hz";
+  if (band.from == 0.0) return fmt::format("< {} Hz", format_rounded(band.to));
+  if (is_open) return fmt::format("> {} Hz", format_rounded(band.from));
+  return fmt::format("{}-{} Hz", format_rounded(band.from), format_rounded(band.to));
 }
 
 std::vector<WindowResidual> calc_window_residuals(std::span<const double> times,
@@ -119,14 +120,14 @@ std::vector<BandResidual> calc_band_residuals(std::span<const double> times,
                                               std::span<const double> residual,
                                               std::span<const double> measured, double sigma) {
   const double interval = calc_interval(times), nyquist = 0.5 / interval;
-  const auto left = calc_band_powers(make_even(times, residual), interval);
-  const auto whole = calc_band_powers(make_even(times, measured), interval);
+  const auto residual_power = calc_band_powers(make_even(times, residual), interval);
+  const auto measured_power = calc_band_powers(make_even(times, measured), interval);
   std::vector<BandResidual> results;
   results.reserve(kBands.size());
   for (std::size_t b = 0; b < kBands.size(); ++b) {
     const double width = std::max(0.0, std::min(kBands[b].to, nyquist) - kBands[b].from);
-    results.push_back(
-        {kBands[b], std::sqrt(left[b]), std::sqrt(whole[b]), sigma * std::sqrt(width / nyquist)});
+    results.push_back({kBands[b], std::sqrt(residual_power[b]), std::sqrt(measured_power[b]),
+                       sigma * std::sqrt(width / nyquist)});
   }
   return results;
 }

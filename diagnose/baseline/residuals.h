@@ -1,4 +1,4 @@
-// What is left between measurement and simulation, looked at from every side.
+// Residuals by time, frequency and state of the model.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace strut {
 
-/// A stretch of a run, on its own clock.
+/// A part of a run, on the run's clock.
 struct TimeWindow {
   std::string name;
   double from = 0.0, to = 0.0;  // s
@@ -17,10 +17,10 @@ struct TimeWindow {
 struct WindowResidual {
   TimeWindow window;
   std::size_t count = 0;
-  double rms = 0.0, nrmse = 0.0;  // of the channel's spread over the whole run
+  double rms = 0.0, nrmse = 0.0;  // the latter over the channel's spread in the whole run
 };
 
-/// Hz; the last has no upper end.
+/// Frequencies [from, to) in Hz; the last band has no upper end.
 struct FrequencyBand {
   double from = 0.0, to = 0.0;
 };
@@ -34,19 +34,19 @@ struct BandResidual {
   double residual_rms = 0.0, measured_rms = 0.0, noise_rms = 0.0;
 };
 
-/// Residuals by a state of the model.
+/// Residuals binned by a state of the model.
 struct StateBin {
-  double center = 0.0;  // of the state, in its unit
+  double center = 0.0;  // in the state's unit
   std::size_t count = 0;
   double mean = 0.0, rms = 0.0;
 };
 struct StateResidual {
   std::string state, unit;
   std::vector<StateBin> bins;
-  /// Mean residual where the state is negative, positive, and the 1 sigma of their difference, if
-  /// readings a correlation time apart are independent.
+  /// Mean residuals where the state is negative and positive, and the standard error of their
+  /// difference, with readings a correlation time apart taken as independent.
   double mean_negative = 0.0, mean_positive = 0.0, difference_sigma = 0.0;
-  /// Share of the residual's mean square that a curve over the state explains, 0 to 1.
+  /// Fraction of the residual's mean square that a curve over the state explains.
   double explained = 0.0;
 };
 
@@ -55,14 +55,14 @@ std::vector<WindowResidual> calc_window_residuals(std::span<const double> times,
                                                   double measured_spread,
                                                   const std::vector<TimeWindow>& windows);
 
-/// By the periodogram of the whole run, readings that are missing interpolated: rms in the bands,
-/// whose squares add up to that of residual and measurement, means taken off. Throws nothing.
+/// Rms by frequency band from the periodogram of the whole run, with missing readings interpolated
+/// and means subtracted. Squares over the bands add up to those of residual and measurement.
 std::vector<BandResidual> calc_band_residuals(std::span<const double> times,
                                               std::span<const double> residual,
                                               std::span<const double> measured, double sigma);
 
-/// In kStateBins bins of equal width between the 0.5 and 99.5 % quantiles; what is beyond counts in
-/// the outermost.
+/// Bins residuals into kStateBins bins of equal width between the 0.5 and 99.5 % quantiles of the
+/// state; values beyond count in the outermost bins.
 inline constexpr std::size_t kStateBins = 16;
 StateResidual calc_state_residual(const std::string& name, const std::string& unit,
                                   std::span<const double> state, std::span<const double> residual);

@@ -1,5 +1,7 @@
 #include "diagnose/baseline/time_windows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace strut {
@@ -15,7 +17,7 @@ std::vector<TimeWindow> make_segments(const MeasuredRun& run) {
     const double from = run.times.back() * i / kSegments;
     const double to =
         i + 1 == kSegments ? run.times.back() + 1.0 : run.times.back() * (i + 1) / kSegments;
-    windows.push_back({"segment " + std::to_string(i + 1), from, to});
+    windows.push_back({fmt::format("segment {}", i + 1), from, to});
   }
   return windows;
 }

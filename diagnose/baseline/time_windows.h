@@ -1,4 +1,4 @@
-// The stretches of a run that its residuals are looked at by.
+// The parts of a run by which its residuals are listed.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,9 @@
 
 namespace strut {
 
-/// A car's run: approach, front axle, between, rear axle, ring-down, by when its wheel centers pass
-/// the ends of the bump, a footprint's length before and after; a rig's: five equal segments.
+/// For a car: approach, front axle, between, rear axle, ring-down, by the times at which the wheel
+/// centers pass the ends of the bump, half a footprint before and after. For a rig: five equal
+/// segments.
 std::vector<TimeWindow> make_time_windows(const CampaignData& data, std::size_t run);
 
 }  // namespace strut

@@ -20,7 +20,7 @@ VisitedStates& find_place(std::vector<VisitedStates>& states, const std::string&
   return found != states.end() ? *found : states.emplace_back(VisitedStates{place, {}, {}, 0.0});
 }
 
-/// Those of which any is not simulated leave.
+/// Drops samples that were not simulated.
 void drop_missing(VisitedStates& s) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < s.deflection.size(); ++i) {
@@ -41,10 +41,10 @@ std::string VisitedStates::describe() const {
 std::vector<VisitedStates> list_visited_states(const CampaignData& data,
                                                const std::vector<std::size_t>& runs,
                                                const SharedValues& shared) {
-  constexpr std::size_t kMost = 6000;
+  constexpr std::size_t kMaxSamples = 6000;
   std::size_t samples = 0;
   for (const std::size_t r : runs) samples += data.times(r).size();
-  const std::size_t stride = 1 + samples / kMost;
+  const std::size_t stride = 1 + samples / kMaxSamples;
   std::vector<VisitedStates> states;
   for (const std::size_t r : runs) {
     const RunCurves curves = simulate_run(data.runs[r], shared.unknowns, shared.values);

@@ -1,5 +1,7 @@
 #include "diagnose/campaign/campaign.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -16,11 +18,10 @@ namespace {
 const std::vector<std::string> kRoles = {"input", "output"};  // ColumnRole
 const std::vector<std::string> kUses = {"fit", "hold_out"};   // RunUse
 constexpr char kTime[] = "time";
-constexpr char kHitTime[] = "hit_time";
 
-/// What a run may say about its own maneuver.
+/// Keys by which a run changes its maneuver.
 const std::vector<std::string> kManeuverKeys = {"speed",       "drive_torque", "bump_distance",
-                                                "bump_height", "bump_length",  kHitTime};
+                                                "bump_height", "bump_length",  kHitTimeName};
 
 const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& model,
                                      const std::string& channel) {
@@ -30,7 +31,7 @@ const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& mode
   for (const ChannelInfo& info : model.channels) names.push_back(info.name);
   const std::string nearest = suggest_name(channel, names);
   throw columns.error(channel,
-                      "no channel of this model" +
+                      "is not a channel of this model" +
                           (nearest.empty() ? "; channels: " + join_names(names) : nearest));
 }
 
@@ -40,12 +41,13 @@ ColumnRole read_role(const Table& table, const ModelInfo& model, const std::stri
   if (role == ColumnRole::kInput && !drives) {
     std::vector<std::string> names;
     for (const InputInfo& input : model.inputs) names.push_back(input.name);
-    throw table.error(
-        "role", "'" + channel + "' drives no such model; inputs: " +
-                    (names.empty() ? "none, a car is driven by its maneuver" : join_names(names)));
+    throw table.error("role", fmt::format("'{}' is not an input of this model; inputs: {}", channel,
+                                          names.empty() ? "none, a car is driven by its maneuver"
+                                                        : join_names(names)));
   }
   if (role == ColumnRole::kOutput && drives) {
-    throw table.error("role", "'" + channel + "' is what drives the model; must be \"input\"");
+    throw table.error("role",
+                      fmt::format("'{}' is an input of the model; must be \"input\"", channel));
   }
   return role;
 }
@@ -54,12 +56,12 @@ ColumnRole read_role(const Table& table, const ModelInfo& model, const std::stri
 Prior read_prior(const Table& table, const std::string& key) {
   const std::vector<double> numbers = table.numbers(key);
   if (numbers.size() != 2 || !(numbers[1] > 0.0)) {
-    throw table.error(key, "must be [mean, 1 sigma], sigma > 0");
+    throw table.error(key, "must be [mean, sigma], sigma > 0");
   }
   return {numbers[0], numbers[1]};
 }
 
-/// A number: known exactly; [mean, sigma]: with its uncertainty.
+/// Reads a number, which is known exactly (sigma 0), or [mean, sigma].
 Prior read_known(const Table& table, const std::string& key) {
   try {
     return {table.number(key), 0.0};
@@ -68,8 +70,8 @@ Prior read_known(const Table& table, const std::string& key) {
   }
 }
 
-/// What is known of an input. The command of an actuator is not what it does, neither in scale nor
-/// in sign, unless the campaign says so.
+/// Reads what is known of an input. An actuator's command differs from its action in scale and
+/// sign, unless the campaign gives its gain.
 void read_input(const Table& table, const ModelInfo& model, CampaignColumn& c) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   const auto input = static_cast<std::size_t>(find_input(model, c.channel));
@@ -114,7 +116,7 @@ void read_columns(const Table& root, Campaign& campaign) {
     (channel == kTime ? campaign.time : campaign.columns.emplace_back()) = std::move(c);
   }
   if (campaign.time.channel.empty()) throw columns.error(kTime, "is missing");
-  if (!any_output) throw columns.error("no channel to compare; every one is an input");
+  if (!any_output) throw columns.error("no channel to compare; every column is an input");
 }
 
 void read_fit(const Table& root, CampaignFit& fit) {
@@ -127,15 +129,16 @@ void read_fit(const Table& root, CampaignFit& fit) {
   if (const auto prior = table->find_table("prior")) {
     for (const std::string& name : prior->keys()) {
       if (std::find(fit.free.begin(), fit.free.end(), name) == fit.free.end()) {
-        throw prior->error(
-            name, "is not free; free: " + join_names(fit.free) + suggest_name(name, fit.free));
+        throw prior->error(name, fmt::format("is not free; free: {}{}", join_names(fit.free),
+                                             suggest_name(name, fit.free)));
       }
       fit.prior.emplace_back(name, read_prior(*prior, name));
     }
   }
   for (const auto& [name, value] : fit.fix) {
     if (std::find(fit.free.begin(), fit.free.end(), name) != fit.free.end()) {
-      throw table->error("fix", "'" + name + "' is free, too; must be one of both");
+      throw table->error("fix",
+                         fmt::format("'{}' is also in free; must be in one of the two", name));
     }
   }
 }
@@ -168,16 +171,17 @@ void read_runs(const Table& root, Campaign& campaign) {
       return r.file == campaign.runs.back().file && r.window == campaign.runs.back().window;
     };
     if (std::count_if(campaign.runs.begin(), campaign.runs.end(), same) > 1) {
-      throw table.error("file", "stands there twice; a run is for fitting or held out, not both");
+      throw table.error("file", "is listed twice; a run is for fitting or held out, not both");
     }
   }
   for (const RunUse use : {RunUse::kFit, RunUse::kHoldOut}) {
     if (campaign.count(use) > 0) continue;
-    throw root.error("run", use == RunUse::kFit
-                                ? "every run is held out; at least one must have use = \"fit\""
-                                : "every run is for fitting and none held out, so nothing could "
-                                  "tell a better model from a more flexible one; at least one "
-                                  "must have use = \"hold_out\"");
+    throw root.error("run",
+                     use == RunUse::kFit
+                         ? "every run is held out; at least one must have use = \"fit\""
+                         : "every run is for fitting, so nothing distinguishes a better model "
+                           "from a more flexible one; at least one must have use = "
+                           "\"hold_out\"");
   }
 }
 

@@ -1,5 +1,5 @@
-// A campaign: which measured files belong to which model, what their columns are, what the model
-// may adjust, and which runs are kept apart to judge it. Keys: docs/diagnosis.md.
+// A campaign: a model, its measured files with the meaning of their columns, the parameters that
+// the baseline may adjust, and the held-out runs. Keys: docs/diagnosis.md.
 #pragma once
 
 #include <filesystem>
@@ -16,21 +16,21 @@ namespace strut {
 
 enum class ColumnRole { kInput, kOutput };
 
-/// One channel of the model and the column that holds it:
+/// One channel of the model and the column of the files that holds it:
 /// value = sign * (scale * SI(column)) + offset, in the channel's SI unit.
 struct CampaignColumn {
   std::string channel, column;
-  std::string unit;  // of the file; "": SI
-  std::string si;    // of the channel
+  std::string unit;  // of the column; "": SI
+  std::string si;    // SI unit of the channel
   double sign = 1.0, scale = 1.0, offset = 0.0;
-  std::optional<double> noise;  // 1 sigma in the channel's SI unit; nothing: estimated
+  std::optional<double> noise;  // standard deviation in the channel's SI unit; null: estimated
   ColumnRole role = ColumnRole::kOutput;
   bool optional = false;  // a file may lack it
-  /// Of an input: what it is to be multiplied by; sigma 0: exactly, infinite: nothing is known.
+  /// Factor on an input. sigma 0: known exactly; infinite: unknown.
   Prior gain{1.0, 0.0};
-  /// s, half width of the local cubics that smooth an input; nothing: as its noise allows.
+  /// Half width of the local cubics that smooth an input [s]; null: chosen by its noise.
   std::optional<double> smooth;
-  bool has_sign = false;  // the campaign says it
+  bool has_sign = false;  // `sign` is given by the campaign
 };
 
 enum class RunUse { kFit, kHoldOut };
@@ -39,15 +39,16 @@ const char* get_name(RunUse use);
 
 struct CampaignRun {
   std::filesystem::path file;
-  std::string name;  // as the campaign writes it
+  std::string name;  // as in the campaign
   RunUse use = RunUse::kFit;
-  std::filesystem::path maneuver;  // of a model that no recorded input drives
-  /// What is known of this run alone: parameters of the maneuver, "hit_time" [s]; sigma 0: exactly.
+  std::filesystem::path maneuver;  // for models that no recorded input drives
+  /// Priors for this run alone: parameters of the maneuver, kHitTimeName [s]. sigma 0: known
+  /// exactly.
   std::map<std::string, Prior> known;
-  std::optional<std::pair<double, double>> window;  // s on the file's clock
+  std::optional<std::pair<double, double>> window;  // on the file's clock [s]
 };
 
-/// What the baseline may adjust before anything is blamed on the model.
+/// The parameters that the baseline may adjust, fixes, and has priors for.
 struct CampaignFit {
   std::vector<std::string> free;
   std::vector<std::pair<std::string, double>> fix;
@@ -56,20 +57,20 @@ struct CampaignFit {
 
 struct Campaign {
   std::filesystem::path path, model;
-  const ModelInfo* info = nullptr;  // of the model
+  const ModelInfo* info = nullptr;  // the model's
   CampaignColumn time;
   std::vector<CampaignColumn> columns;  // without time
   CampaignFit fit;
   std::vector<CampaignRun> runs;
 
   std::size_t count(RunUse use) const;
-  /// The campaign's own, and what it names: model, runs, maneuvers.
+  /// The campaign's file and the files it names: model, runs, maneuvers.
   std::vector<std::filesystem::path> list_files() const;
 };
 
-/// Reads the campaign and looks that its files are there. Throws InputError with file, line, key,
-/// value and what is allowed; for unknown keys with the nearest known one; where no run is for
-/// fitting, or none held out.
+/// Reads the campaign and checks that its files exist. Throws InputError with file, line, key,
+/// value and the allowed range; for unknown keys with the nearest known one; where there is no run
+/// for fitting, or no held-out run.
 Campaign read_campaign(const std::filesystem::path& path);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "diagnose/campaign/campaign_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,17 +21,18 @@
 namespace strut {
 namespace {
 
-/// Calls `function`; an InputError of it names the campaign's table it came from.
+/// Calls `function` and adds the campaign's table to its InputErrors.
 template <class Function>
 auto name_table(const CampaignData& data, const std::string& table, const Function& function) {
   try {
     return function();
   } catch (const InputError& e) {
-    throw InputError(data.campaign.path.string() + ": " + table + ": " + e.what());
+    throw InputError(fmt::format("{}: {}: {}", data.campaign.path.string(), table, e.what()));
   }
 }
 
-/// Root mean square of the runs' estimates: of those for fitting, of all where those lack it.
+/// Root mean square of the runs' estimates: over the runs for fitting, or over all runs where those
+/// lack the column.
 NoiseEstimate estimate_column(const CampaignData& data, std::size_t column) {
   NoiseEstimate pooled;
   for (const bool fit_only : {true, false}) {
@@ -62,12 +65,15 @@ void fill_noise(CampaignData& data) {
     if (c.role == ColumnRole::kOutput) estimate = estimate_column(data, i);
     if (c.noise) estimate = {*c.noise, estimate.quantum, NoiseSource::kGiven, 0.0};
     if (c.role == ColumnRole::kOutput && !(estimate.sigma > 0.0)) {
-      bool there = false;
-      for (const MeasuredTable& table : data.tables)
-        there = there || table.find(data.campaign.columns, c.channel);
-      if (there) {
-        throw InputError(data.campaign.path.string() + ": columns." + c.channel +
-                         ": no noise can be estimated from the data; give noise = SIGMA");
+      bool is_measured = false;
+      for (const MeasuredTable& table : data.tables) {
+        is_measured = is_measured || table.find(data.campaign.columns, c.channel);
+      }
+      if (is_measured) {
+        throw InputError(
+            fmt::format("{}: columns.{}: the noise cannot be estimated from the data; give noise = "
+                        "SIGMA",
+                        data.campaign.path.string(), c.channel));
       }
     }
     data.noise.push_back(estimate);
@@ -83,12 +89,14 @@ std::vector<MeasuredChannel> make_channels(const CampaignData& data, const Measu
     channels.push_back(
         {find_channel(data.model(), c.channel), data.noise[column.at].sigma, column.values});
   }
-  if (channels.empty()) throw InputError(table.name + ": none of the channels to compare is there");
+  if (channels.empty()) {
+    throw InputError(table.name + ": the file has none of the campaign's channels to compare");
+  }
   return channels;
 }
 
-/// The readings that are there, as a signal over a clock that begins at 0; smoothed as far as that
-/// takes nothing but noise away (choose_half_width), since rates drive forces.
+/// The readings, without missing ones, as a signal over a clock that starts at 0. Smoothed as far
+/// as that removes only noise (choose_half_width), since forces follow the rate.
 InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
                        const MeasuredColumn& column, InputNoise& noise) {
   const CampaignColumn& c = data.campaign.columns[column.at];
@@ -102,7 +110,7 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
     values.push_back(gain * column.values[i]);
   }
   noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
-  // Masses smooth what they are driven by; a strut's force follows the velocity itself.
+  // Masses smooth their inputs; a strut's force follows the velocity itself.
   const bool smooths = !data.model().masses.empty();
   noise.half_width = c.smooth  ? *c.smooth
                      : smooths ? 0.0
@@ -110,19 +118,19 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
   try {
     return make_sampled_input(c.channel, times, values, noise.half_width);
   } catch (const ModelError& e) {
-    throw InputError(table.name + ": " + e.what());
+    throw InputError(fmt::format("{}: {}", table.name, e.what()));
   }
 }
 
-/// Mean power that goes into the strut over its ends, less that of mean force; 1 where force and
-/// velocity are alike.
+/// Normalized mean power that the strut absorbs, without that of the mean force: the correlation of
+/// force and velocity, -1 to 1.
 double calc_absorption(const MeasuredRun& run, const MeasuredChannel& force,
-                       const InputSignal& moves) {
+                       const InputSignal& motion) {
   const double mean = calc_mean(force.values);
   double power = 0.0, forces = 0.0, rates = 0.0;
   for (std::size_t i = 0; i < run.times.size(); ++i) {
     if (std::isnan(force.values[i])) continue;
-    const double f = force.values[i] - mean, v = calc_signal(moves, run.times[i]).rate;
+    const double f = force.values[i] - mean, v = calc_signal(motion, run.times[i]).rate;
     power += f * v;
     forces += f * f;
     rates += v * v;
@@ -139,34 +147,35 @@ const InputSignal* find_input(const MeasuredRun& run, const std::string& name) {
   return nullptr;
 }
 
-/// A strut takes energy in. Where every run of a stand that moves it says the opposite, force and
-/// motion, its first input, count in opposite directions; unless the campaign gives the sign, it is
-/// turned.
-void turn_force(CampaignData& data) {
-  constexpr double kClearly = -0.3;
+/// Flips the sign of a stand's measured force if the strut gives out energy in every run, since
+/// struts absorb energy: force and motion (the first input) then have opposite directions. If the
+/// campaign gives the sign, only a note is made.
+void orient_force(CampaignData& data) {
+  constexpr double kMaxAbsorption = -0.3;
   const int channel = data.model().stand_force;
   if (channel < 0) return;
-  const std::string& moves = data.model().inputs.front().name;
+  const std::string& input = data.model().inputs.front().name;
   for (const MeasuredRun& run : data.runs) {
-    const InputSignal& motion = *find_input(run, moves);
+    const InputSignal& motion = *find_input(run, input);
     for (const MeasuredChannel& c : run.channels) {
-      if (c.channel == channel && calc_absorption(run, c, motion) > kClearly) return;
+      if (c.channel == channel && calc_absorption(run, c, motion) > kMaxAbsorption) return;
     }
   }
   const std::string& name = data.info(channel).name;
   for (CampaignColumn& c : data.campaign.columns) {
     if (c.channel != name) continue;
     if (c.has_sign) {
-      data.notes.push_back(name +
-                           ": in every run the strut gives energy out, as no strut does; is "
-                           "sign = " +
-                           format_number(c.sign) + " right?");
+      data.notes.push_back(fmt::format(
+          "{}: in every run the strut gives out energy, which no strut does; is sign = {} "
+          "right?",
+          name, format_number(c.sign)));
       return;
     }
     c.sign = -1.0;
-    data.notes.push_back(name +
-                         ": in every run the strut would give energy out, as no strut does; " +
-                         name + " is taken with sign = -1, against " + moves);
+    data.notes.push_back(fmt::format(
+        "{0}: in every run the strut would give out energy, which no strut does; {0} is "
+        "read with sign = -1, opposite to {1}",
+        name, input));
   }
   for (MeasuredRun& run : data.runs) {
     for (MeasuredChannel& c : run.channels) {
@@ -175,7 +184,7 @@ void turn_force(CampaignData& data) {
   }
 }
 
-/// The recorded inputs of a run, on a clock that begins at 0.
+/// Adds the recorded inputs of a run, on a clock that starts at 0.
 void add_inputs(const CampaignData& data, const MeasuredTable& table, MeasuredRun& run) {
   for (double& t : run.times) t -= table.times.front();
   std::vector<InputSignal>& inputs = run.setup.rig().inputs;
@@ -188,29 +197,29 @@ void add_inputs(const CampaignData& data, const MeasuredTable& table, MeasuredRu
   try {
     assign_rig_inputs(run.setup.rig().rig.kind, inputs);
   } catch (const ModelError& e) {
-    throw InputError(data.campaign.path.string() + ": columns: " + e.what());
+    throw InputError(fmt::format("{}: columns: {}", data.campaign.path.string(), e.what()));
   }
 }
 
 void make_runs(CampaignData& data) {
   const Model model = read_model(data.campaign.model);
   for (std::size_t r = 0; r < data.run_count(); ++r) {
-    const CampaignRun& about = data.campaign.runs[r];
+    const CampaignRun& entry = data.campaign.runs[r];
     const MeasuredTable& table = data.tables[r];
     MeasuredRun run{table.name, model, table.times, make_channels(data, table), true};
-    if (!data.has_inputs()) run.setup.car().maneuver = read_maneuver(about.maneuver);
+    if (!data.has_inputs()) run.setup.car().maneuver = read_maneuver(entry.maneuver);
     name_table(data, "fit.fix", [&] {
       for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);
     });
-    name_table(data, "run " + about.name, [&] {
-      for (const auto& [name, known] : about.known) {
-        if (name != "hit_time") set_parameter(run.setup, name, known.mean);
+    name_table(data, "run " + entry.name, [&] {
+      for (const auto& [name, known] : entry.known) {
+        if (name != kHitTimeName) set_parameter(run.setup, name, known.mean);
       }
     });
     if (data.has_inputs()) add_inputs(data, table, run);
     data.runs.push_back(std::move(run));
   }
-  turn_force(data);
+  orient_force(data);
 }
 
 std::vector<MeasuredRun> select(const std::vector<MeasuredRun>& runs,
@@ -226,7 +235,7 @@ bool is_among(const std::vector<Unknown>& unknowns, const std::string& name) {
                      [&](const Unknown& u) { return u.name == name; });
 }
 
-/// Replaces what make_nuisances supposes about run number `at` of a subset by what is known.
+/// Replaces an unknown of run number `at` by the campaign's prior; removes it if known exactly.
 void apply_known(const std::vector<MeasuredRun>& runs, int at, const std::string& name,
                  const Prior& known, std::vector<Unknown>& unknowns) {
   const auto same = [&](const Unknown& u) { return u.name == name && u.run == at; };
@@ -235,7 +244,7 @@ void apply_known(const std::vector<MeasuredRun>& runs, int at, const std::string
     if (found != unknowns.end()) unknowns.erase(found);
     return;
   }
-  Unknown u = name == "hit_time" ? make_hit_time(at, known) : make_parameter(runs, name, at);
+  Unknown u = name == kHitTimeName ? make_hit_time(at, known) : make_parameter(runs, name, at);
   u.prior = known;
   if (found == unknowns.end()) {
     unknowns.push_back(std::move(u));
@@ -284,13 +293,13 @@ CampaignData read_campaign_data(const std::filesystem::path& path) {
   fill_noise(data);
   make_runs(data);
   check_campaign_data(data);
-  make_free_unknowns(data, data.list_runs(RunUse::kFit));  // names what cannot be free
+  make_free_unknowns(data, data.list_runs(RunUse::kFit));  // throws for what cannot be free
   return data;
 }
 
 namespace {
 
-/// Gains of inputs that are not known exactly, where they drive some of the runs.
+/// Adds the gains of inputs that are not known exactly and drive any of the runs.
 void add_gains(const CampaignData& data, const std::vector<MeasuredRun>& runs,
                std::vector<Unknown>& unknowns) {
   for (const CampaignColumn& c : data.campaign.columns) {
@@ -315,8 +324,8 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
     std::vector<Unknown> unknowns;
     for (const std::string& name : data.campaign.fit.free) {
       unknowns.push_back(make_shared_unknown(runs, name));
-      for (const auto& [of, prior] : data.campaign.fit.prior) {
-        if (of != name) continue;
+      for (const auto& [key, prior] : data.campaign.fit.prior) {
+        if (key != name) continue;
         unknowns.back().prior = prior;
         unknowns.back().start = std::clamp(prior.mean, unknowns.back().low, unknowns.back().high);
       }
@@ -327,16 +336,17 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
 }
 
 double get_nominal(const CampaignData& data, const Unknown& unknown) {
-  if (unknown.kind != UnknownKind::kParameter)
-    return unknown.kind == UnknownKind::kInputGain ? 1.0 : 0.0;
-  return get_parameter(data.runs[0].setup, unknown.name);
+  if (unknown.kind == UnknownKind::kParameter) {
+    return get_parameter(data.runs[0].setup, unknown.name);
+  }
+  return unknown.kind == UnknownKind::kInputGain ? 1.0 : 0.0;
 }
 
 std::vector<Unknown> make_run_unknowns(const CampaignData& data,
                                        const std::vector<std::size_t>& runs,
                                        const std::vector<Unknown>& chosen) {
   const std::vector<MeasuredRun> selected = select(data.runs, runs);
-  // An offset of a sensor must never speak for a cause, so it is all but free.
+  // Nearly free, so that the offset of a sensor never counts as evidence for a cause.
   constexpr double kWide = 10.0;
   NuisanceSigmas sigmas;
   sigmas.bias = make_default_bias();
@@ -361,7 +371,7 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads) {
   LinearizeOptions options;
-  options.rate = 1000.0;  // at a campaign's sensors and speeds
+  options.rate = 1000.0;  // enough at the sensors and speeds of campaigns
   options.threads = threads;
   return make_readings(select(data.runs, runs), std::move(unknowns), options);
 }

@@ -1,4 +1,4 @@
-// A campaign with everything its files say: runs in SI that a model can be fitted to.
+// A campaign with the contents of its files: runs in SI that a model can be fitted to.
 #pragma once
 
 #include <memory>
@@ -15,46 +15,47 @@ namespace strut {
 
 struct CampaignData {
   Campaign campaign;
-  std::vector<MeasuredTable> tables;  // one a run
-  std::vector<MeasuredRun> runs;      // one a run
-  std::vector<NoiseEstimate> noise;   // one a column of the campaign; inputs have none
+  std::vector<MeasuredTable> tables;  // by run
+  std::vector<MeasuredRun> runs;      // by run
+  std::vector<NoiseEstimate> noise;   // by column of the campaign; empty for inputs
   std::vector<std::string> notes;     // for the user
 
   const ModelInfo& model() const { return *campaign.info; }
-  /// Whether recorded inputs drive the runs; if not, a road whose roughness nobody measured.
+  /// Whether recorded inputs drive the runs; if not, a road of unknown roughness does.
   bool has_inputs() const { return model().is_driven_by_inputs(); }
   std::size_t run_count() const { return campaign.runs.size(); }
   const std::vector<MeasuredChannel>& channels(std::size_t run) const { return runs[run].channels; }
-  /// s on the clock of the readings.
+  /// On the clock of the readings [s].
   const std::vector<double>& times(std::size_t run) const { return runs[run].times; }
   const ChannelInfo& info(int channel) const {
     return model().channels[static_cast<std::size_t>(channel)];
   }
   const NoiseEstimate& find_noise(int channel) const;
-  /// Numbers of the runs for this use.
+  /// Indices of the runs for this use.
   std::vector<std::size_t> list_runs(RunUse use) const;
 };
 
-/// The campaign of one of its runs.
+/// The campaign with a single one of its runs.
 CampaignData take_run(const CampaignData& data, std::size_t run);
 
-/// Whether a run meets more than a road's roughness; what recorded inputs drive always does.
+/// Whether a run crosses more than a road's roughness; a run that recorded inputs drive always
+/// does.
 bool meets_bump(const CampaignData& data, std::size_t run);
 
-/// Reads the campaign, its model with what `[fit] fix` sets, and every run. Throws InputError for
-/// whatever campaign.h, measured_table.h and check_campaign_data.h refuse.
+/// Reads the campaign, its model with the values of `[fit] fix`, and every run. Throws InputError
+/// as campaign.h, measured_table.h and check_campaign_data.h say.
 CampaignData read_campaign_data(const std::filesystem::path& path);
 
-/// What `[fit] free` names, with its priors, and the gains of inputs that are not known exactly:
-/// the same for all of `runs`.
+/// The unknowns that all of `runs` share: those of `[fit] free`, with their priors, and the gains
+/// of inputs that are not known exactly.
 std::vector<Unknown> make_free_unknowns(const CampaignData& data,
                                         const std::vector<std::size_t>& runs);
 
-/// What an unknown that all runs share is in the model's file.
+/// The value of a shared unknown in the model's file.
 double get_nominal(const CampaignData& data, const Unknown& unknown);
 
-/// The nuisances of `runs` (make_nuisances), with the priors that the campaign gives for single
-/// runs. Unknown::run counts within `runs`. What is in `chosen` is left out.
+/// The nuisances of `runs` (make_nuisances), except those in `chosen`, with the priors that the
+/// campaign gives for single runs. Unknown::run is an index in `runs`.
 std::vector<Unknown> make_run_unknowns(const CampaignData& data,
                                        const std::vector<std::size_t>& runs,
                                        const std::vector<Unknown>& chosen);

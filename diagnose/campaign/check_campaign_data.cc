@@ -1,5 +1,7 @@
 #include "diagnose/campaign/check_campaign_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +16,7 @@
 namespace strut {
 namespace {
 
-/// Spreads that a suspension's quantities can have, from a laboratory rig to a truck.
+/// Plausible spreads of a suspension's quantities, from a laboratory rig to a truck.
 struct PlausibleSpread {
   const char* si;
   double low, high;
@@ -22,19 +24,20 @@ struct PlausibleSpread {
 constexpr PlausibleSpread kPlausible[] = {{"m", 1e-6, 3.0},       {"m/s", 1e-5, 60.0},
                                           {"m/s^2", 1e-4, 500.0}, {"N", 1e-3, 1e6},
                                           {"rad", 1e-6, 1.5},     {"rad/s", 1e-5, 300.0}};
-constexpr double kMostRatio = 300.0;
+constexpr double kMaxRatio = 300.0;
 
-constexpr double kWantedPerPeriod = 8.0, kNeededPerPeriod = 4.0;
-constexpr double kWantedCarRate = 100.0, kNeededCarRate = 50.0;  // Hz; wheels hop at 10 to 15 Hz
-/// A strut on a crank shows its force at so many places of a stroke.
-constexpr double kWantedPerStroke = 40.0, kNeededPerStroke = 20.0;
+/// Recommended and required samples: a period of the fastest mode, a second of a car, whose wheels
+/// hop at 10 to 15 Hz, and a stroke of a strut on a crank.
+constexpr double kRecommendedPerPeriod = 8.0, kRequiredPerPeriod = 4.0;
+constexpr double kRecommendedCarRate = 100.0, kRequiredCarRate = 50.0;  // Hz
+constexpr double kRecommendedPerStroke = 40.0, kRequiredPerStroke = 20.0;
 
 struct RateNeed {
-  double wanted, needed;  // Hz
+  double recommended, required;  // Hz
   std::string reason;
 };
 
-/// Crossings of the mean, upwards, per second; with a dead band, so that noise makes none.
+/// Upward crossings of the mean per second, with a dead band against noise.
 double calc_frequency(const std::vector<double>& values, double duration) {
   const double mean = calc_mean(values), band = 0.3 * calc_spread(values);
   bool below = false;
@@ -50,62 +53,67 @@ double calc_frequency(const std::vector<double>& values, double duration) {
 
 RateNeed find_need(const CampaignData& data, std::size_t r) {
   if (!data.has_inputs()) {
-    return {kWantedCarRate, kNeededCarRate, "wheels hop at 10 to 15 Hz"};
+    return {kRecommendedCarRate, kRequiredCarRate, "wheels hop at 10 to 15 Hz"};
   }
   const MeasuredRun& run = data.runs[r];
   const double mode = run.setup.calc_fastest_mode() / (2.0 * std::numbers::pi);
   if (mode > 0.0) {
-    return {kWantedPerPeriod * mode, kNeededPerPeriod * mode,
-            "the model's fastest mode has " + format_rounded(mode) + " Hz"};
+    return {kRecommendedPerPeriod * mode, kRequiredPerPeriod * mode,
+            fmt::format("the model's fastest mode has {} Hz", format_rounded(mode))};
   }
   const MeasuredColumn* stroke =
       data.tables[r].find(data.campaign.columns, data.model().inputs.front().name);
   const double f = stroke ? calc_frequency(stroke->values, run.times.back()) : 0.0;
-  return {kWantedPerStroke * f, kNeededPerStroke * f,
-          "the strut is driven at " + format_rounded(f) + " Hz"};
+  return {kRecommendedPerStroke * f, kRequiredPerStroke * f,
+          fmt::format("the strut is driven at {} Hz", format_rounded(f))};
 }
 
 void check_duration(const CampaignData& data, std::size_t r) {
-  constexpr double kMaxDuration = 1e5;  // s, as of a rig's maneuver
+  constexpr double kMaxDuration = 1e5;  // s, as for a rig's maneuver
   const MeasuredTable& table = data.tables[r];
   const double duration = table.times.back() - table.times.front();
   if (duration <= kMaxDuration) return;
-  throw InputError(table.name + ": lasts " + format_rounded(duration) + " s; must be at most " +
-                   format_rounded(kMaxDuration) + " s");
+  throw InputError(fmt::format("{}: lasts {} s; must be at most {} s", table.name,
+                               format_rounded(duration), format_rounded(kMaxDuration)));
 }
 
 void check_rate(CampaignData& data, std::size_t r) {
+  constexpr double kMaxRate = 1e5;
   const MeasuredTable& table = data.tables[r];
+  const CampaignColumn& clock = data.campaign.time;
   const double rate = table.rate();
   const RateNeed need = find_need(data, r);
-  const std::string told = table.name + ": " + format_rounded(rate) + " samples a second; " +
-                           need.reason + ", so " + format_rounded(std::ceil(need.wanted)) +
-                           " are wanted and " + format_rounded(std::ceil(need.needed)) + " needed";
-  if (rate < need.needed) {
-    const bool kilo = data.campaign.time.unit.empty() && 1000.0 * rate >= need.needed &&
-                      table.times.back() - table.times.front() > 1000.0;
+  const std::string message = fmt::format(
+      "{}: {} samples per second; {}, so at least {} are required and {} recommended", table.name,
+      format_rounded(rate), need.reason, format_rounded(std::ceil(need.required)),
+      format_rounded(std::ceil(need.recommended)));
+  if (rate < need.required) {
+    const bool is_milli = clock.unit.empty() && 1000.0 * rate >= need.required &&
+                          table.times.back() - table.times.front() > 1000.0;
     throw InputError(
-        told +
-        (kilo ? "; is column '" + data.campaign.time.column + "' in ms? then unit = \"ms\"" : ""));
+        message + (is_milli
+                       ? fmt::format("; if column '{}' is in ms, give unit = \"ms\"", clock.column)
+                       : ""));
   }
-  if (rate < need.wanted) data.notes.push_back(told);
-  constexpr double kMostRate = 1e5;
-  if (rate > kMostRate) {
-    throw InputError(table.name + ": " + format_rounded(rate) +
-                     " samples a second are more than any such sensor takes; wrong by a factor of "
-                     "1000? column '" +
-                     data.campaign.time.column + "' is read in " +
-                     (data.campaign.time.unit.empty() ? "s" : data.campaign.time.unit));
+  if (rate < need.recommended) data.notes.push_back(message);
+  if (rate > kMaxRate) {
+    throw InputError(fmt::format(
+        "{}: {} samples per second are more than any such sensor takes; column '{}' is "
+        "read in {}: is its unit wrong, perhaps by a factor of 1000?",
+        table.name, format_rounded(rate), clock.column, clock.unit.empty() ? "s" : clock.unit));
   }
 }
 
-std::string suspect(const MeasuredTable& table, const CampaignColumn& c, double spread,
-                    double expected, const std::string& of) {
+/// The message of a suspected unit. `comparison`: the plausible spread or the model's.
+std::string suspect_unit(const MeasuredTable& table, const CampaignColumn& c, double spread,
+                         double expected, const std::string& comparison) {
   const std::string guess = guess_unit(c.si, spread / expected);
-  std::string text = table.name + ": " + c.channel + " (column '" + c.column + "', read in " +
-                     (c.unit.empty() ? c.si : c.unit) + ") spreads by " + format_rounded(spread) +
-                     " " + c.si + ", " + of + ": is its unit wrong, perhaps by a factor of 1000?";
-  if (!guess.empty() && c.unit.empty()) text += " Then unit = \"" + guess + "\"";
+  std::string text = fmt::format(
+      "{}: {} (column '{}', read in {}) has a standard deviation of {} {}, {}: is its "
+      "unit wrong, perhaps by a factor of 1000?",
+      table.name, c.channel, c.column, c.unit.empty() ? c.si : c.unit, format_rounded(spread), c.si,
+      comparison);
+  if (!guess.empty() && c.unit.empty()) text += fmt::format(" If so, give unit = \"{}\"", guess);
   return text;
 }
 
@@ -117,43 +125,44 @@ void check_plausible(const CampaignData& data, std::size_t r) {
       if (plausible.si != c.si || spread == 0.0) continue;
       if (spread >= plausible.low && spread <= plausible.high) continue;
       const bool high = spread > plausible.high;
-      throw InputError(suspect(data.tables[r], c, spread, high ? 1e-3 * spread : 1e3 * spread,
-                               (high ? "more than " : "less than ") +
-                                   format_rounded(high ? plausible.high : plausible.low) + " " +
-                                   c.si + " that such a channel can have"));
+      throw InputError(suspect_unit(
+          data.tables[r], c, spread, high ? 1e-3 * spread : 1e3 * spread,
+          high ? fmt::format("above the plausible {} {}", format_rounded(plausible.high), c.si)
+               : fmt::format("below the plausible {} {}", format_rounded(plausible.low), c.si)));
     }
   }
 }
 
 void check_driven(const CampaignData& data, std::size_t r) {
   if (!data.has_inputs()) return;
-  double most = 0.0;
+  double max_spread = 0.0;
   for (const MeasuredColumn& column : data.tables[r].columns) {
     if (data.campaign.columns[column.at].role != ColumnRole::kInput) continue;
-    most = std::max(most, calc_spread(column.values));
+    max_spread = std::max(max_spread, calc_spread(column.values));
   }
-  if (most > 0.0) return;
-  throw InputError(data.tables[r].name + ": every input is constant: nothing moves the rig");
+  if (max_spread > 0.0) return;
+  throw InputError(data.tables[r].name + ": every input is constant, so nothing drives the rig");
 }
 
 /// Against the nominal model, driven by the same inputs or the stated maneuver.
 void check_units(const CampaignData& data, std::size_t r) {
   const RunCurves curves = simulate_run(data.runs[r], {}, {});
-  if (!curves.failure.empty()) return;  // told by whoever needs the simulation
+  if (!curves.failure.empty()) return;  // reported where the simulation is needed
   for (std::size_t k = 0; k < data.channels(r).size(); ++k) {
     const MeasuredChannel& channel = data.channels(r)[k];
     const double measured = calc_spread(channel.values);
     const double simulated = calc_spread(curves.channel[static_cast<std::size_t>(channel.channel)]);
     if (!(simulated > 0.0) || !(measured > 0.0)) continue;
     const double ratio = measured / simulated;
-    if (ratio < kMostRatio && ratio * kMostRatio > 1.0) continue;
-    // Below the noise the model may rest; where it rests, a rough road still moves the car.
+    if (ratio < kMaxRatio && ratio * kMaxRatio > 1.0) continue;
+    // Below the noise the model may be at rest; a rough road moves the measured car nevertheless.
     if (std::max(simulated, measured) < 10.0 * channel.sigma) continue;
     if (!data.has_inputs() && simulated < channel.sigma) continue;
     for (const CampaignColumn& c : data.campaign.columns) {
       if (c.channel != data.info(channel.channel).name) continue;
-      throw InputError(suspect(data.tables[r], c, measured, simulated,
-                               "the nominal model's by " + format_rounded(simulated) + " " + c.si));
+      throw InputError(suspect_unit(
+          data.tables[r], c, measured, simulated,
+          fmt::format("that of the nominal model is {} {}", format_rounded(simulated), c.si)));
     }
   }
 }

@@ -1,18 +1,19 @@
-// What makes a campaign's data unusable though every file can be read.
+// Checks of a campaign's data that can be read but not used.
 #pragma once
 
 namespace strut {
 
 struct CampaignData;
 
-/// Throws InputError, naming the file, where
-///  - the sampling rate is too low for what the model can do: below 4 samples a period of its
-///    fastest mode (8 are wanted), cars below 50 Hz (100 are wanted); it says so if the clock may
-///    be in another unit;
-///  - nothing drives a rig: all inputs constant;
-///  - a channel's spread is outside of what such a quantity can have, or differs more than 300-fold
-///    from that of the nominal model in the same run: its unit is suspected.
-/// Rates between what is needed and what is wanted become notes.
+/// Throws InputError, with the file, where
+///  - the sampling rate is too low for the model: below 4 samples a period of its fastest mode (8
+///    are recommended), for cars below 50 Hz (100 are recommended); with a hint if the clock may be
+///    in another unit;
+///  - a rig is not driven: all inputs are constant;
+///  - a channel's spread is implausible for such a quantity, or differs more than 300-fold from
+///  that
+///    of the nominal model in the same run: its unit may be wrong.
+/// Adds a note for a rate between the required and the recommended one.
 void check_campaign_data(CampaignData& data);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "diagnose/campaign/measured_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,10 +14,10 @@
 namespace strut {
 namespace {
 
-/// Readings below which nothing can be said of a run.
-constexpr std::size_t kLeastSamples = 20;
+/// Minimum number of samples of a run.
+constexpr std::size_t kMinSamples = 20;
 
-/// Of one file, or of all columns where `column` is in it.
+/// The value of a column's cell in the channel's SI unit.
 double convert(const CampaignColumn& c, double value) {
   const UnitScale unit = find_unit_scale(c.unit, c.si);
   return c.sign * (c.scale * (unit.factor * value + unit.offset)) + c.offset;
@@ -36,19 +38,20 @@ Measurement read_columns(const Campaign& campaign, const CampaignRun& run) {
 std::vector<double> read_clock(const Campaign& campaign, const Measurement& file) {
   std::vector<double> times = file.values(campaign.time.column);
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (std::isnan(times[i]))
-      throw InputError(file.locate(i) + ": " + campaign.time.column + " is missing");
+    if (std::isnan(times[i])) {
+      throw InputError(fmt::format("{}: {} is missing", file.locate(i), campaign.time.column));
+    }
     times[i] = convert(campaign.time, times[i]);
     if (i == 0 || times[i] > times[i - 1]) continue;
-    throw InputError(file.locate(i) + ": the clock " +
-                     (times[i] < times[i - 1] ? "runs backwards" : "stands still") + ": " +
-                     campaign.time.column + " = " + format_number(times[i]) + " s after " +
-                     format_number(times[i - 1]) + " s; it must ascend from row to row");
+    throw InputError(
+        fmt::format("{}: the clock {}: {} = {} s after {} s; it must ascend from row to row",
+                    file.locate(i), times[i] < times[i - 1] ? "runs backwards" : "stands still",
+                    campaign.time.column, format_number(times[i]), format_number(times[i - 1])));
   }
   return times;
 }
 
-/// Rows of the run's window.
+/// Rows [first, last) of the run's window.
 std::pair<std::size_t, std::size_t> find_window(const CampaignRun& run,
                                                 const std::vector<double>& times) {
   if (!run.window) return {0, times.size()};
@@ -59,20 +62,22 @@ std::pair<std::size_t, std::size_t> find_window(const CampaignRun& run,
           static_cast<std::size_t>(last - times.begin())};
 }
 
-/// A sensor that works has noise.
+/// Throws where all readings are equal: a working sensor has noise.
 void check_varies(const std::string& name, const CampaignColumn& c, const MeasuredColumn& column) {
   const std::size_t count = column.values.size() - column.missing;
-  if (count == 0)
-    throw InputError(name + ": " + c.channel + " (column '" + c.column +
-                     "') has no reading at all");
+  if (count == 0) {
+    throw InputError(
+        fmt::format("{}: {} (column '{}') has no reading at all", name, c.channel, c.column));
+  }
   const auto is_there = [](double v) { return !std::isnan(v); };
   const double first = *std::find_if(column.values.begin(), column.values.end(), is_there);
   const bool constant = std::all_of(column.values.begin(), column.values.end(),
                                     [&](double v) { return std::isnan(v) || v == first; });
   if (!constant) return;
-  throw InputError(name + ": " + c.channel + " (column '" + c.column + "') is " +
-                   format_number(first) + " " + c.si + " in all " + std::to_string(count) +
-                   " readings: a sensor that works has noise; is it the right column?");
+  throw InputError(fmt::format(
+      "{}: {} (column '{}') is {} {} in all {} readings, but a working sensor has noise; is it the "
+      "right column?",
+      name, c.channel, c.column, format_number(first), c.si, count));
 }
 
 MeasuredColumn take_column(const CampaignColumn& c, std::size_t at, const std::vector<double>& raw,
@@ -86,7 +91,7 @@ MeasuredColumn take_column(const CampaignColumn& c, std::size_t at, const std::v
   return column;
 }
 
-/// The step of decimal digits that all numbers are multiples of: 1, 0.1, ...; 0: finer than 1e-7.
+/// The largest of 1, 0.1, 0.01, ... of which all numbers are multiples; 0 if it is below 1e-7.
 double find_resolution(const std::vector<double>& numbers) {
   for (double step = 1.0; step > 0.5e-7; step *= 0.1) {
     const bool fits = std::all_of(numbers.begin(), numbers.end(), [step](double x) {
@@ -99,10 +104,10 @@ double find_resolution(const std::vector<double>& numbers) {
 
 }  // namespace
 
-const MeasuredColumn* MeasuredTable::find(const std::vector<CampaignColumn>& of,
+const MeasuredColumn* MeasuredTable::find(const std::vector<CampaignColumn>& campaign_columns,
                                           const std::string& channel) const {
   const auto found = std::find_if(columns.begin(), columns.end(), [&](const MeasuredColumn& c) {
-    return of[c.at].channel == channel;
+    return campaign_columns[c.at].channel == channel;
   });
   return found == columns.end() ? nullptr : &*found;
 }
@@ -121,7 +126,7 @@ bool even_clock(std::vector<double>& times) {
   if (resolution == 0.0 || times.size() < 3) return false;
   const double first = times.front(), n = static_cast<double>(times.size() - 1);
   double interval = (times.back() - first) / n, begin = first;
-  // Least squares: the end points alone are off by their own rounding.
+  // Least squares, since the end points alone carry their own rounding.
   double sum = 0.0, moment = 0.0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double at = static_cast<double>(i), rest = times[i] - begin - interval * at;
@@ -147,11 +152,11 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
   table.name = run.file.string();
   const std::vector<double> times = read_clock(campaign, file);
   const auto rows = find_window(run, times);
-  if (rows.second < rows.first + kLeastSamples) {
-    throw InputError(table.name + ": " + std::to_string(rows.second - rows.first) + " samples" +
-                     (run.window ? " in the window" : "") + " from " +
-                     format_rounded(times.front()) + " to " + format_rounded(times.back()) +
-                     " s; must be " + std::to_string(kLeastSamples) + " or more");
+  if (rows.second < rows.first + kMinSamples) {
+    throw InputError(fmt::format("{}: {} samples{} from {} to {} s; must be at least {}",
+                                 table.name, rows.second - rows.first,
+                                 run.window ? " in the window" : "", format_rounded(times.front()),
+                                 format_rounded(times.back()), kMinSamples));
   }
   table.times.assign(times.begin() + static_cast<std::ptrdiff_t>(rows.first),
                      times.begin() + static_cast<std::ptrdiff_t>(rows.second));
@@ -164,8 +169,8 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
     const MeasuredColumn& column = table.columns.back();
     if (c.role == ColumnRole::kOutput) check_varies(table.name, c, column);
     if (column.missing == 0) continue;
-    table.notes.push_back(table.name + ": " + c.channel + ": " + std::to_string(column.missing) +
-                          " of " + std::to_string(column.values.size()) + " samples are missing");
+    table.notes.push_back(fmt::format("{}: {}: {} of {} samples are missing", table.name, c.channel,
+                                      column.missing, column.values.size()));
   }
   return table;
 }

@@ -1,5 +1,5 @@
-// A measured file as a campaign maps it: channels in SI over the file's own clock, missing samples
-// marked, everything implausible told.
+// A measured file as a campaign maps it: channels in SI over the file's own clock, with missing
+// samples as NaN.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 namespace strut {
 
 struct MeasuredColumn {
-  std::size_t at = 0;          // of the campaign's columns
+  std::size_t at = 0;          // index in Campaign::columns
   std::vector<double> values;  // SI; NaN: missing
   std::size_t missing = 0;
 };
 
 struct MeasuredTable {
-  std::string name;           // of the file, for messages
+  std::string name;           // the file's, for messages
   std::vector<double> times;  // s, ascending
   std::vector<MeasuredColumn> columns;
   std::vector<std::string> notes;  // for the user
@@ -24,18 +24,19 @@ struct MeasuredTable {
   /// nullptr where the file does not have it.
   const MeasuredColumn* find(const std::vector<CampaignColumn>& columns,
                              const std::string& channel) const;
-  double rate() const;  // 1/s, of the median interval
+  double rate() const;  // inverse of the median interval [1/s]
 };
 
-/// Reads a run's CSV or HDF5 file. A clock whose printed digits are coarser than its jitter is set
-/// even (even_clock). Throws InputError with file and line or row: a column that is missing (with
-/// all there are), a clock that runs backwards or stands still, a channel that is constant or
-/// empty, a window without samples.
+/// Reads a run's CSV or HDF5 file. A clock whose printed digits are coarser than its jitter is made
+/// even (even_clock). Throws InputError with file and line or row for a missing column (with those
+/// that exist), a clock that runs backwards or stands still, a constant or empty channel, and a
+/// window without samples.
 MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& run);
 
-/// Times printed with few digits (0.0033, 0.0067, 0.0100) as the even clock they are rounded from:
-/// t_i = a + b i, where that is within `resolution` / 2 of all of them. Returns whether it is so.
-/// Such rounding would else jitter every derivative by resolution / interval.
+/// Replaces times printed with few digits (0.0033, 0.0067, 0.0100) by the even clock they are
+/// rounded from: t_i = a + b i, if that lies within 0.75 of their resolution of all of them;
+/// returns whether it does. Otherwise such rounding would jitter every derivative by resolution /
+/// interval.
 bool even_clock(std::vector<double>& times);
 
 }  // namespace strut

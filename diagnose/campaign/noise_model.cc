@@ -10,13 +10,13 @@ namespace {
 constexpr std::size_t kBlock = 64, kOrder = 4;
 constexpr double kWeights[kOrder + 1] = {1.0, -4.0, 6.0, -4.0, 1.0};
 constexpr double kGain = 70.0;  // sum of their squares
-/// Neighboring differences are correlated, 0.8, 0.4, 0.114, 0.014: a block of 64 has so many
-/// degrees of freedom.
+/// Degrees of freedom of a block of 64 differences, whose neighbors are correlated by 0.8, 0.4,
+/// 0.114, 0.014.
 constexpr double kFreedom = static_cast<double>(kBlock) / 2.63;
-/// Median of a chi-square of so many degrees over its mean (E. B. Wilson, M. M. Hilferty, 1931).
-constexpr double kCube = 1.0 - 2.0 / (9.0 * kFreedom), kMedianShare = kCube * kCube * kCube;
+/// Ratio of median to mean of a chi-square of so many degrees (E. B. Wilson, M. M. Hilferty, 1931).
+constexpr double kCube = 1.0 - 2.0 / (9.0 * kFreedom), kMedianRatio = kCube * kCube * kCube;
 
-/// Squares of the differences that no missing sample touches.
+/// Squares of the differences without a missing sample.
 std::vector<double> calc_squares(std::span<const double> values) {
   std::vector<double> squares;
   squares.reserve(values.size());
@@ -72,8 +72,8 @@ NoiseEstimate estimate_noise(std::span<const double> values) {
   const std::vector<double> means = calc_block_means(calc_squares(values));
   estimate.quantum = find_quantum(values);
   const double rounding = estimate.quantum / std::sqrt(12.0);
-  if (!means.empty()) estimate.sigma = std::sqrt(calc_median(means) / (kMedianShare * kGain));
-  // A median of m blocks spreads 1.25 / sqrt(m) times as much as one.
+  if (!means.empty()) estimate.sigma = std::sqrt(calc_median(means) / (kMedianRatio * kGain));
+  // The standard error of the median of m blocks is 1.25 / sqrt(m) of that of one block.
   const double blocks = std::max(1.0, static_cast<double>(means.size()));
   estimate.uncertainty = 0.5 * 1.25 * std::sqrt(2.0 / (kFreedom * blocks));
   if (estimate.sigma < rounding) {

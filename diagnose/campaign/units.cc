@@ -1,5 +1,7 @@
 #include "diagnose/campaign/units.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
@@ -70,8 +72,8 @@ UnitScale find_unit_scale(const std::string& unit, const std::string& si) {
     if (entry.name == unit) return entry.scale;
     allowed.emplace_back(entry.name);
   }
-  throw InputError("unit \"" + unit + "\": not known for " + si +
-                   "; allowed: " + join_names(allowed) + suggest_name(unit, allowed));
+  throw InputError(fmt::format("unit \"{}\": unknown for a channel in {}; allowed: {}{}", unit, si,
+                               join_names(allowed), suggest_name(unit, allowed)));
 }
 
 std::string guess_unit(const std::string& si, double ratio) {

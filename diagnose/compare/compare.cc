@@ -39,12 +39,12 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
   return c;
 }
 
-std::vector<std::string> list_open(const Baseline& baseline) {
-  std::vector<std::string> open;
+std::vector<std::string> list_not_identifiable(const Baseline& baseline) {
+  std::vector<std::string> list;
   for (const NullDirection& direction : baseline.fit.widened.null_directions) {
-    open.push_back(describe_direction(direction, baseline.fit.unknowns));
+    list.push_back(describe_direction(direction, baseline.fit.unknowns));
   }
-  return open;
+  return list;
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
   Comparison comparison;
   comparison.baseline = calibrate_baseline(data, threads);
   const Baseline& baseline = comparison.baseline;
-  if (baseline.is_fitted) comparison.not_identifiable = list_open(baseline);
+  if (baseline.is_fitted) comparison.not_identifiable = list_not_identifiable(baseline);
   for (std::size_t r = 0; r < data.run_count(); ++r) {
     RunComparison run;
     run.run = r;

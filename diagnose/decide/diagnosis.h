@@ -1,6 +1,6 @@
-// The whole diagnosis of a campaign: what the simulation gets wrong, which effect of the catalogue
-// says so, how sure that is, what the extended model gains on runs it was not fitted to, and
-// what to measure next.
+// The whole diagnosis of a campaign: errors of the model, the effect of the catalogue that explains
+// them and its probability, the improvement by the extended model on held-out runs, and the next
+// measurement.
 #pragma once
 
 #include <functional>
@@ -21,15 +21,18 @@ const char* get_name(VerdictKind kind);
 
 struct CauseParameter {
   std::string key, unit;                      // as in a model file: "asymmetry"
-  double value = 0.0, low = 0.0, high = 0.0;  // and 95 % interval
+  double value = 0.0, low = 0.0, high = 0.0;  // with 95 % interval
 };
 
 struct Cause {
   std::string effect, place;
   double probability = 0.0;
-  double gain = 0.0;  // by which it makes chi2 fall
+  double delta_chi2 = 0.0;  // fall of chi2 with the effect
   std::vector<CauseParameter> parameters;
 };
+
+bool is_same(const Cause& a, const Cause& b);
+bool is_in(const std::vector<Cause>& causes, const Cause& cause);
 
 /// A parameter of the model before and after the extension, with 95 % intervals.
 struct ParameterChange {
@@ -38,34 +41,36 @@ struct ParameterChange {
   double after = 0.0, after_low = 0.0, after_high = 0.0;
 };
 
-/// One channel over all runs held out.
-struct ChannelGain {
+/// One channel over all held-out runs.
+struct ChannelImprovement {
   std::string channel, unit;
   double rms_before = 0.0, rms_after = 0.0, noise_floor = 0.0;
   double nrmse_before = 0.0, nrmse_after = 0.0;  // over the measured spread
 };
 
-struct HoldOutGain {
-  std::vector<ChannelGain> channels;
-  /// (before - after) / (before - floor) of the rms, the floor with its tolerance, summed over
-  /// channels in units of their floors. Nothing where no channel stands above its floor before.
+/// Improvement of the extended over the calibrated model on the held-out runs.
+struct Improvement {
+  std::vector<ChannelImprovement> channels;
+  /// Fraction of the excess error that is removed: (before - after) / (before - floor) of the rms,
+  /// the floor with its tolerance, summed over channels in units of their floors. Null where no
+  /// channel exceeds its floor before.
   std::optional<double> explained;
   double log_likelihood_before = 0.0, log_likelihood_after = 0.0;  // per sample
-  double log_odds = 0.0;  // of the extended model against the calibrated one, all samples
+  double log_odds = 0.0;  // of the extended against the calibrated model, over all samples
 };
 
-/// Where the residual of the calibrated model is seen best.
+/// Where the residual of the calibrated model is largest.
 struct Where {
   std::string channel, time, band, depends_on, place;
 };
 
-/// A force of a strut that the catalogue does not have.
+/// A force of a strut that is not in the catalogue.
 struct UnknownForce {
   std::string place;      // as a force map's
-  ForceMap map;           // as the extended model has it
-  VisitedStates states;   // where the strut was in the runs for fitting
-  MapDependence depends;  // of the map on these
-  double share = 0.0;     // of what the runs held out have beyond noise that the map takes
+  ForceMap map;           // of the extended model
+  VisitedStates states;   // of the strut in the runs for fitting
+  MapDependence depends;  // of the map over these states
+  double fraction = 0.0;  // of the held-out runs' excess over noise that the map removes
 };
 
 /// Curves of one run for the report: measured, and the readings of the calibrated and the extended
@@ -77,22 +82,22 @@ struct DiagnosedRun {
 
 struct Diagnosis {
   VerdictKind kind = VerdictKind::kAdequate;
-  std::string sentence;           // the verdict in one
+  std::string sentence;           // the verdict in words
   std::vector<Cause> causes;      // accepted, the largest first
-  std::vector<Cause> group;       // all that the data cannot tell apart, causes among them; or none
-  std::vector<Cause> runners_up;  // the rest that was fitted
+  std::vector<Cause> group;       // all that the data cannot distinguish, causes included; or empty
+  std::vector<Cause> runners_up;  // other fitted candidates
   double unknown_share = 0.0;     // probability that the cause is none of the catalogue
   Where where;
-  std::optional<UnknownForce> force;  // what the extended model has beside the causes
+  std::optional<UnknownForce> force;  // of the extended model, beside the causes
   std::vector<ParameterChange> parameters;
-  HoldOutGain gain;
+  Improvement improvement;
   std::vector<std::string> not_identifiable;
   std::string next_measurement;
   Selection selection;
   std::vector<DiagnosedRun> runs;
   std::vector<std::string> notes;  // for the user
-  /// Every run held out could be simulated, and the calibration converged, or lacks little of its
-  /// minimum beside what confirmed causes gain.
+  /// Whether every held-out run could be simulated, and the calibration converged or is close to
+  /// its minimum compared with the delta chi2 of the causes.
   bool is_whole = true;
 
   /// Whether there is an extended model.
@@ -101,14 +106,14 @@ struct Diagnosis {
 
 struct DiagnoseOptions {
   int threads = 1;
-  std::function<void(const std::string&)> progress;  // what is being done
+  std::function<void(const std::string&)> progress;  // called with the name of each stage
 };
 
 Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& options = {});
 
-/// The model's file with the causes switched on at their fitted values, the force map, and the
-/// parameters that the diagnosis fitted; it can stand wherever a model file is named. `folder`:
-/// where it will lie; the files that the model names are named from there.
+/// The text of the model's file with the causes switched on at their fitted values, the force map,
+/// and the fitted parameters. It is a model file like any other. `folder`: where the file will lie;
+/// paths in the model are rewritten relative to it.
 std::string make_extended_model(const CampaignData& data, const Diagnosis& diagnosis,
                                 const std::filesystem::path& folder);
 

@@ -1,5 +1,7 @@
 #include "diagnose/decide/next_measurement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,10 +11,10 @@
 namespace strut {
 namespace {
 
-/// A run that could be made.
+/// A possible run.
 struct Proposal {
   std::string description;
-  CampaignData data;  // of that run alone
+  CampaignData data;  // with that run alone
 };
 
 void add_crossings(const CampaignData& data, std::size_t run, std::vector<Proposal>& menu) {
@@ -21,19 +23,19 @@ void add_crossings(const CampaignData& data, std::size_t run, std::vector<Propos
     CampaignData one = take_run(data, run);
     ManeuverSpec& m = one.runs[0].setup.car().maneuver;
     if (m.road.shape == BumpShape::kNone) return;
-    // The bump is met at the same time.
+    // The car reaches the bump at the same time.
     m.speed *= factor;
     m.bump_distance *= factor;
-    menu.push_back({"repeat " + data.campaign.runs[run].name + " at " +
-                        format_rounded(std::round(kKilometersPerHour * m.speed)) + " km/h",
+    menu.push_back({fmt::format("repeat {} at {} km/h", data.campaign.runs[run].name,
+                                format_rounded(std::round(kKilometersPerHour * m.speed))),
                     std::move(one)});
   }
   for (const double factor : {0.5, 1.5}) {
     CampaignData one = take_run(data, run);
     RoadSpec& road = one.runs[0].setup.car().maneuver.road;
     road.height *= factor;
-    menu.push_back({"repeat " + data.campaign.runs[run].name + " over a bump of " +
-                        format_rounded(std::round(1e3 * road.height)) + " mm",
+    menu.push_back({fmt::format("repeat {} over a bump of {} mm", data.campaign.runs[run].name,
+                                format_rounded(std::round(1e3 * road.height))),
                     std::move(one)});
   }
 }
@@ -45,8 +47,8 @@ void add_amplitudes(const CampaignData& data, std::size_t run, std::vector<Propo
       const auto input = static_cast<std::size_t>(find_input(data.model(), signal.channel));
       if (data.model().inputs[input].moves) scale_signal(signal, factor);
     }
-    menu.push_back({"repeat " + data.campaign.runs[run].name + " at " + format_rounded(factor) +
-                        " times its amplitude",
+    menu.push_back({fmt::format("repeat {} at {} times its amplitude", data.campaign.runs[run].name,
+                                format_rounded(factor)),
                     std::move(one)});
   }
 }
@@ -64,7 +66,7 @@ struct Rivals {
   SharedValues a, b;
 };
 
-/// As one round fitted both: those of two rounds differ by the causes that were there already, too.
+/// The rivals as fitted in one round: those of two rounds also differ by the causes found between.
 std::optional<Rivals> find_rivals(const Selection& selection, const Cause& a, const Cause& b) {
   for (const SelectRound& round : selection.rounds) {
     const Candidate *first = find_candidate(round, a), *second = find_candidate(round, b);
@@ -73,7 +75,7 @@ std::optional<Rivals> find_rivals(const Selection& selection, const Cause& a, co
   return std::nullopt;
 }
 
-/// Sum over the readings of the squared difference of two models over the sensors' noise.
+/// Sum over the readings of the squared difference of two models in units of the sensors' noise.
 double calc_difference(const CampaignData& one, const SharedValues& a, const SharedValues& b) {
   const RunCurves first = simulate_run(one.runs[0], a.unknowns, a.values);
   const RunCurves second = simulate_run(one.runs[0], b.unknowns, b.values);
@@ -89,51 +91,54 @@ double calc_difference(const CampaignData& one, const SharedValues& a, const Sha
   return sum;
 }
 
-/// Where there is no group to be told apart.
-std::string propose_alone(const Selection& selection) {
+/// The proposal without a group to be distinguished.
+std::string propose_confirmation(const Selection& selection) {
   if (!selection.causes.empty()) {
-    return "repeat one of the runs held out at another speed or amplitude: the name should stay, "
-           "and "
-           "its parameters";
+    return "repeat one of the held-out runs at another speed or amplitude: the cause and its "
+           "parameters should stay the same";
   }
   if (selection.is_left) {
-    return "repeat a run at half and at twice its amplitude, and once more as it was: what has no "
-           "name is then seen to grow with the motion, to stay as it is, or to be gone";
+    return "repeat a run at half and at twice its amplitude, and once unchanged: this shows "
+           "whether "
+           "the unknown cause grows with the motion, stays constant, or disappears";
   }
-  return "none is needed to judge these runs; larger bumps or amplitudes would show effects that "
-         "are hidden here";
+  return "none is needed for these runs; larger bumps or amplitudes would show effects that are "
+         "hidden here";
 }
 
 }  // namespace
 
 std::string propose_measurement(const CampaignData& data, const Selection& selection,
                                 const std::vector<Cause>& group) {
-  if (group.size() < 2) return propose_alone(selection);
+  if (group.size() < 2) return propose_confirmation(selection);
   const std::optional<Rivals> rivals = find_rivals(selection, group[0], group[1]);
-  const std::string pair = describe_effect(group[0].effect, group[0].place) + " from " +
-                           describe_effect(group[1].effect, group[1].place);
+  const std::string pair =
+      fmt::format("{} from {}", describe_effect(group[0].effect, group[0].place),
+                  describe_effect(group[1].effect, group[1].place));
   if (!rivals) return "separate " + pair;
   const auto& [a, b] = *rivals;
   std::vector<Proposal> menu;
-  double already = 0.0;
+  double existing = 0.0;
   for (const std::size_t r : data.list_runs(RunUse::kFit)) {
-    already = std::max(already, calc_difference(take_run(data, r), a, b));
+    existing = std::max(existing, calc_difference(take_run(data, r), a, b));
     data.has_inputs() ? add_amplitudes(data, r, menu) : add_crossings(data, r, menu);
   }
-  double most = already;
+  double max_difference = existing;
   std::string best;
   for (const Proposal& proposal : menu) {
     const double difference = calc_difference(proposal.data, a, b);
-    if (difference <= most) continue;
-    most = difference;
+    if (difference <= max_difference) continue;
+    max_difference = difference;
     best = proposal.description;
   }
   if (best.empty()) {
-    return "no other speed, bump or amplitude separates " + pair +
-           " better than these runs; it takes another sensor";
+    return fmt::format(
+        "no other speed, bump or amplitude separates {} better than these runs; add another sensor",
+        pair);
   }
-  return best + ": separates " + pair + " (" + format_rounded(std::sqrt(most)) +
-         " standard deviations, " + format_rounded(std::sqrt(already)) + " in the runs there are)";
+  return fmt::format("{}: separates {} ({} standard deviations, {} in the existing runs)", best,
+                     pair, format_rounded(std::sqrt(max_difference)),
+                     format_rounded(std::sqrt(existing)));
 }
 
 }  // namespace strut

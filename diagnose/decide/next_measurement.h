@@ -1,5 +1,5 @@
-// What to measure next: the run in which the hypotheses that the data cannot tell apart differ
-// most.
+// Proposes the next measurement: the run in which the hypotheses that the data cannot distinguish
+// differ most.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace strut {
 
-/// A sentence. Each hypothesis of the group is taken as fitted to the runs there are, and every
-/// item of a menu (other speeds and bumps; other amplitudes of a rig) is simulated with both of the
-/// best two: the larger their difference over the sensors' noise, the better. Without a group: what
-/// would make the verdict surer.
+/// Returns a sentence. With a group: of several possible runs (other speeds and bumps; other
+/// amplitudes of a rig) the one in which the best two hypotheses, as fitted to the existing runs,
+/// differ most, relative to the sensors' noise. Without a group: a run that would confirm the
+/// verdict.
 std::string propose_measurement(const CampaignData& data, const Selection& selection,
                                 const std::vector<Cause>& group);
 

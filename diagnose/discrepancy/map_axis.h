@@ -13,7 +13,7 @@ struct MapAxis {
   double low = -1.0, high = 1.0;
   int count = 1;
 
-  /// B_i(x), i from 0 to count - 1; 1 for a count of 1. x is held at the ends of the range.
+  /// B_i(x), i from 0 to count - 1; 1 for a count of 1. x is clamped to the range.
   Eigen::VectorXd calc_splines(double x) const {
     if (count == 1) return Eigen::VectorXd::Ones(1);
     const double cells = count - 3;

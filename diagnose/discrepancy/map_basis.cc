@@ -11,8 +11,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Shapes over one variable: columns line, curved ones by their roughness, whose unit is the
-/// line's.
+/// Shapes over one variable: the line, then curved ones by roughness relative to the line's.
 struct AxisShapes {
   Eigen::VectorXd one;      // the constant
   Eigen::MatrixXd columns;  // empty where the map does not depend on this variable
@@ -30,13 +29,13 @@ AxisShapes make_axis_shapes(const MapAxis& axis, const std::vector<double>& samp
     mass.noalias() += b * b.transpose();
   }
   mass /= static_cast<double>(samples.size());
-  // What was never visited counts a little, so that it stays smooth and bounded.
+  // Unvisited parts count a little, so that they stay smooth and bounded.
   constexpr double kUnvisited = 1e-4;
   mass.diagonal().array() += kUnvisited * mass.trace() / static_cast<double>(n);
   for (Index i = 0; i + 2 < n; ++i) second.row(i).segment(i, 3) << 1.0, -2.0, 1.0;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
       Eigen::MatrixXd(second.transpose() * second), mass);
-  // The line, orthogonal to the constant, in front of what is curved.
+  // The line, orthogonal to the constant, before the curved shapes.
   const std::vector<double> abscissas = calc_map_abscissas(axis.low, axis.high, axis.count);
   Eigen::VectorXd line = Eigen::Map<const Eigen::VectorXd>(abscissas.data(), n);
   line.array() -= shapes.one.dot(mass * line) / shapes.one.dot(mass * shapes.one);
@@ -60,10 +59,10 @@ Eigen::VectorXd calc_product(const Eigen::VectorXd& of_deflection,
 }
 
 void choose_range(const std::vector<double>& samples, double margin, double& low, double& high) {
-  const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
-  const double wide = margin * (*most - *least);
-  low = *least - wide;
-  high = *most + wide;
+  const auto [min, max] = std::minmax_element(samples.begin(), samples.end());
+  const double wide = margin * (*max - *min);
+  low = *min - wide;
+  high = *max + wide;
 }
 
 ForceMap make_grid(const VisitedStates& states, const MapGridOptions& options) {

@@ -1,5 +1,7 @@
 #include "diagnose/discrepancy/map_shape.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -16,23 +18,24 @@ using Index = Eigen::Index;
 using Values = std::vector<double>;
 
 constexpr std::size_t kCurvePoints = 81;
-/// Of the mean square: what is no bend but rounding.
+/// Relative curvature, by mean squares, below which a bend is rounding error.
 constexpr double kStraight = 1e-6;
 
-/// The direction in which a strut grows longer.
+/// Name of the direction in which a strut grows longer.
 std::string name_outward(MapVariable variable) {
   return variable == MapVariable::kVelocity ? "rebound" : "extension";
 }
 
-/// Over what was visited but for the extremes.
+/// The curve over the visited range without its extremes.
 MapCurve make_curve(const MapAxis& axis, const Eigen::VectorXd& coefficients,
                     const Values& samples) {
-  constexpr double kRare = 0.005;
-  const double low = calc_quantile(samples, kRare), high = calc_quantile(samples, 1.0 - kRare);
+  constexpr double kExtreme = 0.005;
+  const double low = calc_quantile(samples, kExtreme),
+               high = calc_quantile(samples, 1.0 - kExtreme);
   MapCurve curve;
   for (std::size_t i = 0; i < kCurvePoints; ++i) {
-    const double share = static_cast<double>(i) / (kCurvePoints - 1);
-    curve.x.push_back(low + share * (high - low));
+    const double theta = static_cast<double>(i) / (kCurvePoints - 1);
+    curve.x.push_back(low + theta * (high - low));
     curve.force.push_back(axis.calc_splines(curve.x.back()).dot(coefficients));
   }
   return curve;
@@ -44,16 +47,16 @@ double interpolate(const MapCurve& curve, double x) {
   const double at =
       std::clamp((x - curve.x.front()) / step, 0.0, static_cast<double>(curve.x.size() - 1) - 1e-9);
   const auto i = static_cast<std::size_t>(at);
-  const double share = at - static_cast<double>(i);
-  return (1.0 - share) * curve.force[i] + share * curve.force[i + 1];
+  const double theta = at - static_cast<double>(i);
+  return (1.0 - theta) * curve.force[i] + theta * curve.force[i + 1];
 }
 
-/// Force over the distance from rest in one direction, the sign such that it grows with a spring
-/// or damper; and the straight line through it.
+/// Force over the distance from rest in one direction, positive for a spring or damper, and its
+/// straight line.
 struct Side {
   Values x, force;
   double offset = 0.0, slope = 0.0;  // of the line
-  double bend = 0.0;                 // mean square beside it
+  double bend = 0.0;                 // mean square about the line
   double mean = 0.0;                 // of the force
 
   double calc_power() const {
@@ -61,8 +64,8 @@ struct Side {
     for (const double f : force) sum += f * f;
     return sum / static_cast<double>(force.size());
   }
-  /// Mean square beside the best straight line through rest.
-  double calc_power_beside_ray() const {
+  /// Mean square about the best straight line through rest.
+  double calc_power_about_ray() const {
     double xx = 0.0, xf = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       xx += x[i] * x[i];
@@ -93,16 +96,16 @@ struct Side {
 };
 
 Side make_side(const MapCurve& curve, double reach, double sign) {
-  // Nearer to rest splines round a step off: what is flat from here on is a step.
+  // Nearer to rest, splines round off a step.
   constexpr double kInner = 0.08;
   constexpr std::size_t kPoints = 41;
-  // Nor is anything known nearer than the strut ever was.
+  // Nothing is known nearer to rest than the visited range.
   const double nearest = sign > 0.0 ? curve.x.front() : -curve.x.back();
   const double from = std::max(kInner * reach, nearest);
   Side side;
   for (std::size_t i = 0; i < kPoints; ++i) {
-    const double share = static_cast<double>(i) / (kPoints - 1);
-    const double x = from + (reach - from) * share;
+    const double theta = static_cast<double>(i) / (kPoints - 1);
+    const double x = from + (reach - from) * theta;
     side.x.push_back(x);
     side.force.push_back(sign * interpolate(curve, sign * x));
   }
@@ -119,14 +122,14 @@ Side combine(const Side& a, const Side& b, double sign) {
   return mixed;
 }
 
-std::string print_at(double x, MapVariable variable) {
+std::string format_location(double x, MapVariable variable) {
   const bool is_speed = variable == MapVariable::kVelocity;
   const double shown = is_speed ? x : 1e3 * x;
   const double unit = std::pow(10.0, std::floor(std::log10(shown)) - 1.0);
   return format_rounded(std::round(shown / unit) * unit) + (is_speed ? " m/s" : " mm");
 }
 
-/// Whether the slope falls or grows with the distance from rest, and where.
+/// Describes whether the slope falls or grows with the distance from rest, and where.
 std::string describe_bend(const Side& side, MapVariable variable) {
   const std::size_t n = side.x.size() - 1, third = n / 3;
   const auto get_slope = [&](std::size_t from, std::size_t to) {
@@ -137,47 +140,47 @@ std::string describe_bend(const Side& side, MapVariable variable) {
   constexpr std::size_t kWidth = 3;
   std::size_t at = 0;
   while (at + kWidth < n && (get_slope(at, at + kWidth) - middle) * (inner - middle) > 0.0) ++at;
-  const std::string where = print_at(side.x[at] + 0.5 * (side.x[kWidth] - side.x[0]), variable);
+  const std::string where =
+      format_location(side.x[at] + 0.5 * (side.x[kWidth] - side.x[0]), variable);
   if (variable == MapVariable::kVelocity) {
     return outer < inner ? "saturates above " + where : "grows more steeply above " + where;
   }
   return outer < inner ? "softens beyond " + where : "hardens beyond " + where;
 }
 
-/// Straight on both sides: what happens at rest. Empty: nothing.
+/// Describes the step or kink at rest of a curve that is straight on both sides.
 std::string describe_rest(const Side& up, const Side& down, MapVariable variable) {
   const double reach = up.x.back();
   const double step = up.offset + down.offset, kink = 0.5 * reach * (up.slope - down.slope);
   const std::string rest = variable == MapVariable::kVelocity ? "standstill" : "rest";
   if (std::abs(step) > std::abs(kink)) return "a step at " + rest;
   const std::string out = name_outward(variable);
-  return "a kink at " + rest + ", " +
-         (kink > 0.0 ? "stiffer in compression than in " + out
-                     : "stiffer in " + out + " than in compression");
+  return kink > 0.0 ? fmt::format("a kink at {}, stiffer in compression than in {}", rest, out)
+                    : fmt::format("a kink at {}, stiffer in {} than in compression", rest, out);
 }
 
-/// Coefficients of splines, a column a sample, by least squares.
+/// Coefficients of splines (one column per sample) by least squares.
 Eigen::VectorXd fit_splines(const Eigen::MatrixXd& splines, const Eigen::VectorXd& force) {
   Eigen::MatrixXd products = splines * splines.transpose();
-  // The constant is in both variables' splines, and some may lie where the strut never was.
+  // Regularized: the constant is in both variables' splines, and some splines may be unvisited.
   products.diagonal().array() += 1e-6 * products.trace() / static_cast<double>(products.rows());
   return products.ldlt().solve(splines * force);
 }
 
-std::string describe_share(const std::string& name, double share) {
-  return name + " (" + format_rounded(std::round(100.0 * share)) + " %)";
+std::string describe_fraction(const std::string& name, double fraction) {
+  return fmt::format("{} ({} %)", name, format_rounded(std::round(100.0 * fraction)));
 }
 
 std::string describe(const MapDependence& d) {
   if (d.of_both > std::max(d.of_velocity, d.of_deflection)) {
-    return describe_share("deflection and velocity together", d.of_both);
+    return describe_fraction("deflection and velocity together", d.of_both);
   }
   const bool is_velocity = d.of_velocity >= d.of_deflection;
   const std::string shape = is_velocity
                                 ? describe_curve(d.over_velocity, MapVariable::kVelocity)
                                 : describe_curve(d.over_deflection, MapVariable::kDeflection);
-  return (is_velocity ? describe_share("velocity", d.of_velocity)
-                      : describe_share("deflection", d.of_deflection)) +
+  return (is_velocity ? describe_fraction("velocity", d.of_velocity)
+                      : describe_fraction("deflection", d.of_deflection)) +
          (shape.empty() ? "" : ", " + shape);
 }
 
@@ -186,16 +189,16 @@ std::string describe(const MapDependence& d) {
 std::string describe_curve(const MapCurve& curve, MapVariable variable) {
   const double up_reach = std::max(curve.x.back(), 0.0);
   const double down_reach = std::max(-curve.x.front(), 0.0);
-  // Where one side hardly was visited, the other is all there is.
+  // A side that was hardly visited is ignored.
   constexpr double kOneSided = 0.25;
-  const double reach = std::min(up_reach, down_reach), most = std::max(up_reach, down_reach);
-  if (reach < kOneSided * most) {
-    const Side side = make_side(curve, most, up_reach > down_reach ? 1.0 : -1.0);
+  const double reach = std::min(up_reach, down_reach), far = std::max(up_reach, down_reach);
+  if (reach < kOneSided * far) {
+    const Side side = make_side(curve, far, up_reach > down_reach ? 1.0 : -1.0);
     return side.bend > kStraight * side.calc_power() ? describe_bend(side, variable) : "";
   }
   const Side up = make_side(curve, reach, 1.0), down = make_side(curve, reach, -1.0);
   const Side odd = combine(up, down, 1.0), even = combine(up, down, -1.0);
-  const double odd_power = odd.calc_power_beside_ray();
+  const double odd_power = odd.calc_power_about_ray();
   const double even_power = even.calc_power() - even.mean * even.mean;
   const double all = odd_power + even_power, bends = up.bend + down.bend;
   constexpr double kPieces = 0.03, kOneDirection = 0.85, kClear = 0.8;
@@ -208,8 +211,9 @@ std::string describe_curve(const MapCurve& curve, MapVariable variable) {
   }
   if (even_power > kClear * all) return "pushes the same way in both directions";
   const bool is_odd = odd_power > kClear * all;
-  return describe_bend(odd, variable) +
-         (is_odd ? ", alike in both directions" : ", compression and " + out + " not alike");
+  return describe_bend(odd, variable) + (is_odd
+                                             ? ", alike in both directions"
+                                             : fmt::format(", unlike in compression and {}", out));
 }
 
 MapDependence measure_dependence(const ForceMap& map, const VisitedStates& states) {
@@ -234,11 +238,11 @@ MapDependence measure_dependence(const ForceMap& map, const VisitedStates& state
   result.over_velocity = make_curve(of_v, parts.head(nv), states.velocity);
   result.over_deflection = make_curve(of_d, parts.tail(nd), states.deflection);
   if (power == 0.0) return result;
-  const auto calc_share = [&](const Eigen::VectorXd& part) {
+  const auto calc_fraction = [&](const Eigen::VectorXd& part) {
     return std::clamp((part.array() - part.mean()).matrix().dot(force) / power, 0.0, 1.0);
   };
-  result.of_velocity = calc_share(splines.topRows(nv).transpose() * parts.head(nv));
-  result.of_deflection = calc_share(splines.bottomRows(nd).transpose() * parts.tail(nd));
+  result.of_velocity = calc_fraction(splines.topRows(nv).transpose() * parts.head(nv));
+  result.of_deflection = calc_fraction(splines.bottomRows(nd).transpose() * parts.tail(nd));
   result.of_both = std::max(0.0, 1.0 - result.of_velocity - result.of_deflection);
   result.words = describe(result);
   return result;

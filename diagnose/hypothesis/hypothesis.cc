@@ -28,7 +28,7 @@ double get_shared_parameter(const CampaignData& data, const SharedValues& shared
   return get_parameter(data.runs[0].setup, name);
 }
 
-/// By StateInfo::place.
+/// The motion of the struts in the runs for fitting, by StateInfo::place.
 std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
                                                   const SharedValues& shared) {
   std::map<std::string, StrutMotion> motions;
@@ -72,14 +72,15 @@ std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
   return motions;
 }
 
-/// Whether the model's own parameter says the same: a quarter car's tire stiffness is the effect's.
+/// Whether the model has this parameter itself: a quarter car's tire stiffness is that of the
+/// effect.
 bool is_own_parameter(const CampaignData& data, const std::string& name) {
   const auto parameters = list_parameters(data.model());
   return std::any_of(parameters.begin(), parameters.end(),
                      [&](const Parameter* p) { return p->name == name && !p->is_effect; });
 }
 
-/// Whether `place` is another name for `other`, an axle or one of its corners.
+/// Whether one of two places is the other, or the axle of the other.
 bool overlaps(const std::string& place, const std::string& other) {
   return starts_with(place, other) || starts_with(other, place);
 }
@@ -95,13 +96,14 @@ bool is_compared(const CampaignData& data, const std::string& channel) {
 
 std::vector<std::vector<double>> make_beginnings(
     const std::vector<const EffectParameter*>& parameters, const SearchStarts& chosen) {
-  constexpr double kShare = 0.2;
+  constexpr double kStartFraction = 0.2;  // of the typical size
   std::vector<std::vector<double>> beginnings;
   for (const auto& values : chosen) {
     beginnings.emplace_back();
     for (const EffectParameter* p : parameters) {
       const auto found = values.find(p->name);
-      double value = p->switches ? p->neutral + kShare * (p->typical - p->neutral) : p->typical;
+      double value =
+          p->switches ? p->neutral + kStartFraction * (p->typical - p->neutral) : p->typical;
       if (found != values.end()) value = found->second;
       beginnings.back().push_back(std::clamp(value, p->low, p->high));
     }
@@ -128,12 +130,13 @@ std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h
 
 bool is_plausible(const CampaignData& data, const Hypothesis& h,
                   const std::vector<double>& values) {
-  constexpr double kMost = 10.0;
+  constexpr double kMaxTypical = 10.0;
   if (data.has_inputs()) return true;
   const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
-    if (p.switches && std::abs(values[i] - p.neutral) > kMost * std::abs(p.typical - p.neutral)) {
+    if (p.switches &&
+        std::abs(values[i] - p.neutral) > kMaxTypical * std::abs(p.typical - p.neutral)) {
       return false;
     }
   }

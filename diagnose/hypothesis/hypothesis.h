@@ -1,5 +1,5 @@
-// What may be wrong with the model: every effect of the catalogue at every place where it may act,
-// in sizes that fit the motion that was measured.
+// Hypotheses about errors of the model: every effect of the catalogue at every place where it may
+// act, with start values that fit the measured motion.
 #pragma once
 
 #include <string>
@@ -14,41 +14,41 @@ namespace strut {
 struct HypothesisParameter {
   std::string name;      // as an unknown: "rear_damper_asymmetry"
   std::string key;       // as in a model file: "asymmetry"
-  bool switches = true;  // the effect vanishes where all that switch are neutral; else a mere shape
+  bool switches = true;  // the effect vanishes where all such are neutral; else only its shape
 };
 
-/// "damper_asymmetry at rear"; on a rig without the place.
+/// "damper_asymmetry at rear"; without the place on a rig.
 std::string describe_effect(const std::string& effect, const std::string& place);
 
 struct Hypothesis {
   std::string effect, place;
   std::vector<HypothesisParameter> parameters;
-  /// Values of the parameters where a search may begin: small, not neutral. What a shape is
-  /// decides where its effect is seen, so several are tried.
+  /// Start values of the parameters: small, not neutral. Several, since the shape of an effect
+  /// decides where it is seen.
   std::vector<std::vector<double>> beginnings;
 
   std::string describe() const;
 };
 
-/// An unknown for each parameter of a hypothesis, that all runs share.
+/// One unknown per parameter of a hypothesis, which all runs share.
 std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h);
 
-/// All that exist in the campaign's model and are not switched on in `model_effects` already, nor
-/// at a place that holds one that is. Sizes are shares of the strut's forces, deflections and
-/// speeds in the runs for fitting, simulated at `shared`. Nor those of which a parameter is among
-/// `free`.
+/// Lists the hypotheses that exist in the campaign's model, except effects that `model_effects`
+/// switches on at an overlapping place, and those with a parameter among `free`. Start values are
+/// fractions of the struts' forces, deflections and velocities in the runs for fitting, simulated
+/// at `shared`.
 std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,
                                         const EffectSettings& model_effects,
                                         const std::vector<Unknown>& free = {});
 
-/// Whether parameters of these values may be those of a car: what switches is within ten times its
-/// ordinary size. Anything on a rig, which has no ordinary size.
+/// Whether these values are plausible for a car: every switching parameter within ten times its
+/// typical size. Always true for a rig, which has no typical size.
 bool is_plausible(const CampaignData& data, const Hypothesis& h, const std::vector<double>& values);
 
-/// "front_left", ...: one corner of an axle.
+/// Whether a place is one corner of an axle: "front_left", ...
 bool is_corner(const std::string& place);
 
-/// Effects that the model's file and the values of unknowns switch on.
+/// The effects switched on by the model's file and the values of shared unknowns.
 EffectSettings list_effects_on(const CampaignData& data, const SharedValues& shared);
 
 }  // namespace strut

@@ -1,0 +1,16 @@
+// The verdict of a diagnosis in words.
+#pragma once
+
+#include <string>
+
+#include "diagnose/decide/diagnosis.h"
+
+namespace strut {
+
+/// One or two sentences, from all other parts of the diagnosis.
+std::string write_sentence(const Diagnosis& diagnosis);
+
+/// The name of a place in a sentence: a rig's only strut has none in its file.
+std::string name_strut(const std::string& place);
+
+}  // namespace strut
