@@ -1,5 +1,7 @@
 #include "jobs/compare.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 
@@ -19,7 +21,7 @@
 namespace strut {
 namespace {
 
-/// Every run went through with the calibrated model, and the fit that calibrated it converged.
+/// Whether the calibration converged and every run could be simulated with the calibrated model.
 bool is_whole(const Comparison& comparison) {
   if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) return false;
   for (const RunComparison& run : comparison.runs) {
@@ -28,10 +30,11 @@ bool is_whole(const Comparison& comparison) {
   return true;
 }
 
-void tell(const Comparison& comparison) {
+void print_failures(const Comparison& comparison) {
   if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) {
-    print_error("the calibration has not converged: its minimum is " +
-                format_rounded(comparison.baseline.fit.distance) + " standard deviations away");
+    print_error(
+        fmt::format("the calibration has not converged: its minimum is {} standard deviations away",
+                    format_rounded(comparison.baseline.fit.distance)));
   }
   for (const RunComparison& run : comparison.runs) {
     for (const ModelComparison* model : {&run.nominal, &run.calibrated}) {
@@ -46,37 +49,35 @@ void tell(const Comparison& comparison) {
 Arguments describe_compare() {
   Arguments arguments(
       "strut compare CAMPAIGN.toml -o DIR [OPTIONS]",
-      "Measured against simulated: every run of the campaign with the model as its file says and\n"
-      "with the parameters that the campaign lets it adjust, fitted to the runs for fitting. Says\n"
-      "for every channel what is left, when, in which band, in which state, and whether the model\n"
-      "is adequate. Writes DIR/compare.json, CSV tables, figures and report.html\n"
-      "(docs/diagnosis.md).",
+      "Compares measured with simulated runs of a campaign: with the nominal model, and with the\n"
+      "model calibrated to the runs for fitting. Reports the residuals of every channel by time,\n"
+      "frequency band and state, and whether the model is adequate. Writes DIR/compare.json, CSV\n"
+      "tables, figures and report.html (docs/diagnosis.md).",
       "  strut compare examples/campaigns/quarter_car.toml -o comparison");
   arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
-  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder of the comparison");
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "output folder of the comparison");
   arguments.add_option("threads", "N", "threads (default: all processors)");
-  arguments.add_switch("force", "replace the comparison that is in DIR");
+  arguments.add_switch("force", "replace an existing comparison in DIR");
   arguments.add_switch("json", "print compare.json instead of tables");
   return arguments;
 }
 
 int run_compare(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
-                                " files; expected CAMPAIGN.toml");
+    throw arguments.usage_error(
+        fmt::format("{} files; expected CAMPAIGN.toml", arguments.positional().size()));
   }
   const CampaignData data = read_campaign_data(arguments.positional().front());
   const CompareFolder folder = find_compare_folder(arguments, data);
   print_notes(data.notes);
   const int threads = find_threads(arguments);
-  print_detail(std::to_string(data.run_count()) + " runs, " + std::to_string(threads) + " threads");
+  print_detail(fmt::format("{} runs, {} threads", data.run_count(), threads));
   const Comparison comparison = [&] {
     const Stage stage("calibration and comparison");
-    const ProgressLine line("calibrating, then comparing " + std::to_string(data.run_count()) +
-                            " runs");
+    const ProgressLine line(fmt::format("calibrating, then comparing {} runs", data.run_count()));
     return compare_campaign(data, threads);
   }();
-  tell(comparison);
+  print_failures(comparison);
   const std::string json = format_json(make_compare_json(data, comparison)) + "\n";
   {
     const InterruptGuard guard;
@@ -84,7 +85,7 @@ int run_compare(const Arguments& arguments) {
     const std::vector<std::string> tables = write_compare_tables(folder, data, comparison);
     write_compare_report(folder, data, comparison, tables);
     write_text_file_inside(folder.root, folder.json(), json);
-    print_detail("written: " + folder.json().string() + ", " + folder.report().string());
+    print_detail(fmt::format("written: {}, {}", folder.json().string(), folder.report().string()));
   }
   if (arguments.is_on("json")) {
     std::cout << json;

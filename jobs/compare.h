@@ -1,4 +1,4 @@
-// `strut compare`: measured against simulated, channel by channel.
+// `strut compare`: compares measured with simulated runs, channel by channel.
 #pragma once
 
 #include "jobs/cli/arguments.h"

@@ -1,7 +1,8 @@
 #include "jobs/design.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 
 #include "base/text/format_number.h"
@@ -19,19 +20,19 @@
 namespace strut {
 namespace {
 
-constexpr double kMostSamples = 20000.0;  // of each run: 2 GB of history in all at most
+constexpr double kMaxSamples = 20000.0;  // per run: histories of at most 2 GB in total
 
 std::vector<std::string> list_or_empty(const Arguments& arguments, const std::string& name) {
   return arguments.has(name) ? split_list(arguments.text(name)) : std::vector<std::string>{};
 }
 
-/// Calls `function`; an InputError of it names the option it came from.
+/// Calls `function` and puts the option in front of its InputErrors.
 template <class Function>
 auto name_option(const std::string& option, const Function& function) {
   try {
     return function();
   } catch (const InputError& e) {
-    throw InputError(option + " " + e.what());
+    throw InputError(fmt::format("{} {}", option, e.what()));
   }
 }
 
@@ -49,7 +50,7 @@ std::vector<int> read_channels(const Arguments& arguments, const SweepRequest& r
   for (const std::string& name : list_or_empty(arguments, "channels")) {
     const int channel = name_option("--channels:", [&] { return find_car_channel(name); });
     if (std::find(channels.begin(), channels.end(), channel) != channels.end()) {
-      throw InputError("--channels: '" + name + "' twice; allowed: once");
+      throw InputError(fmt::format("--channels: '{}' is given twice; must be given once", name));
     }
     channels.push_back(channel);
   }
@@ -60,10 +61,10 @@ SensitivityOptions read_options(const Arguments& arguments, const SweepRequest& 
                                 double duration) {
   SensitivityOptions options;
   options.rate = arguments.number_or("rate", options.rate, between(20.0, 5000.0, "Hz"));
-  if (options.rate * duration > kMostSamples) {
-    throw InputError("--rate = " + format_number(options.rate) + " Hz: must be at most " +
-                     format_number(kMostSamples / duration) + " Hz for " + format_number(duration) +
-                     " s");
+  if (options.rate * duration > kMaxSamples) {
+    throw InputError(fmt::format("--rate = {} Hz: must be at most {} Hz for {} s",
+                                 format_number(options.rate), format_number(kMaxSamples / duration),
+                                 format_number(duration)));
   }
   options.relative_step =
       arguments.number_or("difference", options.relative_step, between(1e-7, 0.1));
@@ -75,11 +76,9 @@ SensitivityOptions read_options(const Arguments& arguments, const SweepRequest& 
 void suggest_next_step(const std::string& sweep, const DesignReport& report) {
   const Design& design = report.design;
   const Instant& best = report.sensitivity.instants[design.best[0].instants[0]];
-  char offset[32];
-  std::snprintf(offset, sizeof offset, "%.3f", best.offset);
   suggest_next({"strut", "plan", sweep, "-o", "cars"},
                design.best[0].bounds.rms < design.snapshot.rms
-                   ? std::string("with offset = ") + offset + " in its [record]"
+                   ? fmt::format("with offset = {:.3f} in its [record]", best.offset)
                    : "its instant is the best one");
 }
 
@@ -88,23 +87,22 @@ void suggest_next_step(const std::string& sweep, const DesignReport& report) {
 Arguments describe_design() {
   Arguments arguments(
       "strut design SWEEP.toml [OPTIONS]",
-      "Which instant, window and sensors identify the parameters of a sweep's grid best: the\n"
-      "sensitivity of every channel to every grid parameter, and from it, for given sensor noise,\n"
-      "the Cramer-Rao bound of the sweep's snapshot, of every instant along the way, of the best\n"
-      "one, two and three instants, and of the whole window. Proposes the best instant.",
+      "Finds the instant, window and sensors that identify the parameters of a sweep's grid best:\n"
+      "computes the sensitivity of every channel to every grid parameter and, for given sensor\n"
+      "noise, the Cramer-Rao bounds of the sweep's snapshot, of every instant along the way, of\n"
+      "the best one, two and three instants, and of the whole window. Proposes the best instant.",
       "  strut design examples/sweeps/paper.toml\n"
       "  strut design examples/sweeps/paper.toml --at front_stiffness=38000,rear_damping=1850 \\\n"
       "      --noise pitch_rate=0.002 --csv sensitivity.csv --json");
   arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
-  arguments.add_option("at", "NAME=VALUE,...", "base point; axes not named: their middle");
-  arguments.add_list("set", ArgumentValue::setting(),
-                     "any parameter at the base point, repeatable");
-  arguments.add_option("channels", "NAME,...", "what is measured (default: the snapshot's)");
+  arguments.add_option("at", "NAME=VALUE,...", "base point; other axes: their middle");
+  arguments.add_list("set", ArgumentValue::setting(), "parameter at the base point, repeatable");
+  arguments.add_option("channels", "NAME,...", "measured channels (default: the snapshot's)");
   arguments.add_list("noise", "CHANNEL=SIGMA",
-                     "1 sigma of a sensor's white noise per sample, repeatable");
-  arguments.add_option("rate", "HZ", "instants a second (default 1000)");
-  arguments.add_option("difference", "SHARE",
-                       "step of the differences as a share of the base value (default 1e-4)");
+                     "standard deviation of a sensor's white noise per sample, repeatable");
+  arguments.add_option("rate", "HZ", "instants per second (default 1000)");
+  arguments.add_option("difference", "FRACTION",
+                       "step of the differences as a fraction of the base value (default 1e-4)");
   arguments.add_switch("as-requested",
                        "integrate as the sweep does, not by RK4 1 ms with Newton closure");
   arguments.add_option("csv", ArgumentValue::file("FILE", {"csv"}), "write the sensitivity curves");
@@ -115,8 +113,8 @@ Arguments describe_design() {
 
 int run_design(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
-                                " files; expected SWEEP.toml");
+    throw arguments.usage_error(
+        fmt::format("{} files; expected SWEEP.toml", arguments.positional().size()));
   }
   const SweepRequest request = read_request(arguments.positional().front());
   if (arguments.has("csv")) {

@@ -1,4 +1,4 @@
-// `strut design`: which snapshot instant, window and sensors identify a sweep's parameters best.
+// `strut design`: finds the instant, window and sensors that identify a sweep's parameters best.
 #pragma once
 
 #include "jobs/cli/arguments.h"

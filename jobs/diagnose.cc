@@ -1,5 +1,7 @@
 #include "jobs/diagnose.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 #include <mutex>
@@ -23,11 +25,11 @@ namespace {
 
 Diagnosis diagnose(const CampaignData& data, int threads) {
   std::mutex mutex;
-  std::string doing = "begins";
+  std::string doing = "starting";
   const Stage stage("diagnosis");
   const ProgressLine line([&, start = now()] {
     const std::lock_guard lock(mutex);
-    return "diagnose: " + doing + ", " + format_duration(now() - start);
+    return fmt::format("diagnose: {}, {}", doing, format_duration(now() - start));
   });
   DiagnoseOptions options;
   options.threads = threads;
@@ -39,7 +41,7 @@ Diagnosis diagnose(const CampaignData& data, int threads) {
   return diagnose_campaign(data, options);
 }
 
-/// The extended model, or nothing, not even that of a diagnosis before this one.
+/// Writes the extended model, or removes that of an earlier diagnosis where there is none.
 void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data,
                           const Diagnosis& diagnosis) {
   if (diagnosis.is_extended()) {
@@ -50,7 +52,7 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
   }
 }
 
-/// The loop goes on with the extended model, or, where there is none, with other measurements.
+/// Suggests to continue with the extended model or, without one, with more measurements.
 void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
                        const CampaignData& data, const Diagnosis& diagnosis) {
   if (diagnosis.is_extended() && data.has_inputs()) {
@@ -58,7 +60,7 @@ void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
                   "extended.csv"});
   } else if (diagnosis.is_extended()) {
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
-                 "with vehicle = \"" + folder.extended_model().string() + "\"");
+                 fmt::format("with vehicle = \"{}\"", folder.extended_model().string()));
   } else if (diagnosis.kind == VerdictKind::kAdequate || diagnosis.next_measurement.empty()) {
     suggest_page(folder.report().string());
   } else {
@@ -71,27 +73,26 @@ void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
 Arguments describe_diagnose() {
   Arguments arguments(
       "strut diagnose CAMPAIGN.toml -o DIR [OPTIONS]",
-      "Names what the simulation gets wrong: fits the model to the runs for fitting, tries every\n"
-      "effect of the catalogue at every place, and lets the runs held out judge. Says how sure it\n"
-      "is, what it cannot tell apart, what the extended model gains, and what to measure next.\n"
-      "Writes DIR/verdict.json, extended.toml (the model with its causes), CSV curves, figures\n"
-      "and "
-      "report.html (docs/diagnosis.md). Ends with code 1 where a run held out cannot be "
-      "simulated,\n"
-      "or the calibration has not converged and nothing was confirmed beyond it.",
+      "Finds the causes of a model's errors: calibrates the model to the runs for fitting, tries\n"
+      "every effect of the catalogue at every place, and validates on the held-out runs. Reports\n"
+      "probabilities, causes that the runs cannot distinguish, the improvement by the extended\n"
+      "model, and the next measurement. Writes DIR/verdict.json, extended.toml (the model with\n"
+      "its causes), CSV curves, figures and report.html (docs/diagnosis.md). Ends with code 1 if\n"
+      "a held-out run cannot be simulated, or the calibration has not converged and no cause is\n"
+      "confirmed.",
       "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
   arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
-  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder of the diagnosis");
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "output folder of the diagnosis");
   arguments.add_option("threads", "N", "threads (default: all processors)");
-  arguments.add_switch("force", "replace the diagnosis that is in DIR");
+  arguments.add_switch("force", "replace an existing diagnosis in DIR");
   arguments.add_switch("json", "print verdict.json instead of text");
   return arguments;
 }
 
 int run_diagnose(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
-                                " files; expected CAMPAIGN.toml");
+    throw arguments.usage_error(
+        fmt::format("{} files; expected CAMPAIGN.toml", arguments.positional().size()));
   }
   const CampaignData data = read_campaign_data(arguments.positional().front());
   const DiagnoseFolder folder = find_diagnose_folder(arguments, data);
@@ -106,7 +107,8 @@ int run_diagnose(const Arguments& arguments) {
     const std::vector<std::string> tables = write_diagnose_tables(folder, data, diagnosis);
     write_diagnose_report(folder, data, diagnosis, tables);
     write_text_file_inside(folder.root, folder.verdict(), json);
-    print_detail("written: " + folder.verdict().string() + ", " + folder.report().string());
+    print_detail(
+        fmt::format("written: {}, {}", folder.verdict().string(), folder.report().string()));
   }
   if (arguments.is_on("json")) {
     std::cout << json;

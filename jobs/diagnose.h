@@ -1,4 +1,4 @@
-// `strut diagnose`: what the simulation gets wrong, why, and what mending it gains.
+// `strut diagnose`: finds the errors of a model, their cause, and the improvement without them.
 #pragma once
 
 #include "jobs/cli/arguments.h"

@@ -1,5 +1,7 @@
 #include "jobs/compare/curves.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -7,7 +9,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMostPoints = 2500;  // of a cloud
+constexpr std::size_t kMaxPoints = 2500;  // of a point cloud
 
 std::vector<ModelCurves> keep_simulated(const std::vector<ModelCurves>& models) {
   std::vector<ModelCurves> kept;
@@ -27,7 +29,7 @@ std::vector<double> calc_residual(const MeasuredChannel& c, const std::vector<do
   return residual;
 }
 
-/// A channel's curves, and a panel of what the models leave of it.
+/// Adds two panels: a channel's curves, and the models' residuals.
 void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
                  const ChannelInfo& info, const std::vector<ModelCurves>& models,
                  std::vector<ChartPanel>& panels) {
@@ -52,7 +54,7 @@ void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
 
 std::string make_run_name(const CampaignData& data, std::size_t run) {
   std::string name =
-      "run_" + std::to_string(run + 1) + "_" + data.campaign.runs[run].file.stem().string();
+      fmt::format("run_{}_{}", run + 1, data.campaign.runs[run].file.stem().string());
   for (char& c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (!plain && c != '-') c = '_';
@@ -68,14 +70,14 @@ std::vector<std::string> list_run_tables(const CampaignData& data) {
   return names;
 }
 
-std::size_t choose_stride(std::size_t count) { return 1 + count / kMostPoints; }
+std::size_t choose_stride(std::size_t count) { return 1 + count / kMaxPoints; }
 
 Chart make_curve_chart(const CampaignData& data, std::size_t run,
                        const std::vector<ModelCurves>& models) {
   Chart chart{make_run_name(data, run) + "_time", {}};
   chart.panel_height = 240;
   chart.shares_x = true;
-  chart.caption = "Measured and simulated, and what is left, over time.";
+  chart.caption = "Measured and simulated curves over time, with residuals.";
   for (const MeasuredChannel& c : data.channels(run)) {
     add_channel(data.times(run), c, data.info(c.channel), keep_simulated(models), chart.panels);
   }

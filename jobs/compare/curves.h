@@ -1,4 +1,4 @@
-// A run's measured curves beside those of models: a chart, and columns of a table.
+// A run's measured and simulated curves, as a chart and as columns of a table.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace strut {
 
 struct ModelCurves {
   std::string name;  // "calibrated"
-  int color = 1;     // of charts
+  int color = 1;     // in charts
   const RunEvaluation* evaluation = nullptr;
 
   bool is_simulated() const {
@@ -20,21 +20,22 @@ struct ModelCurves {
   }
 };
 
-/// "run_2_chirp_A2": of a run's files.
+/// The base name of a run's files: "run_2_chirp_A2".
 std::string make_run_name(const CampaignData& data, std::size_t run);
 
-/// "run_2_chirp_A2.csv": the tables of all runs.
+/// The files of all runs' tables: "run_2_chirp_A2.csv".
 std::vector<std::string> list_run_tables(const CampaignData& data);
 
-/// More points are not seen, and make a report too large to mail: every so many of `count` will do.
+/// The stride by which `count` points are thinned for a chart: more would not be visible and make
+/// the report too large to mail.
 std::size_t choose_stride(std::size_t count);
 
-/// Every channel over time, below it what the models leave; those that could not be simulated are
-/// left out, one must not be.
+/// Every channel over time, with the models' residuals below. Models that could not be simulated
+/// are left out; at least one must have been.
 Chart make_curve_chart(const CampaignData& data, std::size_t run,
                        const std::vector<ModelCurves>& models);
 
-/// time, and of every channel measured and simulated: "sprung_position",
+/// Columns time and, for every channel, measured and simulated: "sprung_position",
 /// "sprung_position_calibrated".
 std::vector<CsvColumn> make_curve_columns(const CampaignData& data, std::size_t run,
                                           const std::vector<ModelCurves>& models);

@@ -23,7 +23,7 @@ ChartPanel make_state_panel(const StateResidual& state, const ChannelInfo& info)
 Chart make_state_chart(const CampaignData& data, const RunComparison& run) {
   Chart chart{make_run_name(data, run.run) + "_states", {}};
   chart.columns = choose_columns(run.calibrated.channels.front().states.size());
-  chart.caption = "What the calibrated model leaves, by its states: mean and rms.";
+  chart.caption = "Residuals of the calibrated model by its states: mean and rms.";
   for (const ChannelComparison& channel : run.calibrated.channels) {
     const ChannelInfo& info = data.info(channel.channel);
     for (const StateResidual& state : channel.states) {
@@ -40,14 +40,14 @@ std::string make_residual_label(const ChannelInfo& info) {
 }
 
 std::size_t choose_columns(std::size_t states) {
-  constexpr std::size_t kMost = 3;
-  return states % kMost == 0 ? kMost : std::min<std::size_t>(states, 2);
+  constexpr std::size_t kMax = 3;
+  return states % kMax == 0 ? kMax : std::min<std::size_t>(states, 2);
 }
 
 Chart make_balance_chart(const std::string& name, const std::vector<BalancePoints>& balances) {
   Chart chart{name,
-              {{{"suspension deflection [m]"}, {"force left [N]"}, {}},
-               {{"suspension velocity [m/s]"}, {"force left [N]"}, {}}},
+              {{{"suspension deflection [m]"}, {"residual force [N]"}, {}},
+               {{"suspension velocity [m/s]"}, {"residual force [N]"}, {}}},
               2};
   chart.panel_height = 400;
   for (const BalancePoints& points : balances) {
@@ -75,8 +75,9 @@ std::vector<Chart> make_run_charts(const CampaignData& data, const RunComparison
     charts.push_back(
         make_balance_chart(make_run_name(data, run.run) + "_balance", {{"", 1, &*run.balance}}));
     charts.back().caption =
-        "Body balance without road: the force that the sprung mass shows and the calibrated strut "
-        "does not give.";
+        "Body balance without the road: the force on the sprung mass that the calibrated strut "
+        "does "
+        "not explain.";
   }
   return charts;
 }

@@ -9,11 +9,11 @@
 
 namespace strut {
 
-/// Measured, nominal and calibrated curves over time with residuals; residuals by
-/// state; with a body balance its force over velocity.
+/// Measured, nominal and calibrated curves over time with residuals; residuals by state; where
+/// there is a body balance, its force over deflection and velocity.
 std::vector<Chart> make_run_charts(const CampaignData& data, const RunComparison& run);
 
-/// A body balance under a name and in the color of its points.
+/// A body balance, with a name and the color of its points.
 struct BalancePoints {
   std::string name;
   int color = 1;
@@ -23,10 +23,10 @@ struct BalancePoints {
 /// "residual of pitch rate [rad/s]"
 std::string make_residual_label(const ChannelInfo& info);
 
-/// Columns of a chart with a row, or two, of so many states for each channel.
+/// Number of columns of a chart with one or two rows of `states` panels per channel.
 std::size_t choose_columns(std::size_t states);
 
-/// The force left over deflection, and over velocity.
+/// The residual force over deflection and over velocity.
 Chart make_balance_chart(const std::string& name, const std::vector<BalancePoints>& balances);
 
 }  // namespace strut

@@ -14,7 +14,7 @@ struct CompareFolder : PageFolder {
   std::filesystem::path json() const { return root / kComparisonContent.file; }
 };
 
-/// The folder of --output, as find_output_folder() (jobs/cli/output_file.h) gives it.
+/// The folder of --output, by find_output_folder() (jobs/cli/output_file.h).
 CompareFolder find_compare_folder(const Arguments& arguments, const CampaignData& data);
 
 }  // namespace strut

@@ -130,10 +130,10 @@ Json make_balance(const CarBalance& b) {
 Json make_runs(const CampaignData& data, const Comparison& comparison) {
   Json runs = Json::array();
   for (const RunComparison& run : comparison.runs) {
-    const CampaignRun& about = data.campaign.runs[run.run];
+    const CampaignRun& entry = data.campaign.runs[run.run];
     Json json = Json::object();
-    json["file"] = about.name;
-    json["use"] = get_name(about.use);
+    json["file"] = entry.name;
+    json["use"] = get_name(entry.use);
     json["nominal"] = make_model(data, run.nominal);
     json["calibrated"] = make_model(data, run.calibrated);
     if (run.balance) json["balance"] = make_balance(*run.balance);

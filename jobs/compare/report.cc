@@ -12,9 +12,9 @@ namespace {
 
 ReportSection make_run_section(const CampaignData& data, const RunComparison& run,
                                const FigureDrawer& drawer) {
-  const CampaignRun& about = data.campaign.runs[run.run];
+  const CampaignRun& entry = data.campaign.runs[run.run];
   ReportSection section;
-  section.heading = about.name + (about.use == RunUse::kFit ? ", for fitting" : ", held out");
+  section.heading = entry.name + (entry.use == RunUse::kFit ? ", for fitting" : ", held out");
   if (!run.calibrated.evaluation.failure.empty()) {
     section.paragraphs.push_back(run.calibrated.evaluation.failure);
     return section;

@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// `tables`: names of those beside the page. Throws EnvironmentError.
+/// `tables`: names of the tables beside the page. Throws EnvironmentError.
 void write_compare_report(const CompareFolder& folder, const CampaignData& data,
                           const Comparison& comparison, const std::vector<std::string>& tables);
 

@@ -1,5 +1,7 @@
 #include "jobs/compare/tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,10 +21,10 @@ ReportTable make_parameter_table(const Comparison& comparison) {
     table.rows.push_back(
         {u.name, u.unit, format_short(baseline.nominal.values[i]),
          format_short(baseline.calibrated.values[i]) + (baseline.fit.at_bound[i] ? " (bound)" : ""),
-         "+- " + format_short(1.96 * baseline.calc_sigma(i))});
+         "+/- " + format_short(1.96 * baseline.calc_sigma(i))});
   }
-  for (const std::string& open : comparison.not_identifiable) {
-    table.notes.push_back("The runs leave open: " + open);
+  for (const std::string& combination : comparison.not_identifiable) {
+    table.notes.push_back("Not identifiable from these runs: " + combination);
   }
   return table;
 }
@@ -40,16 +42,16 @@ std::string describe_error(const ChannelComparison* c) {
 
 ReportTable make_channel_table(const CampaignData& data, const Comparison& comparison) {
   ReportTable table{
-      "Residuals: rms over the measured channel's standard deviation",
+      "Residuals: rms relative to the measured channel's standard deviation",
       {"run", "use", "channel", "nominal", "calibrated", "rms", "noise", "chi2/n", "adequate"}};
   table.text_columns = 3;
   for (const RunComparison& run : comparison.runs) {
     for (const MeasuredChannel& measured : data.channels(run.run)) {
       const ChannelComparison* before = find_channel(run.nominal, measured.channel);
       const ChannelComparison* after = find_channel(run.calibrated, measured.channel);
-      const CampaignRun& about = data.campaign.runs[run.run];
+      const CampaignRun& entry = data.campaign.runs[run.run];
       const ChannelInfo& info = data.info(measured.channel);
-      std::vector<std::string> row = {about.name, get_name(about.use), info.name,
+      std::vector<std::string> row = {entry.name, get_name(entry.use), info.name,
                                       describe_error(before), describe_error(after)};
       if (after != nullptr) {
         row.insert(row.end(),
@@ -66,7 +68,7 @@ ReportTable make_channel_table(const CampaignData& data, const Comparison& compa
 
 CsvColumn make_column(const std::string& name, const std::string& unit) { return {name, unit, {}}; }
 
-/// Numbers of every channel of every run; runs and channels by their numbers in compare.json.
+/// One row per run, channel and model; runs and channels by their numbers in compare.json.
 std::vector<CsvColumn> make_channel_columns(const Comparison& comparison) {
   std::vector<CsvColumn> columns = {make_column("run", "1"),
                                     make_column("channel", "1"),
@@ -108,7 +110,8 @@ std::vector<CsvColumn> make_run_columns(const CampaignData& data, const RunCompa
 }
 
 ReportTable make_window_table(const CampaignData& data, const RunComparison& run) {
-  ReportTable table{"By time, calibrated: rms over the channel's standard deviation", {"channel"}};
+  ReportTable table{"By time, calibrated: rms relative to the channel's standard deviation",
+                    {"channel"}};
   for (const TimeWindow& window : run.windows) {
     table.header.push_back(window.name + "\n" + format_short(window.from) + " s");
   }
@@ -127,43 +130,45 @@ ReportTable make_band_table(const CampaignData& data, const RunComparison& run) 
                     {"channel"}};
   for (const FrequencyBand& band : kBands) table.header.push_back(describe(band));
   for (const ChannelComparison& c : run.calibrated.channels) {
-    std::vector<std::string> row = {data.info(c.channel).name + " [" + data.info(c.channel).unit +
-                                    "]"};
+    std::vector<std::string> row = {
+        fmt::format("{} [{}]", data.info(c.channel).name, data.info(c.channel).unit)};
     for (const BandResidual& b : c.bands) {
-      row.push_back(format_short(b.residual_rms) + "\n" + format_short(b.measured_rms) + "\n" +
-                    format_short(b.noise_rms));
+      row.push_back(fmt::format("{}\n{}\n{}", format_short(b.residual_rms),
+                                format_short(b.measured_rms), format_short(b.noise_rms)));
     }
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
+/// "38000 +/- 120 N/m"
+std::string format_interval(double value, double sigma, const std::string& unit) {
+  return fmt::format("{} +/- {} {}", format_short(value), format_short(kNormal95 * sigma), unit);
+}
+
 ReportTable make_balance_table(const BodyBalance& b) {
-  ReportTable table{"Body balance, no road in it", {"", "value"}};
+  ReportTable table{"Body balance, without the road", {"", "value"}};
   table.rows = {{"residual", format_short(b.rms) + " N"},
-                {"of the strut's force", format_percent(b.nrmse)},
+                {"relative to the strut's force", format_percent(b.nrmse)},
                 {"noise alone", format_short(b.noise_rms) + " N"},
-                {"stiffness", format_short(b.stiffness) + " +- " +
-                                  format_short(kNormal95 * b.stiffness_sigma) + " N/m"},
-                {"damping", format_short(b.damping) + " +- " +
-                                format_short(kNormal95 * b.damping_sigma) + " N s/m"}};
+                {"stiffness", format_interval(b.stiffness, b.stiffness_sigma, "N/m")},
+                {"damping", format_interval(b.damping, b.damping_sigma, "N s/m")}};
   for (const StateResidual& state : b.states) {
     table.rows.push_back({"explained by " + state.state, format_percent(state.explained)});
   }
   for (const KinematicResidual& k : b.kinematics) {
     table.rows.push_back(
-        {k.channel + " against the position's",
-         "gain " + format_short(k.gain) + ", rest " + format_short(k.rms) + " m/s^2"});
+        {k.channel + " against that of the position",
+         fmt::format("gain {}, residual {} m/s^2", format_short(k.gain), format_short(k.rms))});
   }
   return table;
 }
 
 ReportTable make_balance_table(const CarBalance& b) {
-  ReportTable table{"Body balance, no road in it", {"", "value"}};
-  table.rows = {{"left over noise", format_short(std::sqrt(b.chi2_per_reading))}};
+  ReportTable table{"Body balance, without the road", {"", "value"}};
+  table.rows = {{"residual over noise", format_short(std::sqrt(b.chi2_per_reading))}};
   for (const BalanceParameter& p : b.parameters) {
-    table.rows.push_back({p.name, format_short(p.value) + " +- " +
-                                      format_short(kNormal95 * p.sigma) + " " + p.unit});
+    table.rows.push_back({p.name, format_interval(p.value, p.sigma, p.unit)});
   }
   return table;
 }
@@ -176,7 +181,7 @@ std::vector<ModelCurves> list_model_curves(const RunComparison& run) {
 
 std::string make_verdict_text(const CampaignData& data, const Comparison& comparison) {
   if (comparison.is_adequate()) {
-    return "Adequate: the calibrated model agrees with every channel as far as its noise allows.";
+    return "Adequate: the calibrated model agrees with every channel within its noise.";
   }
   const ChannelComparison* worst = nullptr;
   std::size_t where = 0;
@@ -189,9 +194,10 @@ std::string make_verdict_text(const CampaignData& data, const Comparison& compar
     }
   }
   if (worst == nullptr) return "Not adequate: no run could be simulated.";
-  return "Not adequate: the calibrated model leaves " + format_percent(worst->nrmse) + " of " +
-         data.info(worst->channel).name + " in " + data.campaign.runs[where].name + ", " +
-         format_short(std::sqrt(worst->chi2_per_reading)) + " times its noise.";
+  return fmt::format(
+      "Not adequate: the residual of the calibrated model is {} of {} in {}, {} times its noise.",
+      format_percent(worst->nrmse), data.info(worst->channel).name, data.campaign.runs[where].name,
+      format_short(std::sqrt(worst->chi2_per_reading)));
 }
 
 std::vector<ReportTable> make_compare_tables(const CampaignData& data,

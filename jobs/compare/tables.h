@@ -1,4 +1,4 @@
-// A comparison as tables: for a person, and as CSV files.
+// A comparison as tables: for terminal and page, and as CSV files.
 #pragma once
 
 #include <string>
@@ -11,22 +11,23 @@
 
 namespace strut {
 
-/// Adequate or not, and where it fails most, in one sentence.
+/// One sentence: whether the model is adequate, or its worst channel.
 std::string make_verdict_text(const CampaignData& data, const Comparison& comparison);
 
-/// Parameters; then residuals by run and channel.
+/// Tables of parameters, and of residuals by run and channel.
 std::vector<ReportTable> make_compare_tables(const CampaignData& data,
                                              const Comparison& comparison);
 
-/// One run's residuals of the calibrated model by time and band, and its body balance.
+/// Tables of one run's residuals of the calibrated model by time and band, and of its body balance.
 std::vector<ReportTable> make_run_tables(const CampaignData& data, const RunComparison& run);
 
-/// Writes channels.csv, and for every run NAME.csv: time, and of every channel measured, nominal,
-/// calibrated; with a body balance its curves. Returns their names. Throws EnvironmentError.
+/// Writes channels.csv, and for every run NAME.csv: time and, for every channel, measured, nominal
+/// and calibrated; where there is a body balance, its curves. Returns their names. Throws
+/// EnvironmentError.
 std::vector<std::string> write_compare_tables(const CompareFolder& folder, const CampaignData& data,
                                               const Comparison& comparison);
 
-/// Nominal and calibrated.
+/// The curves of the nominal and the calibrated model.
 std::vector<ModelCurves> list_model_curves(const RunComparison& run);
 
 }  // namespace strut

@@ -14,7 +14,7 @@ Json make_bounds_json(const Sensitivity& s, const Bounds& bounds) {
     parameters[parameter.name] = bound;
     weakest[parameter.name] = bounds.weakest[p];
   }
-  for (const std::string& name : list_free(s, bounds)) missing.push_back(name);
+  for (const std::string& name : list_not_identifiable(s, bounds)) missing.push_back(name);
   Json json = Json::object();
   json["rms_percent"] = bounds.rms;
   json["condition"] = bounds.condition;

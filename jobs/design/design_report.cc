@@ -1,8 +1,9 @@
 #include "jobs/design/design_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 
 #include "base/text/format_number.h"
@@ -11,99 +12,87 @@
 namespace strut {
 namespace {
 
-constexpr double kMostPercent = 1e4;  // beyond, a bound is shown as "free"
-constexpr std::size_t kSlices = 12;   // rows of the table along the way
+constexpr double kMaxPercent = 1e4;  // larger bounds are shown as "free"
+constexpr std::size_t kSlices = 12;  // rows of the table along the way
+constexpr int kLabelWidth = 26;
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
+/// Three digits of a bound; "free" where `percent`, the bound in per cent, is too large.
+std::string format_bound(double value, double percent) {
+  return percent <= kMaxPercent ? fmt::format("{:.3g}", value) : "free";
 }
 
-std::size_t get_label_width() { return 26; }
-
-std::string pad(const std::string& text, std::size_t width) {
-  return text + std::string(text.size() < width ? width - text.size() : 0, ' ');
-}
-
-/// Per cent, short; a word where there is no bound to speak of.
-std::string format_bound(double value) {
-  return value <= kMostPercent ? format("%.3g", value) : "free";
-}
+std::string format_percent_bound(double percent) { return format_bound(percent, percent); }
 
 void print_head(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   std::cout << "base point:";
   for (const SensitivityParameter& p : s.parameters) {
-    std::cout << "  " << p.name << " " << format_number(p.base) << " " << p.unit;
+    std::cout << fmt::format("  {} {} {}", p.name, format_number(p.base), p.unit);
   }
   std::cout << "\nchannels, 1 sigma of their noise:";
   for (const int channel : report.channels) {
     const ChannelInfo& info = get_channel(channel);
     const double sigma = report.noise[static_cast<std::size_t>(channel)];
-    std::cout << "\n  " << pad(info.name, get_label_width()) << format_number(sigma) << " "
-              << info.unit;
+    std::cout << fmt::format("\n  {:<{}}{} {}", info.name, kLabelWidth, format_number(sigma),
+                             info.unit);
   }
   const WorstCurve worst = find_worst_curve(s, report.channels);
-  std::cout << "\ndifferences: half-step error at most " << format("%.1e", worst.error) << " ("
-            << get_channel(worst.channel).name << " by " << s.parameters[worst.parameter].name
-            << ")\n";
+  std::cout << fmt::format("\ndifferences: half-step error at most {:.1e} ({} by {})\n",
+                           worst.error, get_channel(worst.channel).name,
+                           s.parameters[worst.parameter].name);
 }
 
 void print_columns(const std::vector<SensitivityParameter>& parameters, const char* first) {
-  std::cout << "\n" << pad(first, get_label_width()) << "  time s  offset m  condition   rms %";
+  std::cout << fmt::format("\n{:<{}}  time s  offset m  condition   rms %", first, kLabelWidth);
+  for (const SensitivityParameter& p : parameters) std::cout << fmt::format("  {:>20}", p.name);
+  std::cout << fmt::format("\n{:{}}", "", kLabelWidth + 37);
   for (const SensitivityParameter& p : parameters) {
-    std::cout << format("  %20s", p.name.c_str());
-  }
-  std::cout << "\n" << std::string(get_label_width() + 37, ' ');
-  for (const SensitivityParameter& p : parameters) {
-    std::cout << format("  %12s       %%", p.unit.c_str());
+    std::cout << fmt::format("  {:>12}       %", p.unit);
   }
   std::cout << "\n";
 }
 
-void print_bounds(const Sensitivity& s, const std::string& label, const std::string& place,
+void print_bounds(const Sensitivity& s, const std::string& label, const std::string& position,
                   const Bounds& bounds) {
-  std::cout << pad(label, get_label_width()) << pad(place, 18)
-            << format("  %9s  %6s",
-                      std::isfinite(bounds.condition) ? format("%.2g", bounds.condition).c_str()
-                                                      : "singular",
-                      format_bound(bounds.rms).c_str());
+  const std::string condition =
+      std::isfinite(bounds.condition) ? fmt::format("{:.2g}", bounds.condition) : "singular";
+  std::cout << fmt::format("{:<{}}{:<18}  {:>9}  {:>6}", label, kLabelWidth, position, condition,
+                           format_percent_bound(bounds.rms));
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
     const double bound = bounds.bound[p];
-    const std::string value =
-        bound <= kMostPercent ? format("%.3g", to_unit(s.parameters[p], bound)) : "free";
-    std::cout << format("  %12s  %6s", value.c_str(), format_bound(bound).c_str());
+    std::cout << fmt::format("  {:>12}  {:>6}",
+                             format_bound(to_unit(s.parameters[p], bound), bound),
+                             format_percent_bound(bound));
   }
   std::cout << "\n";
 }
 
-std::string format_place(const Instant& instant) {
-  return format("%8.4f  %8.3f", instant.time, instant.offset);
+std::string format_position(const Instant& instant) {
+  return fmt::format("{:8.4f}  {:8.3f}", instant.time, instant.offset);
 }
 
 void print_instants(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   const Design& design = report.design;
   print_columns(s.parameters, "bounds, 1 sigma");
-  print_bounds(s, "the sweep's instant", format_place(s.snapshot), design.snapshot);
+  print_bounds(s, "the sweep's instant", format_position(s.snapshot), design.snapshot);
   for (const DesignChoice& choice : design.best) {
     const std::size_t count = choice.instants.size();
-    const std::string label =
-        count == 1 ? "best instant" : "best " + std::to_string(count) + " instants";
-    print_bounds(s, label, format_place(s.instants[choice.instants[0]]), choice.bounds);
+    const std::string label = count == 1 ? "best instant" : fmt::format("best {} instants", count);
+    print_bounds(s, label, format_position(s.instants[choice.instants[0]]), choice.bounds);
     for (std::size_t i = 1; i < count; ++i) {
-      std::cout << pad("  and", get_label_width()) << format_place(s.instants[choice.instants[i]])
-                << "\n";
+      std::cout << fmt::format("{:<{}}{}\n", "  and", kLabelWidth,
+                               format_position(s.instants[choice.instants[i]]));
     }
   }
-  print_bounds(s, "all " + std::to_string(s.instants.size()) + " instants", "", design.window);
-  std::cout << "(noise independent per sample at " << format_number(s.rate)
-            << " Hz; bounds of all instants fall with the root of the rate)\n";
+  print_bounds(s, fmt::format("all {} instants", s.instants.size()), "", design.window);
+  std::cout << fmt::format(
+      "(noise independent per sample at {} Hz; bounds of all instants fall with "
+      "the square root of the rate)\n",
+      format_number(s.rate));
 }
 
-/// The best instant in each of some equal parts of the way.
+/// Prints the best instant in each of kSlices equal parts of the way.
 void print_way(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   const auto& scan = report.design.scan;
@@ -117,45 +106,45 @@ void print_way(const DesignReport& report) {
       if (scan[i].rms < scan[best].rms) best = i;
     }
     const std::string label =
-        format("  %.3f to %.3f s", s.instants[begin].time, s.instants[end - 1].time);
-    print_bounds(s, label, format_place(s.instants[best]), scan[best]);
+        fmt::format("  {:.3f} to {:.3f} s", s.instants[begin].time, s.instants[end - 1].time);
+    print_bounds(s, label, format_position(s.instants[best]), scan[best]);
   }
 }
 
 void print_sensors(const DesignReport& report) {
-  constexpr std::size_t kWidth = 46;
-  std::cout << "\n"
-            << pad("sensors: rms of the bounds, %", kWidth)
-            << "  sweep's instant   best instant  (offset m)   all instants\n";
+  constexpr int kWidth = 46;
+  std::cout << fmt::format("\n{:<{}}  sweep's instant   best instant  (offset m)   all instants\n",
+                           "sensors: rms of the bounds, %", kWidth);
   for (const SensorSet& set : report.design.sensors) {
     const Instant& best = report.sensitivity.instants[set.best.instants[0]];
-    std::cout << pad(set.label, kWidth)
-              << format("  %15s   %12s  %10.3f   %12s\n", format_bound(set.snapshot.rms).c_str(),
-                        format_bound(set.best.bounds.rms).c_str(), best.offset,
-                        format_bound(set.window.rms).c_str());
+    std::cout << fmt::format("{:<{}}  {:>15}   {:>12}  {:10.3f}   {:>12}\n", set.label, kWidth,
+                             format_percent_bound(set.snapshot.rms),
+                             format_percent_bound(set.best.bounds.rms), best.offset,
+                             format_percent_bound(set.window.rms));
   }
 }
 
 std::string describe_combination(const Sensitivity& s, const Bounds& bounds) {
-  constexpr double kPart = 0.05;
+  constexpr double kMinPart = 0.05;
   std::string text;
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
     const double part = bounds.weakest[p];
-    if (std::abs(part) < kPart) continue;
-    text += (text.empty() ? (part < 0.0 ? "-" : "") : (part < 0.0 ? " - " : " + ")) +
-            format("%.2f ", std::abs(part)) + s.parameters[p].name;
+    if (std::abs(part) < kMinPart) continue;
+    text += text.empty() ? (part < 0.0 ? "-" : "") : (part < 0.0 ? " - " : " + ");
+    text += fmt::format("{:.2f} {}", std::abs(part), s.parameters[p].name);
   }
   return text + " (per cent each)";
 }
 
 void print_weakness(const DesignReport& report, const char* where, const Bounds& bounds) {
   const Sensitivity& s = report.sensitivity;
-  std::cout << "known worst " << where << ": " << describe_combination(s, bounds) << ", "
-            << (std::isfinite(bounds.weakest_bound) ? format("%.3g %%", bounds.weakest_bound)
-                                                    : "not at all: F is singular")
-            << "\n";
-  for (const std::string& name : list_free(s, bounds)) {
-    std::cout << "not identifiable " << where << ": " << name << " (1 sigma above 100 %)\n";
+  const std::string bound = std::isfinite(bounds.weakest_bound)
+                                ? fmt::format("{:.3g} %", bounds.weakest_bound)
+                                : "unknown: F is singular";
+  std::cout << fmt::format("least known {}: {}, {}\n", where, describe_combination(s, bounds),
+                           bound);
+  for (const std::string& name : list_not_identifiable(s, bounds)) {
+    std::cout << fmt::format("not identifiable {}: {} (1 sigma above 100 %)\n", where, name);
   }
 }
 
@@ -172,17 +161,16 @@ void print_proposal(const DesignReport& report) {
     std::cout << "the sweep's instant is the best one\n";
     return;
   }
-  std::cout << "best instant: offset = " << format("%.3f", instant.offset)
-            << " m; put `offset = " << format("%.3f", instant.offset)
-            << "` into [record] snapshot: rms of the bounds " << format_bound(design.snapshot.rms)
-            << " -> " << format_bound(best.rms) << " %,\nless than a tenth more from "
-            << format("%.3f to %.3f m\n", s.instants[range.first].offset,
-                      s.instants[range.second].offset);
+  std::cout << fmt::format(
+      "best instant: offset = {0:.3f} m; put `offset = {0:.3f}` into [record] snapshot: rms of the "
+      "bounds {1} -> {2} %,\nless than 10 % more from {3:.3f} to {4:.3f} m\n",
+      instant.offset, format_percent_bound(design.snapshot.rms), format_percent_bound(best.rms),
+      s.instants[range.first].offset, s.instants[range.second].offset);
 }
 
 }  // namespace
 
-std::vector<std::string> list_free(const Sensitivity& s, const Bounds& bounds) {
+std::vector<std::string> list_not_identifiable(const Sensitivity& s, const Bounds& bounds) {
   std::vector<std::string> names;
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
     if (!(bounds.bound[p] <= kIdentifiable)) names.push_back(s.parameters[p].name);

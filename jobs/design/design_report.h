@@ -1,4 +1,4 @@
-// What `strut design` prints and writes.
+// The output of `strut design`: tables, JSON and CSV.
 #pragma once
 
 #include <filesystem>
@@ -15,13 +15,13 @@ struct DesignReport {
   Design design;
 };
 
-/// One sigma of more than the parameter's own size says nothing about it [%].
+/// Maximum standard error of an identifiable parameter [%]: its own size.
 inline constexpr double kIdentifiable = 100.0;
 
-/// Parameters that `bounds` leave unknown in this sense.
-std::vector<std::string> list_free(const Sensitivity& s, const Bounds& bounds);
+/// Parameters that are not identifiable by `bounds`.
+std::vector<std::string> list_not_identifiable(const Sensitivity& s, const Bounds& bounds);
 
-/// Per cent of a parameter in its unit.
+/// Converts per cent of a parameter to its unit.
 inline double to_unit(const SensitivityParameter& p, double percent) {
   return 0.01 * p.scale * percent;
 }
@@ -30,13 +30,13 @@ inline const ChannelInfo& get_channel(int channel) {
   return list_car_channels()[static_cast<std::size_t>(channel)];
 }
 
-/// Tables for a person, on standard output.
+/// Prints tables on standard output.
 void print_design(const DesignReport& report);
 
 Json make_design_json(const DesignReport& report);
 
-/// Columns time, offset and, for every channel with a sensor and every parameter, the channel's
-/// change per per cent of the parameter. Throws EnvironmentError.
+/// Writes columns time, offset and, for every channel with a sensor and every parameter, the change
+/// of the channel per per cent of the parameter. Throws EnvironmentError.
 void write_design_csv(const std::filesystem::path& file, const DesignReport& report);
 
 }  // namespace strut

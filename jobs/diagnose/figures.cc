@@ -1,5 +1,7 @@
 #include "jobs/diagnose/figures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -25,12 +27,12 @@ std::vector<const DiagnosedRun*> list_held_out(const CampaignData& data,
   return runs;
 }
 
-/// What a model leaves of a channel beside one of its states, over all runs.
+/// The residual of a channel with a state of the model, over all runs.
 struct PooledState {
   std::string name, unit;
   Values state, residual;
 };
-using PooledChannels = std::map<int, std::vector<PooledState>>;  // by channel of the model
+using PooledChannels = std::map<int, std::vector<PooledState>>;  // by index in ModelInfo::channels
 
 void pool(const CampaignData& data, std::size_t run, const RunEvaluation& evaluation,
           PooledChannels& pooled) {
@@ -65,7 +67,7 @@ ChartSeries make_mean_line(const PooledState& pooled, const ModelCurves& model) 
   return line;
 }
 
-/// One model's residuals by channel and state, into panels that those before it have made.
+/// Adds one model's residuals by channel and state to the panels, which the first model creates.
 void add_state_lines(const CampaignData& data, const PooledChannels& pooled,
                      const ModelCurves& model, std::vector<ChartPanel>& panels) {
   const bool is_first = panels.empty();
@@ -96,7 +98,7 @@ void add_points(const Values& x, const Values& y, ChartSeries& points) {
   }
 }
 
-/// The law of these labels, made where it is not there yet: the corners of an axle share theirs.
+/// The law with these labels, created if new: the corners of an axle share theirs.
 ForceLaw& find_law(std::vector<ForceLaw>& laws, const std::string& x_label,
                    const std::string& y_label) {
   const auto found = std::find_if(laws.begin(), laws.end(),
@@ -104,7 +106,7 @@ ForceLaw& find_law(std::vector<ForceLaw>& laws, const std::string& x_label,
   return found != laws.end() ? *found : laws.emplace_back(ForceLaw{x_label, y_label});
 }
 
-/// Spring over deflection, damper over velocity of each axle's struts; where a stand measures the
+/// Spring force over deflection and damper force over velocity, by axle; where a stand measures the
 /// force of the whole strut, that over both.
 std::vector<ForceLaw> list_laws(const CampaignData& data, const RunCurves& curves) {
   const ModelInfo& model = data.model();
@@ -125,7 +127,7 @@ std::vector<ForceLaw> list_laws(const CampaignData& data, const RunCurves& curve
   return laws;
 }
 
-/// The measured force of the whole strut over the motion that a stand imposes.
+/// Adds the measured force of the whole strut over the motion that a stand imposes.
 void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
                         std::vector<ChartPanel>& panels) {
   const ModelInfo& model = data.model();
@@ -144,8 +146,9 @@ void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
 Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
                      const DiagnosedRun& run) {
   Chart chart{"force_law", {}, 2};
-  chart.caption = "Forces of the models over the motion, as their sensors read it, in " +
-                  data.campaign.runs[run.run].name + ".";
+  chart.caption =
+      fmt::format("Forces of the models over the motion, as read by their sensors, in {}.",
+                  data.campaign.runs[run.run].name);
   for (const ForceLaw& law : list_laws(data, run.before.curves)) {
     chart.panels.push_back({{law.x_label}, {law.y_label}, {}});
   }
@@ -185,13 +188,13 @@ std::vector<Chart> make_run_charts(const CampaignData& data, const Diagnosis& di
   }
   charts.push_back(make_balance_chart(make_run_name(data, run.run) + "_balance", balances));
   charts.back().caption =
-      "Body balance without road: the force that the sprung mass shows and the strut does not "
-      "give.";
+      "Body balance without the road: the force on the sprung mass that the strut does not "
+      "explain.";
   return charts;
 }
 
 std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
-  constexpr double kLeast = 0.005;  // smaller ones are not seen
+  constexpr double kMinVisible = 0.005;
   ChartPanel panel{{""}, {"probability"}, {}};
   const auto add = [&](const std::vector<Cause>& causes, const std::string& role, int color) {
     ChartSeries bars{role, SeriesKind::kBars, color};
@@ -200,7 +203,7 @@ std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
       std::string label = cause.effect + (cause.place.empty() ? "" : ", " + cause.place);
       const auto& seen = panel.x.categories;
       const bool is_new = std::find(seen.begin(), seen.end(), label) == seen.end();
-      if (cause.probability < kLeast || !is_new) continue;
+      if (cause.probability < kMinVisible || !is_new) continue;
       panel.x.categories.push_back(std::move(label));
       bars.x.push_back(static_cast<double>(panel.x.categories.size()));
       bars.y.push_back(cause.probability);
@@ -208,7 +211,7 @@ std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
     if (!bars.x.empty()) panel.series.push_back(std::move(bars));
   };
   add(diagnosis.causes, "cause", 1);
-  add(diagnosis.group, "not told apart", 6);
+  add(diagnosis.group, "not distinguished", 6);
   add(diagnosis.runners_up, "runner-up", 5);
   if (panel.series.empty()) return {};
   panel.x.categories.emplace_back("none of the catalogue");
@@ -221,18 +224,19 @@ std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
   panel.y.range = {0.0, 1.0};
   Chart chart{"probabilities", {std::move(panel)}};
   chart.caption =
-      "Probabilities of the causes; where several act at once, each is that of being among them.";
+      "Probabilities of the causes; where several act at once, the probability of being one of "
+      "them.";
   return {chart};
 }
 
-std::vector<Chart> make_gain_charts(const Diagnosis& diagnosis) {
-  if (diagnosis.gain.channels.empty() || !diagnosis.is_extended()) return {};
+std::vector<Chart> make_improvement_charts(const Diagnosis& diagnosis) {
+  if (diagnosis.improvement.channels.empty() || !diagnosis.is_extended()) return {};
   constexpr double kWidth = 0.26;
-  ChartPanel panel{{""}, {"rms error held out [% of spread]"}, {}};
+  ChartPanel panel{{""}, {"rms error on held-out runs [% of spread]"}, {}};
   ChartSeries before{"baseline", SeriesKind::kBars, 2}, after{"extended", SeriesKind::kBars, 3},
       noise{"noise", SeriesKind::kBars, 6};
   before.width = after.width = noise.width = kWidth;
-  for (const ChannelGain& c : diagnosis.gain.channels) {
+  for (const ChannelImprovement& c : diagnosis.improvement.channels) {
     panel.x.categories.push_back(make_words(c.channel));
     const auto x = static_cast<double>(panel.x.categories.size());
     const double spread = c.rms_before / c.nrmse_before;
@@ -245,7 +249,7 @@ std::vector<Chart> make_gain_charts(const Diagnosis& diagnosis) {
   }
   panel.series = {std::move(before), std::move(after), std::move(noise)};
   Chart chart{"gain", {std::move(panel)}};
-  chart.caption = "What the extension gains on runs that no fit has seen.";
+  chart.caption = "Errors on the held-out runs, before and after the extension.";
   return {chart};
 }
 
@@ -265,7 +269,7 @@ std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis&
   }
   if (runs.empty()) return {};
   Chart states{"states", {}};
-  states.caption = "What the models leave of the runs held out, by the motion: the mean.";
+  states.caption = "Mean residuals of the models on the held-out runs, by the motion.";
   const std::size_t model_count = list_model_curves(diagnosis, *runs.front()).size();
   for (std::size_t m = 0; m < model_count; ++m) {
     PooledChannels pooled;

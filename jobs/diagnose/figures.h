@@ -1,4 +1,4 @@
-// Figures of a diagnosis, with captions.
+// Charts of a diagnosis, with captions.
 #pragma once
 
 #include <string>
@@ -9,22 +9,23 @@
 
 namespace strut {
 
-/// Probabilities of causes, group, runners-up and of none of them; none where nothing was fitted.
+/// Probabilities of causes, group, runners-up and of no effect of the catalogue; empty where
+/// nothing was fitted.
 std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis);
 
-/// Errors of the runs held out before and after, beside the noise; none without an extension.
-std::vector<Chart> make_gain_charts(const Diagnosis& diagnosis);
+/// Errors on the held-out runs before and after, beside the noise; empty without an extension.
+std::vector<Chart> make_improvement_charts(const Diagnosis& diagnosis);
 
-/// One run: measured, baseline and extended curves over time with what they leave; with a body
-/// balance the force that the strut lacks. Nothing where the baseline could not be simulated.
+/// One run: measured, baseline and extended curves over time with residuals; where there is a body
+/// balance, its residual force. Empty where the baseline could not be simulated.
 std::vector<Chart> make_run_charts(const CampaignData& data, const Diagnosis& diagnosis,
                                    const DiagnosedRun& run);
 
-/// The force map, where there is one.
+/// The force map; empty where there is none.
 std::vector<Chart> make_map_charts(const Diagnosis& diagnosis);
 
-/// All runs held out together: residuals over deflection and velocity; forces of spring and damper
-/// over them. Nothing where none could be simulated.
+/// All held-out runs together: residuals over deflection and velocity; forces of spring and damper
+/// over them. Empty where none could be simulated.
 std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis& diagnosis);
 
 }  // namespace strut

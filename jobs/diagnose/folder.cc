@@ -7,7 +7,7 @@ namespace strut {
 
 DiagnoseFolder find_diagnose_folder(const Arguments& arguments, const CampaignData& data) {
   std::vector<std::string> files = list_run_tables(data);
-  files.insert(files.end(), {"force_map.csv", "extended.toml"});
+  files.insert(files.end(), {std::string(kForceMapTable) + ".csv", kExtendedModelFile});
   return {{find_output_folder(arguments, kDiagnosisContent, files, data.campaign.list_files())}};
 }
 

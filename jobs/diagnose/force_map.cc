@@ -1,5 +1,7 @@
 #include "jobs/diagnose/force_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,20 +16,20 @@ namespace {
 
 using Values = std::vector<double>;
 
-/// Even points from the least to the most of some values.
+/// Evenly spaced points from the minimum to the maximum of `values`.
 Values list_even(const Values& values, std::size_t count) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   Values points;
   for (std::size_t i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
-    points.push_back(*low + share * (*high - *low));
+    const double theta = static_cast<double>(i) / static_cast<double>(count - 1);
+    points.push_back(*low + theta * (*high - *low));
   }
   return points;
 }
 
 double get_step(const Values& even) { return even[1] - even[0]; }
 
-/// Samples within half a step of a point.
+/// Number of samples within half a step of a point.
 double count_around(const VisitedStates& states, double deflection, double deflection_step,
                     double velocity, double velocity_step) {
   double count = 0.0;
@@ -39,12 +41,12 @@ double count_around(const VisitedStates& states, double deflection, double defle
   return count;
 }
 
-/// The values that a tenth, half and nine tenths stay below.
+/// Quantiles of 10, 50 and 90 %.
 std::array<double, 3> list_cuts(const Values& values) {
   return {calc_quantile(values, 0.1), calc_quantile(values, 0.5), calc_quantile(values, 0.9)};
 }
 
-/// Curves over one variable at three values of the other, NaN where the strut never was near.
+/// Curves over one variable at three values of the other; NaN away from visited states.
 ChartPanel make_cuts(const UnknownForce& force, bool over_velocity) {
   constexpr std::size_t kPoints = 61, kCoarse = 9;
   const VisitedStates& s = force.states;
@@ -54,8 +56,8 @@ ChartPanel make_cuts(const UnknownForce& force, bool over_velocity) {
   const Values points = list_even(along, kPoints);
   ChartPanel panel{{over_velocity ? "velocity [m/s]" : "deflection [m]"}, {"force [N]"}, {}};
   for (const double cut : list_cuts(across)) {
-    ChartSeries line{"at " + format_short(cut) + (over_velocity ? " m" : " m/s"), SeriesKind::kLine,
-                     static_cast<int>(panel.series.size()) + 1, points};
+    ChartSeries line{fmt::format("at {} {}", format_short(cut), over_velocity ? "m" : "m/s"),
+                     SeriesKind::kLine, static_cast<int>(panel.series.size()) + 1, points};
     for (const double x : points) {
       const double d = over_velocity ? cut : x, v = over_velocity ? x : cut;
       const double step = 2.0 * get_step(points);
@@ -84,9 +86,10 @@ Chart make_force_map_chart(const UnknownForce& force) {
                {{"velocity [m/s]"}, {"deflection [m]"}, {visited}}},
               3};
   chart.panel_height = 400;
-  chart.caption = "Force map of the " + force.states.describe() +
-                  " beside its spring and damper: over velocity, over deflection, as far as the "
-                  "runs for fitting went; and where they went.";
+  chart.caption = fmt::format(
+      "Force map of the {}, beside its spring and damper: over velocity and over "
+      "deflection, within the states visited in the runs for fitting; and those states.",
+      force.states.describe());
   return chart;
 }
 

@@ -9,13 +9,13 @@
 
 namespace strut {
 
-/// Force over velocity at three deflections and over deflection at three velocities, as far as the
-/// strut was near both in the runs for fitting; and where it was.
+/// Force over velocity at three deflections and over deflection at three velocities, near the
+/// states visited in the runs for fitting; and those states.
 Chart make_force_map_chart(const UnknownForce& force);
 
-/// deflection, velocity, force, 1 sigma of it, and how many samples of the runs for fitting lie
-/// around: a row a point of an even grid over all that was visited, the velocities of one
-/// deflection behind each other.
+/// Columns deflection, velocity, force, its standard error, and the number of samples of the runs
+/// for fitting near the point: one row per point of an even grid over the visited range, velocity
+/// fastest.
 std::vector<CsvColumn> make_force_map_columns(const UnknownForce& force, const WhitenedFit& fit);
 
 }  // namespace strut

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "jobs/diagnose/folder.h"
+
 namespace strut {
 namespace {
 
@@ -18,7 +20,7 @@ Json make_cause(const Cause& cause) {
   return Json{{"effect", cause.effect},
               {"place", cause.place},
               {"probability", cause.probability},
-              {"chi2_gain", cause.gain},
+              {"chi2_gain", cause.delta_chi2},
               {"parameters", parameters}};
 }
 
@@ -46,10 +48,10 @@ Json make_force(const std::optional<UnknownForce>& force) {
               {"share_of_deflection", depends.of_deflection},
               {"share_of_both", depends.of_both},
               {"spread", depends.spread},
-              {"hold_out_share", force->share}};
+              {"hold_out_share", force->fraction}};
 }
 
-/// What only one of the models has is left out of the other.
+/// A parameter of only one of the models is left out of the other.
 Json make_parameters(const std::vector<ParameterChange>& parameters) {
   Json before = Json::object(), after = Json::object();
   for (const ParameterChange& p : parameters) {
@@ -63,24 +65,29 @@ Json make_parameters(const std::vector<ParameterChange>& parameters) {
   return Json{{"before", before}, {"after", after}};
 }
 
-Json make_by_channel(const std::vector<ChannelGain>& channels, double ChannelGain::*member) {
+Json make_by_channel(const std::vector<ChannelImprovement>& channels,
+                     double ChannelImprovement::*member) {
   Json json = Json::object();
-  for (const ChannelGain& c : channels) json[c.channel] = c.*member;
+  for (const ChannelImprovement& c : channels) json[c.channel] = c.*member;
   return json;
 }
 
-Json make_gain(const HoldOutGain& gain) {
+Json make_gain(const Improvement& improvement) {
   Json units = Json::object();
-  for (const ChannelGain& c : gain.channels) units[c.channel] = c.unit;
-  return Json{{"hold_out_rms_before", make_by_channel(gain.channels, &ChannelGain::rms_before)},
-              {"hold_out_rms_after", make_by_channel(gain.channels, &ChannelGain::rms_after)},
-              {"noise_floor", make_by_channel(gain.channels, &ChannelGain::noise_floor)},
-              {"unit", units},
-              {"hold_out_nrmse_before", make_by_channel(gain.channels, &ChannelGain::nrmse_before)},
-              {"hold_out_nrmse_after", make_by_channel(gain.channels, &ChannelGain::nrmse_after)},
-              {"explained", gain.explained ? Json(*gain.explained) : Json()},
-              {"log_likelihood_per_sample",
-               Json::array({gain.log_likelihood_before, gain.log_likelihood_after})}};
+  for (const ChannelImprovement& c : improvement.channels) units[c.channel] = c.unit;
+  return Json{
+      {"hold_out_rms_before",
+       make_by_channel(improvement.channels, &ChannelImprovement::rms_before)},
+      {"hold_out_rms_after", make_by_channel(improvement.channels, &ChannelImprovement::rms_after)},
+      {"noise_floor", make_by_channel(improvement.channels, &ChannelImprovement::noise_floor)},
+      {"unit", units},
+      {"hold_out_nrmse_before",
+       make_by_channel(improvement.channels, &ChannelImprovement::nrmse_before)},
+      {"hold_out_nrmse_after",
+       make_by_channel(improvement.channels, &ChannelImprovement::nrmse_after)},
+      {"explained", improvement.explained ? Json(*improvement.explained) : Json()},
+      {"log_likelihood_per_sample",
+       Json::array({improvement.log_likelihood_before, improvement.log_likelihood_after})}};
 }
 
 }  // namespace
@@ -100,11 +107,11 @@ Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis) {
   json["where"] = make_where(diagnosis.where);
   json["force_map"] = make_force(diagnosis.force);
   json["parameters"] = make_parameters(diagnosis.parameters);
-  json["gain"] = make_gain(diagnosis.gain);
+  json["gain"] = make_gain(diagnosis.improvement);
   json["not_identifiable"] = diagnosis.not_identifiable;
   json["next_measurement"] = diagnosis.next_measurement;
   json["notes"] = notes;
-  json["extended_model"] = diagnosis.is_extended() ? "extended.toml" : "";
+  json["extended_model"] = diagnosis.is_extended() ? kExtendedModelFile : "";
   return json;
 }
 

@@ -1,5 +1,7 @@
 #include "jobs/diagnose/report.h"
 
+#include <fmt/format.h>
+
 #include "jobs/diagnose/figures.h"
 #include "jobs/diagnose/tables.h"
 #include "report/figures.h"
@@ -13,13 +15,13 @@ std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
   const std::string where = make_where_text(diagnosis.where);
   if (!where.empty()) lead.push_back(where);
   if (!diagnosis.next_measurement.empty()) {
-    lead.push_back("To be measured next: " + diagnosis.next_measurement);
+    lead.push_back("Next measurement: " + diagnosis.next_measurement);
   }
   if (diagnosis.is_extended()) {
-    lead.emplace_back(
-        "extended.toml is the model with the causes switched on at their fitted "
-        "values and the force map, where there is one; it can stand wherever a model file is "
-        "named.");
+    lead.push_back(
+        fmt::format("{} is the model with the causes switched on at their fitted values, and with "
+                    "the force map if there is one. It can be used as any model file.",
+                    kExtendedModelFile));
   }
   return lead;
 }
@@ -55,18 +57,18 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
   ReportSection map{"Force map"};
   drawer.draw_all(make_map_charts(diagnosis), map);
   if (!map.figures.empty()) sections.push_back(std::move(map));
-  sections.push_back({"Gain on runs held out", {}, {make_gain_table(diagnosis)}});
-  drawer.draw_all(make_gain_charts(diagnosis), sections.back());
+  sections.push_back({"Improvement on held-out runs", {}, {make_improvement_table(diagnosis)}});
+  drawer.draw_all(make_improvement_charts(diagnosis), sections.back());
   for (const DiagnosedRun& run : diagnosis.runs) {
     if (data.campaign.runs[run.run].use != RunUse::kHoldOut) continue;
     sections.push_back(make_run_section(data, diagnosis, run, drawer));
   }
-  ReportSection motion{"What is left, by the motion"};
+  ReportSection motion{"Residuals by the motion"};
   drawer.draw_all(make_motion_charts(data, diagnosis), motion);
   if (!motion.figures.empty()) sections.push_back(std::move(motion));
   const std::vector<ReportTable> parameters = make_parameter_tables(diagnosis);
   if (!parameters.empty()) sections.push_back({"Parameters", {}, parameters});
-  add_list("What the runs cannot tell", diagnosis.not_identifiable, sections);
+  add_list("Not identifiable from these runs", diagnosis.not_identifiable, sections);
   std::vector<std::string> notes = data.notes;
   notes.insert(notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
   add_list("Notes", notes, sections);

@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// `tables`: names of those beside the page. Throws EnvironmentError.
+/// `tables`: names of the tables beside the page. Throws EnvironmentError.
 void write_diagnose_report(const DiagnoseFolder& folder, const CampaignData& data,
                            const Diagnosis& diagnosis, const std::vector<std::string>& tables);
 

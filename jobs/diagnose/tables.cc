@@ -1,5 +1,7 @@
 #include "jobs/diagnose/tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +10,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMostOnTerminal = 4;  // runners-up
+constexpr std::size_t kMaxOnTerminal = 4;  // runners-up
 
 std::string describe_interval(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "open";
@@ -19,16 +21,10 @@ std::string describe_parameters(const Cause& cause) {
   std::string text;
   for (const CauseParameter& p : cause.parameters) {
     const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
-    text += (text.empty() ? "" : "; ") + p.key + " = " + format_short(p.value) + unit + " (" +
-            describe_interval(p.low, p.high) + ")";
+    text += fmt::format("{}{} = {}{} ({})", text.empty() ? "" : "; ", p.key, format_short(p.value),
+                        unit, describe_interval(p.low, p.high));
   }
   return text;
-}
-
-bool contains(const std::vector<Cause>& causes, const Cause& cause) {
-  return std::any_of(causes.begin(), causes.end(), [&](const Cause& other) {
-    return other.effect == cause.effect && other.place == cause.place;
-  });
 }
 
 std::vector<std::string> make_cause_row(const Cause& cause, const std::string& role) {
@@ -36,13 +32,22 @@ std::vector<std::string> make_cause_row(const Cause& cause, const std::string& r
           cause.place,
           role,
           describe_parameters(cause),
-          print_number("%.3f", cause.probability),
-          print_number("%.1f", cause.gain)};
+          fmt::format("{:.3f}", cause.probability),
+          fmt::format("{:.1f}", cause.delta_chi2)};
 }
 
-std::string describe_likelihood(const HoldOutGain& gain) {
-  return "Log-likelihood per sample held out: " + format_short(gain.log_likelihood_before) +
-         " -> " + format_short(gain.log_likelihood_after);
+std::string describe_likelihood(const Improvement& improvement) {
+  return fmt::format("Log-likelihood per held-out sample: {} -> {}",
+                     format_short(improvement.log_likelihood_before),
+                     format_short(improvement.log_likelihood_after));
+}
+
+std::string describe_explained(const Improvement& improvement) {
+  if (improvement.explained) {
+    return fmt::format("Explained fraction of the excess over noise: {:.1f} %",
+                       100.0 * *improvement.explained);
+  }
+  return "No single channel exceeded its noise before: only the likelihood shows the improvement.";
 }
 
 }  // namespace
@@ -54,54 +59,48 @@ std::string make_where_text(const Where& where) {
   }
   std::string text;
   if (!where.channel.empty()) text += " in " + where.channel;
-  if (!details.empty()) text += " (" + details + ")";
+  if (!details.empty()) text += fmt::format(" ({})", details);
   if (!where.depends_on.empty()) text += ", depending on " + where.depends_on;
-  return text.empty() ? "" : "What the baseline leaves is seen best" + text + ".";
+  return text.empty() ? "" : fmt::format("The residual of the baseline is largest{}.", text);
 }
 
-std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis,
-                                           std::size_t most_runners_up) {
+std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis, std::size_t max_runners_up) {
   ReportTable table{"Causes and their probabilities",
-                    {"effect", "place", "", "parameters (95 %)", "probability", "chi2 gain"}};
+                    {"effect", "place", "", "parameters (95 %)", "probability", "delta chi2"}};
   table.text_columns = 4;
   for (const Cause& cause : diagnosis.causes) table.rows.push_back(make_cause_row(cause, "cause"));
   for (const Cause& cause : diagnosis.group) {
-    if (contains(diagnosis.causes, cause)) continue;
-    table.rows.push_back(make_cause_row(cause, "not told apart"));
+    if (is_in(diagnosis.causes, cause)) continue;
+    table.rows.push_back(make_cause_row(cause, "not distinguished"));
   }
-  const std::size_t shown = std::min(most_runners_up, diagnosis.runners_up.size());
+  const std::size_t shown = std::min(max_runners_up, diagnosis.runners_up.size());
   for (std::size_t i = 0; i < shown; ++i) {
     table.rows.push_back(make_cause_row(diagnosis.runners_up[i], "runner-up"));
   }
   if (shown < diagnosis.runners_up.size()) {
-    table.notes.push_back(std::to_string(diagnosis.runners_up.size() - shown) +
-                          " more runners-up: verdict.json");
+    table.notes.push_back(
+        fmt::format("{} more runners-up are in verdict.json", diagnosis.runners_up.size() - shown));
   }
   if (table.rows.empty() && diagnosis.unknown_share == 0.0) return {};
   table.rows.push_back(
-      {"none of the catalogue", "", "", "", print_number("%.3f", diagnosis.unknown_share), ""});
+      {"none of the catalogue", "", "", "", fmt::format("{:.3f}", diagnosis.unknown_share), ""});
   return {std::move(table)};
 }
 
-ReportTable make_gain_table(const Diagnosis& diagnosis) {
-  const HoldOutGain& gain = diagnosis.gain;
+ReportTable make_improvement_table(const Diagnosis& diagnosis) {
+  const Improvement& improvement = diagnosis.improvement;
   ReportTable table{
-      "Error on the runs held out: rms, and its share of the measured spread",
-      {"channel", "unit", "baseline", "extended", "noise", "share before", "share after"}};
+      "Error on the held-out runs: rms, and relative to the measured spread",
+      {"channel", "unit", "baseline", "extended", "noise", "baseline, rel.", "extended, rel."}};
   table.text_columns = 2;
-  for (const ChannelGain& c : gain.channels) {
+  for (const ChannelImprovement& c : improvement.channels) {
     table.rows.push_back({c.channel, c.unit, format_short(c.rms_before), format_short(c.rms_after),
                           format_short(c.noise_floor), format_percent(c.nrmse_before),
                           format_percent(c.nrmse_after)});
   }
   if (diagnosis.is_extended()) {
-    table.notes.push_back(
-        gain.explained
-            ? "Explained of what is more than noise: " +
-                  print_number("%.1f %%", 100.0 * *gain.explained)
-            : std::string(
-                  "No channel alone was above its noise before: the likelihood tells the gain."));
-    table.notes.push_back(describe_likelihood(gain));
+    table.notes.push_back(describe_explained(improvement));
+    table.notes.push_back(describe_likelihood(improvement));
   }
   return table;
 }
@@ -126,11 +125,12 @@ std::string make_diagnose_text(const Diagnosis& diagnosis) {
   std::string text = diagnosis.sentence + "\n";
   const std::string where = make_where_text(diagnosis.where);
   if (!where.empty()) text += where + "\n";
-  for (const ReportTable& table : make_cause_tables(diagnosis, kMostOnTerminal))
+  for (const ReportTable& table : make_cause_tables(diagnosis, kMaxOnTerminal)) {
     text += "\n" + make_text(table);
-  text += "\n" + make_text(make_gain_table(diagnosis));
+  }
+  text += "\n" + make_text(make_improvement_table(diagnosis));
   if (!diagnosis.next_measurement.empty()) {
-    text += "\nTo be measured next: " + diagnosis.next_measurement + "\n";
+    text += fmt::format("\nNext measurement: {}\n", diagnosis.next_measurement);
   }
   return text;
 }
@@ -151,7 +151,7 @@ std::vector<std::string> write_diagnose_tables(const DiagnoseFolder& folder,
               make_curve_columns(data, run.run, list_model_curves(diagnosis, run)));
   }
   if (!diagnosis.force) return names;
-  names.emplace_back("force_map");
+  names.emplace_back(kForceMapTable);
   write_csv(folder.make(), names.back() + ".csv",
             make_force_map_columns(*diagnosis.force, diagnosis.selection.extended));
   return names;

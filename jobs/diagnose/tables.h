@@ -1,4 +1,4 @@
-// A diagnosis as sentences and tables: for a person, and as CSV files.
+// A diagnosis as sentences and tables: for terminal and page, and as CSV files.
 #pragma once
 
 #include <string>
@@ -11,26 +11,26 @@
 
 namespace strut {
 
-/// Where the residual is seen best, in one sentence; empty where there is nothing to say.
+/// One sentence on where the residual is largest; empty where there is none.
 std::string make_where_text(const Where& where);
 
-/// Causes, members of the group, the first runners-up, and that it is none of them. Nothing where
+/// Causes, members of the group, the first runners-up, and no effect of the catalogue. Empty where
 /// nothing was fitted.
 std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis,
-                                           std::size_t most_runners_up = 12);
-/// By channel over the runs held out.
-ReportTable make_gain_table(const Diagnosis& diagnosis);
-/// Nothing where the campaign lets the model adjust nothing.
+                                           std::size_t max_runners_up = 12);
+/// Errors by channel over the held-out runs.
+ReportTable make_improvement_table(const Diagnosis& diagnosis);
+/// Parameters before and after the extension; empty where none is free.
 std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis);
 
-/// What the terminal shows: verdict, probabilities, gain, next measurement.
+/// The text for the terminal: verdict, probabilities, improvement, next measurement.
 std::string make_diagnose_text(const Diagnosis& diagnosis);
 
-/// Baseline; extended where there is such a model.
+/// The curves of the baseline and, where there is one, the extended model.
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run);
 
-/// For every run NAME.csv: time, and of every channel measured, baseline, extended; of a force map
-/// force_map.csv. Returns their names. Throws EnvironmentError.
+/// Writes for every run NAME.csv: time and, for every channel, measured, baseline and extended; and
+/// force_map.csv for a force map. Returns their names. Throws EnvironmentError.
 std::vector<std::string> write_diagnose_tables(const DiagnoseFolder& folder,
                                                const CampaignData& data,
                                                const Diagnosis& diagnosis);
