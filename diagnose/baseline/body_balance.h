@@ -35,7 +35,7 @@ struct BodyBalance {
   double rms = 0.0, nrmse = 0.0;      // N, and of the force's spread
   double noise_rms = 0.0;             // N, that the sensors' noise alone leaves
   std::vector<StateResidual> states;  // over deflection and velocity
-  /// What the balance alone says of a linear strut at the model's sprung mass: no road, no tire.
+  /// Linear strut by the balance alone, at the model's sprung mass, without road and tire.
   double stiffness = 0.0, stiffness_sigma = 0.0, damping = 0.0, damping_sigma = 0.0;
   std::vector<KinematicResidual> kinematics;
 };

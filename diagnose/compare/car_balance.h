@@ -1,5 +1,5 @@
-// What a car's struts are like whatever the road and the tires do (R2 of a car): heave, pitch and
-// roll of the body against the four struts at their measured deflections.
+// Stiffness and damping of a car's struts independent of the road and the tires (R2 of a car):
+// heave, pitch and roll of the body against the four struts at their measured deflections.
 //
 // At every frequency the channels y of a run obey, near the model,
 //
@@ -41,10 +41,10 @@ struct CarBalance {
   double chi2_per_reading = 1.0;
 };
 
-/// Of one run of a car, about the simulation `at`, which was made with `shared`. Of the shared
-/// values those with a prior, a weighed mass, are fitted along; the others stay. Nothing for a rig,
-/// and where the vertical acceleration of the body or the deflection of an axle is not measured.
-/// Throws InputError where the car cannot be simulated.
+/// The balance of one run of a car, about the simulation `at`, which was made with `shared`. Shared
+/// values with a prior, such as a weighed mass, are fitted along; the others stay. Nothing for a
+/// rig, and where the vertical acceleration of the body or the deflection of an axle is not
+/// measured. Throws InputError where the car cannot be simulated.
 std::optional<CarBalance> calc_car_balance(const CampaignData& data, std::size_t run,
                                            const SharedValues& shared, const RunEvaluation& at,
                                            int threads = 1);

@@ -23,7 +23,7 @@ struct ForceMapOptions {
   /// ln of the odds: of the readings with a map over those without one; of the runs held out, by
   /// which a map is kept, and by which it stands for the causes instead of beside them.
   double log_odds = 3.0;
-  /// Of what the runs held out have beyond noise, a map takes at least this share.
+  /// A map takes at least this share of what the held-out runs have beyond noise.
   double least_share = 0.1;
   /// Causes that take more than this share of what a map alone takes stay: their form is
   /// incomplete, not their name.

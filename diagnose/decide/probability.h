@@ -1,4 +1,4 @@
-// How sure a name is.
+// Probabilities of the candidates of a round.
 //
 // A hypothesis that lets chi2 fall by g has the odds exp(g / (2 t)) against one that lets it stay.
 // The temperature t is 1 for effects that look as the catalogue says; real ones differ from it by

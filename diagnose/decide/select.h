@@ -24,9 +24,9 @@ struct SelectOptions {
   /// Thresholds are raised by this factor for what the noise model does not know; measured on
   /// hidden trials that hide nothing.
   double margin = 1.25;
-  /// Of the noise's power: what explains less is not claimed, as no model is exact to that, that of
-  /// a car less than that of a rig. And of the road's power, as linear responses are not exact
-  /// either.
+  /// Fractions of the noise's power: a cause that explains less is not claimed, as no model is that
+  /// exact, that of a car less than that of a rig. The last of the road's power, as linear
+  /// responses are not exact either.
   double negligible = 1e-3, negligible_car = 2.5e-3, negligible_road = 3e-5;
   /// A second cause explains at least this share of what the first does; less is told from a first
   /// cause of another form than the catalogue's.
@@ -36,9 +36,8 @@ struct SelectOptions {
   /// reading of those it was fitted to, and it stays among the best without each of at least this
   /// share of the runs.
   double hold_out_share = 0.3, stability = 0.5;
-  /// What gains so many times what it needs must do neither: its score, to first order, may tell
-  /// less than its fit, and runs held out may have smaller amplitudes. Anything gained there will
-  /// do.
+  /// A cause that gains so many times its threshold must do neither: its score, to first order, may
+  /// tell less than its fit, and held-out runs may have smaller amplitudes. Any gain there will do.
   double certain = 3.0;
   /// Where the model lacks far more than noise, a cause takes at least this share of all that is
   /// left, and half as much of what is left of the runs held out.

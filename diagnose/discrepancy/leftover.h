@@ -1,4 +1,4 @@
-// What a fitted model leaves beyond noise: whether, how much, and where it is seen.
+// The residual of a fitted model beyond noise: whether there is one, its size, and its place.
 #pragma once
 
 #include <string>
@@ -28,7 +28,7 @@ struct Leftover {
 };
 
 struct LeftoverOptions {
-  /// What is left stands out by this many standard deviations ...
+  /// A residual stands out by this many standard deviations ...
   double significant = 6.0;
   /// ... beyond what the noise's own level may be off, relative, of chi2,
   double noise_tolerance = 0.05;
@@ -40,7 +40,7 @@ struct LeftoverOptions {
 /// Power of the road over that of the sensor in a band of a run, mean over the channels.
 double calc_road_ratio(const NoiseSpectrum& spectrum, std::size_t band);
 
-/// Of the residual of the bench's model. Places are told only where some cell stands out.
+/// Measures the residual of the bench's model. Lists places only where some cell stands out.
 Leftover measure_leftover(const CampaignData& data, TestBench& bench,
                           const LeftoverOptions& options = {});
 

@@ -1,4 +1,4 @@
-// How large and how rough a force map is, by the readings themselves (empirical Bayes).
+// Size and roughness of a force map, from the readings themselves (empirical Bayes).
 //
 // Near a fit the whitened readings are r + J p + C t + noise, p what the model may adjust anyway, C
 // the responses to shapes of a map. With t_i ~ N(0, s^2 w_i^2), w_i^2 = size_g(i)^2 / roughness_i,
@@ -31,8 +31,8 @@ struct MapEvidence {
   double count = 0.0;           // n
 };
 
-/// Of the responses C to shapes, the derivatives J by what else may be adjusted (with rows of its
-/// priors) and the residual r: C'C - C'J (J'J)^-1 J'C and so on.
+/// Eliminates all else: C'C - C'J (J'J)^-1 J'C and so on, of the responses C to shapes, the
+/// derivatives J by what else may be adjusted (with rows of its priors) and the residual r.
 MapEvidence eliminate_base(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& jacobian,
                            const Eigen::VectorXd& residual);
 

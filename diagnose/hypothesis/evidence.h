@@ -1,4 +1,4 @@
-// What the residuals of a fitted model say about hypotheses, to first order: the score test
+// Tests hypotheses on the residuals of a fitted model, to first order: the score test
 // (C. R. Rao, Proc. Camb. Phil. Soc. 44 (1948)) of all at once.
 //
 // With whitened residual r, Jacobian J of what the model may adjust, and the response g of the
@@ -45,10 +45,10 @@ struct Score {
   Eigen::VectorXd norm;        // K's diagonal before anything was adjusted
 };
 
-/// Of some runs, each counted `weight` times.
+/// The score over the runs, each counted `weight` times.
 Score calc_score(const Evidence& evidence, const std::vector<double>& weights);
 
-/// How much chi2 falls with these columns; 0 where they point to what cannot be, or change nothing
+/// The fall of chi2 with these columns; 0 where they point to what cannot be, or change nothing
 /// that the model could not adjust. `amplitude`: the best, in units of the beginning.
 struct Gain {
   double chi2 = 0.0;

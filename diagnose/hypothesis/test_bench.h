@@ -20,13 +20,13 @@ class TestBench {
   /// there.
   TestBench(const CampaignData& data, const WhitenedFit& fit, int threads);
 
-  /// What the beginnings of hypotheses do to the whitened readings, a column each parameter that
+  /// Changes of the whitened readings by the beginnings of hypotheses, a column each parameter that
   /// switches; 0 where they cannot be simulated. Appends to `trials` which is which.
   Eigen::MatrixXd simulate_columns(const std::vector<Hypothesis>& hypotheses,
                                    std::vector<HypothesisTrial>& trials);
 
-  /// What values of further unknowns that all runs share do to the whitened readings: a column each
-  /// point; 0 where it cannot be simulated. The unknowns have no priors.
+  /// Changes of the whitened readings by values of further unknowns that all runs share: a column
+  /// each point; 0 where it cannot be simulated. The unknowns have no priors.
   Eigen::MatrixXd simulate_columns(const std::vector<Unknown>& added,
                                    const std::vector<std::vector<double>>& points);
 
@@ -40,7 +40,7 @@ class TestBench {
 
   const Whitener& whitener() const { return *whitener_; }
   const Eigen::VectorXd& residual() const { return residual_; }
-  /// Of the residual by the unknowns, counted in their scale.
+  /// Derivatives of the residual by the unknowns, counted in their scale.
   const Eigen::MatrixXd& jacobian() const { return jacobian_; }
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   const std::vector<double>& values() const { return values_; }

@@ -15,8 +15,8 @@ namespace strut {
 
 class ChordSearch {
  public:
-  /// Of a model that is not whitened; it must outlive the search. Throws InputError where it cannot
-  /// be simulated at `values`.
+  /// Searches a model that is not whitened; it must outlive the search. Throws InputError where it
+  /// cannot be simulated at `values`.
   ChordSearch(ReadingModel& model, std::vector<double> values);
 
   /// Steps under a whitener's weights until the linear model sees less than a tenth of

@@ -30,7 +30,7 @@ class HoldOutJudge {
   std::vector<HoldOutRun> judge(const SharedValues& shared) const;
 
   const std::vector<std::size_t>& runs() const { return runs_; }
-  /// Of runs()[i].
+  /// The noise of runs()[i].
   const NoiseSpectrum& get_noise(std::size_t i) const { return noise_[i]; }
 
  private:

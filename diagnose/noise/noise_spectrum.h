@@ -1,4 +1,4 @@
-// What noise does to all channels of a run together. Sensors are noisy each for itself; the road's
+// The noise of all channels of a run together. Sensors are noisy each for itself; the road's
 // roughness, and the noise of what a rig's inputs were measured with, reach all channels at once,
 // through the model.
 //
@@ -15,7 +15,7 @@
 //
 //   coherence gamma(n) = x K_1(x), x = 2 pi n B
 //
-// Of either 0.9 is relied upon, and of the delay that it is known to 10 ms, no more: no road is
+// Only 0.9 of either is relied upon, and a delay that is known to 10 ms, no more: no road is
 // isotropic, and no rear wheel runs in the track to the centimeter. Without it long waves would
 // twist the car, which no road does, and the measured level would pay for that. A run is short:
 // what its faded ends spread over neighboring frequencies is in S, too
@@ -45,9 +45,9 @@ struct NoiseSpectrum {
   /// that reaches them at once, in a record that is faded in and out where it is. None beyond the
   /// end.
   std::vector<Eigen::MatrixXcd> common;
-  /// What `common` is to be multiplied by: of a car G0 [m^3], of a rig 1.
+  /// Factor on `common`: G0 [m^3] of a car, 1 of a rig.
   double level = 1.0;
-  /// How far the responses of the model may be from those of the car, relative. The linear
+  /// Relative error of the model's responses against those of the car. The linear
   /// response of a nonlinear car is not exact, and must not be relied on to the last digit.
   double response_error = 0.01;
   /// A rough road's spectrum is red: a record that is cut off must be faded out.
@@ -57,8 +57,8 @@ struct NoiseSpectrum {
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
-/// What samples of a run are multiplied by: half a period of a cosine over a twentieth of it at
-/// either end; 1 where it is not faded.
+/// Factors on the samples of a run: half a period of a cosine over a twentieth of it at either end;
+/// 1 where it is not faded.
 std::vector<double> make_fade(std::size_t count, bool fades);
 
 /// Variance that `common` gives a channel of a run, at level 1.

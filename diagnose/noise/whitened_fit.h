@@ -16,9 +16,9 @@ struct WhitenedFit {
   std::vector<NoiseSpectrum> spectra;
   std::size_t shared_count = 0;
   FitResult fit;  // the shared unknowns first, then each run's own
-  /// Of a car, at the fit, not whitened; null of a rig.
+  /// The linearization of a car at the fit, not whitened; null of a rig.
   std::shared_ptr<const Linearization> linearization;
-  /// What the model lacks is far larger than the noise: all of it counts alike, nothing as noise.
+  /// The model's error is far larger than the noise: all of it counts alike, nothing as noise.
   bool is_dominated = false;
 
   SharedValues shared() const;

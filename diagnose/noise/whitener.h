@@ -3,9 +3,9 @@
 //
 //   w_k = sqrt(2) C_k^-1 Y_k,  C_k C_k^* = S(f_k),  Y_k: unitary transforms of the channels
 //
-// What roughness does to all channels alike then weighs little, and what it cannot do weighs as
-// much as the sensors allow: the balance of the body needs no road (Whittle's likelihood, P.
-// Whittle, J. R. Stat. Soc. B 15 (1953)).
+// Motion that roughness causes in all channels alike then weighs little, and motion that it cannot
+// cause weighs as much as the sensors allow: the balance of the body needs no road (Whittle's
+// likelihood, P. Whittle, J. R. Stat. Soc. B 15 (1953)).
 #pragma once
 
 #include <Eigen/Core>
@@ -26,18 +26,18 @@ struct WhitenerOptions {
 
 class Whitener {
  public:
-  /// Of the readings of this model, and as many priors.
+  /// Whitens the readings of this model, and as many priors.
   Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra,
            const WhitenerOptions& options = {});
 
   /// Columns of readings, in units of each channel's sigma, then priors -> whitened, then priors.
   Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
-  /// Of a model that could be simulated there.
+  /// Whitens a linearization of a model that could be simulated there.
   Linearization apply(const Linearization& at) const;
 
   std::size_t whitened_count() const { return places_.size(); }
-  /// Of each whitened number: its run, frequency (as `time`) and channel, the last of those that it
-  /// mixes.
+  /// Run, frequency (as `time`) and channel of each whitened number, the channel the last of those
+  /// that it mixes.
   const std::vector<ReadingPlace>& places() const { return places_; }
   /// First whitened number of each run, and the end.
   const std::vector<std::size_t>& run_begin() const { return run_begin_; }
@@ -47,7 +47,7 @@ class Whitener {
   double get_share(std::size_t run) const { return runs_[run].share; }
   const std::vector<NoiseSpectrum>& spectra() const { return spectra_; }
 
-  /// What 1 sigma of one channel alone is at one frequency: C_k^-1 e, complex.
+  /// The whitened 1 sigma of one channel alone at one frequency: C_k^-1 e, complex.
   Eigen::VectorXcd get_sensor_direction(const ReadingPlace& place, std::size_t channel) const;
 
   /// log of the likelihood of whitened readings, up to a constant that does not depend on the

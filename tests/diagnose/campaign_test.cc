@@ -120,7 +120,7 @@ TEST_CASE("A campaign whose runs are all for fitting or all held out is refused"
                    "[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"b.csv\"\n"
                    "use = \"fit\"\n";
              }),
-             Contains("none held out") && Contains("hold_out"));
+             Contains("every run is for fitting") && Contains("hold_out"));
   CHECK_THAT(
       spoil([](CampaignText& t) { t.runs = "[[run]]\nfile = \"a.csv\"\nuse = \"hold_out\"\n"; }),
       Contains("every run is held out"));
@@ -129,10 +129,11 @@ TEST_CASE("A campaign whose runs are all for fitting or all held out is refused"
                    "[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"a.csv\"\n"
                    "use = \"hold_out\"\n";
              }),
-             Contains("stands there twice"));
+             Contains("is listed twice"));
 }
 
-TEST_CASE("A column that is missing is told with all there are, unless it may be", "[unit]") {
+TEST_CASE("A missing column is an error that lists the file's columns, unless it is optional",
+          "[unit]") {
   CHECK_THAT(spoil([](CampaignText& t) { t.sprung = "{ column = \"sprang\" }"; }),
              Contains("a.csv") && Contains("no column 'sprang'") &&
                  Contains("t, road, unsprung, sprung") && Contains("did you mean 'sprung'"));
@@ -145,7 +146,7 @@ TEST_CASE("A column that is missing is told with all there are, unless it may be
              Contains("sprung_position") && Contains("road_position, actuator_force"));
 }
 
-TEST_CASE("A clock that runs backwards or stands still is told with its line", "[unit]") {
+TEST_CASE("A clock that runs backwards or stands still is an error with its line", "[unit]") {
   const auto set_time = [](std::size_t at, const char* value) {
     return [=](std::size_t row, std::array<std::string, 4>& cells) {
       if (row == at) cells[0] = value;
@@ -174,14 +175,14 @@ TEST_CASE("Missing samples are left out and counted", "[unit]") {
   CHECK(make_reading_model(data, {0}, unknowns)->reading_count() == 2 * 801 - 267 - 160);
 }
 
-TEST_CASE("A channel that is constant or empty is told as such", "[unit]") {
+TEST_CASE("A constant or empty channel is an error", "[unit]") {
   const auto fill = [](std::size_t at, const char* value) {
     return [=](std::size_t, std::array<std::string, 4>& cells) { cells[at] = value; };
   };
   CHECK_THAT(spoil_rows(fill(3, "0.25")),
              Contains("sprung_position") && Contains("0.25 m in all 801 readings"));
   CHECK_THAT(spoil_rows(fill(3, "")), Contains("has no reading at all"));
-  CHECK_THAT(spoil_rows(fill(1, "0")), Contains("nothing moves the rig"));
+  CHECK_THAT(spoil_rows(fill(1, "0")), Contains("nothing drives the rig"));
 }
 
 TEST_CASE("A unit wrong by a factor of 1000 is suspected, and the right one named", "[unit]") {
@@ -203,17 +204,17 @@ TEST_CASE("A unit wrong by a factor of 1000 is suspected, and the right one name
                  cells[i] = test::print_number(4e3 * std::stod(cells[i]));
                }
              }),
-             Contains("that such a channel can have"));
+             Contains("the plausible"));
   CHECK_THAT(spoil_rows(scale(0, 1000.0)), Contains("unit = \"ms\""));
-  CHECK_THAT(spoil_rows(scale(0, 1e-3)), Contains("samples a second"));
+  CHECK_THAT(spoil_rows(scale(0, 1e-3)), Contains("samples per second"));
 }
 
-TEST_CASE("A file with a tenth of the samples that the model needs is refused", "[unit]") {
+TEST_CASE("A file with a tenth of the required samples is refused", "[unit]") {
   const TemporaryFolder folder;
   test::write_record(folder, "a.csv", test::record_quarter_car({}, 4.0, 10.0));
   test::write_record(folder, "b.csv", test::record_quarter_car({}, 4.0, 100.0));
   CHECK_THAT(find_refusal(test::write_campaign(folder)),
-             Contains("a.csv: 10 samples a second") && Contains("needed"));
+             Contains("a.csv: 10 samples per second") && Contains("required"));
 }
 
 TEST_CASE("Every file has its own clock and rate, CSV or HDF5", "[io]") {

@@ -79,7 +79,7 @@ TEST_CASE("A chord search finds a smooth minimum", "[unit]") {
   CHECK_FALSE(search.at_kink());
 }
 
-TEST_CASE("A chord search tells a kink from a place that cannot be simulated", "[unit]") {
+TEST_CASE("A chord search distinguishes a kink from a point that cannot be simulated", "[unit]") {
   ShapedModel kinked([](double x) { return 10.0 + std::abs(x - 1.0); });
   ChordSearch at_kink(kinked, {3.0});
   at_kink.search(make_whitener(kinked));
@@ -94,7 +94,7 @@ TEST_CASE("A chord search tells a kink from a place that cannot be simulated", "
   CHECK_FALSE(at_wall.at_kink());
 }
 
-TEST_CASE("Derivatives of where a chord search stands are not taken twice", "[unit]") {
+TEST_CASE("A chord search does not recompute derivatives at the same point", "[unit]") {
   ShapedModel model([](double x) { return 10.0 + std::abs(x - 1.0); });
   ChordSearch search(model, {3.0});
   search.search(make_whitener(model));

@@ -41,7 +41,7 @@ test::CampaignText with_noise(double sigma) {
   return text;
 }
 
-TEST_CASE("A rig's parameters come back from records of another integrator", "[reference]") {
+TEST_CASE("A fit recovers a rig's parameters from records of another integrator", "[reference]") {
   test::QuarterTruth truth;
   truth.start = {1e-3, -5e-4, 0.02, -0.01};
   const CampaignData data = read_two_runs(truth, with_noise(1e-6));
@@ -62,7 +62,7 @@ TEST_CASE("A rig's parameters come back from records of another integrator", "[r
   }
 }
 
-TEST_CASE("Intervals of a fitted rig cover the truth as often as they say", "[statistical][slow]") {
+TEST_CASE("Intervals of a fitted rig have their nominal coverage", "[statistical][slow]") {
   int inside = 0, count = 0;
   double chi2 = 0.0;
   constexpr int kDraws = 6;
@@ -149,7 +149,7 @@ TEST_CASE("A lost stroke can be read at uneven times", "[unit]") {
   }
 }
 
-TEST_CASE("The derivative by a stroke is not one of steps", "[reference]") {
+TEST_CASE("The derivative by a stroke does not include changes of the step", "[reference]") {
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
   const std::vector<Unknown> unknowns = {make_shared_unknown(data.runs, "damper_leak")};
   const auto find_step = [&](double stroke) {
@@ -169,7 +169,7 @@ TEST_CASE("The derivative by a stroke is not one of steps", "[reference]") {
   CHECK((there - beside).norm() < test::tolerance(0.2) * beside.norm());
 }
 
-TEST_CASE("A lost stroke shorter than a step is felt", "[reference]") {
+TEST_CASE("A lost stroke shorter than a step is simulated", "[reference]") {
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
   constexpr double kStroke = 6e-5;
   const auto model =
@@ -220,7 +220,7 @@ TEST_CASE("Samples at uneven times are interpolated, not rounded", "[reference]"
   CHECK(baseline.calibrated.values[1] == Approx(950.0).epsilon(test::tolerance(2e-4)));
 }
 
-TEST_CASE("A held-out run is not used to fit, and tells only where it started", "[unit]") {
+TEST_CASE("A held-out run is not used to fit, and determines only its initial state", "[unit]") {
   test::QuarterTruth truth;
   truth.noise = 2e-5;
   const TemporaryFolder folder;

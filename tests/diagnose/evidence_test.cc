@@ -62,7 +62,7 @@ struct Problem {
   }
 };
 
-TEST_CASE("A score is what least squares gain with the hypothesis", "[unit]") {
+TEST_CASE("A score is the fall of chi2 by least squares with the hypothesis", "[unit]") {
   const Problem problem;
   const Evidence evidence = problem.gather();
   const Score score = calc_score(evidence, {1.0, 1.0});
@@ -81,7 +81,7 @@ TEST_CASE("A score is what least squares gain with the hypothesis", "[unit]") {
   }
 }
 
-TEST_CASE("A hypothesis that may only grow gains nothing where it would shrink", "[unit]") {
+TEST_CASE("A one-sided hypothesis has no score where its amplitude would be negative", "[unit]") {
   const Score score = calc_score(Problem().gather(), {1.0, 1.0});
   int refused = 0;
   for (const std::size_t column : {0U, 1U, 2U, 3U}) {
@@ -96,7 +96,7 @@ TEST_CASE("A hypothesis that may only grow gains nothing where it would shrink",
   CHECK(refused > 0);
 }
 
-TEST_CASE("What free unknowns can take over is no hypothesis", "[unit]") {
+TEST_CASE("A hypothesis that free unknowns can imitate has no score", "[unit]") {
   Problem problem;
   for (int r = 0; r < 2; ++r) {
     problem.columns[r].col(0) = problem.shared[r].col(0) - 2.0 * problem.shared[r].col(1) +
@@ -153,7 +153,8 @@ TEST_CASE("A threshold does not depend on the sizes in which effects are counted
   CHECK(threshold < 8.6);
 }
 
-TEST_CASE("An effect that moves no reading is no cause, whatever rounding says", "[unit]") {
+TEST_CASE("An effect without influence on any reading is not a cause, whatever the rounding",
+          "[unit]") {
   Problem problem;
   for (int r = 0; r < 2; ++r) problem.columns[r].col(0) *= 1e-12;
   const Score score = calc_score(problem.gather(), {1.0, 1.0});
@@ -169,7 +170,7 @@ Candidate make_candidate(const std::string& place, double gain) {
   return c;
 }
 
-TEST_CASE("Odds follow the gains, and blur as they grow", "[unit]") {
+TEST_CASE("Odds follow delta chi2, and blur as it grows", "[unit]") {
   SelectRound small, large;
   small.candidates = {make_candidate("rear", 40.0), make_candidate("front", 36.0)};
   large.candidates = {make_candidate("rear", 4000.0), make_candidate("front", 3996.0)};

@@ -100,7 +100,7 @@ TEST_CASE("A strut that does not move gets no shapes", "[unit]") {
   CHECK(make_map_basis(states).shapes.empty());
 }
 
-TEST_CASE("What the model may adjust is taken off a map's evidence", "[unit]") {
+TEST_CASE("Free parameters of the model are eliminated from a map's evidence", "[unit]") {
   const Eigen::MatrixXd jacobian = draw(180, 1).reshaped(60, 3),
                         columns = draw(120, 2).reshaped(60, 2);
   const Eigen::VectorXd residual = draw(60, 3);
@@ -124,7 +124,7 @@ Eigen::MatrixXd make_lines(const VisitedStates& states) {
   return lines;
 }
 
-TEST_CASE("The readings say what a map depends on, and how rough it is", "[unit]") {
+TEST_CASE("The readings determine the variables and the roughness of a map", "[unit]") {
   const VisitedStates states = make_states();
   const MapBasis basis = make_map_basis(states);
   const Eigen::VectorXd v = as_vector(states.velocity), d = as_vector(states.deflection);
@@ -201,7 +201,7 @@ std::string say(double (*force)(double), MapVariable variable = MapVariable::kVe
   return describe_curve(make_curve(force, low, high), variable);
 }
 
-TEST_CASE("Words say what a curve looks like", "[unit]") {
+TEST_CASE("Words describe the shape of a curve", "[unit]") {
   using V = MapVariable;
   CHECK(say([](double) { return 3.0; }).empty());
   CHECK(say([](double x) { return 2.0 - 5.0 * x; }).empty());
@@ -228,7 +228,7 @@ TEST_CASE("Words say what a curve looks like", "[unit]") {
   CHECK(say([](double x) { return 4e3 * x; }, V::kDeflection, -0.05, -0.02).empty());
 }
 
-TEST_CASE("Shares say what a map depends on where the strut was", "[unit]") {
+TEST_CASE("Fractions tell the dependence of a map over visited states", "[unit]") {
   const VisitedStates states = make_states();
   ForceMap map = make_map_basis(states).grid;
   const auto v = calc_map_abscissas(map.velocity_low, map.velocity_high, map.velocity_count);

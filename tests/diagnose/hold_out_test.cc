@@ -29,8 +29,7 @@ Judged fit_base() {
   return {std::move(data), std::move(base)};
 }
 
-TEST_CASE("A model that lacks nothing leaves noise on the runs held out, a wrong one more",
-          "[unit]") {
+TEST_CASE("A complete model leaves noise on the held-out runs, a wrong one more", "[unit]") {
   const Judged j = fit_base();
   const HoldOutJudge judge(j.data, j.base, 1);
   SharedValues shared = j.base.shared();
@@ -46,7 +45,7 @@ TEST_CASE("A model that lacks nothing leaves noise on the runs held out, a wrong
         Approx(0.5 * (right.chi2 - wrong.chi2)).epsilon(test::tolerance(1e-12)));
 }
 
-TEST_CASE("Runs held out have the noise of those that were fitted", "[unit]") {
+TEST_CASE("Held-out runs have the noise of the fitted ones", "[unit]") {
   Judged j = fit_base();
   const std::size_t band = find_noise_band(5.0);
   j.base.spectra.front().excess[band] = 3.0;
@@ -58,7 +57,8 @@ TEST_CASE("Runs held out have the noise of those that were fitted", "[unit]") {
   CHECK(judge.get_noise(0).response_error == 0.1);
 }
 
-TEST_CASE("A run held out that a model cannot do says so, and is no end of a diagnosis", "[unit]") {
+TEST_CASE("A held-out run that cannot be simulated is reported and does not end a diagnosis",
+          "[unit]") {
   const Judged j = fit_base();
   SharedValues shared = j.base.shared();
   shared.values[1] = -1e9;

@@ -34,7 +34,8 @@ TEST_CASE("Known noise on a moving channel is measured to a few per cent", "[sta
   }
 }
 
-TEST_CASE("The stated uncertainty of an estimated noise is what it spreads by", "[statistical]") {
+TEST_CASE("The stated uncertainty of an estimated noise is its standard deviation",
+          "[statistical]") {
   double squares = 0.0, sum = 0.0;
   constexpr int kDraws = 200;
   for (int i = 0; i < kDraws; ++i) {

@@ -60,7 +60,7 @@ TEST_CASE("Missing samples leave the bands of a slow signal as they are", "[unit
   CHECK(bands[4].residual_rms < test::tolerance(2e-3));
 }
 
-TEST_CASE("Windows share out the mean square of a residual", "[unit]") {
+TEST_CASE("Windows divide up the mean square of a residual", "[unit]") {
   const std::vector<double> times = make_times(1000, 0.01);
   std::vector<double> y(1000, 1.0);
   for (std::size_t i = 500; i < 1000; ++i) y[i] = -3.0;

@@ -115,7 +115,7 @@ TEST_CASE("Without sources whitening keeps every sum of squares", "[unit]") {
         Approx(-0.5 * noise.squaredNorm()).epsilon(test::tolerance(1e-12)));
 }
 
-TEST_CASE("What all channels see of a source weighs little, the rest as much as sensors allow",
+TEST_CASE("The common part of a source weighs little, the rest as much as sensors allow",
           "[unit]") {
   const ConstantModel model(1);
   const Whitener whitener(model, {make_spectrum()});
@@ -138,7 +138,7 @@ TEST_CASE("What all channels see of a source weighs little, the rest as much as 
         Approx(columns.col(1).squaredNorm()).epsilon(test::tolerance(1e-9)));
 }
 
-TEST_CASE("Noise that a spectrum does not know is counted by run and band", "[unit]") {
+TEST_CASE("Noise in excess of a spectrum is counted by run and band", "[unit]") {
   constexpr std::size_t kRuns = 2;
   const ConstantModel model(kRuns);
   std::vector<NoiseSpectrum> spectra(kRuns, make_spectrum());
@@ -155,7 +155,7 @@ TEST_CASE("Noise that a spectrum does not know is counted by run and band", "[un
   CHECK(spectra[1].excess[band] == Approx(9.0).margin(test::tolerance(1.8)));
 }
 
-TEST_CASE("Missing readings are no noise that is smaller than it should be", "[unit]") {
+TEST_CASE("Missing readings do not make noise look smaller", "[unit]") {
   constexpr std::size_t kRuns = 20;
   const ConstantModel model(kRuns, 5);
   std::vector<NoiseSpectrum> spectra(kRuns, make_spectrum());

@@ -130,7 +130,7 @@ double calc_move(const std::vector<double>& from, const std::vector<double>& to)
   return largest;
 }
 
-TEST_CASE("A car's balance tells its struts whatever bump and tires are, and sees another strut",
+TEST_CASE("A car's balance identifies its struts for any bump and tires, and shows a wrong strut",
           "[regression]") {
   const Answers right = ask({});
   for (std::size_t i = 0; i < kWorn.size(); ++i) {
@@ -156,7 +156,7 @@ TEST_CASE("A car's balance tells its struts whatever bump and tires are, and see
   CHECK(ask({{{"rear_damper_asymmetry", 0.3}}}).balance.chi2_per_reading > 5.0);
 }
 
-TEST_CASE("With bump and tires free the whole fit is immune to these, but not to another shape",
+TEST_CASE("With free bump and tires the whole fit is immune to these, but not to another shape",
           "[regression]") {
   const auto fit = [](const Truth& truth) {
     const test::TemporaryFolder folder;

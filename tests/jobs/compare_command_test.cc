@@ -1,4 +1,4 @@
-// strut compare as a user meets it.
+// strut compare as a user runs it.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -25,7 +25,7 @@ std::string compare(const std::filesystem::path& campaign, const std::filesystem
   return "compare " + campaign.string() + " -o " + folder.string() + " " + options;
 }
 
-/// Of two runs, with nothing free.
+/// A campaign of two runs with nothing free.
 std::filesystem::path write_quick_campaign(const test::TemporaryFolder& folder) {
   test::write_two_runs(folder);
   test::CampaignText text;
@@ -77,7 +77,7 @@ TEST_CASE("compare writes numbers, tables, figures and a report of every run", "
   CHECK(std::filesystem::exists(folder / "out" / "channels.csv"));
 }
 
-TEST_CASE("compare does not replace a comparison without being told to", "[io]") {
+TEST_CASE("compare does not replace a comparison without --force", "[io]") {
   const test::TemporaryFolder folder;
   const auto campaign = write_quick_campaign(folder);
   const test::Outcome first = run_program(compare(campaign, folder / "out"));
@@ -89,7 +89,7 @@ TEST_CASE("compare does not replace a comparison without being told to", "[io]")
   CHECK(run_program(compare(campaign, folder / "out", "--force")).code == 0);
 }
 
-TEST_CASE("compare replaces the files of the comparison before and touches no other", "[io]") {
+TEST_CASE("compare replaces the files of an earlier comparison and no others", "[io]") {
   const test::TemporaryFolder folder;
   const auto campaign = write_quick_campaign(folder);
   const std::filesystem::path out = folder / "out";
@@ -113,7 +113,7 @@ TEST_CASE("compare replaces the files of the comparison before and touches no ot
   }
 }
 
-TEST_CASE("compare into the campaign's own folder harms nothing that it reads", "[io]") {
+TEST_CASE("compare into the campaign's own folder leaves its input files unchanged", "[io]") {
   const test::TemporaryFolder folder;
   const auto campaign = write_quick_campaign(folder);
   const std::string written = test::read_text(campaign),
@@ -124,7 +124,7 @@ TEST_CASE("compare into the campaign's own folder harms nothing that it reads", 
   CHECK(test::read_text(folder / "a.csv") == measured);
 }
 
-TEST_CASE("compare replaces no file but an earlier comparison's", "[io]") {
+TEST_CASE("compare replaces only files of an earlier comparison", "[io]") {
   const test::TemporaryFolder folder;
   test::write_two_runs(folder);
   const auto campaign = test::write_campaign(folder);
@@ -164,7 +164,7 @@ TEST_CASE("compare ends with code 2 and a plain message on bad data", "[io]") {
   CHECK_THAT(outcome.messages, Contains("a.csv:32") && Contains("runs backwards"));
 }
 
-TEST_CASE("The example campaigns lack nothing but their recordings", "[io]") {
+TEST_CASE("The example campaigns are complete except for their recordings", "[io]") {
   for (const char* name : {"quarter_car", "damper_dyno"}) {
     const test::TemporaryFolder folder;
     const test::Outcome outcome =

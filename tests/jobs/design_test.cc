@@ -54,7 +54,7 @@ const Design& paper_design() {
   return design;
 }
 
-TEST_CASE("The base point is the middle of the grid unless told otherwise", "[unit]") {
+TEST_CASE("The base point is the middle of the grid unless set otherwise", "[unit]") {
   const SweepRequest request = make_request();
   Case c = make_base_point(request.base, request.grid, {}, {});
   CHECK(get_parameter(c, "front_stiffness") == 37750.0);
@@ -67,7 +67,7 @@ TEST_CASE("The base point is the middle of the grid unless told otherwise", "[un
   CHECK_THROWS_WITH(make_base_point(request.base, request.grid, {"rear_dampin=1850"}, {}),
                     Contains("did you mean 'rear_damping'?"));
   CHECK_THROWS_WITH(make_base_point(request.base, request.grid, {"speed=15"}, {}),
-                    Contains("no axis of this sweep"));
+                    Contains("not an axis of this sweep"));
 }
 
 TEST_CASE("Sensor noise is set by name and must be positive", "[unit]") {
@@ -109,7 +109,7 @@ TEST_CASE("More instants of the paper's sweep never worsen a bound", "[property]
   }
 }
 
-TEST_CASE("A sensor less never lowers a bound, one more never raises it", "[property]") {
+TEST_CASE("Removing a sensor never lowers a bound, adding one never raises it", "[property]") {
   const auto& sets = paper_design().sensors;
   REQUIRE(sets.size() == 1 + kInputs.size() + 3);
   for (std::size_t i = 1; i <= kInputs.size(); ++i) {
@@ -124,7 +124,8 @@ TEST_CASE("A sensor less never lowers a bound, one more never raises it", "[prop
   }
 }
 
-TEST_CASE("The paper's instant and its best instant stay where they are", "[regression]") {
+TEST_CASE("The bounds of the paper's instant and of the best instant are unchanged",
+          "[regression]") {
   const Design& design = paper_design();
   const Instant& best = paper_sensitivity().instants[design.best[0].instants[0]];
   CHECK(design.snapshot.rms == Approx(5.6).epsilon(tolerance(0.02)));
@@ -184,7 +185,7 @@ TEST_CASE("Design prints bounds, sensors and a proposal", "[io]") {
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.messages, Catch::Matchers::StartsWith("next: strut plan "));
   CHECK_THAT(outcome.out, Contains("the sweep's instant") && Contains("best 3 instants") &&
-                              Contains("without pitch_rate") && Contains("known worst") &&
+                              Contains("without pitch_rate") && Contains("least known") &&
                               Contains("put `offset = -0.2"));
 }
 
@@ -207,7 +208,7 @@ TEST_CASE("Design writes strict JSON and the curves as CSV", "[io]") {
   CHECK(table.column("pitch_rate/rear_damping").unit == "rad/s per %");
 }
 
-TEST_CASE("Design refuses what it cannot use, with what is allowed", "[io]") {
+TEST_CASE("Design refuses invalid arguments and lists the allowed ones", "[io]") {
   struct Wrong {
     const char *arguments, *message;
   };

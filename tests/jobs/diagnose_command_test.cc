@@ -1,4 +1,4 @@
-// strut diagnose as a user meets it, and what it writes of a diagnosis made up here.
+// strut diagnose as a user runs it, and its outputs for a constructed diagnosis.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -34,7 +34,7 @@ std::string diagnose(const std::filesystem::path& campaign, const std::filesyste
 Diagnosis make_named(const CampaignData& data) {
   Diagnosis d;
   d.kind = VerdictKind::kNamed;
-  d.sentence = "The model lacks <friction> in the strut.";
+  d.sentence = "Cause: <friction> in the strut.";
   d.causes = {{"strut_friction", "", 0.9, 321.5, {{"friction", "N", 0.5, 0.4, 0.6}}}};
   d.group = {d.causes.front(), {"damper_asymmetry", "", 0.06, 300.0, {}}};
   d.runners_up = {{"progressive_spring", "", 0.03, 12.0, {}}};
@@ -44,10 +44,10 @@ Diagnosis make_named(const CampaignData& data) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   d.parameters = {{"stiffness", "N/m", 900.0, 890.0, 910.0, 950.0, 940.0, 960.0},
                   {"strut_friction_friction", "N", kNan, kNan, kNan, 0.5, -kInfinity, kInfinity}};
-  d.gain.channels = {{"sprung_position", "m", 2e-4, 1e-4, 5e-5, 0.1, 0.05}};
-  d.gain.explained = 2.0 / 3.0;
-  d.gain.log_likelihood_before = -3.0;
-  d.gain.log_likelihood_after = -1.0;
+  d.improvement.channels = {{"sprung_position", "m", 2e-4, 1e-4, 5e-5, 0.1, 0.05}};
+  d.improvement.explained = 2.0 / 3.0;
+  d.improvement.log_likelihood_before = -3.0;
+  d.improvement.log_likelihood_after = -1.0;
   d.not_identifiable = {"all masses and stiffnesses scale together"};
   d.next_measurement = "repeat at twice the amplitude";
   d.notes = {"a note of the diagnosis"};
@@ -88,7 +88,7 @@ TEST_CASE("verdict.json has the keys that scripts rely on", "[io]") {
   CHECK(json.get<std::string>("where.depends_on") == "suspension_velocity");
   CHECK(json.get<double>("parameters.before.stiffness.value") == 900.0);
   CHECK(json.get<double>("parameters.after.stiffness.value") == 950.0);
-  // What only the extended model has is not there before; what is not known has no number.
+  // A parameter of only the extended model is not in `before`; an unknown bound has no number.
   CHECK(json.get_child("parameters.before").size() == 1);
   const auto& open = json.get_child("parameters.after.strut_friction_friction.ci95");
   CHECK(open.front().second.get_value<std::string>() == "null");
@@ -116,13 +116,14 @@ TEST_CASE("A verdict without causes names no extended model", "[io]") {
   CHECK(make_where_text(diagnosis.where).empty());
 }
 
-TEST_CASE("The terminal is told verdict, probabilities, gain and the next measurement", "[io]") {
+TEST_CASE("The terminal shows verdict, probabilities, improvement and the next measurement",
+          "[io]") {
   const test::TemporaryFolder folder;
   const std::string text = make_diagnose_text(make_named(make_data(folder)));
-  CHECK_THAT(text, Catch::StartsWith("The model lacks <friction> in the strut.\n"));
-  CHECK_THAT(text, Contains("friction = 0.5 N (0.4 to 0.6)") && Contains("not told apart") &&
+  CHECK_THAT(text, Catch::StartsWith("Cause: <friction> in the strut.\n"));
+  CHECK_THAT(text, Contains("friction = 0.5 N (0.4 to 0.6)") && Contains("not distinguished") &&
                        Contains("0.030") && Contains("none of the catalogue"));
-  // A cause stands once, though it is a member of the group, too.
+  // A cause is listed once, though it is also a member of the group.
   CHECK(text.find("strut_friction") == text.rfind("strut_friction"));
   CHECK_THAT(text, Contains("10.00 %") && Contains("5.00 %") && Contains("66.7 %") &&
                        Contains("repeat at twice the amplitude"));
@@ -135,7 +136,7 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
   const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
   write_diagnose_report(out, data, diagnosis, {});
   const std::string report = test::read_text(out.report());
-  const std::size_t verdict = report.find("The model lacks &lt;friction&gt; in the strut.");
+  const std::size_t verdict = report.find("Cause: &lt;friction&gt; in the strut.");
   REQUIRE(verdict != std::string::npos);
   CHECK(verdict < report.find("<table"));
   CHECK_THAT(report, Contains("b.csv, held out") && !Contains("a.csv, held out"));
@@ -147,7 +148,7 @@ TEST_CASE("The report is one file with the verdict first, figures inside", "[io]
   test::check_page(out.report().string(), 5);
 }
 
-TEST_CASE("strut report makes a diagnosis' page again from what its folder holds", "[io]") {
+TEST_CASE("strut report makes a diagnosis' page again from its folder", "[io]") {
   const test::TemporaryFolder folder;
   const CampaignData data = make_data(folder);
   const DiagnoseFolder out{{std::filesystem::path(folder / "out")}};
@@ -183,8 +184,8 @@ TEST_CASE("The curves of every run are written beside each other", "[io]") {
   CHECK(before[400] != after[400]);
 }
 
-/// The rms that `strut compare` finds on the run held out with a file as its model, nothing fitted
-/// but where the run starts.
+/// The rms that `strut compare` reports for the held-out run with `model`, fitting only the run's
+/// initial state.
 double compare_held_out(const std::filesystem::path& model, const test::QuarterTruth& truth) {
   test::CampaignText text;
   text.model = model;
@@ -199,7 +200,7 @@ double compare_held_out(const std::filesystem::path& model, const test::QuarterT
   return json.get_child("runs").back().second.get<double>("nominal.channels.sprung_position.rms");
 }
 
-/// What `strut diagnose --json` prints of two runs of a quarter car, into the folder's `out`.
+/// The output of `strut diagnose --json` for two runs of a quarter car, into the folder's `out`.
 test::JsonTree diagnose_truth(const test::TemporaryFolder& folder,
                               const test::QuarterTruth& truth) {
   test::write_two_runs(folder, truth);
@@ -212,7 +213,7 @@ test::JsonTree diagnose_truth(const test::TemporaryFolder& folder,
   return test::parse_json(outcome.out);
 }
 
-TEST_CASE("A tone no larger than the noise of its sensor is told with frequency and place",
+TEST_CASE("A tone no larger than the noise of its sensor is reported with frequency and place",
           "[io]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
@@ -242,12 +243,12 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io][th
              Contains(json.get<std::string>("sentence")));
   CHECK(std::filesystem::exists(folder / "out" / "run_2_b.csv"));
 
-  SECTION("and its extended model stands where a model is named") {
+  SECTION("and its extended model can be used as a model file") {
     CHECK(compare_held_out(folder / "out" / "extended.toml", truth) ==
           Approx(json.get<double>("gain.hold_out_rms_after.sprung_position")).epsilon(0.05));
   }
 
-  SECTION("and is not replaced without being told to") {
+  SECTION("and is not replaced without --force") {
     const test::Outcome refused =
         run_program(diagnose(test::write_campaign(folder), folder / "out"));
     CHECK(refused.code == 2);
@@ -255,7 +256,7 @@ TEST_CASE("diagnose names friction that the rig's model does not have", "[io][th
   }
 }
 
-TEST_CASE("diagnose tells a short lost stroke, and that damper and joint lose it alike", "[io]") {
+TEST_CASE("diagnose finds a short lost stroke, and cannot distinguish damper from joint", "[io]") {
   const test::TemporaryFolder folder;
   test::QuarterTruth truth;
   truth.noise = 2e-6;
@@ -290,14 +291,14 @@ TEST_CASE("diagnose gives an effect outside of its catalogue a force map", "[io]
   const double after = json.get<double>("gain.hold_out_rms_after.sprung_position");
   CHECK(after < 0.5 * json.get<double>("gain.hold_out_rms_before.sprung_position"));
   CHECK_THAT(test::read_text(folder / "out" / "report.html"), Contains("Force map of the strut"));
-  // Coefficients are printed to the last digit; where a run starts is fitted in another metric.
+  // Coefficients are printed to the last digit; the initial state is fitted in another metric.
   CHECK(compare_held_out(folder / "out" / "extended.toml", truth) == Approx(after).epsilon(0.05));
   const CsvTable table = read_csv(folder / "out" / "force_map.csv");
   CHECK(table.row_count() == 15 * 41);
   CHECK(table.column("force_sigma").values.front() > 0.0);
 }
 
-TEST_CASE("diagnose finds nothing where nothing is hidden", "[io]") {
+TEST_CASE("diagnose finds an exact model adequate", "[io]") {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
     const test::TemporaryFolder folder;
     test::QuarterTruth truth;
