@@ -1,4 +1,4 @@
-// Campaigns and measured files: what is read, what is refused, and how plainly.
+// Campaigns and measured files: reading, and messages of errors.
 #include "diagnose/campaign/campaign.h"
 
 #include <catch2/catch.hpp>
@@ -29,7 +29,7 @@ std::string find_refusal(const std::filesystem::path& campaign) {
   return "";
 }
 
-/// The message about a campaign whose text `change` has spoiled.
+/// The error message for a campaign whose text `change` has spoiled.
 template <class Change>
 std::string spoil(const Change& change) {
   const TemporaryFolder folder;
@@ -39,7 +39,7 @@ std::string spoil(const Change& change) {
   return find_refusal(test::write_campaign(folder, text));
 }
 
-/// The message about files of which `change` has spoiled rows.
+/// The error message for files whose rows `change` has spoiled.
 std::string spoil_rows(const test::ChangeRow& change, const CampaignText& text = {}) {
   const TemporaryFolder folder;
   test::write_two_runs(folder, {}, change);

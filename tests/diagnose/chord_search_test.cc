@@ -1,4 +1,4 @@
-// A search with derivatives of few points tells why it ends.
+// A search with derivatives of few points reports why it ends.
 #include "diagnose/noise/chord_search.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Rigs fitted to what was measured: parameters of records by an integrator of the test's own.
+// Rigs fitted to records by an integrator of the test's own.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -24,7 +24,7 @@ CampaignData read_two_runs(const test::QuarterTruth& truth, const test::Campaign
   return read_campaign_data(test::write_campaign(folder, text));
 }
 
-/// Name and truth of what the campaign frees.
+/// Names and true values of the campaign's free parameters.
 std::vector<std::pair<std::string, double>> list_truth(const test::QuarterTruth& t) {
   return {{"unsprung_mass", t.unsprung_mass},
           {"stiffness", t.stiffness},

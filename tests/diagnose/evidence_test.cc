@@ -1,4 +1,4 @@
-// The score test against least squares in full, thresholds against the chi-squared distribution.
+// The score test against full least squares, thresholds against the chi-squared distribution.
 #include "diagnose/hypothesis/evidence.h"
 
 #include <Eigen/Dense>
@@ -118,7 +118,7 @@ TEST_CASE("The threshold of one hypothesis is a quantile of chi squared", "[unit
         Approx(3.841).margin(test::tolerance(0.15)));
   CHECK(calc_null_threshold(evidence, score, {false}, 20000, 0.99) ==
         Approx(6.635).margin(test::tolerance(0.4)));
-  // Of one sign: half of the nulls gain nothing.
+  // One-sided: half of the nulls have no score.
   CHECK(calc_null_threshold(evidence, score, {true}, 20000, 0.95) ==
         Approx(2.706).margin(test::tolerance(0.15)));
 }

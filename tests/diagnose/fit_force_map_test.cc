@@ -1,4 +1,4 @@
-// Force maps fitted to readings: shapes, their sizes, words, maps that are known, and none.
+// Force maps fitted to readings: shapes, their sizes, descriptions, known maps, and no map.
 #include "diagnose/decide/fit_force_map.h"
 
 #include <Eigen/Dense>
@@ -35,7 +35,7 @@ VisitedStates make_states(std::size_t count = 2000) {
   return states;
 }
 
-/// The force of shapes at every visited state: a column a shape.
+/// The force of shapes at every visited state: one column per shape.
 Eigen::MatrixXd calc_columns(const MapBasis& basis, const VisitedStates& states) {
   const auto rows = static_cast<Index>(states.velocity.size());
   Eigen::MatrixXd columns(rows, static_cast<Index>(basis.shapes.size()));
@@ -78,7 +78,7 @@ TEST_CASE("Shapes of a map leave preload, stiffness and damping to the model", "
     INFO(i);
     if (shape.share == MapShare::kJoint) continue;
     ++own;
-    // What was never visited counts 1e-4 of the rest, and takes part of the roughest shapes.
+    // Unvisited parts count 1e-4 of the rest, and take part of the roughest shapes.
     const double power = columns.col(i).squaredNorm() / n;
     CHECK(power <= 1.0 + tolerance(1e-9));
     if (shape.roughness < 1e4) CHECK(power == Approx(1.0).margin(tolerance(0.05)));
@@ -116,7 +116,7 @@ TEST_CASE("Free parameters of the model are eliminated from a map's evidence", "
   CHECK(e.count == 57.0);
 }
 
-/// Constant, velocity and deflection: what the model may adjust.
+/// Constant, velocity and deflection: the free parameters of the model.
 Eigen::MatrixXd make_lines(const VisitedStates& states) {
   Eigen::MatrixXd lines(static_cast<Index>(states.velocity.size()), 3);
   lines << Eigen::VectorXd::Ones(lines.rows()), as_vector(states.velocity),
@@ -153,7 +153,7 @@ TEST_CASE("The readings determine the variables and the roughness of a map", "[u
     CHECK((seen - Eigen::MatrixXd(seen.diagonal().asDiagonal())).norm() <
           tolerance(1e-8) * seen.norm());
     const Eigen::VectorXd mean = calc_map_mean(e, prior);
-    // What the combinations leave out is hardly told.
+    // The readings hardly determine the rest.
     seen.diagonal().array() += 1.0;
     const Eigen::VectorXd of_combinations =
         -factors * seen.ldlt().solve(factors.transpose() * e.gradient);

@@ -1,4 +1,5 @@
-// A rig that only model/rig and model_files know is compared and calibrated like every other.
+// A rig that is named only in model/rig and model_files is compared and calibrated like every
+// other.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -16,7 +17,7 @@ constexpr double kMass = 10.0, kStiffness = 3400.0, kDamping = 42.0;  // kg, N/m
 constexpr double kFriction = 1.2, kSpeed = 0.005;                     // N, m/s
 constexpr double kNoise = 1e-5;                                       // m
 
-/// Heun's method in twentieths of a millisecond: nothing of the program's.
+/// Heun's method with a step of 0.05 ms, independent of the program.
 std::string record(double amplitude, std::uint64_t seed) {
   constexpr double kDuration = 6.0, kStep = 5e-5;
   test::QuarterTruth road;

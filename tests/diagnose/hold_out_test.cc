@@ -1,4 +1,4 @@
-// The judge of models: runs held out, by one noise for all.
+// Held-out runs as the judge of models, by one noise for all.
 #include "diagnose/noise/hold_out.h"
 
 #include <catch2/catch.hpp>

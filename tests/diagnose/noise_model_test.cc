@@ -1,4 +1,4 @@
-// Noise from a record alone.
+// Estimates of noise from a record alone.
 #include "diagnose/campaign/noise_model.h"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// Residuals by time, band and state, against signals whose shares are known.
+// Residuals by time, band and state, against signals of known content.
 #include "diagnose/baseline/residuals.h"
 
 #include <catch2/catch.hpp>

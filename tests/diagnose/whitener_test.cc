@@ -1,4 +1,4 @@
-// Whitened readings: numbers of variance 1, whatever the noise of the channels has in common.
+// Whitened readings have variance 1, for any common noise of the channels.
 #include "diagnose/noise/whitener.h"
 
 #include <catch2/catch.hpp>
@@ -47,7 +47,7 @@ class ConstantModel : public ReadingModel {
   }
 };
 
-/// What one source does to a channel: late by the channel's number of samples, and weighed.
+/// The response of a channel to one source: weighted, and late by the channel's number of samples.
 double get_weight(std::size_t channel) { return 3.0 + 2.0 * static_cast<double>(channel); }
 
 NoiseSpectrum make_spectrum() {

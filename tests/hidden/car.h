@@ -1,8 +1,8 @@
 // The generator's own car: a rigid body in space, four wheels that go straight up and down in it,
 // Magic Formula tires on a road that lifts off. Kane's equations in the body's axes.
 //
-// What it simplifies against a real car, and what the vehicle file that describes the same car
-// (vehicle_file.h) copies: the wheels move along the body's vertical (links so long that their arcs
+// Simplifications against a real car, which the vehicle file of the same car (vehicle_file.h)
+// copies: the wheels move along the body's vertical (links so long that their arcs
 // are straight), no camber, toe or steering; tires without camber thrust, combined slip, aligning
 // torque and rolling resistance; no drive torque.
 #pragma once
@@ -31,7 +31,7 @@ struct Tire {
   double stiffness = 200e3;  // N/m
   double damping = 300.0;    // N s/m
   SlipLaw along{1.1, 1.6, 20.0}, across{1.0, 1.35, 14.0};
-  // What is wrong:
+  // Faults:
   double exponent = 0.0;     // 1, stiffness times (d / d0)^e
   double deflection = 0.02;  // m, d0
   double runout = 0.0;       // m, radial, once a turn
@@ -68,7 +68,7 @@ struct Car {
   double centroid_height = 0.55;                   // m, at nominal trim
   std::array<Wheel, kWheels> wheel;
   Eigen::Vector3d imu{0.1, 0.0, -0.1};  // m from the centroid
-  // What is wrong:
+  // Faults:
   double imu_lean = 0.0;                       // rad, of the inertial sensor, nose down
   double payload = 0.0;                        // kg on the body
   Eigen::Vector3d payload_at{-0.9, 0.0, 0.1};  // m
@@ -93,7 +93,7 @@ struct Drive {
   std::array<Track, kWheels> track;
 };
 
-/// What sensors could see at one instant.
+/// The quantities that sensors can measure, at one instant.
 struct CarSample {
   Eigen::Vector3d imu_acceleration, imu_rate;               // m/s^2 with gravity, rad/s
   std::array<double, kWheels> deflection, deflection_rate;  // m, m/s
@@ -103,7 +103,7 @@ struct CarSample {
   double pitch, pitch_rate;
 };
 
-/// Places in the state.
+/// Indices in the state vector.
 struct CarState {
   enum : int {
     kPosition = 0,

@@ -1,10 +1,10 @@
-// How well a fault could be seen: the signal-to-noise ratio that is left once everything a fit may
-// adjust has been adjusted. From the generator's own model, its own finite differences.
+// Detectability of a fault: its signal-to-noise ratio after all free parameters of a fit are
+// adjusted, by the generator's own model and finite differences.
 //
 // Roughness enters all channels together. The ratio that grades a trial is that of a fit which
 // weights each channel by its own spectrum and knows nothing of their coherence, but whose
 // threshold is right: with residual r, weights W and covariance S, s = r'Wr / sqrt(r'W S W r). A
-// joint treatment sees more; the bound d'S^-1 d on it is reported beside.
+// joint treatment detects more; its bound d'S^-1 d is reported as well.
 #pragma once
 
 #include <Eigen/Dense>
@@ -35,7 +35,7 @@ class NoiseSpectrum {
 };
 
 /// Spectra of the runs for fitting without their means (the sensors' biases), cut above 80 Hz, the
-/// last tenth faded out; and what noise makes of them.
+/// last tenth faded out; and their noise.
 class Whitener {
  public:
   Whitener(const Kit& kit, double roughness);
@@ -62,21 +62,21 @@ class Whitener {
 /// Signals of all runs for fitting at the kit's rate.
 std::vector<std::vector<Signal>> simulate_fit_runs(const Kit& kit, const Truth& truth);
 
-/// Signals minus others.
+/// Returns a - b.
 std::vector<std::vector<Signal>> subtract(std::vector<std::vector<Signal>> a,
                                           const std::vector<std::vector<Signal>>& b);
 
-/// What a fit of the kit's baseline may adjust, as deviations per 1 sigma of the prior or per per
-/// mille where there is none: parameters, speed and hit time of each run. (Biases: the means.)
+/// A free parameter of the baseline's fit, or the speed or hit time of a run, as deviations per
+/// sigma of its prior, or per 0.1 % where it has none. (Biases are removed with the means.)
 struct Nuisance {
   std::vector<std::vector<Signal>> deviation;
   bool has_prior = false;
-  double unit = 1.0;  // what the deviations are per: of a parameter's factor, of 1, of s
+  double unit = 1.0;  // of the deviations: of a parameter's factor, 1, s
 };
 std::vector<Nuisance> make_nuisances(const Kit& kit);
 
 struct SignalToNoise {
-  double ratio = 0.0;  // channel by channel, after the nuisances: grades the trial
+  double ratio = 0.0;  // channel by channel, nuisances adjusted: grades the trial
   double joint = 0.0;  // the same fit, all channels jointly: a bound
   double bare = 0.0;   // channel by channel, nothing adjusted
 };
@@ -86,14 +86,14 @@ class Detector {
  public:
   Detector(const Kit& kit, const std::vector<Nuisance>& nuisances, double roughness);
   SignalToNoise calc(const std::vector<std::vector<Signal>>& deviation) const;
-  /// Cramer-Rao bounds of the nuisances, 1 sigma in the unit of each: no fit of the baseline to
-  /// the runs for fitting, with all that it may adjust, knows them better on the average. At the
-  /// kit's nominal values, all channels jointly, up to the highest frequency that is looked at.
+  /// Cramer-Rao bounds of the nuisances, 1 sigma in the unit of each: no fit of the baseline to the
+  /// runs for fitting has a smaller standard error. At the kit's nominal values, all channels
+  /// jointly, up to the highest frequency used.
   const std::vector<double>& bounds() const { return bounds_; }
 
  private:
   Whitener whitener_;
-  Eigen::MatrixXd jacobian_;  // one column a nuisance
+  Eigen::MatrixXd jacobian_;  // one column per nuisance
   Eigen::LDLT<Eigen::MatrixXd> normal_;
   std::vector<double> bounds_;
 };

@@ -102,7 +102,7 @@ inline double calc_error_norm(const std::vector<double>& y, const DormandPrinceS
   return std::sqrt(sum / static_cast<double>(y.size()));
 }
 
-/// Integrates rates(t, y, dy) from times.front() and hands the state at every time [s], ascending,
+/// Integrates rates(t, y, dy) from times.front() and passes the state at every time [s], ascending,
 /// to observe(index, t, y). Kinks of the right-hand side are found by the error control: a step
 /// across one is rejected until it is short enough. Throws std::runtime_error where the rates are
 /// not finite.

@@ -1,4 +1,4 @@
-// What a trial may hide: the names, the sizes, and where each is set in the generator's own models.
+// Faults that a trial may hide: names, sizes, and where each is set in the generator's own models.
 #pragma once
 
 #include <cstdint>
@@ -61,18 +61,18 @@ enum KitBits : unsigned { kInCar = 1, kInQuarterCar = 2, kInDyno = 4 };
 
 struct FaultInfo {
   Fault fault;
-  const char* name;       // of the generator
-  const char* effect;     // of the catalogue; "": in none
+  const char* name;       // in the generator
+  const char* effect;     // in the catalogue; "": not in it
   const char* parameter;  // of the effect that equals magnitude * scale; "": the forms differ
   Where where;
   unsigned kits;
   bool either_sign;
-  double car, rig;              // magnitudes at which a search begins
+  double car, rig;              // start values of a search for the magnitude
   bool newer = false;           // hidden by seeds from kNewerFaults on
-  bool seen_by_speeds = false;  // fits take it over and stray from what is known of the speeds
+  bool seen_by_speeds = false;  // fits compensate it by speeds away from their priors
 };
 
-/// Seeds below it hide what they hid before the newer faults were added.
+/// Seeds below it hide the same faults as before the newer ones were added.
 inline constexpr std::uint64_t kNewerFaults = 1000;
 
 const std::vector<FaultInfo>& list_faults();
@@ -84,11 +84,10 @@ struct FaultSetting {
   Fault fault = Fault::kAsymmetry;
   int place = 0;
   double magnitude = 0.0;
-  double peak = 0.0;  // SI, of a sensor's largest reading, which saturation is measured by
+  double peak = 0.0;  // a sensor's largest reading in SI, the unit of saturation
 };
 
-/// Sets what the setting says of struts, tires and masses; faults of road and sensors change
-/// nothing here.
+/// Sets faults of struts, tires and masses; faults of road and sensors change nothing here.
 void apply(const FaultSetting& setting, Car& car);
 void apply(const FaultSetting& setting, QuarterCar& car);
 void apply(const FaultSetting& setting, StrutLaw& law);

@@ -1,4 +1,4 @@
-// What a diagnosis must answer where the answer is known: mirrored, scaled and noise-free truths.
+// Diagnoses of trials with a known answer: mirrored, scaled and noise-free truths.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-// A kit: a model, its sensors and the runs of a campaign, as the sampler and the writer see them.
+// A kit: a model, its sensors and the runs of a campaign, for the sampler and the writer.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace strut::hidden {
 
 enum class KitKind { kCar, kQuarterCar, kDyno };
 
-/// What a trial may vary of the kit's model, with its name in the model's file; the truth is the
-/// nominal value times a factor.
+/// A parameter of the kit's model that a trial may vary, with its name in the model's file; the
+/// truth is the nominal value times a factor.
 struct KitParameter {
   std::string name, unit;
   double nominal = 0.0;
-  double low = 1.0, high = 1.0;  // factors drawn from
+  double low = 1.0, high = 1.0;  // range of the factor
   double prior = 0.0;            // 1 sigma over nominal of a weighed value; 0: free
   bool survey = false;           // belongs to the maneuver, not to the model's file
 };
@@ -38,7 +38,7 @@ struct RunPlan {
   double distance = 0.0;   // m, bump ahead of the front wheels when the recording begins
   double amplitude = 0.0;  // m, of rigs
   double low_frequency = 0.0, high_frequency = 0.0;  // Hz
-  bool recorded = true;                              // false: simulated, but not given out
+  bool recorded = true;                              // false: simulated, but not written
 };
 
 struct Kit {
@@ -54,7 +54,7 @@ struct Kit {
   double jitter = 2e-5;      // s
 };
 
-/// Everything a simulation of a trial depends on.
+/// All inputs of a trial's simulation.
 struct Truth {
   std::vector<double> factors;  // of the kit's parameters
   std::vector<FaultSetting> faults;
@@ -70,21 +70,21 @@ Kit make_kit(const std::string& name);
 /// A truth without faults, errors and roughness.
 Truth make_nominal_truth(const Kit& kit);
 
-/// Noise-free channels of run `run`, one signal a sensor on a grid of `rate` [Hz] that begins
+/// Noise-free channels of run `run`, one signal per sensor on a grid of `rate` [Hz] that begins
 /// `margin` [s] before the recording and ends as much after it; sensor faults included.
 std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
                                  double margin);
 
-/// By how many of the speeds' sigma, all crossings for fitting together, fits that take over what
-/// the speedometer says wrong stray from it.
+/// Deviation, in sigmas of the speeds over all crossings for fitting, of fits that compensate an
+/// error of the speedometer.
 double calc_speed_stray(const Kit& kit, const FaultSetting& setting);
 
-/// By how many sigma of the surveys of all bumps for fitting together fits stray from them that
-/// take over what the bumps differ by: as far as a survey errs by chance, nothing is wrong.
-/// Infinite for faults that no survey takes up.
+/// Deviation, in sigmas of the surveys over all bumps for fitting, of fits that compensate a fault
+/// of the bumps. A deviation within the error of a survey is no fault. Infinite for faults that
+/// bumps cannot compensate.
 double calc_survey_stray(const Kit& kit, const FaultSetting& setting);
 
-/// The car of a truth; its nominal one in the file.
+/// The car of a truth.
 Car make_car(const Kit& kit, const Truth& truth);
 inline constexpr double kFootprint = 0.12;  // m
 

@@ -1,4 +1,4 @@
-// The least and the most that a fixed set of trials may score, from a measured run.
+// Bounds on the scores of a fixed set of trials, from a measured run.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace strut::hidden {
 
-/// Of one gate's cell: how many hits a run may have at least, or at most; where the verdicts have a
-/// say in the cell's size, as a share of it.
+/// Min or max hits of one gate's cell; as a fraction of its size where that depends on the
+/// verdicts.
 struct Limit {
   std::string score, grades;
   bool at_least = true;
   int count = 0;
-  int of = 0;  // the cell's size: where trials alone say it, trials of another set are refused
+  int of = 0;  // the cell's size; where the trials alone determine it, other trials are refused
   int measured = 0;  // hits when the limit was set
 };
 
-/// Of a score that is no proportion.
+/// Limit of a score that is not a proportion.
 struct QuantityLimit {
   std::string quantity;
   bool at_least = true;
   double bound = 0.0;
-  std::size_t of = 0;  // values that it came from
+  std::size_t of = 0;  // number of values
   double measured = 0.0;
 };
 
@@ -36,33 +36,33 @@ struct Limits {
   std::vector<QuantityLimit> quantities;
 };
 
-/// Limits for the gates' cells as they came out: the nearer end of Wilson's interval of half a
-/// standard deviation, in whole trials, but one trial worse than measured at least: the same trials
-/// are answered again, so that little moves but by changes of the tool. A cell that may be empty
-/// then has no limit. Of what the intervals miss of the baseline, and of quantities that must be
-/// small, 1.5 times as much is allowed; of those that must be large, a 1.5th; their target where 0
+/// Limits from the measured cells of the gates: the nearer end of Wilson's interval of half a
+/// standard deviation, in whole trials, but at least one trial worse than measured. That is narrow,
+/// since the same trials are run again and differ only by changes of the tool. A cell that may then
+/// be empty has no limit. Missed intervals of the baseline, and quantities that must be small, may
+/// be 1.5 times as large; quantities that must be large, 1.5 times smaller; their target where 0
 /// was measured.
 Limits make_limits(const Score& score);
 
-/// What of the score lies beyond its limit, a line each; other trials than the limits were set for
-/// and missing verdicts, too, and quantities that nothing is left of. Empty: passed.
+/// One line per score beyond its limit, for other trials than those of the limits, for missing
+/// verdicts, and for quantities without values. Empty: passed.
 std::vector<std::string> find_misses(const Limits& limits, const Score& score);
 
-/// The limits beside what was measured, in Markdown.
+/// A table of limits and measured values in Markdown.
 std::string make_limits_table(const Limits& limits, const Score& score);
 
-/// A tool that deserves to fail, as it would answer these trials.
+/// The verdicts of a useless tool, which must fail.
 struct Impostor {
   std::string name;
   std::map<std::string, Verdict> verdicts;
 };
 
-/// Who always names the effect that is hidden most often, who never names any, and the tool itself
-/// with its verdicts handed out to other trials.
+/// A tool that always names the most frequently hidden effect, one that never names any, and the
+/// tool itself with its verdicts permuted among the trials.
 std::vector<Impostor> make_impostors(const std::vector<TrueTrial>& trials,
                                      const std::map<std::string, Verdict>& verdicts);
 
-/// JSON; reading throws std::runtime_error with the file's name for what is no such file.
+/// As JSON; reading throws std::runtime_error with the file's name for another format.
 std::string make_limits_json(const Limits& limits);
 Limits read_limits(const std::filesystem::path& path);
 

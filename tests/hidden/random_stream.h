@@ -9,7 +9,7 @@
 
 namespace strut::hidden {
 
-/// 64-bit FNV-1a of a text: one stream a purpose.
+/// 64-bit FNV-1a hash of a text: one stream per purpose.
 constexpr std::uint64_t calc_stream(const char* purpose) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (; *purpose != '\0'; ++purpose) {
@@ -18,8 +18,8 @@ constexpr std::uint64_t calc_stream(const char* purpose) {
   return hash;
 }
 
-/// Draws of a trial for a purpose: another purpose, another sequence, so that what one part draws
-/// moves nothing in the others.
+/// Draws of a trial for one purpose. Each purpose has its own sequence, so that draws of one part
+/// do not affect the others.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, const std::string& purpose)

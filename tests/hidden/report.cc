@@ -23,7 +23,7 @@ std::string judge(const Gate& gate, const Cell& cell) {
   return met ? "met" : "open: the interval holds the target";
 }
 
-/// Of one kit's trials, or of all.
+/// The trials of one kit, or of all.
 struct Part {
   std::string kit;
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// The scores as a person reads them, and as a script does.
+// Scores as a Markdown report and as JSON.
 #pragma once
 
 #include <map>
@@ -9,13 +9,13 @@
 
 namespace strut::hidden {
 
-/// "hits/total share [low, high]" with the 95 % Wilson interval; "-" for no trial.
+/// "hits/total fraction [low, high]" with the 95 % Wilson interval; "-" for no trial.
 std::string print_cell(const Cell& cell);
 
-/// In Markdown: every gate and quantity with its target, of all trials and beside it kit by kit,
-/// every count by grade, pooled and kit by kit, and the trials not answered right with the
-/// runners-up. `passed`, of all trials: no gate's whole interval on the wrong side, no quantity, no
-/// verdict missing.
+/// In Markdown: every gate and quantity with its target, for all trials and by kit; every count by
+/// grade, pooled and by kit; and the wrongly answered trials with the runners-up. `passed`, over
+/// all trials: no gate has its whole interval on the wrong side, no quantity misses its target, no
+/// verdict is missing.
 std::string make_report(const std::vector<TrueTrial>& trials,
                         const std::map<std::string, Verdict>& verdicts, bool& passed);
 

@@ -16,7 +16,7 @@ struct QuarterCar {
   double tire_stiffness = 1250.0;  // N/m
   double tire_damping = 5.0;       // N s/m
   StrutLaw strut;
-  // What is wrong beside the strut:
+  // Faults besides the strut's:
   double tire_exponent = 0.0;  // 1, tire force k d (|d| / d0)^e, rounded within 0.02 d0
   double tire_travel = 0.01;   // m, d0
   double hum_force = 0.0;      // N on the sprung mass, unknown to every catalogue

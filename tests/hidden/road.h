@@ -1,4 +1,4 @@
-// The generator's own road: a bump as a disc feels it, and ISO 8608 roughness in two tracks.
+// The generator's own road: a bump under a rolling disc, and ISO 8608 roughness in two tracks.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct Bump {
 /// Height of the profile x [m] from the bump's center.
 double calc_bump_height(const Bump& bump, double x);
 
-/// What a tire feels of the bump: the height of a rolling disc of this radius over it, averaged
+/// The bump as a tire follows it: the height of a rolling disc of this radius over it, averaged
 /// over the footprint by four boxcars of a quarter of it. Brute force on a grid of 0.5 mm.
 Curve make_felt_bump(const Bump& bump, double radius, double footprint);
 
@@ -50,8 +50,7 @@ struct Roughness {
 double calc_roughness_density(const Roughness& roughness, double wave_number);
 
 /// Left and right track from x = begin on: a sum of harmonics of 1 / length with the density's
-/// amplitudes and random phases, as the tire feels it after averaging over the footprint (the bare
-/// road at 0).
+/// amplitudes and random phases, averaged over the tire's footprint (0: the bare road).
 struct RoughTracks {
   Curve left, right;
 };

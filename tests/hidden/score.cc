@@ -99,7 +99,7 @@ void add_error(const TrueTrial& trial, bool named, const ParameterError& error, 
 void add_baseline(const TrueTrial& trial, const Verdict& v, bool named, Score& score) {
   for (const auto& [name, truth] : trial.parameters) {
     const auto found = v.after.find(name);
-    // What a verdict calls not identifiable it leaves out.
+    // A verdict leaves out parameters that are not identifiable.
     if (found == v.after.end()) continue;
     const Estimate& e = found->second;
     score.cells[Metric::kBaseCovered][trial.grade].add(e.low <= truth && truth <= e.high);
@@ -183,7 +183,7 @@ bool is_wrong_confident(const TrueTrial& trial, const Verdict& v) {
   return wrong > grouped;
 }
 
-/// What any trial may get wrong.
+/// Counts the errors that any trial may have.
 void add_claims(const TrueTrial& trial, const Verdict& v, Score& score) {
   score.cells[Metric::kWrongConfident][trial.grade].add(is_wrong_confident(trial, v));
   const bool claims = claims_names(v) && !v.causes.empty();

@@ -1,4 +1,4 @@
-// How good verdicts are, against the truth: what the evaluation protocol counts, and its targets.
+// Scores of verdicts against the truth: the counts of the evaluation protocol, and their targets.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace strut::hidden {
 
-/// What is counted, one cell for each grade.
+/// A count, with one cell for each grade.
 enum class Metric {
   kFalseAlarm,      // nothing hidden, something claimed
-  kDetected,        // one of the catalogue hidden, not called adequate
+  kDetected,        // one effect of the catalogue hidden, verdict not adequate
   kInGroup,         // one: the truth is a cause or in the group, of at most kLargestGroup
   kInPrintedGroup,  // one: the truth is a cause or in the group, however large
   kAloneRight,      // one: the truth is the only cause, and the group holds no other name
-  kExact,           // one, effects that the kits can tell apart: the first cause is the truth
+  kExact,           // one, effects that the kits can distinguish: the first cause is the truth
   kUnknownFlagged,  // unknown hidden: verdict unknown or form_incomplete
   kUnknownPlaced,   // unknown, flagged: where.place is the truth's, word for word
   kBothNamed,       // two hidden
@@ -28,17 +28,17 @@ enum class Metric {
   kOverclaimed,     // grade D: a cause named with more than 0.8, no group beside it
   kEffectCovered,   // named exactly: 95 % interval holds the effect's parameter
   kBaseCovered,     // parameters of the baseline
-  kExplained95,     // one: explains at least 95 % of what can be explained on the runs held out
+  kExplained95,     // one: explains at least 95 % of the excess error on the held-out runs
   kExplained80,     // one: at least 80 %
   kMapExplained70,  // unknown: flagged, and the force map explains at least 70 %
   kCount
 };
 const char* get_name(Metric metric);
 
-/// More names than these for each hidden effect name nothing.
+/// Max names for each hidden effect; more names name nothing.
 inline constexpr std::size_t kLargestGroup = 4;
 
-/// What a parameter that no verdict tells is off by: all of it, and far out of any interval.
+/// Error and pull of a parameter without a verdict: 100 %, and far out of any interval.
 inline constexpr double kMissingError = 1.0, kMissingPull = 10.0;
 
 struct Cell {
@@ -50,16 +50,16 @@ struct Cell {
 };
 
 struct Score {
-  std::map<Metric, std::map<char, Cell>> cells;         // by grade, '-' for nothing hidden
-  std::vector<double> probability_on_truth;             // one, A and B
-  std::vector<double> null_error;                       // relative, of stiffnesses and dampings
-  std::vector<double> null_pull;                        // the same over the stated 1 sigma
-  std::vector<double> null_excess;                      // the same over the Cramer-Rao bound
-  std::vector<double> smooth_error, rough_error;        // relative, named; roads up to 1e-6, 16e-6
-  std::vector<double> effect_error;                     // relative, of effects named exactly
-  std::vector<std::pair<double, bool>> confidence;      // of each first cause, and whether right
-  std::vector<double> names;                            // one, A and B: how many where names are
-  std::vector<std::string> failures;                    // a line a trial, with the runners-up
+  std::map<Metric, std::map<char, Cell>> cells;     // by grade, '-' for nothing hidden
+  std::vector<double> probability_on_truth;         // one, A and B
+  std::vector<double> null_error;                   // relative, of stiffnesses and dampings
+  std::vector<double> null_pull;                    // the same over the stated 1 sigma
+  std::vector<double> null_excess;                  // the same over the Cramer-Rao bound
+  std::vector<double> smooth_error, rough_error;    // relative, named; roads up to 1e-6, 16e-6
+  std::vector<double> effect_error;                 // relative, of effects named exactly
+  std::vector<std::pair<double, bool>> confidence;  // of each first cause, and whether right
+  std::vector<double> names;          // one, A and B: number of names, where there are any
+  std::vector<std::string> failures;  // one line per trial, with the runners-up
   std::map<std::string, std::map<char, int>> contents;  // trials by category and grade
   int missing = 0;                                      // trials without a verdict
 };
@@ -72,8 +72,8 @@ struct Score {
 Score calc_score(const std::vector<TrueTrial>& trials,
                  const std::map<std::string, Verdict>& verdicts);
 
-/// Expected calibration error in ten bins of equal width: mean of |share right - mean confidence|
-/// weighted by the bins' counts; 0 for nothing.
+/// Expected calibration error in ten bins of equal width: mean of |fraction right - mean
+/// confidence| weighted by the bins' counts; 0 for nothing.
 double calc_calibration_error(const std::vector<std::pair<double, bool>>& confidence);
 
 struct Gate {
@@ -85,16 +85,16 @@ struct Gate {
 const std::vector<Gate>& list_gates();
 
 Cell pool(const Score& score, Metric metric, const std::string& grades);
-/// Whether the trials alone say how large the metric's cells are; else the verdicts have a say.
+/// Whether the trials alone determine the size of the metric's cells, not the verdicts.
 bool is_size_fixed(Metric metric);
 /// A cell fails when its whole Wilson interval lies on the wrong side of the target.
 bool passes(const Gate& gate, const Cell& cell);
 
-/// A score that is no proportion, with its target.
+/// A score that is not a proportion, with its target.
 struct Quantity {
   std::string name;
   double value = 0.0;
-  std::size_t count = 0;  // it comes from
+  std::size_t count = 0;  // number of values
   double target = 0.0;
   bool at_least = true;
 

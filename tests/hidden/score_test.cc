@@ -64,7 +64,7 @@ Verdict make_perfect(const TrueTrial& trial) {
   v.place = "body";
   v.map_share = 0.8;
   if (trial.category == "unknown") return v;
-  // What is hardly visible is not insisted on.
+  // A hardly detectable fault is not required.
   v.verdict = trial.grade == 'D' ? "group" : "named";
   for (const TrueFault& f : trial.faults) {
     v.causes.push_back(make_claim(f, 0.99));
@@ -611,7 +611,7 @@ std::vector<TrueTrial> make_trials_of(const Limits& limits) {
       }
     }
   }
-  // Of effects that no run tells apart: as many as the limits say.
+  // Effects that no run can distinguish: as many as the limits allow.
   for (const Limit& limit : limits.limits) {
     if (limit.score != get_name(Metric::kExact)) continue;
     int splittable = 0;

@@ -1,4 +1,4 @@
-// What a sensor makes of the truth: data-sheet noise, and what may be wrong with it.
+// Sensors: readings of the truth with data-sheet noise and faults.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ struct Sensor {
   double noise = 0.0;        // SI, 1 sigma a sample
   double bias = 0.0;         // SI, 1 sigma over sensors
   double quantum = 0.0;      // SI, of the converter
-  double range = 1e30;       // SI, reading saturates at +-
+  double range = 1e30;       // SI, reading saturates at +/- range
   bool input = false;        // drives the model
-  bool recorded = true;      // false: simulated, but not given out
+  bool recorded = true;      // false: simulated, but not written
 };
 
 /// The clock of a file: stamps are exact to a microsecond, the samples are not.
 struct Clock {
-  double offset = 0.0;  // s, the recording began late by this
-  double drift = 0.0;   // 1, the file's second is longer by this share
+  double offset = 0.0;  // s, delay of the recording's start
+  double drift = 0.0;   // 1, fraction by which the file's second is longer
   double jitter = 0.0;  // s, 1 sigma
 };
 
@@ -38,8 +38,8 @@ struct Signal {
   double evaluate(double t) const;
 };
 
-/// What the fault makes of the signal: gain, delay [s], first-order low-pass [s]; kSaturation cuts
-/// at +-(1 - magnitude) times the setting's peak. Others: the signal itself.
+/// The signal with a fault of its sensor: gain, delay [s], first-order low-pass [s]; kSaturation
+/// clips at +/-(1 - magnitude) times the setting's peak. The signal itself for other faults.
 Signal distort(const Signal& signal, const FaultSetting& fault);
 
 /// Readings in the file's unit at the stamps [s]: sampled late and with jitter, biased, noisy, cut

@@ -1,6 +1,7 @@
-// The generator's own strut: spring, damper, and what may be wrong with them.
+// The generator's own strut: spring, damper, and their faults.
 //
-// Every law differs in form from the usual library's: exact dead bands, tables, slopes that jump.
+// Every law differs in form from that of the tested program: exact dead bands, tables, slopes that
+// jump.
 // An effect is off at the magnitude 0 and, for small magnitudes, in proportion to it.
 #pragma once
 
@@ -8,10 +9,10 @@
 
 namespace strut::hidden {
 
-/// What is wrong with a strut; all zero: a linear spring and damper.
+/// Faults of a strut; all zero: a linear spring and damper.
 struct StrutFaults {
   double asymmetry = 0.0;  // 1, damping (1 - a) in compression, (1 + a) in rebound
-  double knee_loss = 0.0;  // 1, share of the damping lost above the knee
+  double knee_loss = 0.0;  // 1, fraction of the damping lost above the knee
   double leak = 0.0;       // m, stroke after each reversal on which the damper is idle
   double friction = 0.0;   // N, breakaway of LuGre friction
   double hardening = 0.0;  // 1, k L (sinh(d / L) - d / L) on top of the spring
@@ -20,13 +21,13 @@ struct StrutFaults {
   double gas_lag = 0.0;    // s, first-order lag of the damper's force
   double play = 0.0;       // m, gap of the joint in series with the damper, from stop to stop
   // Unknown to every catalogue:
-  double selective = 0.0;      // 1, share of the damping that acts only at low frequency
+  double selective = 0.0;      // 1, fraction of the damping that acts only at low frequency
   double side_friction = 0.0;  // N, friction that grows with the stroke it stands at
   double inerter = 0.0;        // kg, force in proportion to the acceleration of compression
   double gas = 0.0;            // 1, gas behind the damper's piston at rest over the scale's force
 };
 
-/// Lengths, speeds and forces of the size that the strut meets: shapes are scaled by them.
+/// Typical lengths, speeds and forces of the strut, by which shapes are scaled.
 struct StrutScale {
   double travel = 0.06;          // m
   double speed = 0.6;            // m/s
@@ -50,7 +51,7 @@ struct StrutLaw {
 inline constexpr int kStrutStates = 5;
 using StrutStates = std::array<double, kStrutStates>;
 
-/// Damper's force of a speed of compression, rising without bound [N].
+/// Force of the damper at a speed of compression, rising without bound [N].
 double calc_damper_force(const StrutLaw& law, double speed);
 
 /// Force of the stop at a compression from rest and its rate: table with linear sections times

@@ -1,4 +1,4 @@
-// What one trial hides, drawn from its seed alone.
+// One trial: its hidden faults, drawn from its seed alone.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ namespace strut::hidden {
 enum class Category { kNone, kOne, kTwo, kUnknown };
 const char* get_name(Category category);
 
-/// Of 39 seeds in a row, beginning at a multiple of 39, 15 hide nothing, 14 one effect of the
-/// catalogue, 5 two and 5 something unknown, in random order: 300, 280, 100, 100 of 780.
+/// In each block of 39 consecutive seeds from a multiple of 39 on, 15 hide nothing, 14 one effect
+/// of the catalogue, 5 two and 5 an unknown one, in random order: 300, 280, 100, 100 of 780.
 Category draw_category(std::uint64_t seed);
 
 struct HiddenFault {
   FaultSetting setting;
   SignalToNoise noise;  // of this fault alone
   double target = 0.0;  // of noise.ratio
-  /// The ratio, or less: what strays from the surveys no further than they err is theirs.
+  /// The ratio without the part within the error of the surveys.
   double beyond_survey = 0.0;
 };
 
@@ -36,14 +36,14 @@ struct Trial {
   std::vector<HiddenFault> faults;
   std::vector<Clock> clocks;  // of each run
   std::vector<double> bias;   // of each sensor
-  /// Grade of the fault that is harder to see; '-' where nothing is hidden.
+  /// Grade of the fault that is harder to detect; '-' where nothing is hidden.
   char get_grade() const;
-  /// The same of what is beyond the surveys.
+  /// The grade by HiddenFault::beyond_survey.
   char get_grade_beyond_survey() const;
   std::vector<double> bounds;  // of each of the kit's parameters, 1 sigma in its unit; may be empty
 };
 
-/// Draws trials of a kit; keeps what they share. Safe to use from several threads.
+/// Draws trials of a kit; keeps their common data. Safe to use from several threads.
 class Sampler {
  public:
   explicit Sampler(const Kit& kit);
@@ -64,15 +64,15 @@ class Sampler {
   std::vector<std::unique_ptr<Detector>> detectors_;
 };
 
-/// Magnitudes that a fault's search may not pass, the smaller first.
+/// Min and max magnitude of a fault's search.
 std::pair<double, double> find_bracket(const Kit& kit, Fault fault);
 
-/// Where a fault is, in the words of a vehicle file: an axle, "body", "road", a channel; "" for
-/// what a stand has only one of.
+/// The place of a fault as in a vehicle file: an axle, "body", "road", a channel; "" where a stand
+/// has only one.
 std::string get_place(const Kit& kit, const FaultSetting& setting);
 
-/// Where a fault is, in the words of a verdict's where.place: as above, and of a stand "strut",
-/// "tire", "body" or "road".
+/// The place of a fault as in a verdict's where.place: as above, and on a stand "strut", "tire",
+/// "body" or "road".
 std::string get_where(const Kit& kit, const FaultSetting& setting);
 
 }  // namespace strut::hidden

@@ -1,4 +1,4 @@
-// What the sampler draws, how it grades, what it writes.
+// Drawing, grading and writing of trials.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

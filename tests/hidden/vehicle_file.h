@@ -1,4 +1,4 @@
-// The generator's car written down as a vehicle file, as the user of the tested program has it.
+// Writes the generator's car as a vehicle file of the tested program.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Truth files and verdicts as the scorer reads them.
+// Reads truth files and verdicts for the scorer.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct Estimate {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
-/// An effect at a place with what is said of it.
+/// An effect at a place, with its probability and parameters.
 struct Claim {
   std::string effect, place;
   double probability = 0.0;
@@ -27,15 +27,15 @@ struct Verdict {
   std::vector<Claim> causes, group, runners_up;
   std::string place;  // where.place
   std::map<std::string, Estimate> after;
-  std::optional<double> explained;  // gain.explained; none: nothing stood out before
-  std::optional<double> map_share;  // force_map.hold_out_share; none: no force map
+  std::optional<double> explained;  // gain.explained; null: no excess before
+  std::optional<double> map_share;  // force_map.hold_out_share; null: no force map
 };
 
 struct TrueFault {
   std::string fault, effect, place, parameter;
   double magnitude = 0.0;
   char grade = 'D';
-  std::string where;  // the place in the words of a verdict's where.place
+  std::string where;  // the place as in a verdict's where.place
 };
 
 struct TrueTrial {
@@ -44,15 +44,16 @@ struct TrueTrial {
   double roughness = 0.0;  // m^3
   std::vector<TrueFault> faults;
   std::map<std::string, double> parameters;
-  std::map<std::string, double> bounds;  // 1 sigma of the parameters that no fit can beat
+  std::map<std::string, double> bounds;  // Cramer-Rao bounds of the parameters, 1 sigma
 };
 
-/// Throws std::runtime_error with the file's name for what is no such file.
+/// Throws std::runtime_error with the file's name for another format.
 test::JsonTree read_json(const std::filesystem::path& path);
 TrueTrial read_truth(const std::filesystem::path& path);
 Verdict read_verdict(const std::filesystem::path& path);
 
-/// All truths of a folder; every one must be as the seal in SHA256SUMS says, and none be missing.
+/// All truths of a folder. Throws unless each agrees with its seal in SHA256SUMS and none is
+/// missing.
 std::vector<TrueTrial> read_truths(const std::filesystem::path& folder);
 
 }  // namespace strut::hidden

@@ -16,7 +16,7 @@ inline Interval calc_wilson(int hits, int total, double z = 1.959963984540054) {
   const double n = total, p = hits / n, z2 = z * z;
   const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
   const double half = z * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n)) / (1.0 + z2 / n);
-  // At the ends the bound is the end, not what rounding leaves of it.
+  // At the ends the bound is exact, without rounding.
   return {hits == 0 ? 0.0 : middle - half, hits == total ? 1.0 : middle + half};
 }
 

@@ -1,4 +1,4 @@
-// The balance of a car's body: what it says of the struts where bump and tires are not the model's.
+// The balance of a car's body: its estimates of the struts with wrong bump and tires.
 #include "diagnose/compare/car_balance.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ const std::string kExamples = STRUT_SOURCE_DIR "/examples/";
 
 using Settings = std::vector<std::pair<std::string, double>>;
 
-/// What the car that is measured has, and the model has not.
+/// Differences of the measured car from the model.
 struct Truth {
   Settings settings;
   BumpShape shape = BumpShape::kArc;
@@ -61,7 +61,7 @@ int find_car_channel(const std::string& name) {
   return 0;
 }
 
-/// The paper's car, worn, over its bump, with what else the truth has, as its sensors record it.
+/// Records of the paper's worn car over its bump, with the truth's other differences.
 void write_crossing(const test::TemporaryFolder& folder, const std::string& name,
                     const Truth& truth, std::uint64_t seed) {
   Case c{read_vehicle(kExamples + "vehicles/paper_sedan.toml"),
@@ -104,7 +104,7 @@ CampaignData make_campaign(const test::TemporaryFolder& folder, const Truth& tru
   return read_campaign_data(folder.write("campaign.toml", text));
 }
 
-/// What the whole fit and the balance of its run say.
+/// Results of the whole fit and of the balance of its run.
 struct Answers {
   std::vector<double> fit;
   CarBalance balance;

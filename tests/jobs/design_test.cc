@@ -1,4 +1,4 @@
-// `strut design`: what it proposes for the paper's sweep, and how it speaks.
+// `strut design`: its proposal for the paper's sweep, and its messages.
 #include "estimate/design.h"
 
 #include <catch2/catch.hpp>

@@ -56,7 +56,7 @@ Errors calc_errors(const test::TemporaryFolder& folder, const std::string& model
   return errors;
 }
 
-/// The extended model stands where every other command takes a model.
+/// Runs other commands with the extended model in place of a model file.
 void check_commands(const test::TemporaryFolder& folder) {
   const auto at = [&](const std::string& name) { return std::string(folder / name); };
   const std::string model = at("diagnosis/extended.toml"), maneuver = at("middle_22.toml");
