@@ -20,7 +20,7 @@ bool is_of_body(const Sensor& sensor) {
   return sensor.channel.rfind("imu_", 0) == 0 || sensor.channel == "sprung_position";
 }
 
-/// The run that tells most of a car, of a quarter car, of a strut.
+/// The most informative run for a car, a quarter car, and a strut.
 bool is_kept_alone(const RunPlan& run) {
   return run.name == "middle_20" || run.name == "rough_A" || run.name == "medium";
 }

@@ -38,7 +38,7 @@ VectorXd read_sample(const Kit& kit, const CarSample& s) {
   return out;
 }
 
-/// Response of a stand's sensors to what drives it: the noise of that sensor is fed to the model.
+/// Response of a stand's sensors to its input, whose sensor noise is fed to the model.
 Eigen::VectorXcd calc_rig_response(const Kit& kit, Complex rate) {
   Eigen::VectorXcd h = Eigen::VectorXcd::Zero(static_cast<Eigen::Index>(kit.sensors.size()));
   const auto value = [&](std::size_t i) { return kit.parameters[i].nominal; };

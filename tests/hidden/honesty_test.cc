@@ -92,7 +92,7 @@ TEST_CASE("Hidden data: a car whose masses, springs and dampers are all 5 % larg
   const Verdict v = diagnose_small_car(kit, trial);
   INFO(describe(v));
   CHECK(v.verdict == "adequate");
-  // The file's mass is what its ratios are told by.
+  // Ratios are relative to the file's mass.
   for (const KitParameter& p : kit.parameters) {
     if (p.survey) continue;
     INFO(p.name);

@@ -10,7 +10,7 @@ namespace strut::hidden {
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
-constexpr double kPreroll = 1.5;  // s of road before a recording: it begins in the middle of one
+constexpr double kPreroll = 1.5;  // s of road before a recording, which starts in mid-drive
 constexpr double kKmh = 1.0 / 3.6;
 constexpr double kG = 9.80665;
 
@@ -253,7 +253,7 @@ QuarterCar make_quarter_car(const Kit& kit, const Truth& truth, std::size_t run)
 std::vector<Signal> simulate_rig_run(const Kit& kit, const Truth& truth, std::size_t number,
                                      double rate, double margin) {
   const RunPlan& run = kit.runs[number];
-  // The plate moves more than its sensor says.
+  // The plate moves more than its sensor reads.
   const double gain = 1.0 + find_magnitude(truth, Fault::kRoadGain);
   RunPlan moved = run;
   moved.amplitude *= gain;
@@ -415,7 +415,7 @@ Truth make_nominal_truth(const Kit& kit) {
 double calc_speed_stray(const Kit& kit, const FaultSetting& setting) {
   double square = 0.0;
   for (const RunPlan& run : kit.runs) {
-    // Level ground does not tell how fast it is crossed.
+    // Level ground carries no information about the speed.
     if (!run.fit || run.excitation != Excitation::kBump) continue;
     square += std::pow(calc_speed_error(setting, run.speed) / kit.speed_sigma, 2);
   }

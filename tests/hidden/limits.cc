@@ -49,7 +49,7 @@ std::string describe(const Limit& limit) {
          std::to_string(limit.count) + " of " + std::to_string(limit.of);
 }
 
-/// By count; by share where the verdicts have a say in how many there are.
+/// By count; by fraction where the verdicts determine the cell's size.
 bool keeps(const Limit& limit, const Cell& cell) {
   int hits = cell.hits, bound = limit.count;
   if (!is_size_fixed(find_gate(limit).metric)) {
@@ -68,7 +68,7 @@ bool keeps(const QuantityLimit& limit, const Quantity& q) {
   return q.count > 0 && (limit.at_least ? q.value >= limit.bound : q.value <= limit.bound);
 }
 
-/// Hits that a run may have at least or at most, of a cell as it came out.
+/// Min or max hits of a run, from a measured cell.
 int calc_bound(const Gate& gate, const Cell& cell) {
   if (gate.metric == Metric::kBaseCovered && gate.at_least) {
     const int missed = cell.total - cell.hits;
@@ -93,7 +93,7 @@ std::vector<QuantityLimit> make_quantity_limits(const Score& score) {
   return made;
 }
 
-/// The effect and place hidden most often.
+/// The most frequently hidden effect and place.
 Claim find_usual(const std::vector<TrueTrial>& trials) {
   std::map<std::pair<std::string, std::string>, int> count;
   for (const TrueTrial& t : trials) {

@@ -92,7 +92,7 @@ TEST_CASE("Hidden data: a shaken quarter car follows its transfer functions", "[
     const auto unsprung = tire / (car.unsprung_mass * s * s + tire + strut * (1.0 - sprung));
     const std::complex<double> body = sprung * unsprung;
     const auto samples = simulate_quarter_car(car, make_sine(1e-3, w), make_times(0.0, 40.0, 0.01));
-    // 40 s after the start the free motion is e^-25 of what it was.
+    // 40 s after the start the free motion has decayed to e^-25.
     for (std::size_t i = 3900; i < samples.size(); ++i) {
       const double expected =
           std::imag(1e-3 * body * std::exp(s * (0.01 * static_cast<double>(i))));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kConfident = 0.8;
 
-/// A lost stroke and a worn joint are one motion in two sizes: the catalogue says so.
+/// A lost stroke and a worn joint cause the same motion in two sizes, by the catalogue.
 std::string merge_aliases(const std::string& effect) {
   return effect == "joint_play" ? "damper_leak" : effect;
 }
@@ -67,7 +67,7 @@ double find_probability(const Verdict& v, const TrueFault& fault) {
   return 0.0;
 }
 
-/// Effects with an alias that no run of the kits tells apart.
+/// Effects with an alias that no run of the kits can distinguish.
 bool is_splittable(const TrueFault& fault) {
   static const std::set<std::string> kAliases = {"sensor_delay", "sensor_lowpass", "damper_leak",
                                                  "joint_play", "strut_friction"};
@@ -199,7 +199,7 @@ void add_claims(const TrueTrial& trial, const Verdict& v, Score& score) {
   }
 }
 
-/// A trial without a verdict, in the scores that would not ask for it: those of what was claimed.
+/// Counts a trial without a verdict in the scores of claims, which would otherwise skip it.
 void add_missing(const TrueTrial& trial, Score& score) {
   ++score.missing;
   const char grade = trial.grade;
@@ -266,7 +266,7 @@ double calc_mean(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Value below which the share lies, nearest rank; 0 for nothing.
+/// Quantile by nearest rank; 0 without values.
 double calc_quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
@@ -320,7 +320,7 @@ const std::vector<Gate>& list_gates() {
       {Metric::kEffectCovered, "AB", 0.98, false},
       {Metric::kBaseCovered, "ABCD-", 0.90, true},
       {Metric::kBaseCovered, "ABCD-", 0.98, false},
-      // Medians and a tenth as proportions: at least half, or nine tenths, explain so much.
+      // Median and 10 % quantile as proportions: at least 50 or 90 % explain so much.
       {Metric::kExplained95, "AB", 0.50, true},
       {Metric::kExplained80, "AB", 0.90, true},
       {Metric::kMapExplained70, "AB", 0.50, true},

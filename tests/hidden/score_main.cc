@@ -71,7 +71,7 @@ Trials read_trials(const std::vector<fs::path>& folders) {
   return trials;
 }
 
-/// Impostors that the limits do not tell from the tool.
+/// Impostors that pass the limits.
 std::vector<std::string> find_passing_impostors(const Limits& limits, const Trials& trials) {
   std::vector<std::string> passing;
   for (const Impostor& impostor : make_impostors(trials.truths, trials.verdicts)) {

@@ -241,7 +241,7 @@ TEST_CASE("Hidden data: where nothing stood out, no explained share is asked for
   CHECK(count("named", 0.5) == std::pair(0, 28));
   CHECK(count("named", std::nullopt) == std::pair(0, 0));
   CHECK(count("unknown", std::nullopt) == std::pair(0, 0));
-  // Who calls the model adequate has explained nothing of what is hidden.
+  // A verdict of an adequate model explains nothing of a hidden fault.
   CHECK(count("adequate", std::nullopt) == std::pair(0, 28));
 }
 
@@ -263,7 +263,7 @@ TEST_CASE("Hidden data: a force map is credited where the cause is flagged as un
   CHECK(count("form_incomplete", 0.99) == 10);
   CHECK(count("unknown", 0.69) == 0);
   CHECK(count("unknown", std::nullopt) == 0);
-  // A share explained by a wrong name is none.
+  // A fraction explained by a wrong name counts as 0.
   CHECK(count("named", 0.99) == 0);
 }
 
@@ -518,7 +518,7 @@ TEST_CASE("Hidden data: limits fail missing verdicts and other trials", "[unit]"
   verdicts.erase(last.name);
   CHECK_THAT(find_misses(limits, calc_score(trials, verdicts)).at(0),
              Catch::Contains("1 verdicts are missing"));
-  // As many trials of each grade, but of effects that the kits do not tell apart.
+  // As many trials of each grade, but with effects that the kits cannot distinguish.
   verdicts = answer_all(trials, make_perfect);
   for (TrueTrial& t : trials) {
     if (t.category == "one") t.faults.front().effect = "sensor_delay";
@@ -535,7 +535,7 @@ TEST_CASE("Hidden data: limits fail missing verdicts and other trials", "[unit]"
 TEST_CASE("Hidden data: limits hold quantities to 1.5 times what was measured", "[unit]") {
   const std::vector<TrueTrial> trials = make_trials();
   const Limits limits = make_limits(score_all(make_perfect));
-  // 40 N/m of 20000: what nothing hides is off by 0.2 %, and within its interval.
+  // 40 N/m of 20000: without faults the error is 0.2 %, and within the interval.
   const auto with_error = [&](double off) {
     return find_misses(limits, score_all([&](const TrueTrial& trial) {
                          Verdict v = make_perfect(trial);
@@ -562,7 +562,7 @@ TEST_CASE("Hidden data: limits hold quantities to 1.5 times what was measured", 
   CHECK_THAT(misses[0], Catch::Contains("over the stated 1 sigma: at most 1.176, measured 1.196"));
   CHECK_THAT(misses[1], Catch::Contains("over the Cramer-Rao bound: at most 1.5, measured 1.525"));
   CHECK_THAT(misses[2], Catch::Contains("rms relative: at most 0.003, measured 0.00305"));
-  // Who no longer tells the parameters has nothing that could be wrong.
+  // A verdict without parameters has no errors of parameters.
   const auto silent = find_misses(limits, score_all([&](const TrueTrial& trial) {
                                     Verdict v = make_perfect(trial);
                                     v.after.clear();
@@ -594,7 +594,7 @@ TEST_CASE("Hidden data: limits are read as they were written", "[io]") {
   CHECK_THROWS_WITH(read_limits(path), Catch::Contains("limits.json"));
 }
 
-/// Trials as many and of the grades as the limits say.
+/// As many trials, with the same grades, as the limits require.
 std::vector<TrueTrial> make_trials_of(const Limits& limits) {
   std::vector<TrueTrial> trials;
   for (const auto& [category, grades] : limits.contents) {
@@ -682,7 +682,7 @@ TEST_CASE("Hidden data: a truth that was touched is refused, an untouched one re
   CHECK(trials[0].faults.at(0).where == "body");
   CHECK(trials[0].bounds.at("front_stiffness") == 12.5);
   CHECK(trials[0].grade == 'B');
-  // One of an older generator says what it lacks.
+  // A file of an older generator is reported with its missing keys.
   std::ofstream(folder / "000002.json") << "{\"category\": \"none\", \"faults\": []}";
   CHECK_THROWS_WITH(read_truth(folder / "000002.json"),
                     Catch::Contains("000002.json") && Catch::Contains("grade_beyond_survey"));

@@ -119,7 +119,7 @@ TEST_CASE("Hidden data: a wrong speedometer is another speed in every run", "[un
   const auto b = simulate_run(kit, faster, run, 100.0, 0.0);
   for (std::size_t c = 0; c < a.size(); ++c) {
     for (std::size_t i = 0; i < a[c].value.size(); ++i) {
-      // Speeds that differ in their last digit: what the adaptive steps make of it.
+      // Speeds that differ in their last digit, through adaptive steps.
       REQUIRE(a[c].value[i] ==
               Approx(b[c].value[i]).margin(tolerance(0.01 * kit.sensors[c].noise)));
     }
@@ -391,7 +391,7 @@ TEST_CASE("Hidden data: the more a fit may adjust, the less it knows of each", "
     const Detector alone(kit, {nuisances[i]}, 0.0);
     CHECK(alone.bounds()[0] > 0.0);
     CHECK(alone.bounds()[0] < bound);
-    // A weighed value is known as well as it was weighed, at least.
+    // A weighed value is known at least to its prior.
     if (nuisances[i].has_prior) CHECK(bound < nuisances[i].unit);
   }
 }

@@ -43,7 +43,7 @@ std::map<std::string, Estimate> get_estimates(const JsonTree& tree, const std::s
   return estimates;
 }
 
-/// None for null and for what is not there.
+/// Nothing for null and for missing keys.
 std::optional<double> get_number(const JsonTree& tree, const std::string& key) {
   const auto found = tree.get_optional<double>(key);
   return found ? std::optional<double>(*found) : std::nullopt;
