@@ -31,7 +31,8 @@ bool exchange(const std::vector<Eigen::MatrixXd>& informations, std::size_t slot
   constexpr double kMaxRatio = 1.0 - 1e-9;  // beyond is rounding, and might go round in circles
   std::vector<std::size_t> others = choice.instants;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(slot));
-  Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(choice.information.rows(), choice.information.cols());
+  Eigen::MatrixXd rest =
+      Eigen::MatrixXd::Zero(choice.information.rows(), choice.information.cols());
   for (const std::size_t i : others) rest += informations[i];
   const std::size_t best = find_best(informations, rest, others, criterion);
   const Eigen::MatrixXd sum = rest + informations[best];

@@ -9,11 +9,6 @@
 namespace strut {
 namespace {
 
-bool is_among(const std::vector<Unknown>& unknowns, const std::string& name) {
-  return std::any_of(unknowns.begin(), unknowns.end(),
-                     [&](const Unknown& u) { return u.name == name; });
-}
-
 // --- cars on a road --------------------------------------------------------------------------
 
 void add_crossing(const std::vector<MeasuredRun>& runs, std::size_t r, const NuisanceSigmas& sigmas,

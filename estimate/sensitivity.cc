@@ -46,7 +46,7 @@ SensitivityParameter make_parameter(const Case& base, const Axis& axis, double r
   return p;
 }
 
-/// The base, or the nearest value around which +-h is allowed.
+/// The base, or the nearest value around which +/-h is allowed.
 double calc_center(const SensitivityParameter& p) {
   const Range& allowed = find_parameter(p.name).allowed;
   return std::max(allowed.low + p.step, std::min(allowed.high - p.step, p.base));

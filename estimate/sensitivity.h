@@ -1,7 +1,7 @@
 // Derivatives of every channel with respect to the parameters of a grid, along the whole way across
 // the bump.
 //
-// Central differences of simulations in lockstep lanes: base, base +- h and base +- h/2 in each
+// Central differences of simulations in lockstep lanes: base, base +/- h and base +/- h/2 in each
 // parameter. The instants are positions, not times: the rear wheels' mean forward position ahead of
 // the bump's center, as for the snapshot (docs/identifiability.md). Each run is interpolated at its
 // own time of passage, which gives dy/dp|t - (dy/dt) (dx/dp) / (dx/dt) without a differentiation in

@@ -78,4 +78,13 @@ std::string describe_direction(const NullDirection& direction,
   return text;
 }
 
+std::vector<std::string> describe_null_directions(const Uncertainty& uncertainty,
+                                                  const std::vector<Unknown>& unknowns) {
+  std::vector<std::string> list;
+  for (const NullDirection& direction : uncertainty.null_directions) {
+    list.push_back(describe_direction(direction, unknowns));
+  }
+  return list;
+}
+
 }  // namespace strut

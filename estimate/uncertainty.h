@@ -37,4 +37,8 @@ Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
 std::string describe_direction(const NullDirection& direction,
                                const std::vector<Unknown>& unknowns);
 
+/// The same for each null direction.
+std::vector<std::string> describe_null_directions(const Uncertainty& uncertainty,
+                                                  const std::vector<Unknown>& unknowns);
+
 }  // namespace strut

@@ -158,6 +158,11 @@ void add_map_part(ForceMaps& maps, const ForceMap& part, double factor) {
   }
 }
 
+bool is_among(const std::vector<Unknown>& unknowns, const std::string& name) {
+  return std::any_of(unknowns.begin(), unknowns.end(),
+                     [&](const Unknown& u) { return u.name == name; });
+}
+
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns) {
   std::vector<double> values;
   values.reserve(unknowns.size());

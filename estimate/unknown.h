@@ -81,6 +81,9 @@ Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap
 /// ModelError where the map there has a different grid.
 void add_map_part(ForceMaps& maps, const ForceMap& part, double factor);
 
+/// Whether an unknown of this name is listed, of any run.
+bool is_among(const std::vector<Unknown>& unknowns, const std::string& name);
+
 /// The initial guess of every unknown.
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
 

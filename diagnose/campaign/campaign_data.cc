@@ -230,11 +230,6 @@ std::vector<MeasuredRun> select(const std::vector<MeasuredRun>& runs,
   return list;
 }
 
-bool is_among(const std::vector<Unknown>& unknowns, const std::string& name) {
-  return std::any_of(unknowns.begin(), unknowns.end(),
-                     [&](const Unknown& u) { return u.name == name; });
-}
-
 /// Replaces an unknown of run number `at` by the campaign's prior; removes it if known exactly.
 void apply_known(const std::vector<MeasuredRun>& runs, int at, const std::string& name,
                  const Prior& known, std::vector<Unknown>& unknowns) {

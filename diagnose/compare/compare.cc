@@ -39,14 +39,6 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
   return c;
 }
 
-std::vector<std::string> list_not_identifiable(const Baseline& baseline) {
-  std::vector<std::string> list;
-  for (const NullDirection& direction : baseline.fit.widened.null_directions) {
-    list.push_back(describe_direction(direction, baseline.fit.unknowns));
-  }
-  return list;
-}
-
 }  // namespace
 
 double calc_adequate_limit(std::size_t count, double noise_uncertainty) {
@@ -81,7 +73,10 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
   Comparison comparison;
   comparison.baseline = calibrate_baseline(data, threads);
   const Baseline& baseline = comparison.baseline;
-  if (baseline.is_fitted) comparison.not_identifiable = list_not_identifiable(baseline);
+  if (baseline.is_fitted) {
+    comparison.not_identifiable =
+        describe_null_directions(baseline.fit.widened, baseline.fit.unknowns);
+  }
   for (std::size_t r = 0; r < data.run_count(); ++r) {
     RunComparison run;
     run.run = r;

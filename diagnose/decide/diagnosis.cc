@@ -59,14 +59,6 @@ std::vector<ParameterChange> list_changes(const Selection& selection) {
   return changes;
 }
 
-std::vector<std::string> list_not_identifiable(const FitResult& fit) {
-  std::vector<std::string> list;
-  for (const NullDirection& direction : fit.widened.null_directions) {
-    list.push_back(describe_direction(direction, fit.unknowns));
-  }
-  return list;
-}
-
 /// Time, band and state in which a channel's residual is largest.
 void fill_largest(const ChannelComparison& c, Where& where) {
   const auto window = std::max_element(
@@ -194,7 +186,8 @@ Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& opt
   if (selection.is_left) diagnosis.force = find_force(data, options, selection);
   name_causes(data, diagnosis);
   diagnosis.parameters = list_changes(selection);
-  diagnosis.not_identifiable = list_not_identifiable(selection.extended.fit);
+  const FitResult& extended = selection.extended.fit;
+  diagnosis.not_identifiable = describe_null_directions(extended.widened, extended.unknowns);
   if (options.progress) options.progress("measuring the improvement");
   diagnosis.runs = evaluate_hold_out(data, selection, options.threads);
   check_results(diagnosis);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "base/math/spread.h"
+#include "base/names/corners.h"
 #include "diagnose/baseline/model_states.h"
 #include "diagnose/hypothesis/search_starts.h"
 #include "model_files/read_model.h"
@@ -12,12 +13,10 @@
 namespace strut {
 namespace {
 
-bool starts_with(const std::string& text, const std::string& head) {
-  return text.rfind(head, 0) == 0;
-}
-
 std::string find_axle(const std::string& place) {
-  return starts_with(place, "front") ? "front" : starts_with(place, "rear") ? "rear" : "";
+  const auto found = std::find_if(kAxleNames.begin(), kAxleNames.end(),
+                                  [&](const char* axle) { return place.starts_with(axle); });
+  return found != kAxleNames.end() ? *found : "";
 }
 
 double get_shared_parameter(const CampaignData& data, const SharedValues& shared,
@@ -82,7 +81,7 @@ bool is_own_parameter(const CampaignData& data, const std::string& name) {
 
 /// Whether one of two places is the other, or the axle of the other.
 bool overlaps(const std::string& place, const std::string& other) {
-  return starts_with(place, other) || starts_with(other, place);
+  return place.starts_with(other) || other.starts_with(place);
 }
 
 bool is_compared(const CampaignData& data, const std::string& channel) {
