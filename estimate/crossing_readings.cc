@@ -4,39 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <span>
 #include <utility>
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "estimate/crossing_batch.h"
-#include "estimate/sampled_curve.h"
+#include "estimate/hit_time.h"
 #include "model/error/model_error.h"
 #include "model_files/parameters.h"
 
 namespace strut {
 namespace {
-
-/// Interval of the hit times that are tried; a wheel is on the flank of a bump for about ten of
-/// them.
-constexpr double kAlignStep = 1e-3;  // s
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A Gaussian prior of a channel's bias in sigmas of its noise; infinite information: no unknown.
-struct BiasPrior {
-  double mean = 0.0, information = kInfinity;
-};
-
-BiasPrior find_bias_prior(const std::vector<Unknown>& unknowns, std::size_t run,
-                          const MeasuredChannel& channel) {
-  for (const Unknown& u : unknowns) {
-    if (u.kind != UnknownKind::kBias || u.channel != channel.channel || !belongs(u, run)) continue;
-    const double ratio = channel.sigma / u.prior.sigma;
-    return {u.prior.mean / channel.sigma, ratio * ratio};
-  }
-  return {};
-}
 
 class CrossingReadings final : public ReadingModel {
  public:
@@ -63,17 +42,15 @@ class CrossingReadings final : public ReadingModel {
                               std::vector<SampledRun>& sampled);
 
   // Readings of a simulated run.
-  std::size_t find_hit_time(std::size_t run) const;
-  double get_hit_time(std::size_t run, const std::vector<double>& values) const;
-  CurvePoint read(const SampledRun& sampled, const ReadingPlace& place, double hit_time) const;
+  CurvePoint read(const SampledRun& sampled, const ReadingPlace& place, double hit_time) const {
+    return read_curve(runs_[place.run], sampled, place, hit_time, interval());
+  }
   std::vector<double> read_run(std::size_t run, const SampledRun& sampled, double hit_time) const;
   void fill_hit_time(std::size_t run, const SampledRun& base, const std::vector<double>& values,
                      Linearization& out) const;
   void fill_column(const RunVariant& upper, const RunVariant& lower, const SampledRun& base,
                    const SampledRun& above_run, const SampledRun& below_run,
                    const std::vector<double>& values, Linearization& out) const;
-  double calc_chi2(std::size_t run, const SampledRun& base, double hit_time) const;
-  double find_best_hit_time(std::size_t run, const SampledRun& base, double start) const;
 
   double interval() const { return 1.0 / options_.rate; }
 
@@ -99,7 +76,7 @@ CrossingReadings::CrossingReadings(std::vector<MeasuredRun> runs, std::vector<Un
 void CrossingReadings::choose_readings(std::size_t r) {
   MeasuredRun& run = runs_[r];
   const double step = interval();
-  const std::size_t hit = find_hit_time(r);
+  const std::size_t hit = find_hit_time(unknowns_, r);
   const double shift = hit == kNoUnknown ? 0.0 : unknowns_[hit].start;
   const double earliest = hit == kNoUnknown ? 0.0 : unknowns_[hit].low;
   const double latest = hit == kNoUnknown ? 0.0 : unknowns_[hit].high;
@@ -190,28 +167,6 @@ std::string CrossingReadings::sample_variants(const std::vector<double>& values,
   return "";
 }
 
-std::size_t CrossingReadings::find_hit_time(std::size_t run) const {
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    if (unknowns_[i].kind == UnknownKind::kHitTime && belongs(unknowns_[i], run)) return i;
-  }
-  return kNoUnknown;
-}
-
-double CrossingReadings::get_hit_time(std::size_t run, const std::vector<double>& values) const {
-  const std::size_t hit = find_hit_time(run);
-  return hit == kNoUnknown ? 0.0 : values[hit];
-}
-
-CurvePoint CrossingReadings::read(const SampledRun& sampled, const ReadingPlace& place,
-                                  double hit_time) const {
-  const double step = interval();
-  const double at = (runs_[place.run].times[place.time] + hit_time) / step;
-  const double index = std::floor(at);
-  const std::vector<double>& series = sampled[place.channel];
-  return interpolate_curve([&](std::size_t sample) { return series[sample]; },
-                           static_cast<std::size_t>(index), at - index, step);
-}
-
 std::vector<double> CrossingReadings::read_run(std::size_t run, const SampledRun& sampled,
                                                double hit_time) const {
   std::vector<double> readings;
@@ -224,7 +179,7 @@ std::vector<double> CrossingReadings::read_run(std::size_t run, const SampledRun
 
 void CrossingReadings::fill_hit_time(std::size_t run, const SampledRun& base,
                                      const std::vector<double>& values, Linearization& out) const {
-  const std::size_t hit = find_hit_time(run);
+  const std::size_t hit = find_hit_time(unknowns_, run);
   if (hit == kNoUnknown) return;
   for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
     const double slope = read(base, readings_[k], values[hit]).slope;
@@ -240,7 +195,7 @@ void CrossingReadings::fill_column(const RunVariant& upper, const RunVariant& lo
                                    const SampledRun& below_run, const std::vector<double>& values,
                                    Linearization& out) const {
   constexpr double kRounding = 0.5;
-  const double hit_time = get_hit_time(upper.run, values);
+  const double hit_time = get_hit_time(unknowns_, values, upper.run);
   const double width = upper.value - lower.value;
   const double middle = 0.5 * (upper.value + lower.value);
   const bool centered = std::abs(middle - values[upper.unknown]) < 1e-3 * width;
@@ -275,7 +230,7 @@ Linearization CrossingReadings::linearize(const std::vector<double>& values) {
     const std::size_t run = variants[k].run;
     if (variants[k].unknown == kNoUnknown) {
       base = k;
-      fill_residual(run, values, read_run(run, sampled[k], get_hit_time(run, values)),
+      fill_residual(run, values, read_run(run, sampled[k], get_hit_time(unknowns_, values, run)),
                     out.residual);
       fill_hit_time(run, sampled[k], values, out);
     } else {
@@ -324,53 +279,11 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
       if (!e.failure.empty()) break;
       const SampledRun sampled =
           read_sensors(point.setup, runs_[run], interval(), results[point.car].sampled);
-      fill_residual(run, points[i], read_run(run, sampled, get_hit_time(run, points[i])),
+      fill_residual(run, points[i], read_run(run, sampled, get_hit_time(unknowns_, points[i], run)),
                     e.residual);
     }
   }
   return evaluations;
-}
-
-/// Sum over the channels of min over b of sum (e + b)^2 + information b^2, which is
-/// sum e^2 - (sum e)^2 / (count + information).
-double CrossingReadings::calc_chi2(std::size_t run, const SampledRun& base, double hit_time) const {
-  double chi2 = 0.0;
-  for (std::size_t channel = 0; channel < runs_[run].channels.size(); ++channel) {
-    const MeasuredChannel& c = runs_[run].channels[channel];
-    const BiasPrior bias = find_bias_prior(unknowns_, run, c);
-    double count = 0.0, sum = 0.0, squares = 0.0;
-    for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
-      if (readings_[k].channel != channel) continue;
-      const double simulated = read(base, readings_[k], hit_time).value;
-      const double e = (simulated - c.values[readings_[k].time]) / c.sigma + bias.mean;
-      ++count;
-      sum += e;
-      squares += e * e;
-    }
-    chi2 += squares - sum * sum / std::max(1.0, count + bias.information);
-  }
-  return chi2;
-}
-
-/// The hit time within its bounds at which `base`, shifted in time and with the best bias of each
-/// channel, comes nearest to the readings. A search that starts a flank of the bump away from the
-/// truth can end in another valley; trying all costs no simulation.
-double CrossingReadings::find_best_hit_time(std::size_t run, const SampledRun& base,
-                                            double start) const {
-  const Unknown& u = unknowns_[find_hit_time(run)];
-  // On a bound a search would be held there.
-  const auto first = static_cast<int>(std::floor((u.low - start) / kAlignStep)) + 1;
-  const auto last = static_cast<int>(std::ceil((u.high - start) / kAlignStep)) - 1;
-  double best = start, min_chi2 = kInfinity;
-  for (int k = first; k <= last; ++k) {
-    const double hit_time = start + k * kAlignStep;
-    const double off = u.prior.informs() ? (hit_time - u.prior.mean) / u.prior.sigma : 0.0;
-    const double chi2 = calc_chi2(run, base, hit_time) + off * off;
-    if (chi2 >= min_chi2) continue;
-    min_chi2 = chi2;
-    best = hit_time;
-  }
-  return best;
 }
 
 /// Returns `values` as they are where they cannot be simulated.
@@ -381,9 +294,12 @@ std::vector<double> CrossingReadings::align(const std::vector<double>& values) {
   if (!sample_variants(values, variants, bases).empty()) return values;
   std::vector<double> aligned = values;
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const std::size_t hit = find_hit_time(r);
+    const std::size_t hit = find_hit_time(unknowns_, r);
     if (hit == kNoUnknown || unknowns_[hit].run == kEveryRun) continue;
-    aligned[hit] = find_best_hit_time(r, bases[r], values[hit]);
+    const std::span readings(readings_.begin() + static_cast<std::ptrdiff_t>(begin_row(r)),
+                             readings_.begin() + static_cast<std::ptrdiff_t>(begin_row(r + 1)));
+    aligned[hit] =
+        find_best_hit_time(unknowns_, runs_[r], readings, bases[r], values[hit], interval());
   }
   return aligned;
 }

@@ -9,6 +9,7 @@
 #include "base/error/input_error.h"
 #include "base/text/range.h"
 #include "estimate/driven_batch.h"
+#include "estimate/hit_time.h"
 #include "estimate/run_prepared.h"
 #include "estimate/sampled_curve.h"
 #include "model/channel/car_channels.h"
@@ -20,14 +21,6 @@ namespace strut {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Simulated time less measured time [s].
-double get_hit_time(const std::vector<Unknown>& unknowns, const std::vector<double>& values) {
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    if (unknowns[i].kind == UnknownKind::kHitTime && belongs(unknowns[i], 0)) return values[i];
-  }
-  return 0.0;
-}
 
 /// Interpolates the readings of the sensors of every channel of a car at the run's times.
 void read_history(const LaneRun& simulated, const EffectSettings& effects,
@@ -62,7 +55,7 @@ Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
 RunCurves simulate_crossing(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                             const std::vector<double>& values) {
   RunCurves curves;
-  const double hit_time = get_hit_time(unknowns, values);
+  const double hit_time = get_hit_time(unknowns, values, 0);
   const LinearizeOptions options;
   SamplePlan plan;
   plan.interval = 1.0 / options.rate;
