@@ -76,19 +76,19 @@ std::string find_doubt(const std::string& process, const JobRecord& record) {
 
 /// Whether the job of a record runs, and why a process that does is not proved to be it.
 struct JobLife {
-  Life life;
+  Liveness liveness;
   std::string doubt = {};
 };
 
 JobLife judge_job(const JobRecord& record, const ProcessIdentity& process,
                   const ProcessIdentity& own) {
   // What ran before a host was started again has ended.
-  if (process.host == own.host && process.boot != own.boot) return {Life::kGone};
-  Life life = judge_process(process, own);
-  if (life != Life::kRuns) return {life};
+  if (process.host == own.host && process.boot != own.boot) return {Liveness::kDead};
+  Liveness liveness = check_liveness(process, own);
+  if (life != Liveness::kAlive) return {life};
   const std::string doubt = find_doubt(process.process, record);
-  life = judge_process(process, own);  // it may have ended while it was looked at
-  return {life, life == Life::kRuns ? doubt : ""};
+  life = check_liveness(process, own);  // it may have ended while it was looked at
+  return {life, life == Liveness::kAlive ? doubt : ""};
 }
 
 /// In the child: begins a session, so that it outlives the terminal, tells who it is and becomes
@@ -211,12 +211,12 @@ QueueAnswer LocalDispatcher::query(const std::vector<JobRecord>& jobs) const {
   for (const JobRecord& record : jobs) {
     const ProcessIdentity process = parse_record(record);
     const JobLife job = judge_job(record, process, own);
-    if (job.life == Life::kUnknown) return {{}, "it was submitted on " + process.host};
+    if (job.life == Liveness::kUnknown) return {{}, "it was submitted on " + process.host};
     if (!job.doubt.empty()) {
       return {{},
               describe_foreign("process " + process.process, record.name) + " (" + job.doubt + ")"};
     }
-    if (job.life == Life::kRuns) {
+    if (job.life == Liveness::kAlive) {
       answer.tasks.push_back({record.job, -1, 1, TaskState::kRunning, "RUNNING", ""});
     }
   }
@@ -233,7 +233,7 @@ void LocalDispatcher::cancel(const std::vector<JobRecord>& jobs) const {
       throw record_error(record, describe_foreign("process " + process.process, record.name) +
                                      " (" + job.doubt + ")");
     }
-    if (job.life != Life::kRuns) continue;
+    if (job.life != Liveness::kAlive) continue;
     leaders.push_back(*parse_number<pid_t>(process.process));
   }
   for (const pid_t leader : leaders) {

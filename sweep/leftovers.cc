@@ -28,7 +28,7 @@ void remove_leftovers(const SweepFolder& folder, Claims& claims) {
   const Folder temporary = folder.open(folder.temporary());
   for (const std::string& file : temporary.list()) {
     const std::string owner = parse_owner(file);
-    const bool is_dead = !owner.empty() && owner != claims.runner() && !claims.may_live(owner);
+    const bool is_dead = !owner.empty() && owner != claims.runner() && !claims.may_be_alive(owner);
     if (is_dead) temporary.try_remove(file);
   }
   for (const std::string& unit : folder.open(folder.claims()).list()) {

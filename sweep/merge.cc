@@ -122,7 +122,7 @@ MergeReport merge_sweep(const SweepFolder& folder, const MergeInput& input, cons
   MergeReport report;
   std::vector<std::int64_t> case_ids;
   for (const ShardPlace& place : places.shards) {
-    const Shard shard = read_mended_shard(folder, input.extent, place.number);
+    const Shard shard = read_shard_with_retries(folder, input.extent, place.number);
     if (shard.schema != input.schema) {
       throw InputError(folder.shard(place.number).string() + ": has other columns than its plan");
     }

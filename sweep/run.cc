@@ -147,7 +147,7 @@ class Run {
   /// None, and told, where the shard is damaged.
   ShardRows read_rows(std::int64_t shard) {
     try {
-      return read_mended_shard(folder_, extent_, shard).rows;
+      return read_shard_with_retries(folder_, extent_, shard).rows;
     } catch (const InputError& e) {
       const std::lock_guard lock(mutex_);
       summary_.damaged[shard] = e.what();

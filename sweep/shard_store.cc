@@ -68,7 +68,7 @@ JournalEntry ShardRecords::get(std::int64_t shard) const {
   const JournalEntry* const line = find_line(file);
   if (line != nullptr && count_retries(folder_, shard) == 0) return *line;
   const JournalEntry mended =
-      make_journal_entry(folder_, file, read_mended_shard(folder_, extent_, shard).rows);
+      make_journal_entry(folder_, file, read_shard_with_retries(folder_, extent_, shard).rows);
   JournalEntry entry = line == nullptr ? mended : *line;
   entry.bytes = seal.size;
   entry.failures = mended.failures;

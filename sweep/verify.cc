@@ -195,7 +195,7 @@ class Verification {
     }
     for (const auto& [shard, rows] : rows_of) {
       try {
-        const Shard mended = read_mended_shard(folder_, extent_, shard);
+        const Shard mended = read_shard_with_retries(folder_, extent_, shard);
         for (const std::size_t row : rows) compare_case(mended, row);
       } catch (const InputError&) {
         // Missing or damaged, and told already.

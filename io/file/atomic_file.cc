@@ -1,6 +1,7 @@
 #include "io/file/atomic_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <cerrno>
@@ -17,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNotWritten = "cannot be written";
 constexpr std::string_view kTemporaryEnd = ".tmp";
 constexpr std::size_t kMachineDigits = 8;
 
@@ -31,11 +31,11 @@ Folder open_parent(const fs::path& target) {
   try {
     return Folder(target.parent_path());
   } catch (const InputError& e) {
-    throw EnvironmentError(target.string() + ": " + kNotWritten + ": " + e.what());
+    throw EnvironmentError(fmt::format("{}: {}: {}", target.string(), kNotWritten, e.what()));
   }
 }
 
-/// The folder of `file`, which lies in `root`; nullopt where it is missing.
+/// Returns the folder of `file`, which lies in or below `root`; nullopt if it is missing.
 std::optional<Folder> find_folder_inside(const fs::path& root, const fs::path& file) {
   std::optional<Folder> folder(root);
   for (const fs::path& part : file.lexically_relative(root).parent_path()) {
@@ -44,17 +44,17 @@ std::optional<Folder> find_folder_inside(const fs::path& root, const fs::path& f
   return folder;
 }
 
-// Where a process number and a start time mean something: this host, since its boot, in this
-// namespace of process numbers.
+// Identifies this host, its boot and the namespace of process numbers: a process number and a start
+// time are unique only within these.
 std::string calc_machine(const ProcessIdentity& own) {
-  const std::string text = own.host + "\n" + own.boot + "\n" + own.name_space;
+  const std::string text = fmt::format("{}\n{}\n{}", own.host, own.boot, own.name_space);
   return to_hex(calc_sha256(text)).substr(0, kMachineDigits);
 }
 
 // TARGET.MACHINE-PROCESS-START-NUMBER.tmp
 std::string make_temporary_prefix(const std::string& target) {
   const ProcessIdentity own = find_own_identity();
-  return target + "." + calc_machine(own) + "-" + own.process + "-" + own.start + "-";
+  return fmt::format("{}.{}-{}-{}-", target, calc_machine(own), own.process, own.start);
 }
 
 std::optional<std::string> cut_last(std::string& text, char mark) {
@@ -69,7 +69,7 @@ bool is_number(const std::optional<std::string>& text) {
   return text && parse_number<std::uint64_t>(*text).has_value();
 }
 
-// Whether `name` is a temporary one whose process has ended.
+// Returns whether `name` is that of a temporary file whose process has ended.
 bool is_abandoned(const std::string& name, const ProcessIdentity& own) {
   if (!name.ends_with(kTemporaryEnd)) return false;
   std::string rest = name.substr(0, name.size() - kTemporaryEnd.size());
@@ -80,7 +80,7 @@ bool is_abandoned(const std::string& name, const ProcessIdentity& own) {
   ProcessIdentity maker = own;
   maker.process = *process;
   maker.start = *start;
-  return judge_process(maker, own) == Life::kGone;
+  return check_liveness(maker, own) == Liveness::kDead;
 }
 
 }  // namespace
@@ -91,7 +91,8 @@ AtomicFile::AtomicFile(const fs::path& target)
       name_(target_.filename().string()) {
   std::error_code ignored;
   if (fs::exists(target_, ignored) && !fs::is_regular_file(target_, ignored)) {
-    throw EnvironmentError(target_.string() + ": " + kNotWritten + ": not a regular file");
+    throw EnvironmentError(
+        fmt::format("{}: {}: not a regular file", target_.string(), kNotWritten));
   }
   remove_abandoned_files(folder_, name_ + ".");
   create();
@@ -106,7 +107,7 @@ AtomicFile::AtomicFile(const Folder& folder, const std::string& name)
 void AtomicFile::create() {
   const std::string prefix = make_temporary_prefix(name_);
   for (int number = 0; !file_.is_open(); ++number) {
-    temporary_name_ = prefix + std::to_string(number) + std::string(kTemporaryEnd);
+    temporary_name_ = fmt::format("{}{}{}", prefix, number, kTemporaryEnd);
     file_ = folder_.create_file(temporary_name_, O_WRONLY, target_);
   }
 }
@@ -141,7 +142,7 @@ void remove_abandoned_files(const Folder& folder, const std::string& prefix) {
 void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
-  if (error) throw EnvironmentError(path.string() + ": cannot be made: " + error.message());
+  if (error) throw file_failure(path, kNotMade, error.value());
 }
 
 void write_text_file(const fs::path& path, const std::string& text) {

@@ -3,7 +3,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "base/error/input_error.h"
 
@@ -20,9 +19,9 @@ std::vector<std::byte> shuffle_bytes(std::span<const std::byte> bytes, std::size
 }
 
 std::size_t calc_chunk_rows(std::size_t rows, std::size_t row_bytes) {
-  constexpr std::size_t kLargestChunk = std::size_t{1} << 20;
-  const std::size_t most = std::max<std::size_t>(kLargestChunk / row_bytes, 1);
-  const std::size_t chunks = std::max<std::size_t>((rows + most - 1) / most, 1);
+  constexpr std::size_t kMaxChunkBytes = std::size_t{1} << 20;
+  const std::size_t max_rows = std::max<std::size_t>(kMaxChunkBytes / row_bytes, 1);
+  const std::size_t chunks = std::max<std::size_t>((rows + max_rows - 1) / max_rows, 1);
   return std::max<std::size_t>((rows + chunks - 1) / chunks, 1);
 }
 

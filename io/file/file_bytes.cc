@@ -21,7 +21,7 @@ std::vector<std::byte> read_from(const FileDescriptor& file, const fs::path& pat
   while (done < count) {
     const ssize_t step = ::read(file.get(), bytes.data() + done, count - done);
     if (step < 0 && errno == EINTR) continue;
-    if (step < 0) throw file_failure(path, "cannot be read", errno);
+    if (step < 0) throw file_failure(path, kNotRead, errno);
     if (step == 0) break;
     done += static_cast<std::size_t>(step);
   }
@@ -31,7 +31,7 @@ std::vector<std::byte> read_from(const FileDescriptor& file, const fs::path& pat
 
 std::size_t read_size(const FileDescriptor& file, const fs::path& path) {
   struct stat status {};
-  if (::fstat(file.get(), &status) != 0) throw file_failure(path, "cannot be read", errno);
+  if (::fstat(file.get(), &status) != 0) throw file_failure(path, kNotRead, errno);
   return static_cast<std::size_t>(status.st_size);
 }
 

@@ -1,4 +1,4 @@
-// A whole file as bytes, by plain checked system calls.
+// Reads files as bytes by checked system calls.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace strut {
 
-/// Throws InputError where the file is missing or not a regular one, EnvironmentError where it
-/// cannot be read.
+/// Reads a whole file. Throws InputError if it is missing or not a regular file, EnvironmentError
+/// if it cannot be read.
 std::vector<std::byte> read_bytes(const std::filesystem::path& path);
 
-/// The first `count` bytes, fewer where the file is shorter. Throws as read_bytes.
+/// Reads the first `count` bytes, or the whole file if it is shorter. Throws as read_bytes.
 std::vector<std::byte> read_first_bytes(const std::filesystem::path& path, std::size_t count);
 
 }  // namespace strut

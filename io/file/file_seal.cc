@@ -1,6 +1,7 @@
 #include "io/file/file_seal.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,20 +23,22 @@ namespace fs = std::filesystem;
 
 constexpr char kSize[] = "size", kSha256[] = "sha256", kSeal[] = "seal";
 
-std::string make_first_line(const std::string& kind) { return "strut " + kind + " seal 1"; }
+std::string make_first_line(const std::string& kind) {
+  return fmt::format("strut {} seal 1", kind);
+}
 
 std::string render(const FileSeal& seal) {
   std::string text = make_first_line(seal.kind) + "\n";
-  for (const auto& [key, value] : seal.lines) text += key + " " + value + "\n";
-  text += std::string(kSize) + " " + std::to_string(seal.size) + "\n" + kSha256 + " " +
-          seal.sha256 + "\n";
-  text += std::string(kSeal) + " " + to_hex(calc_sha256(text)) + "\n";
-  STRUT_CHECK(text.size() <= kSealBytes, "a seal of more than 512 bytes: " + text);
+  for (const auto& [key, value] : seal.lines) text += fmt::format("{} {}\n", key, value);
+  text += fmt::format("{} {}\n{} {}\n", kSize, seal.size, kSha256, seal.sha256);
+  text += fmt::format("{} {}\n", kSeal, to_hex(calc_sha256(text)));
+  STRUT_CHECK(text.size() <= kSealBytes,
+              fmt::format("a seal of more than {} bytes: {}", kSealBytes, text));
   text.resize(kSealBytes, '\0');
   return text;
 }
 
-/// The line at `at`, which moves to the next one.
+/// Returns the line at `at` and advances `at` to the next one.
 std::string take_line(const std::string& text, std::size_t& at) {
   const std::size_t end = std::min(text.find('\n', at), text.size());
   std::string line = text.substr(at, end - at);
@@ -43,16 +46,10 @@ std::string take_line(const std::string& text, std::size_t& at) {
   return line;
 }
 
-/// A seal is what renders to the very same bytes, so that no byte of it can be another.
-std::optional<FileSeal> parse(std::span<const std::byte> bytes) {
-  if (bytes.size() < kSealBytes) return std::nullopt;
-  std::string text(kSealBytes, '\0');
-  std::memcpy(text.data(), bytes.data(), kSealBytes);
-  std::size_t at = 0;
+/// Reads the lines of a seal of kind `kind` from `at` on, valid or not.
+FileSeal read_lines(const std::string& kind, const std::string& text, std::size_t at) {
   FileSeal seal;
-  const std::string first = take_line(text, at), frame = make_first_line("");
-  if (first.size() <= frame.size()) return std::nullopt;
-  seal.kind = first.substr(std::strlen("strut "), first.size() - frame.size());
+  seal.kind = kind;
   while (at < text.size()) {
     const std::string line = take_line(text, at);
     const std::size_t space = std::min(line.find(' '), line.size());
@@ -67,17 +64,33 @@ std::optional<FileSeal> parse(std::span<const std::byte> bytes) {
       seal.lines.emplace_back(key, value);
     }
   }
-  // A text that renders to more than a seal may have is none.
-  std::size_t length = first.size();
-  for (const auto& [key, value] : seal.lines) length += key.size() + value.size();
-  constexpr std::size_t kOwnLines = 192;
-  if (length + seal.sha256.size() + kOwnLines > kSealBytes || render(seal) != text) {
-    return std::nullopt;
-  }
   return seal;
 }
 
-const char* const kOtherBytes = "damaged: its bytes do not have the SHA-256 of its seal";
+/// Returns whether a seal may be rendered: whether its text is short enough.
+bool fits(const FileSeal& seal) {
+  constexpr std::size_t kOwnLines = 192;  // bytes of the lines that every seal has, at most
+  std::size_t length = make_first_line(seal.kind).size();
+  for (const auto& [key, value] : seal.lines) length += key.size() + value.size();
+  return length + seal.sha256.size() + kOwnLines <= kSealBytes;
+}
+
+/// Returns the seal in `bytes`; nullopt unless it renders to the very same bytes, so that every
+/// changed byte of a seal is found.
+std::optional<FileSeal> parse(std::span<const std::byte> bytes) {
+  if (bytes.size() < kSealBytes) return std::nullopt;
+  std::string text(kSealBytes, '\0');
+  std::memcpy(text.data(), bytes.data(), kSealBytes);
+  std::size_t at = 0;
+  const std::string first = take_line(text, at), frame = make_first_line("");
+  if (first.size() <= frame.size()) return std::nullopt;
+  const std::string kind = first.substr(std::strlen("strut "), first.size() - frame.size());
+  FileSeal seal = read_lines(kind, text, at);
+  if (!fits(seal) || render(seal) != text) return std::nullopt;
+  return seal;
+}
+
+constexpr char kOtherBytes[] = "damaged: its bytes do not match the SHA-256 of its seal";
 
 void compare_hash(SealCheck& check, const std::string& sha256, const SealKind& kind) {
   if (sha256 == check.seal.sha256) return;
@@ -85,7 +98,8 @@ void compare_hash(SealCheck& check, const std::string& sha256, const SealKind& k
   check.remedy = kind.remedy;
 }
 
-/// SHA-256 of all bytes of a file behind the seal; errno where it cannot be read.
+/// Returns the SHA-256 of all bytes after the seal; nullopt, with errno, if the file cannot be
+/// read.
 std::optional<std::string> hash_content(const FileDescriptor& file) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   if (!file.is_open()) return std::nullopt;
@@ -115,17 +129,17 @@ SealCheck check_seal(std::span<const std::byte> first_bytes, std::uint64_t size,
   const std::optional<FileSeal> seal = parse(first_bytes);
   if (!seal) {
     return {{},
-            "damaged, or no " + name + " file: no valid seal in its first " +
-                std::to_string(kSealBytes) + " bytes",
+            fmt::format("damaged, or not a {} file: no valid seal in its first {} bytes", name,
+                        kSealBytes),
             kind.remedy};
   }
   if (seal->kind != name) {
-    return {*seal, "no " + name + " file of strut, but sealed as " + seal->kind, ""};
+    return {*seal,
+            fmt::format("not a {} file of strut: its seal is that of a {} file", name, seal->kind),
+            ""};
   }
   if (seal->size != size) {
-    return {*seal,
-            "damaged: has " + std::to_string(size) + " bytes, was " + std::to_string(seal->size),
-            kind.remedy};
+    return {*seal, fmt::format("damaged: has {} bytes, was {}", size, seal->size), kind.remedy};
   }
   return {*seal, "", ""};
 }
@@ -134,7 +148,7 @@ SealCheck check_seal(const fs::path& path, const SealKind& kind) {
   const auto first_bytes = read_first_bytes(path, kSealBytes);
   std::error_code error;
   const std::uint64_t size = fs::file_size(path, error);
-  if (error) throw InputError(path.string() + ": cannot be read: " + error.message());
+  if (error) throw InputError(fmt::format("{}: {}: {}", path.string(), kNotRead, error.message()));
   return check_seal(first_bytes, size, kind);
 }
 
@@ -142,7 +156,7 @@ SealCheck check_sealed_file(const fs::path& path, const SealKind& kind) {
   SealCheck check = check_seal(path, kind);
   if (!check.fault.empty()) return check;
   const std::optional<std::string> sha256 = hash_content(open_regular_file(path));
-  if (!sha256) throw file_failure(path, "cannot be read", errno);
+  if (!sha256) throw file_failure(path, kNotRead, errno);
   compare_hash(check, *sha256, kind);
   return check;
 }
@@ -154,16 +168,16 @@ SealCheck check_sealed_bytes(std::span<const std::byte> bytes, const SealKind& k
   return check;
 }
 
-FileSeal require_sound(const fs::path& path, SealCheck check) {
+FileSeal require_intact(const fs::path& path, SealCheck check) {
   if (check.fault.empty()) return std::move(check.seal);
-  throw InputError(path.string() + ": " + check.fault +
-                   (check.remedy.empty() ? "" : "; " + check.remedy));
+  throw InputError(fmt::format("{}: {}{}{}", path.string(), check.fault,
+                               check.remedy.empty() ? "" : "; ", check.remedy));
 }
 
 SealedBytes read_sealed(const fs::path& path, const SealKind& kind) {
-  require_sound(path, check_seal(path, kind));
+  require_intact(path, check_seal(path, kind));
   SealedBytes sealed{{}, read_bytes(path)};
-  sealed.seal = require_sound(path, check_sealed_bytes(sealed.bytes, kind));
+  sealed.seal = require_intact(path, check_sealed_bytes(sealed.bytes, kind));
   return sealed;
 }
 
@@ -186,7 +200,7 @@ void refuse_global_heap(const fs::path& path) {
   std::vector<char> block(kBlock);
   for (off_t at = 0;; at += static_cast<off_t>(kBlock - kOverlap)) {
     const ssize_t count = ::pread(file.get(), block.data(), block.size(), at);
-    if (count < 0) throw file_failure(path, "cannot be read", errno);
+    if (count < 0) throw file_failure(path, kNotRead, errno);
     const auto end = block.begin() + count;
     if (std::search(block.begin(), end, kHeader.begin(), kHeader.end()) != end) {
       throw InputError(path.string() + ": " + kViewFault);

@@ -1,6 +1,6 @@
-// The seal of a file: a text in its first 512 bytes, HDF5's user block, that holds the size of the
-// file and the SHA-256 of everything behind it. A flipped bit anywhere is found with the file
-// alone, before the HDF5 library sees it.
+// The seal of a file: a text in its first 512 bytes, HDF5's user block, with the size of the file
+// and the SHA-256 of all bytes after it. A flipped bit anywhere is found from the file alone,
+// before the HDF5 library reads it.
 //
 //     strut shard seal 1
 //     plan 3f5a...
@@ -22,15 +22,15 @@ namespace strut {
 
 inline constexpr std::size_t kSealBytes = 512;
 
-/// What is wrong with a file whose values lie in others.
+/// Fault of a file whose values lie in other files.
 inline constexpr char kViewFault[] =
     "a view over shards cannot be verified; `strut merge DIR -o FILE` writes a copy";
 
-/// A kind of file that is sealed.
+/// A kind of sealed file.
 struct SealKind {
   const char* name;     // "shard"
-  const char* remedy;   // what to do where a file of this kind is damaged
-  const char* sealing;  // how to seal one that an earlier version wrote without a seal
+  const char* remedy;   // for a damaged file of this kind
+  const char* sealing;  // for a file that an earlier version wrote without a seal
 };
 
 inline constexpr SealKind kShardSeal = {
@@ -47,10 +47,10 @@ inline constexpr SealKind kMergedSeal = {"merged",
                                          "`strut merge DIR -o FILE --force` makes it anew",
                                          "`strut merge DIR -o FILE --force` writes a sealed one"};
 
-/// Lines of a seal that only some kinds have: (key, text).
+/// Further lines of a seal, specific to its kind: (key, text).
 using SealLines = std::vector<std::pair<std::string, std::string>>;
 
-/// What a writer must know to seal a file.
+/// Content of a seal that the writer chooses.
 struct SealLabel {
   SealKind kind = kShardSeal;
   SealLines lines = {};
@@ -60,56 +60,56 @@ struct FileSeal {
   std::string kind;
   SealLines lines;
   std::uint64_t size = 0;  // bytes of the whole file
-  std::string sha256;      // of all bytes behind the seal, 64 digits
+  std::string sha256;      // of all bytes after the seal, 64 digits
 
-  /// Text of a line; empty where there is none.
+  /// Returns the text of a line; empty if there is no such line.
   std::string get(const std::string& key) const;
 };
 
-/// A seal, and what is wrong with the file.
+/// The seal of a file and the result of checking it.
 struct SealCheck {
   FileSeal seal;
-  std::string fault;   // empty: nothing
+  std::string fault;   // empty: the file is intact
   std::string remedy;  // empty: none, as for a file of another kind
 };
 
-/// Reads the seal and compares the size. Throws InputError where the file cannot be read.
+/// Reads the seal and compares the size. Throws InputError if the file cannot be read.
 SealCheck check_seal(const std::filesystem::path& path, const SealKind& kind);
-/// As above, of the first bytes of a file of `size` bytes.
+/// Checks likewise, given the first bytes of a file of `size` bytes.
 SealCheck check_seal(std::span<const std::byte> first_bytes, std::uint64_t size,
                      const SealKind& kind);
-/// Reads every byte, block by block.
+/// Checks the seal, the size and every byte.
 SealCheck check_sealed_file(const std::filesystem::path& path, const SealKind& kind);
-/// As above, of all bytes of a file.
+/// Checks likewise, given all bytes of a file.
 SealCheck check_sealed_bytes(std::span<const std::byte> bytes, const SealKind& kind);
 
-/// The seal of a check that found nothing wrong. Throws InputError with file, fault and remedy.
-FileSeal require_sound(const std::filesystem::path& path, SealCheck check);
+/// Returns the seal if the file is intact. Otherwise throws InputError with file, fault and remedy.
+FileSeal require_intact(const std::filesystem::path& path, SealCheck check);
 
 struct SealedBytes {
   FileSeal seal;
   std::vector<std::byte> bytes;  // of the whole file
 };
 
-/// Reads a file once, every byte checked; one whose first bytes are no seal is not read, however
-/// large. Throws InputError.
+/// Reads a file once and checks every byte; if its first bytes are not a seal, the rest is not
+/// read. Throws InputError.
 SealedBytes read_sealed(const std::filesystem::path& path, const SealKind& kind);
 
-/// Kind of the seal that a file begins with; empty where it begins with none.
+/// Returns the kind of the seal that a file begins with; empty if it does not begin with a seal.
 std::string find_seal_kind(const std::filesystem::path& path);
 
-/// False for an HDF5 file without a seal, as earlier versions of strut wrote plans, models,
-/// checkpoints and merged files. Throws InputError where the file cannot be read.
+/// Returns false for an HDF5 file without a seal: earlier versions of strut wrote plans, models,
+/// checkpoints and merged files so. Throws InputError if the file cannot be read.
 bool is_sealed(const std::filesystem::path& path);
 
-/// Throws InputError where an HDF5 file without a seal has a global heap. strut writes one in views
-/// over other files alone, and the HDF5 library may crash where a bit of it is flipped.
+/// Throws InputError if an HDF5 file without a seal has a global heap. strut writes global heaps
+/// only in views over other files, and a flipped bit in one may crash the HDF5 library.
 void refuse_global_heap(const std::filesystem::path& path);
 
-/// Overwrites the first kSealBytes bytes of a file's image. Throws CheckError where the lines
-/// do not fit.
+/// Overwrites the first kSealBytes bytes of a file's image with its seal. Throws CheckError if the
+/// lines do not fit.
 void seal_image(const SealLabel& label, std::span<std::byte> image);
-/// The same of a file on disk, which messages call `shown`. Throws EnvironmentError.
+/// Seals a file on disk, which messages call `shown`. Throws EnvironmentError.
 void seal_file(const SealLabel& label, const std::filesystem::path& path,
                const std::filesystem::path& shown);
 

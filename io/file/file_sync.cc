@@ -1,6 +1,7 @@
 #include "io/file/file_sync.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,7 +12,6 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
-#include <vector>
 
 namespace strut {
 
@@ -19,28 +19,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kNotWritten = "cannot be written";
-
-// A write beyond the limit of file size sends SIGXFSZ to the thread that wrote, which by default
-// ends the process. Blocking it touches this thread only; ignoring it would change the whole
-// process under other threads' hands.
-class HeldBackSizeSignal {
+// A write beyond the limit on file size sends SIGXFSZ to the writing thread, which by default ends
+// the process. Blocking the signal affects this thread only; ignoring it would affect all threads.
+class BlockedSizeSignal {
  public:
-  HeldBackSizeSignal() {
+  BlockedSizeSignal() {
     sigemptyset(&signal_);
     sigaddset(&signal_, SIGXFSZ);
     was_pending_ = is_pending();
     ::pthread_sigmask(SIG_BLOCK, &signal_, &old_mask_);
   }
-  ~HeldBackSizeSignal() {
+  ~BlockedSizeSignal() {
     const int error_number = errno;
     constexpr timespec kNow{};
     if (!was_pending_ && is_pending()) ::sigtimedwait(&signal_, nullptr, &kNow);
     ::pthread_sigmask(SIG_SETMASK, &old_mask_, nullptr);
     errno = error_number;
   }
-  HeldBackSizeSignal(const HeldBackSizeSignal&) = delete;
-  HeldBackSizeSignal& operator=(const HeldBackSizeSignal&) = delete;
+  BlockedSizeSignal(const BlockedSizeSignal&) = delete;
+  BlockedSizeSignal& operator=(const BlockedSizeSignal&) = delete;
 
  private:
   static bool is_pending() {
@@ -57,18 +54,19 @@ class HeldBackSizeSignal {
 
 void require_regular(mode_t mode, const fs::path& path) {
   if (S_ISREG(mode)) return;
-  const std::string kind = S_ISDIR(mode)                    ? "a folder"
+  const char* const kind = S_ISDIR(mode)                    ? "a folder"
                            : S_ISFIFO(mode)                 ? "a named pipe"
                            : S_ISCHR(mode) || S_ISBLK(mode) ? "a device"
                            : S_ISSOCK(mode)                 ? "a socket"
                                                             : "a symbolic link";
-  throw InputError(path.string() + ": " + kind + "; must be a regular file");
+  throw InputError(fmt::format("{}: {}; must be a regular file", path.string(), kind));
 }
 
 }  // namespace
 
 EnvironmentError file_failure(const fs::path& path, const std::string& what, int error_number) {
-  return EnvironmentError(path.string() + ": " + what + ": " + std::strerror(error_number));
+  return EnvironmentError(
+      fmt::format("{}: {}: {}", path.string(), what, std::strerror(error_number)));
 }
 
 FileDescriptor::~FileDescriptor() {
@@ -84,7 +82,7 @@ FileDescriptor open_file(const fs::path& path, int flags) {
 
 void check_regular(int descriptor, const fs::path& path) {
   struct stat status {};
-  if (::fstat(descriptor, &status) != 0) throw file_failure(path, "cannot be read", errno);
+  if (::fstat(descriptor, &status) != 0) throw file_failure(path, kNotRead, errno);
   require_regular(status.st_mode, path);
 }
 
@@ -101,7 +99,7 @@ FileDescriptor open_regular_file(const fs::path& path) {
     if (error_number == ENOENT) throw InputError(path.string() + ": file not found");
     struct stat status {};
     if (::stat(path.c_str(), &status) == 0) require_regular(status.st_mode, path);
-    throw file_failure(path, "cannot be read", error_number);
+    throw file_failure(path, kNotRead, error_number);
   }
   check_regular(file.get(), path);
   return file;
@@ -112,7 +110,7 @@ std::optional<std::string> read_if_present(const fs::path& path) {
     const FileDescriptor file = open_file(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
     if (!file.is_open()) {
       if (errno == ENOENT) return std::nullopt;
-      throw file_failure(path, "cannot be read", errno);
+      throw file_failure(path, kNotRead, errno);
     }
     check_regular(file.get(), path);
     if (auto text = read_rest(file.get(), path)) return text;
@@ -127,12 +125,12 @@ std::optional<std::string> read_rest(int descriptor, const fs::path& path) {
     if (count == 0) return text;
     if (count > 0) text.append(buffer.data(), static_cast<std::size_t>(count));
     if (count < 0 && errno == ESTALE) return std::nullopt;
-    if (count < 0 && errno != EINTR) throw file_failure(path, "cannot be read", errno);
+    if (count < 0 && errno != EINTR) throw file_failure(path, kNotRead, errno);
   }
 }
 
 std::ptrdiff_t write_once(int descriptor, std::span<const std::byte> bytes) {
-  const HeldBackSizeSignal held_back;
+  const BlockedSizeSignal blocked;
   for (;;) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written >= 0 || errno != EINTR) return written;
@@ -151,17 +149,7 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
 void flush_file(int descriptor, const fs::path& target) {
   while (::fsync(descriptor) != 0) {
     if (errno == EINVAL || errno == ENOTSUP) return;
-    if (errno != EINTR) throw file_failure(target, "cannot be flushed to the disk", errno);
-  }
-}
-
-void flush_folder_of(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const FileDescriptor file = open_file(folder, O_RDONLY | O_DIRECTORY);
-  if (file.is_open()) {
-    flush_file(file.get(), target);
-  } else if (errno != EACCES) {  // a folder may be writable but not readable
-    throw file_failure(target, "cannot be flushed to the disk", errno);
+    if (errno != EINTR) throw file_failure(target, kNotFlushed, errno);
   }
 }
 

@@ -1,4 +1,4 @@
-// Plain file calls that finish what they start or throw: for files that must survive a crash.
+// File calls that complete or throw, for files that must survive a crash.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,13 @@
 
 namespace strut {
 
-/// "PATH: WHAT: " and what the system calls `error_number`.
+/// Failures as messages name them.
+inline constexpr char kNotRead[] = "cannot be read";
+inline constexpr char kNotWritten[] = "cannot be written";
+inline constexpr char kNotMade[] = "cannot be made";
+inline constexpr char kNotFlushed[] = "cannot be flushed to the disk";
+
+/// Makes the error "PATH: WHAT: the system's text for `error_number`".
 EnvironmentError file_failure(const std::filesystem::path& path, const std::string& what,
                               int error_number);
 
@@ -34,42 +40,39 @@ class FileDescriptor {
   int number_;
 };
 
-/// open(2) with O_CLOEXEC, and again where a signal interrupted it; not open: errno says why.
+/// open(2) with O_CLOEXEC, repeated if a signal interrupts it. If the result is not open, errno
+/// holds the reason.
 FileDescriptor open_file(const std::filesystem::path& path, int flags);
 
-/// Throws InputError where `descriptor` is not of a regular file: a pipe or device in its place
-/// could block for ever or never end. `path` stands in the message.
+/// Throws InputError if `descriptor` does not belong to a regular file: a pipe or device in its
+/// place could block forever or never end. The message names `path`.
 void check_regular(int descriptor, const std::filesystem::path& path);
-/// The same of the file `name` in an open directory; a missing one passes.
+/// Checks the file `name` in an open directory likewise; a missing file passes.
 void check_regular(int directory, const std::string& name, const std::filesystem::path& path);
 
-/// open_file that never waits for another process and takes regular files alone; links are
-/// followed. Throws InputError where the file is missing or not regular, EnvironmentError where it
-/// cannot be read.
+/// Opens a regular file for reading without ever waiting for another process; follows links. Throws
+/// InputError if the file is missing or not regular, EnvironmentError if it cannot be read.
 FileDescriptor open_regular_file(const std::filesystem::path& path);
 
-/// All that a regular file holds, in one piece; nullopt where there is no such file. Throws
-/// InputError where it is not a regular file, EnvironmentError where it cannot be read.
+/// Reads a whole regular file; nullopt if there is no such file. Throws InputError if it is not a
+/// regular file, EnvironmentError if it cannot be read.
 std::optional<std::string> read_if_present(const std::filesystem::path& path);
 
-/// What an open file holds from its position on; nullopt where another host removed or replaced
-/// the file meanwhile. Throws an EnvironmentError that names `path`.
+/// Reads an open file from its position to its end; nullopt if another host removed or replaced the
+/// file meanwhile. Throws an EnvironmentError that names `path`.
 std::optional<std::string> read_rest(int descriptor, const std::filesystem::path& path);
 
-/// One write(2), and again where a signal interrupted it: bytes written, or -1 with errno. Beyond a
-/// limit of file size it is -1 with EFBIG: the signal SIGXFSZ is held back from the calling thread
-/// meanwhile and does not end the process, whatever the program does with it elsewhere.
+/// write(2), repeated if a signal interrupts it. Returns the bytes written, or -1 with errno.
+/// Beyond a limit on file size it returns -1 with EFBIG: SIGXFSZ is blocked in the calling thread
+/// meanwhile and does not end the process, whatever its disposition.
 std::ptrdiff_t write_once(int descriptor, std::span<const std::byte> bytes);
 
-/// All of `bytes`. Throws an EnvironmentError that names `target`.
+/// Writes all of `bytes`. Throws an EnvironmentError that names `target`.
 void write_all(int descriptor, std::span<const std::byte> bytes,
                const std::filesystem::path& target);
 
-/// fsync(2). Throws an EnvironmentError that names `target`, except where the file system has no
-/// such thing.
+/// fsync(2), without effect on file systems that do not support it. Throws an EnvironmentError that
+/// names `target`.
 void flush_file(int descriptor, const std::filesystem::path& target);
-
-/// Makes the names in the folder of `target` survive a power cut, as flush_file does a content.
-void flush_folder_of(const std::filesystem::path& target);
 
 }  // namespace strut

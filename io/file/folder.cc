@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,7 +22,10 @@ constexpr int kDirectoryFlags = O_PATH | O_DIRECTORY | O_CLOEXEC;
 void check_name(const Folder& folder, const std::string& name) {
   const bool is_plain = !name.empty() && name != "." && name != ".." &&
                         name.find_first_of(std::string("/\0", 2)) == std::string::npos;
-  if (!is_plain) throw InputError(folder.path().string() + ": '" + name + "': not a file name");
+  if (is_plain) return;
+  throw InputError(
+      fmt::format("{}: '{}': not a file name; must be one without '/', not '.' or '..'",
+                  folder.path().string(), name));
 }
 
 FileDescriptor open_at(int directory, const char* name, int flags) {
@@ -37,19 +41,21 @@ bool is_link(const Folder& folder, const std::string& name) {
          S_ISLNK(status.st_mode);
 }
 
+InputError missing_folder_error(const fs::path& path) {
+  return InputError(path.string() + ": no such folder");
+}
+
 InputError link_error(const fs::path& path) {
   return InputError(path.string() +
-                    ": a symbolic link; must not be one inside a folder that strut writes: put "
-                    "what it leads to in its place, or remove it");
+                    ": a symbolic link; inside a folder that strut writes it must not be one: "
+                    "replace it by its target, or remove it");
 }
 
 }  // namespace
 
 Folder::Folder(const fs::path& path) : path_(path.empty() ? fs::path(".") : path) {
   FileDescriptor directory = strut::open_file(path_, kDirectoryFlags);
-  if (!directory.is_open() && errno == ENOENT) {
-    throw InputError(path_.string() + ": there is no such folder");
-  }
+  if (!directory.is_open() && errno == ENOENT) throw missing_folder_error(path_);
   if (!directory.is_open() && errno == ENOTDIR) {
     throw InputError(path_.string() + ": not a folder");
   }
@@ -69,21 +75,21 @@ std::optional<Folder> Folder::find_folder(const std::string& name) const {
   if (error_number == ENOENT) return std::nullopt;
   if (is_link(*this, name)) throw link_error(path_of(name));
   if (error_number == ENOTDIR) {
-    throw InputError(path_of(name).string() + ": must be a folder; remove or rename it");
+    throw InputError(path_of(name).string() + ": not a folder; must be one: remove or rename it");
   }
   throw file_failure(path_of(name), "cannot be opened", error_number);
 }
 
 Folder Folder::open_folder(const std::string& name) const {
   std::optional<Folder> folder = find_folder(name);
-  if (!folder) throw InputError(path_of(name).string() + ": there is no such folder");
+  if (!folder) throw missing_folder_error(path_of(name));
   return *std::move(folder);
 }
 
 bool Folder::make_new_folder(const std::string& name) const {
   check_name(*this, name);
   if (::mkdirat(descriptor(), name.c_str(), 0777) == 0) return true;
-  if (errno != EEXIST) throw file_failure(path_of(name), "cannot be made", errno);
+  if (errno != EEXIST) throw file_failure(path_of(name), kNotMade, errno);
   return false;
 }
 
@@ -116,7 +122,7 @@ FileDescriptor Folder::create_file(const std::string& name, int flags,
   check_name(*this, name);
   FileDescriptor file =
       open_at(descriptor(), name.c_str(), flags | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC);
-  if (!file.is_open() && errno != EEXIST) throw file_failure(target, "cannot be written", errno);
+  if (!file.is_open() && errno != EEXIST) throw file_failure(target, kNotWritten, errno);
   return file;
 }
 
@@ -128,15 +134,15 @@ std::optional<std::string> Folder::read_if_present(const std::string& name,
     struct stat status {};
     ::fstat(file.get(), &status);
     if (static_cast<std::size_t>(status.st_size) > max_bytes) {
-      throw InputError(path_of(name).string() + ": " + std::to_string(status.st_size) +
-                       " bytes; at most " + std::to_string(max_bytes) + " are read");
+      throw InputError(fmt::format("{}: {} bytes; at most {} are allowed", path_of(name).string(),
+                                   status.st_size, max_bytes));
     }
     if (auto text = read_rest(file.get(), path_of(name))) return text;
   }
 }
 
 std::vector<std::string> Folder::list() const {
-  // A descriptor of its own: reading a directory moves the descriptor's position.
+  // A separate descriptor, since reading a directory moves the position.
   const int number = ::openat(descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   DIR* const directory = number < 0 ? nullptr : ::fdopendir(number);
   if (directory == nullptr) {
@@ -184,13 +190,13 @@ bool Folder::move_new(const std::string& name, const Folder& target,
                   RENAME_NOREPLACE) == 0) {
     return true;
   }
-  // Network file systems do not know the flag; there a name that is free now will do.
-  const bool is_unknown = errno == EINVAL || errno == ENOSYS;
-  if (is_unknown && !target.has(target_name) &&
+  // Network file systems do not support the flag; there it suffices that the name is free now.
+  const bool is_unsupported = errno == EINVAL || errno == ENOSYS;
+  if (is_unsupported && !target.has(target_name) &&
       ::renameat(descriptor(), name.c_str(), target.descriptor(), target_name.c_str()) == 0) {
     return true;
   }
-  if (is_unknown && target.has(target_name)) return false;
+  if (is_unsupported && target.has(target_name)) return false;
   if (errno != EEXIST) throw file_failure(path_of(name), "cannot be moved aside", errno);
   return false;
 }
@@ -200,7 +206,7 @@ void Folder::flush(const fs::path& target) const {
   if (directory.is_open()) {
     flush_file(directory.get(), target);
   } else if (errno != EACCES) {  // a folder may be writable but not readable
-    throw file_failure(target, "cannot be flushed to the disk", errno);
+    throw file_failure(target, kNotFlushed, errno);
   }
 }
 

@@ -34,13 +34,13 @@ struct ProcessState {
 std::string read_process_file(const std::string& process, const std::string& name) {
   try {
     return read_if_present("/proc/" + process + "/" + name).value_or("");
-  } catch (const EnvironmentError&) {  // it ended while being read, or is another user's
+  } catch (const EnvironmentError&) {  // it ended meanwhile, or belongs to another user
     return "";
   }
 }
 
-// proc(5): "PID (NAME) STATE PPID PGRP SESSION ... STARTTIME": fields 3 to 6 and 22, counted behind
-// the name, which may hold anything. Empty start: not known.
+// Reads fields 3 to 6 and 22 of proc(5): "PID (NAME) STATE PPID PGRP SESSION ... STARTTIME",
+// counted from the end of the name, which may contain anything. The start is empty if unknown.
 ProcessState read_process_state(const std::string& process) {
   const std::string text = read_process_file(process, "stat");
   const auto name_end = text.rfind(')');
@@ -55,7 +55,7 @@ ProcessState read_process_state(const std::string& process) {
   return state;
 }
 
-// As part of file names and of lines.
+// Host name with every character that a file name or a line may not contain replaced.
 std::string get_host_name() {
   std::array<char, 65> buffer{};
   ::gethostname(buffer.data(), buffer.size() - 1);
@@ -67,7 +67,7 @@ std::string get_host_name() {
   return name.empty() ? "localhost" : name;
 }
 
-bool share_process_ids(const ProcessIdentity& a, const ProcessIdentity& b) {
+bool share_process_numbers(const ProcessIdentity& a, const ProcessIdentity& b) {
   return !a.boot.empty() && !a.name_space.empty() && a.host == b.host && a.boot == b.boot &&
          a.name_space == b.name_space;
 }
@@ -90,17 +90,17 @@ bool is_process_number_taken(const std::string& process) {
   return number > 0 && (::kill(number, 0) == 0 || errno != ESRCH);
 }
 
-Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own) {
-  if (!share_process_ids(process, own)) return Life::kUnknown;
+Liveness check_liveness(const ProcessIdentity& process, const ProcessIdentity& own) {
+  if (!share_process_numbers(process, own)) return Liveness::kUnknown;
   const pid_t number = parse_number<pid_t>(process.process).value_or(0);
-  if (number <= 0) return Life::kUnknown;
-  if (!is_process_number_taken(process.process)) return Life::kGone;
+  if (number <= 0) return Liveness::kUnknown;
+  if (!is_process_number_taken(process.process)) return Liveness::kDead;
   const ProcessState state = read_process_state(process.process);
-  // /proc may hide other users' processes; a runner's file may be half written.
-  if (state.start.empty() || process.start.empty()) return Life::kUnknown;
-  // A zombie ended; only nobody asked how yet, which in a container may be so for ever.
+  // /proc may hide the processes of other users; a runner's file may be incomplete.
+  if (state.start.empty() || process.start.empty()) return Liveness::kUnknown;
+  // A zombie has ended, though in a container its parent may never collect its exit status.
   const bool ended = state.letter == 'Z' || state.letter == 'X';
-  return ended || state.start != process.start ? Life::kGone : Life::kRuns;
+  return ended || state.start != process.start ? Liveness::kDead : Liveness::kAlive;
 }
 
 std::optional<ProcessOwner> find_process_owner(const std::string& process) {

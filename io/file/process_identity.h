@@ -1,4 +1,4 @@
-// Which process a name stands for, and whether that one still runs.
+// Identifies processes across hosts and boots, and tests whether one still runs.
 #pragma once
 
 #include <sys/types.h>
@@ -9,9 +9,9 @@
 
 namespace strut {
 
-/// What makes a process the same one. A process id means something only on one host since its last
-/// boot and within one namespace of process ids (two containers may share host name and numbers),
-/// and only until the number is given out again, which the start time tells.
+/// Identity of a process. A process number is unique only on one host since its last boot and
+/// within one namespace of process numbers (two containers may share host name and numbers), and
+/// only until the number is reused, which the start time reveals.
 struct ProcessIdentity {
   std::string host;        // letters, digits, '-', '.', '_'
   std::string boot;        // /proc/sys/kernel/random/boot_id
@@ -20,29 +20,29 @@ struct ProcessIdentity {
   std::string start;  // clock ticks since boot
 };
 
-/// This process. What the system does not tell is empty.
+/// Returns the identity of this process; fields that the system does not provide are empty.
 ProcessIdentity find_own_identity();
 
-/// Whether some process of this host, in this namespace, has the number.
+/// Returns whether a process of this host and namespace has the number.
 bool is_process_number_taken(const std::string& process);
 
-enum class Life {
-  kGone,     // ended, a zombie, or its number is another process's now
-  kRuns,     // perhaps stopped
+enum class Liveness {
+  kDead,     // ended, a zombie, or its number was reused
+  kAlive,    // running, or stopped by a signal
   kUnknown,  // of another host, boot or namespace, or hidden
 };
 
-/// `own`: this process. By the process number where host, boot and namespace are the same.
-Life judge_process(const ProcessIdentity& process, const ProcessIdentity& own);
+/// Returns whether `process` runs, seen from `own`, this process.
+Liveness check_liveness(const ProcessIdentity& process, const ProcessIdentity& own);
 
-/// Whose a process of this host is, as the system tells.
+/// Owner of a process of this host, as /proc shows it.
 struct ProcessOwner {
   uid_t user = 0;
-  std::string group, session;            // their leaders' numbers
-  std::vector<std::string> environment;  // NAME=VALUE, as it was started with; empty where hidden
+  std::string group, session;            // process numbers of their leaders
+  std::vector<std::string> environment;  // NAME=VALUE, as at its start; empty if hidden
 };
 
-/// nullopt where there is no such process, or it may not be looked at.
+/// Returns nullopt if there is no such process or its details may not be read.
 std::optional<ProcessOwner> find_process_owner(const std::string& process);
 
 }  // namespace strut

@@ -13,7 +13,7 @@ Published publish(const Folder& folder, const std::string& name, std::span<const
     file.flush_and_compare(bytes);
     if (file.name_new()) published = Published::kNew;
   }
-  // Also where it was there already: its runner may have died before doing so.
+  // Also if another runner's file has the name: that runner may have died before flushing.
   folder.flush(folder.path_of(name));
   return published;
 }

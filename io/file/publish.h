@@ -1,4 +1,4 @@
-// Files that several runners, perhaps on several hosts, write into one folder.
+// Publishes files into a folder that several runners, perhaps on several hosts, write to.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 namespace strut {
 
 enum class Published {
-  kNew,      // the file is ours
-  kPresent,  // somebody else's was there first; ours is discarded
+  kNew,      // our file has the name
+  kPresent,  // another runner's file had it first; ours is discarded
 };
 
 /// Writes `bytes` to the new file OWNER.NUMBER in the folder `temporary`, flushes it to the disk,
-/// reads it back, and gives it the name `name` in `folder` unless a file has that name already: by
-/// link(2), which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where
-/// links are not supported. Then flushes `folder`. The target is whole or absent at any moment,
-/// whatever kills the process or the machine. Throws an EnvironmentError that names the target,
-/// with nothing left behind, where anything fails: no space, a limit of file size (no SIGXFSZ
-/// reaches the process), a bad disk. Where only the last step fails, the folder's flush, the target
-/// stands, whole, but may vanish in a power cut. Both folders lie on one file system.
+/// reads it back, and gives it the name `name` in `folder` unless that name is taken: by link(2),
+/// which never replaces a file and is atomic on NFS, or by renameat2(RENAME_NOREPLACE) if links are
+/// not supported. Then flushes `folder`. The target is whole or absent at any moment, even if the
+/// process is killed or the power fails. Any failure (no space, a limit on file size, a bad disk)
+/// throws an EnvironmentError that names the target and leaves no file behind; no SIGXFSZ reaches
+/// the process. If only the final flush of the folder fails, the target is whole but may vanish in
+/// a power cut. Both folders must lie on one file system.
 Published publish(const Folder& folder, const std::string& name, std::span<const std::byte> bytes,
                   const Folder& temporary, const std::string& owner);
 

@@ -1,4 +1,4 @@
-// Text files as a whole.
+// Reads whole text files.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace strut {
 
-/// The whole file. Throws InputError where it is missing or has more than `max_bytes`,
-/// EnvironmentError where it cannot be read.
+/// Reads a whole file. Throws InputError if it is missing or has more than `max_bytes`,
+/// EnvironmentError if it cannot be read.
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes = SIZE_MAX);
 
 }  // namespace strut

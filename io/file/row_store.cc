@@ -14,8 +14,8 @@
 namespace strut {
 namespace {
 
-/// Rows gather in memory before they are written, also beyond the limit.
-constexpr std::size_t kLeastMemory = std::size_t{1} << 20;
+/// Bytes of rows collected in memory between writes once the limit is exceeded.
+constexpr std::size_t kWriteBytes = std::size_t{1} << 20;
 constexpr char kScratchFile[] = "scratch file";
 
 void read_all(int file, std::span<std::byte> bytes, std::size_t at,
@@ -45,8 +45,8 @@ void RowStore::open_file() {
 void RowStore::spill() {
   if (!file_.is_open()) open_file();
   write_all(file_.get(), std::as_bytes(std::span(recent_)), options_.scratch);
-  filed_ = row_count_;
-  // Not clear(): what was held up to the limit is given back.
+  spilled_ = row_count_;
+  // Not clear(), which would keep the memory.
   recent_ = {};
 }
 
@@ -54,21 +54,21 @@ void RowStore::append(std::span<const double> rows) {
   STRUT_CHECK(rows.size() % columns_ == 0, "a row store takes whole rows");
   recent_.insert(recent_.end(), rows.begin(), rows.end());
   row_count_ += rows.size() / columns_;
-  const std::size_t limit = file_.is_open() ? kLeastMemory : options_.memory;
+  const std::size_t limit = file_.is_open() ? kWriteBytes : options_.memory;
   if (recent_.size() * sizeof(double) > limit) spill();
 }
 
 void RowStore::read(std::size_t first, std::size_t count, double* rows) const {
-  STRUT_CHECK(first <= row_count_ && count <= row_count_ - first, "a row store has no such rows");
+  STRUT_CHECK(first <= row_count_ && count <= row_count_ - first, "a row store lacks these rows");
   const std::size_t row = columns_ * sizeof(double);
-  const std::size_t filed = first < filed_ ? std::min(count, filed_ - first) : 0;
-  if (filed > 0) {
-    read_all(file_.get(), std::as_writable_bytes(std::span(rows, filed * columns_)), first * row,
-             options_.scratch);
+  const std::size_t from_file = first < spilled_ ? std::min(count, spilled_ - first) : 0;
+  if (from_file > 0) {
+    read_all(file_.get(), std::as_writable_bytes(std::span(rows, from_file * columns_)),
+             first * row, options_.scratch);
   }
-  if (filed == count) return;
-  std::copy_n(recent_.data() + (first + filed - filed_) * columns_, (count - filed) * columns_,
-              rows + filed * columns_);
+  if (from_file == count) return;
+  std::copy_n(recent_.data() + (first + from_file - spilled_) * columns_,
+              (count - from_file) * columns_, rows + from_file * columns_);
 }
 
 }  // namespace strut

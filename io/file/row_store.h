@@ -1,4 +1,4 @@
-// A long table of numbers: in memory while it is short, in a scratch file beyond.
+// A long table of numbers, held in memory up to a limit and in a scratch file beyond it.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,14 @@
 namespace strut {
 
 struct RowStoreOptions {
-  /// Bytes held in memory before rows go to a file.
+  /// Bytes held in memory before rows go to the scratch file.
   std::size_t memory = std::size_t{32} << 20;
-  /// Folder of that file, which has no name and vanishes with the process; empty: the system's.
+  /// Folder of the scratch file, which has no name and vanishes with the process; empty: the
+  /// system's folder for temporary files.
   std::filesystem::path scratch;
 };
 
-/// Appended once, read often. Failures of the scratch file are EnvironmentError.
+/// Rows that are appended once and read often. Failures of the scratch file are EnvironmentError.
 class RowStore {
  public:
   explicit RowStore(std::size_t columns, RowStoreOptions options = {});
@@ -28,9 +29,9 @@ class RowStore {
   std::size_t row_count() const { return row_count_; }
   bool in_memory() const { return !file_.is_open(); }
 
-  /// Whole rows.
+  /// Appends whole rows; rows.size() must be a multiple of `columns`.
   void append(std::span<const double> rows);
-  /// Rows [first, first + count), which must be there.
+  /// Copies rows [first, first + count), which must exist, to `rows`.
   void read(std::size_t first, std::size_t count, double* rows) const;
 
  private:
@@ -40,12 +41,12 @@ class RowStore {
   std::size_t columns_;
   RowStoreOptions options_;
   std::size_t row_count_ = 0;
-  std::size_t filed_ = 0;       // rows in the file
-  std::vector<double> recent_;  // the rows behind those
+  std::size_t spilled_ = 0;     // rows in the scratch file
+  std::vector<double> recent_;  // the rows after those
   FileDescriptor file_;
 };
 
-/// Calls use(rows, first row, row count) over all rows of a store in pieces of `piece_rows`.
+/// Calls use(rows, first row, row count) for all rows of a store, at most `piece_rows` at a time.
 template <class F>
 void for_each_piece(const RowStore& store, const F& use, std::size_t piece_rows = 4096) {
   std::vector<double> rows;

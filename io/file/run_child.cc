@@ -1,6 +1,7 @@
 #include "io/file/run_child.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -20,7 +21,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// What the child's descriptors become.
+/// File actions of posix_spawn, for the child's descriptors.
 class FileActions {
  public:
   FileActions() {
@@ -31,7 +32,7 @@ class FileActions {
   FileActions(const FileActions&) = delete;
   FileActions& operator=(const FileActions&) = delete;
 
-  /// What the child knows as `descriptor`.
+  /// Makes `open` available to the child as `descriptor`.
   void set(int descriptor, int open) {
     posix_spawn_file_actions_adddup2(&actions_, open, descriptor);
   }
@@ -45,16 +46,16 @@ std::vector<char*> list_environment(const std::vector<std::string>& hidden) {
   std::vector<char*> kept;
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const std::string text = *variable;
-    const bool hides = std::any_of(hidden.begin(), hidden.end(), [&](const std::string& begin) {
-      return text.rfind(begin, 0) == 0;
-    });
-    if (!hides) kept.push_back(*variable);
+    const bool is_hidden =
+        std::any_of(hidden.begin(), hidden.end(),
+                    [&](const std::string& prefix) { return text.starts_with(prefix); });
+    if (!is_hidden) kept.push_back(*variable);
   }
   kept.push_back(nullptr);
   return kept;
 }
 
-/// -1 where it cannot be started.
+/// Returns the process number; -1 if the child cannot be started.
 pid_t start(const std::vector<std::string>& words, const FileActions& actions,
             const std::vector<char*>& environment) {
   posix_spawnattr_t attributes;
@@ -82,7 +83,7 @@ int wait_for(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
-/// The reading end of a pipe whose writing end a child gets.
+/// A pipe; a child gets the writing end.
 struct Pipe {
   Pipe() {
     std::array<int, 2> ends{-1, -1};
@@ -106,8 +107,8 @@ struct Pipe {
   int from = -1, to = -1;
 };
 
-/// Appends what is there; closes the pipe at its end.
-void read_some(Pipe& pipe, std::string& text) {
+/// Appends the bytes that are available; closes the pipe at its end.
+void read_available(Pipe& pipe, std::string& text) {
   std::array<char, 65536> buffer;
   const ssize_t count = ::read(pipe.from, buffer.data(), buffer.size());
   if (count > 0) {
@@ -117,17 +118,17 @@ void read_some(Pipe& pipe, std::string& text) {
   }
 }
 
-/// Until both are closed; false where that takes longer than `patience`.
-bool read_all(Pipe& out, Pipe& messages, ChildOutput& output, std::chrono::milliseconds patience) {
-  const auto end = SteadyClock::now() + patience;
+/// Reads until both pipes are closed; false if that takes longer than `timeout`.
+bool read_all(Pipe& out, Pipe& messages, ChildOutput& output, std::chrono::milliseconds timeout) {
+  const auto end = SteadyClock::now() + timeout;
   while (out.from >= 0 || messages.from >= 0) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(end - SteadyClock::now());
     if (left.count() <= 0) return false;
     std::array<pollfd, 2> wanted = {pollfd{out.from, POLLIN, 0}, pollfd{messages.from, POLLIN, 0}};
     if (::poll(wanted.data(), wanted.size(), static_cast<int>(left.count())) <= 0) continue;
-    if (wanted[0].revents != 0) read_some(out, output.out);
-    if (wanted[1].revents != 0) read_some(messages, output.messages);
+    if (wanted[0].revents != 0) read_available(out, output.out);
+    if (wanted[1].revents != 0) read_available(messages, output.messages);
   }
   return true;
 }
@@ -136,15 +137,15 @@ bool read_all(Pipe& out, Pipe& messages, ChildOutput& output, std::chrono::milli
 
 std::string ChildOutput::explain() const {
   if (code == kNotStarted) return "it cannot be started";
-  const std::string& said = messages.empty() ? out : messages;
-  const std::size_t last = said.find_last_not_of(" \n");
+  const std::string& text = messages.empty() ? out : messages;
+  const std::size_t last = text.find_last_not_of(" \n");
   if (last == std::string::npos) {
-    return code == kTooLong ? "it did not answer in time"
-                            : "it ended with code " + std::to_string(code) + " and said nothing";
+    return code == kTimedOut ? "it did not answer in time"
+                             : fmt::format("it ended with code {} and printed nothing", code);
   }
-  const std::size_t before = said.rfind('\n', last);
+  const std::size_t before = text.rfind('\n', last);
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  return said.substr(first, last + 1 - first);
+  return text.substr(first, last + 1 - first);
 }
 
 ChildOutput read_child(const std::vector<std::string>& words, const ChildOptions& options) {
@@ -163,10 +164,10 @@ ChildOutput read_child(const std::vector<std::string>& words, const ChildOptions
   if (child < 0) return output;
   Pipe::close_end(out.to);
   Pipe::close_end(messages.to);
-  const bool in_time = read_all(out, messages, output, options.patience);
+  const bool in_time = read_all(out, messages, output, options.timeout);
   if (!in_time) ::kill(child, SIGKILL);
   const int code = wait_for(child);
-  output.code = in_time ? code : ChildOutput::kTooLong;
+  output.code = in_time ? code : ChildOutput::kTimedOut;
   return output;
 }
 

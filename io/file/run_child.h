@@ -1,4 +1,4 @@
-// Other programs, run without a shell, with the signals of this program's start.
+// Runs other programs without a shell and with no signals blocked.
 #pragma once
 
 #include <chrono>
@@ -7,26 +7,26 @@
 
 namespace strut {
 
-/// What a child said.
+/// Output and exit code of a child process.
 struct ChildOutput {
-  static constexpr int kNotStarted = -1, kTooLong = -2;
+  static constexpr int kNotStarted = -1, kTimedOut = -2;
 
-  int code = kNotStarted;  // its exit code; 128: a signal ended it; or one of the above
-  std::string out, messages;
+  int code = kNotStarted;     // exit code; 128: ended by a signal; or one of the above
+  std::string out, messages;  // standard output, standard error
 
-  /// Its last words in one line, for a message of ours.
+  /// Summarizes the failure for a message: the last line of the output, else the exit code.
   std::string explain() const;
 };
 
 struct ChildOptions {
-  std::chrono::milliseconds patience = std::chrono::seconds(60);  // then it is ended
-  /// Of the environment, what begins so is kept from it.
+  std::chrono::milliseconds timeout = std::chrono::seconds(60);  // the child is killed after it
+  /// Prefixes of the environment variables ("NAME=VALUE") that the child does not get.
   std::vector<std::string> hidden_variables{};
-  std::string input{};  // what it reads
+  std::string input{};  // its standard input
 };
 
-/// Runs words[0], looked for in PATH, in a process group of its own, which Ctrl-C does not reach,
-/// and waits for its end.
+/// Runs words[0], found through PATH, in its own process group, which Ctrl-C does not reach, and
+/// waits for it to end.
 ChildOutput read_child(const std::vector<std::string>& words, const ChildOptions& options = {});
 
 }  // namespace strut

@@ -1,5 +1,6 @@
 #include "io/file/sha256.h"
 
+#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include "base/error/input_error.h"
@@ -13,9 +14,9 @@ struct Sha256::State {
 
 namespace {
 
-// EVP fails only where memory or the algorithm itself is missing.
+// EVP fails only if memory or the algorithm itself is missing.
 void require(int good) {
-  if (good != 1) throw EnvironmentError("SHA-256 of OpenSSL is not available");
+  if (good != 1) throw EnvironmentError("OpenSSL: SHA-256 is not available");
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void Sha256::update(const std::string& text) { update(std::as_bytes(std::span(te
 Hash Sha256::finish() {
   Hash hash;
   require(EVP_DigestFinal_ex(state_->context, hash.data(), nullptr));
-  // Without a type: the one of before, which EVP need not look up again.
+  // A null type keeps the previous one, which saves a lookup.
   require(EVP_DigestInit_ex(state_->context, nullptr, nullptr));
   return hash;
 }
@@ -48,15 +49,8 @@ Hash calc_sha256(std::span<const std::byte> bytes) {
 
 Hash calc_sha256(const std::string& text) { return calc_sha256(std::as_bytes(std::span(text))); }
 
-std::string to_hex(const Hash& hash) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  text.reserve(2 * hash.size());
-  for (const std::uint8_t byte : hash) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
+std::string to_hex(std::span<const std::uint8_t> bytes) {
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// SHA-256, the hash of every checksum and identity here: `sha256sum` computes the same.
+// SHA-256, the hash of all checksums and identities; `sha256sum` computes the same.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class Sha256 {
 
   void update(std::span<const std::byte> bytes);
   void update(const std::string& text);
-  /// The hash of all that came in; the object starts anew.
+  /// Returns the hash of all bytes since construction or the last finish().
   Hash finish();
 
  private:
@@ -32,7 +32,7 @@ class Sha256 {
 Hash calc_sha256(std::span<const std::byte> bytes);
 Hash calc_sha256(const std::string& text);
 
-/// 64 lower-case digits.
-std::string to_hex(const Hash& hash);
+/// Two lower-case digits per byte.
+std::string to_hex(std::span<const std::uint8_t> bytes);
 
 }  // namespace strut

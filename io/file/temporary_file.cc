@@ -1,6 +1,7 @@
 #include "io/file/temporary_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,12 +12,6 @@
 #include <vector>
 
 namespace strut {
-
-namespace {
-
-constexpr const char* kNotWritten = "cannot be written";
-
-}  // namespace
 
 TemporaryFile::TemporaryFile(const Folder& folder, const std::string& prefix,
                              const Folder& target_folder, const std::string& target_name)
@@ -32,7 +27,7 @@ TemporaryFile::~TemporaryFile() {
 
 FileDescriptor TemporaryFile::create(const std::string& prefix) {
   for (int number = 0;; ++number) {
-    name_ = prefix + "." + std::to_string(number);
+    name_ = fmt::format("{}.{}", prefix, number);
     FileDescriptor file = folder_.create_file(name_, O_RDWR, target_);
     if (file.is_open()) return file;
   }
@@ -46,9 +41,9 @@ void TemporaryFile::write(const std::string& text) { write(std::as_bytes(std::sp
 
 void TemporaryFile::flush_and_compare(std::span<const std::byte> bytes) {
   flush_file(file_.get(), target_);
-  // Else the comparison meets the copy in memory.
+  // Otherwise the comparison would read the page cache.
   ::posix_fadvise(file_.get(), 0, 0, POSIX_FADV_DONTNEED);
-  // One byte more than there should be, to see a file that is too long.
+  // One byte more than expected, to detect a file that is too long.
   std::vector<std::byte> buffer(std::min<std::size_t>(bytes.size() + 1, std::size_t{1} << 20));
   std::size_t done = 0;
   for (;;) {
@@ -59,17 +54,17 @@ void TemporaryFile::flush_and_compare(std::span<const std::byte> bytes) {
     if (count == 0) break;
     const auto n = static_cast<std::size_t>(count);
     if (n > bytes.size() - done || std::memcmp(buffer.data(), bytes.data() + done, n) != 0) {
-      throw EnvironmentError(target_.string() + ": the disk gives back other bytes than written");
+      throw EnvironmentError(target_.string() + ": the disk returned other bytes than written");
     }
     done += n;
   }
   if (done != bytes.size()) {
-    throw EnvironmentError(target_.string() + ": the disk gives back fewer bytes than written");
+    throw EnvironmentError(target_.string() + ": the disk returned fewer bytes than written");
   }
 }
 
-// A network file system may do what was asked and lose the answer, so that the repeated request is
-// refused: only the file under the name tells.
+// A network file system may carry out a request and lose the answer, so that the repeated request
+// fails: only the file under the name shows the outcome.
 bool TemporaryFile::has_target_name() const {
   struct stat ours {
   }, theirs{};
@@ -79,9 +74,9 @@ bool TemporaryFile::has_target_name() const {
          ours.st_dev == theirs.st_dev && ours.st_ino == theirs.st_ino;
 }
 
-// On a network file system others see what was written once it is closed; closing a copy of the
-// descriptor is enough. Elsewhere it costs nothing.
-void TemporaryFile::hand_over() const {
+// On a network file system other hosts see the content once the file is closed; closing a copy of
+// the descriptor suffices. Elsewhere it costs nothing.
+void TemporaryFile::make_visible() const {
   int result = -1;
   do {
     const int copy = ::fcntl(file_.get(), F_DUPFD_CLOEXEC, 0);
@@ -91,7 +86,7 @@ void TemporaryFile::hand_over() const {
 }
 
 bool TemporaryFile::name_new() {
-  hand_over();
+  make_visible();
   if (::linkat(folder_.descriptor(), name_.c_str(), target_folder_.descriptor(),
                target_name_.c_str(), 0) == 0) {
     return true;
@@ -111,13 +106,14 @@ bool TemporaryFile::move_new() {
   const int error_number = errno;
   moved_ = done || has_target_name();
   if (!moved_ && error_number != EEXIST) {
-    throw file_failure(target_, "cannot be named (neither by link nor by renameat2)", error_number);
+    throw file_failure(target_, "cannot be given its name, neither by link nor by renameat2",
+                       error_number);
   }
   return moved_;
 }
 
 void TemporaryFile::name_over() {
-  hand_over();
+  make_visible();
   if (::renameat(folder_.descriptor(), name_.c_str(), target_folder_.descriptor(),
                  target_name_.c_str()) != 0 &&
       !has_target_name()) {

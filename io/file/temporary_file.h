@@ -1,4 +1,4 @@
-// A file on the way to the name it is for.
+// A file under a temporary name until its content is complete.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace strut {
 
-/// A new file PREFIX.NUMBER in `folder`, with the first number that is free, that is to become
-/// `target_name` in `target_folder`; both lie on one file system. All failures are EnvironmentError
-/// and name the target.
+/// A new file PREFIX.NUMBER in `folder`, with the first free number, that is to become
+/// `target_name` in `target_folder`, which must lie on the same file system. All failures are
+/// EnvironmentError and name the target.
 class TemporaryFile {
  public:
   TemporaryFile(const Folder& folder, const std::string& prefix, const Folder& target_folder,
@@ -24,19 +24,19 @@ class TemporaryFile {
 
   void write(std::span<const std::byte> bytes);
   void write(const std::string& text);
-  /// Flushes to the disk, and reads from there: throws where that is not `bytes`.
+  /// Flushes the file to the disk and reads it back; throws if it differs from `bytes`.
   void flush_and_compare(std::span<const std::byte> bytes);
 
-  /// Gives the file, with all that was written, the target's name; false where that name is taken.
-  /// By link(2), which never replaces and which NFS does once; by renameat2(RENAME_NOREPLACE) where
-  /// the file system knows no links.
+  /// Gives the file the target's name; false if that name is taken. Uses link(2), which never
+  /// replaces a file and is atomic on NFS, or renameat2(RENAME_NOREPLACE) if the file system does
+  /// not support links.
   bool name_new();
-  /// Gives the file the target's name, replacing what has it.
+  /// Gives the file the target's name, replacing any file that has it.
   void name_over();
 
  private:
   FileDescriptor create(const std::string& prefix);
-  void hand_over() const;
+  void make_visible() const;
   bool has_target_name() const;
   bool move_new();
 
@@ -44,7 +44,7 @@ class TemporaryFile {
   std::string name_, target_name_;
   std::filesystem::path target_;  // for messages
   FileDescriptor file_;
-  bool moved_ = false;  // the temporary name is gone already
+  bool moved_ = false;  // the temporary name no longer exists
 };
 
 }  // namespace strut

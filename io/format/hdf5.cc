@@ -1,5 +1,7 @@
 #include "io/format/hdf5.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -34,8 +36,8 @@ std::size_t get_element_size(Hdf5Type type, std::size_t text_length) {
   return type == Hdf5Type::kInt32 ? 4 : 8;
 }
 
-PackedTexts pack_texts(std::span<const std::string> texts, std::size_t at_least) {
-  PackedTexts packed{.length = at_least, .bytes = {}};
+PackedTexts pack_texts(std::span<const std::string> texts, std::size_t min_length) {
+  PackedTexts packed{.length = min_length, .bytes = {}};
   for (const std::string& text : texts) packed.length = std::max(packed.length, text.size());
   packed.bytes.resize(texts.size() * packed.length);
   for (std::size_t i = 0; i < texts.size(); ++i) {
@@ -44,9 +46,9 @@ PackedTexts pack_texts(std::span<const std::string> texts, std::size_t at_least)
   return packed;
 }
 
-// The memory of a file of the core driver. Closing the file hands it over: the bytes are complete
-// only then (H5Fget_file_image of 1.10.8 leaves out the user block, and clears flags in the
-// superblock without renewing its checksum).
+// Memory of a file of the core driver. The bytes are complete only once the file is closed, which
+// passes them to `release` (H5Fget_file_image of 1.10.8 omits the user block, and clears flags in
+// the superblock without updating its checksum).
 struct Hdf5Writer::Memory {
   void* data = nullptr;
   std::size_t size = 0;
@@ -85,7 +87,7 @@ namespace {
 
 constexpr std::size_t kMemoryIncrement = std::size_t{1} << 18;
 
-// Where the file ends, which its superblock (version 3) says; behind it the memory is spare.
+// Reads the size of the file from its superblock (version 3); memory after it is unused.
 std::uint64_t read_end_of_file(const std::byte* superblock) {
   constexpr std::size_t kEndOfFile = 28;
   std::uint64_t end = 0;
@@ -124,12 +126,12 @@ void Hdf5Writer::open(const Hdf5WriterOptions& options) {
   const Hdf5Handle access = hdf5::make_file_access(sink_.shown);
   const bool good = H5Pset_fapl_core(access.id(), kMemoryIncrement, false) >= 0 &&
                     H5Pset_file_image_callbacks(access.id(), &callbacks) >= 0;
-  check<EnvironmentError>(good, sink_.shown, "", "cannot be written");
+  check<EnvironmentError>(good, sink_.shown, "", kNotWritten);
   seal_ = options.seal;
   const Hdf5Handle creation = hdf5::make_file_creation(sink_.shown, seal_.has_value());
   sink_.file = checked<EnvironmentError>(
       H5Fcreate(hdf5::make_memory_name().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()),
-      H5Fclose, sink_.shown, "", "cannot be written");
+      H5Fclose, sink_.shown, "", kNotWritten);
 }
 
 void Hdf5Writer::write(const std::string& name, std::span<const double> values,
@@ -195,10 +197,10 @@ void Hdf5Writer::write_attribute(const std::string& object, const std::string& k
 
 std::vector<std::byte> Hdf5Writer::image() {
   const bool good = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0 && sink_.file.reset();
-  check<EnvironmentError>(good && memory_->closed, sink_.shown, "", "cannot be written");
+  check<EnvironmentError>(good && memory_->closed, sink_.shown, "", kNotWritten);
   const auto* const begin = static_cast<const std::byte*>(memory_->data);
   const std::uint64_t end = read_end_of_file(begin + (seal_ ? kSealBytes : 0));
-  STRUT_CHECK(end <= memory_->size, "an HDF5 file ends behind its memory");
+  STRUT_CHECK(end <= memory_->size, "an HDF5 file ends beyond its memory");
   std::vector<std::byte> bytes(begin, begin + end);
   memory_.reset();
   if (seal_) seal_image(*seal_, bytes);
@@ -206,7 +208,7 @@ std::vector<std::byte> Hdf5Writer::image() {
 }
 
 void Hdf5Writer::commit() {
-  STRUT_CHECK(target_, "a file in memory has no name to be written under");
+  STRUT_CHECK(target_, "a file in memory has no path to be written to");
   target_->write(image());
   target_->commit();
 }
@@ -214,7 +216,7 @@ void Hdf5Writer::commit() {
 std::string hdf5_version() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+  return fmt::format("{}.{}.{}", major, minor, release);
 }
 
 }  // namespace strut

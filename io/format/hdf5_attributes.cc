@@ -1,4 +1,6 @@
-// Attributes, written and read. Their texts are of fixed length, see io/format/hdf5.h.
+// Writes and reads attributes. Their texts are of fixed length, see io/format/hdf5.h.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "io/format/hdf5_calls.h"
@@ -8,10 +10,22 @@ namespace hdf5 {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr char kAttributeNotWritten[] = "attribute cannot be written";
+constexpr char kNoAttribute[] = "no such attribute";
+
+/// Returns how messages call an attribute: "/time@unit".
+std::string name_attribute(const std::string& object, const std::string& key) {
+  return fmt::format("{}@{}", object, key);
+}
+
+}  // namespace
+
 void write_texts(const fs::path& path, hid_t object, const std::string& object_name,
                  const std::string& key, const std::vector<std::string>& values, bool scalar) {
-  const std::string name = object_name + "@" + key;
-  const std::string what = "attribute cannot be written";
+  const std::string name = name_attribute(object_name, key);
+  const std::string what = kAttributeNotWritten;
   const PackedTexts texts = pack_texts(values);
   const hsize_t count = values.size();
   const Hdf5Handle type = make_type(path, Hdf5Type::kText, texts.length);
@@ -29,14 +43,14 @@ void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const
                           const std::vector<std::string>& values, bool scalar) {
   const Hdf5Handle handle = checked<EnvironmentError>(
       H5Oopen(sink.file.id(), object.c_str(), H5P_DEFAULT), H5Oclose, sink.shown, object,
-      "no such dataset or group to hold attribute " + key);
+      fmt::format("no such dataset or group for attribute {}", key));
   write_texts(sink.shown, handle.id(), object, key, values, scalar);
 }
 
 void write_number_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
                             hid_t type, const void* value) {
-  const std::string name = object + "@" + key;
-  const std::string what = "attribute cannot be written";
+  const std::string name = name_attribute(object, key);
+  const std::string what = kAttributeNotWritten;
   const Hdf5Handle space =
       checked<EnvironmentError>(H5Screate(H5S_SCALAR), H5Sclose, sink.shown, name, what);
   const Hdf5Handle attribute = checked<EnvironmentError>(
@@ -65,7 +79,7 @@ std::size_t get_text_length(const fs::path& path, const std::string& name, hid_t
 
 std::vector<std::string> read_texts_of(const fs::path& path, hid_t object,
                                        const std::string& object_name, const std::string& key) {
-  const std::string name = object_name + "@" + key;
+  const std::string name = name_attribute(object_name, key);
   const std::string what = "attribute cannot be read";
   const htri_t exists = H5Aexists(object, key.c_str());
   check<InputError>(exists >= 0, path, name, what);
@@ -91,44 +105,45 @@ using hdf5::checked;
 namespace fs = std::filesystem;
 
 bool Hdf5Reader::has_attribute(const std::string& object, const std::string& key) const {
-  const bool there =
-      H5Aexists_by_name(file_.id(), object.c_str(), key.c_str(), hdf5::stay_in_file()) > 0;
+  const bool exists =
+      H5Aexists_by_name(file_.id(), object.c_str(), key.c_str(), hdf5::get_in_file_access()) > 0;
   H5Eclear2(H5E_DEFAULT);
-  return there;
+  return exists;
 }
 
 std::vector<std::string> Hdf5Reader::read_attribute_list(const std::string& object,
                                                          const std::string& key) const {
   const Hdf5Handle handle =
-      checked<InputError>(H5Oopen(file_.id(), object.c_str(), hdf5::stay_in_file()), H5Oclose,
+      checked<InputError>(H5Oopen(file_.id(), object.c_str(), hdf5::get_in_file_access()), H5Oclose,
                           path_, object, "no such object");
   return hdf5::read_texts_of(path_, handle.id(), object, key);
 }
 
 std::string Hdf5Reader::read_attribute(const std::string& object, const std::string& key) const {
   const auto values = read_attribute_list(object, key);
-  check<InputError>(values.size() == 1, path_, object + "@" + key, "no such attribute");
+  check<InputError>(values.size() == 1, path_, hdf5::name_attribute(object, key),
+                    hdf5::kNoAttribute);
   return values.front();
 }
 
 namespace {
 
-// A scalar attribute, an integer or where `real` any number, read as `type` into `value`.
+// Reads a scalar attribute, an integer or, if `real`, any number, as `type` into `value`.
 void read_number(const fs::path& path, hid_t file, const std::string& object,
                  const std::string& key, bool real, hid_t type, void* value) {
-  const std::string name = object + "@" + key;
+  const std::string name = hdf5::name_attribute(object, key);
   const Hdf5Handle attribute = checked<InputError>(
-      H5Aopen_by_name(file, object.c_str(), key.c_str(), H5P_DEFAULT, hdf5::stay_in_file()),
-      H5Aclose, path, name, "no such attribute");
+      H5Aopen_by_name(file, object.c_str(), key.c_str(), H5P_DEFAULT, hdf5::get_in_file_access()),
+      H5Aclose, path, name, hdf5::kNoAttribute);
   const Hdf5Handle stored =
-      checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, "damaged");
+      checked<InputError>(H5Aget_type(attribute.id()), H5Tclose, path, name, hdf5::kDamaged);
   const Hdf5Handle space =
-      checked<InputError>(H5Aget_space(attribute.id()), H5Sclose, path, name, "damaged");
+      checked<InputError>(H5Aget_space(attribute.id()), H5Sclose, path, name, hdf5::kDamaged);
   const H5T_class_t kind = H5Tget_class(stored.id());
   const bool fits = (kind == H5T_INTEGER || (real && kind == H5T_FLOAT)) &&
                     H5Sget_simple_extent_npoints(space.id()) == 1;
   check<InputError>(fits, path, name, real ? "must be a number" : "must be an integer");
-  check<InputError>(H5Aread(attribute.id(), type, value) >= 0, path, name, "damaged");
+  check<InputError>(H5Aread(attribute.id(), type, value) >= 0, path, name, hdf5::kDamaged);
 }
 
 }  // namespace
@@ -154,7 +169,7 @@ std::vector<std::string> Hdf5Reader::list_attributes(const std::string& object) 
   };
   hsize_t start = 0;
   const herr_t status = H5Aiterate_by_name(file_.id(), object.c_str(), H5_INDEX_NAME, H5_ITER_INC,
-                                           &start, add, &names, hdf5::stay_in_file());
+                                           &start, add, &names, hdf5::get_in_file_access());
   check<InputError>(status >= 0, path_, object, "attributes cannot be read");
   return names;
 }

@@ -1,16 +1,28 @@
 #include "io/format/hdf5_calls.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <charconv>
 #include <limits>
 #include <string_view>
 
+#include "io/file/compress.h"
 #include "io/file/file_sync.h"
 
 namespace strut::hdf5 {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char kDatasetNotWritten[] = "dataset cannot be written";
+
+/// Returns "PATH: OBJECT: WHAT"; `object` may be empty.
+std::string describe_failure(const fs::path& path, const std::string& object,
+                             const std::string& what) {
+  return object.empty() ? fmt::format("{}: {}", path.string(), what)
+                        : fmt::format("{}: {}: {}", path.string(), object, what);
+}
 
 void write_label(const fs::path& path, hid_t dataset, const std::string& name,
                  const Hdf5Label& label) {
@@ -24,7 +36,7 @@ void write_label(const fs::path& path, hid_t dataset, const std::string& name,
   write_list("descriptions", label.descriptions);
 }
 
-// Groups that the library makes itself would carry the time.
+// The library would give groups that it makes itself a time.
 void make_groups(const Hdf5Sink& sink, const std::string& name) {
   const std::string what = "group cannot be made";
   for (std::size_t slash = name.find('/', 1); slash != std::string::npos;
@@ -46,32 +58,33 @@ Hdf5Handle make_space(const Hdf5Sink& sink, const std::string& name,
   const std::vector<hsize_t> sizes(shape.begin(), shape.end());
   return checked<EnvironmentError>(
       H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose, sink.shown,
-      name, "dataset cannot be written");
+      name, kDatasetNotWritten);
 }
 
 }  // namespace
 
-// Errors become exceptions, so the library must not print them as well; and it must not clean up
-// at exit: every handle is closed here, and a file that could not be flushed to a full disk crashes
-// 1.10.8 there.
+// Errors become exceptions, so the library must not print them. It must not clean up at exit
+// either: every handle is closed here, and a file that could not be flushed to a full disk would
+// crash 1.10.8 there.
 void prepare_library() {
   static const bool no_cleanup = H5dont_atexit() >= 0;
   static_cast<void>(no_cleanup);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-// The deepest entry of the library's error stack says what really happened.
-std::string take_library_error() {
-  std::string text;
+// The deepest entry of the library's error stack holds the cause.
+void fail_to_read(const fs::path& path, const std::string& object, const std::string& what) {
+  std::string cause;
   const auto keep_first = [](unsigned, const H5E_error2_t* entry, void* out) -> herr_t {
     auto& message = *static_cast<std::string*>(out);
     if (message.empty() && entry->desc != nullptr) message = entry->desc;
     return 0;
   };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &cause);
   H5Eclear2(H5E_DEFAULT);
-  std::erase(text, '\n');  // of the time in some of them
-  return text.empty() ? "" : " (" + text + ")";
+  std::erase(cause, '\n');  // some entries contain the time and a line end
+  if (!cause.empty()) cause = fmt::format(" ({})", cause);
+  throw InputError(describe_failure(path, object, what) + cause);
 }
 
 void fail_to_write(const fs::path& path, const std::string& object, const std::string& what) {
@@ -88,13 +101,13 @@ void fail_to_write(const fs::path& path, const std::string& object, const std::s
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &error_number);
   H5Eclear2(H5E_DEFAULT);
-  if (error_number != 0) throw file_failure(path, "cannot be written", error_number);
-  throw EnvironmentError(path.string() + (object.empty() ? "" : ": " + object) + ": " + what);
+  if (error_number != 0) throw file_failure(path, kNotWritten, error_number);
+  throw EnvironmentError(describe_failure(path, object, what));
 }
 
 Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_length) {
   const auto copy = [&path](hid_t of) {
-    return checked<EnvironmentError>(H5Tcopy(of), H5Tclose, path, "", "data type");
+    return checked<EnvironmentError>(H5Tcopy(of), H5Tclose, path, "", "data type cannot be made");
   };
   if (type == Hdf5Type::kDouble) return copy(H5T_NATIVE_DOUBLE);
   if (type == Hdf5Type::kInt32) return copy(H5T_NATIVE_INT32);
@@ -103,11 +116,11 @@ Hdf5Handle make_type(const fs::path& path, Hdf5Type type, std::size_t text_lengt
   const bool good = H5Tset_size(text.id(), text_length) >= 0 &&
                     H5Tset_cset(text.id(), H5T_CSET_UTF8) >= 0 &&
                     H5Tset_strpad(text.id(), H5T_STR_NULLPAD) >= 0;
-  check<EnvironmentError>(good, path, "", "data type");
+  check<EnvironmentError>(good, path, "", "data type cannot be made");
   return text;
 }
 
-hid_t stay_in_file() {
+hid_t get_in_file_access() {
   static const hid_t access = [] {
     const hid_t list = H5Pcreate(H5P_DATASET_ACCESS);
     const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t,
@@ -119,25 +132,25 @@ hid_t stay_in_file() {
 }
 
 Hdf5Handle make_file_access(const fs::path& path) {
-  Hdf5Handle access = checked<EnvironmentError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "",
-                                                "cannot be written");
+  Hdf5Handle access =
+      checked<EnvironmentError>(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, path, "", kNotWritten);
   check<EnvironmentError>(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0,
-                          path, "", "cannot be written");
+                          path, "", kNotWritten);
   return access;
 }
 
 Hdf5Handle make_file_creation(const fs::path& path, bool sealed) {
-  Hdf5Handle creation = checked<EnvironmentError>(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path, "",
-                                                  "cannot be written");
+  Hdf5Handle creation =
+      checked<EnvironmentError>(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path, "", kNotWritten);
   const bool good = H5Pset_obj_track_times(creation.id(), false) >= 0 &&
                     H5Pset_userblock(creation.id(), sealed ? kSealBytes : 0) >= 0;
-  check<EnvironmentError>(good, path, "", "cannot be written");
+  check<EnvironmentError>(good, path, "", kNotWritten);
   return creation;
 }
 
 Hdf5Handle make_dataset_creation(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
                                  std::size_t text_length) {
-  const std::string what = "dataset cannot be written";
+  const std::string what = kDatasetNotWritten;
   Hdf5Handle creation =
       checked<EnvironmentError>(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, sink.shown, name, what);
   bool good = H5Pset_obj_track_times(creation.id(), false) >= 0;
@@ -160,11 +173,11 @@ void set_chunks(const Hdf5Sink& sink, const std::string& name, hid_t creation,
                 const std::vector<std::size_t>& shape, std::size_t chunk_rows) {
   std::vector<hsize_t> sizes(shape.begin(), shape.end());
   sizes.front() = chunk_rows;
-  // The level is only told to readers, who do not need it.
+  // The level only informs readers, who do not need it.
   const bool good = H5Pset_chunk(creation, static_cast<int>(sizes.size()), sizes.data()) >= 0 &&
-                    H5Pset_shuffle(creation) >= 0 && H5Pset_deflate(creation, 1) >= 0 &&
+                    H5Pset_shuffle(creation) >= 0 && H5Pset_deflate(creation, kDeflateLevel) >= 0 &&
                     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER) >= 0;
-  check<EnvironmentError>(good, sink.shown, name, "dataset cannot be written");
+  check<EnvironmentError>(good, sink.shown, name, kDatasetNotWritten);
 }
 
 Hdf5Handle create_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
@@ -176,7 +189,7 @@ Hdf5Handle create_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Typ
   Hdf5Handle dataset =
       checked<EnvironmentError>(H5Dcreate2(sink.file.id(), name.c_str(), element.id(), space.id(),
                                            H5P_DEFAULT, creation, H5P_DEFAULT),
-                                H5Dclose, sink.shown, name, "dataset cannot be written");
+                                H5Dclose, sink.shown, name, kDatasetNotWritten);
   write_label(sink.shown, dataset.id(), name, label);
   return dataset;
 }
@@ -189,7 +202,7 @@ void write_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
   const Hdf5Handle element = make_type(sink.shown, type, text_length);
   check<EnvironmentError>(
       H5Dwrite(dataset.id(), element.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, sink.shown,
-      name, "dataset cannot be written");
+      name, kDatasetNotWritten);
   close_dataset(sink, name, dataset);
 }
 
@@ -209,7 +222,7 @@ void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& da
 
 std::string make_memory_name() {
   static std::atomic<std::uint64_t> count = 0;
-  return "strut memory " + std::to_string(count++);
+  return fmt::format("strut memory {}", count++);
 }
 
 }  // namespace strut::hdf5

@@ -20,7 +20,7 @@ Hdf5StreamWriter::Hdf5StreamWriter(const fs::path& path, SealLabel seal)
   const Hdf5Handle creation = hdf5::make_file_creation(path, true);
   sink_.file = checked<EnvironmentError>(
       H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose,
-      path, "", "cannot be written");
+      path, "", kNotWritten);
 }
 
 void Hdf5StreamWriter::create(const std::string& name, Hdf5Type type,
@@ -90,8 +90,8 @@ void Hdf5StreamWriter::commit() {
     hdf5::close_dataset(sink_, name, stream.dataset);
   }
   const bool flushed = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0;
-  check<EnvironmentError>(flushed, sink_.shown, "", "cannot be written");
-  check<EnvironmentError>(sink_.file.reset(), sink_.shown, "", "cannot be written");
+  check<EnvironmentError>(flushed, sink_.shown, "", kNotWritten);
+  check<EnvironmentError>(sink_.file.reset(), sink_.shown, "", kNotWritten);
   seal_file(seal_, target_.temporary(), sink_.shown);
   target_.commit();
 }

@@ -1,4 +1,4 @@
-// HDF5 files that do not fit in memory, written block by block and sealed.
+// Writes sealed HDF5 files that do not fit in memory, block by block.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@
 namespace strut {
 
 /// Writes one file, which appears under its name at `commit` or not at all; its datasets have known
-/// shapes and are filled from the first row on. Chunks are compressed here and handed to the
-/// library whole, so that a full disk fails the call that meets it; every call is checked, closing
-/// too. Memory: one chunk a dataset. Failures are EnvironmentError.
+/// shapes and are filled from the first row on. Chunks are compressed here and passed to the
+/// library whole, so that a full disk fails the call that meets it; every call is checked,
+/// including those that close. Memory: one chunk per dataset. Failures are EnvironmentError.
 class Hdf5StreamWriter {
  public:
   Hdf5StreamWriter(const std::filesystem::path& path, SealLabel seal);
   Hdf5StreamWriter(const Hdf5StreamWriter&) = delete;
   Hdf5StreamWriter& operator=(const Hdf5StreamWriter&) = delete;
 
-  /// A dataset of shape[0] rows. `text_length` counts for texts only.
+  /// Creates a dataset of shape[0] rows. `text_length` applies to texts only.
   void create(const std::string& name, Hdf5Type type, const std::vector<std::size_t>& shape,
               const Hdf5Label& label, std::size_t text_length = 0);
-  /// The next rows of a dataset made by `create`: whole rows, in the type it was made with, texts
-  /// padded to its length. Throws CheckError where they do not fit.
+  /// Appends whole rows to a dataset made by `create`, in its type, texts padded to its length.
+  /// Throws CheckError if they do not fit.
   void append(const std::string& name, std::span<const std::byte> bytes);
   template <class T>
   void append(const std::string& name, const std::vector<T>& values) {
@@ -40,7 +40,8 @@ class Hdf5StreamWriter {
   void write_attribute_list(const std::string& object, const std::string& key,
                             const std::vector<std::string>& values);
 
-  /// Reads the file once more, for its seal. Throws CheckError where a dataset lacks rows.
+  /// Reads the file back for its seal and gives it its name. Throws CheckError if a dataset lacks
+  /// rows.
   void commit();
 
  private:

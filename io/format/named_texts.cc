@@ -1,6 +1,13 @@
 #include "io/format/named_texts.h"
 
+#include <fmt/format.h>
+
 namespace strut {
+namespace {
+
+constexpr char kNames[] = "/name", kTexts[] = "/value";
+
+}  // namespace
 
 void write_named_texts(Hdf5Writer& file, const std::string& group, const NamedTexts& list,
                        const NamedTextsLabel& label) {
@@ -11,17 +18,17 @@ void write_named_texts(Hdf5Writer& file, const std::string& group, const NamedTe
     names.push_back(name);
     texts.push_back(text);
   }
-  file.write(group + "/name", names, {"1", label.names, {}});
-  file.write(group + "/value", texts, {"1", label.texts, {}});
+  file.write(group + kNames, names, {"1", label.names, {}});
+  file.write(group + kTexts, texts, {"1", label.texts, {}});
 }
 
 NamedTexts read_named_texts(const std::filesystem::path& path, const Hdf5Reader& file,
                             const std::string& group) {
-  const std::vector<std::string> names = file.read_texts(group + "/name");
-  const std::vector<std::string> texts = file.read_texts(group + "/value");
+  const std::vector<std::string> names = file.read_texts(group + kNames);
+  const std::vector<std::string> texts = file.read_texts(group + kTexts);
   if (names.size() != texts.size()) {
-    throw InputError(path.string() + ": " + group + "/value: " + std::to_string(texts.size()) +
-                     " values; must be " + std::to_string(names.size()));
+    throw InputError(fmt::format("{}: {}: {} values; must be {}", path.string(), group + kTexts,
+                                 texts.size(), names.size()));
   }
   NamedTexts list;
   list.reserve(names.size());

@@ -1,4 +1,4 @@
-// Lists of (name, text): options, facts, settings, and how they lie in a file.
+// Lists of (name, text): options, facts, settings, and their datasets.
 #pragma once
 
 #include <filesystem>
@@ -13,17 +13,17 @@ namespace strut {
 /// (name, text) in the order of the file.
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// What the two datasets of a list mean.
+/// Descriptions of the two datasets of a list.
 struct NamedTextsLabel {
   std::string names, texts;
 };
 
-/// Datasets GROUP/name and GROUP/value.
+/// Writes the datasets GROUP/name and GROUP/value.
 void write_named_texts(Hdf5Writer& file, const std::string& group, const NamedTexts& list,
                        const NamedTextsLabel& label);
 
-/// `path` stands in messages. Throws InputError where a dataset is missing or the two are not of
-/// one length.
+/// Reads a list from `file`, which messages call `path`. Throws InputError if a dataset is missing
+/// or the lengths of the two differ.
 NamedTexts read_named_texts(const std::filesystem::path& path, const Hdf5Reader& file,
                             const std::string& group);
 

@@ -1,33 +1,29 @@
 #include "io/format/parse_toml.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string_view>
 
-#include "base/error/input_error.h"
 #include "base/text/shorten.h"
 #include "io/file/read_text_file.h"
+#include "io/format/text_line.h"
 
 namespace strut {
 namespace {
 
-// The parser and all that walks its tables recurse a level for every bracket and every part of a
-// key. Real files need 4 of either.
-constexpr int kMaxDepth = 32;
-constexpr int kMaxKeyParts = 32;
+// The parser and all functions that walk its tables recurse one level for every bracket and every
+// part of a key. Real files need 4 of either.
+constexpr std::size_t kMaxDepth = 32;
+constexpr std::size_t kMaxKeyParts = 32;
 constexpr std::size_t kMaxBytes = std::size_t{16} << 20U;
-// Names, paths and short notes: longer ones would only make messages that nobody can read.
+// Names, paths and short notes: longer ones would only make messages unreadable.
 constexpr std::size_t kMaxWordBytes = 256;
 constexpr std::size_t kMaxStringBytes = 4096;
 constexpr std::size_t kMaxDescription = 200;
 
-InputError error_at(const std::filesystem::path& path, std::string_view before,
-                    const std::string& what) {
-  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-  return InputError(path.string() + ":" + std::to_string(line) + ": " + what);
-}
-
-/// Place behind the string whose opening quote is at `begin`; where it is not closed, the end of
-/// its line, or of the text for one of many lines.
+/// Returns the position after the string whose opening quote is at `begin`; if it is not closed,
+/// the end of its line, or of the text for a multi-line string.
 std::size_t find_string_end(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const bool escapes = quote == '"';
@@ -46,48 +42,49 @@ std::size_t find_string_end(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Refuses what would exhaust the stack, and words that no file needs. Reads no more of TOML than
-/// strings, comments, brackets and dots, and agrees with the parser as far as the text is valid.
+/// Nesting, parts and length of the word at a position.
+struct Extent {
+  std::size_t depth = 0;  // of arrays and tables
+  std::size_t parts = 1;  // of a dotted key
+  std::size_t word = 0;   // bytes of a key or value without quotes
+
+  void add(char c) {
+    const auto is_one_of = [c](std::string_view marks) { return marks.find(c) != marks.npos; };
+    if (is_one_of("[{")) ++depth;
+    if (is_one_of("]}") && depth > 0) --depth;
+    if (c == '.') ++parts;
+    if (is_one_of("[]{}=,\n")) parts = 1;
+    word = is_one_of("[]{}=,.\n \t") ? 0 : word + 1;
+  }
+};
+
+/// Refuses texts that would exhaust the stack, and words that no file needs. Recognizes only the
+/// strings, comments, brackets and dots of TOML, and agrees with the parser as far as the text is
+/// valid.
 void check_limits(const std::filesystem::path& path, std::string_view text) {
-  int depth = 0, parts = 1;
-  std::size_t word = 0;  // bytes of a key or value without quotes
-  for (std::size_t i = 0; i < text.size();) {
+  Extent extent;
+  std::size_t i = 0;
+  const auto check = [&](std::size_t value, std::size_t max, const char* fault, const char* unit) {
+    if (value <= max) return;
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+    throw line_error(path, line + 1,
+                     fmt::format("{}; at most {} {} are allowed", fault, max, unit));
+  };
+  while (i < text.size()) {
     const char c = text[i];
     if (c == '"' || c == '\'') {
       const std::size_t end = find_string_end(text, i);
-      if (end - i > kMaxStringBytes) {
-        throw error_at(
-            path, text.substr(0, i),
-            "text too long; at most " + std::to_string(kMaxStringBytes) + " bytes are allowed");
-      }
+      check(end - i, kMaxStringBytes, "text too long", "bytes");
       i = end;
-      continue;
-    }
-    if (c == '#') {
+    } else if (c == '#') {
       i = std::min(text.find('\n', i), text.size());
-      continue;
+    } else {
+      extent.add(c);
+      check(extent.depth, kMaxDepth, "arrays and tables nested too deep", "levels");
+      check(extent.parts, kMaxKeyParts, "dotted key too long", "parts");
+      check(extent.word, kMaxWordBytes, "key or value too long", "bytes");
+      ++i;
     }
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') depth = std::max(depth - 1, 0);
-    if (c == '.') ++parts;
-    if (std::string_view("[]{}=,\n").find(c) != std::string_view::npos) parts = 1;
-    word = std::string_view("[]{}=,.\n \t").find(c) == std::string_view::npos ? word + 1 : 0;
-    if (depth > kMaxDepth) {
-      throw error_at(path, text.substr(0, i),
-                     "arrays and tables nested too deep; at most " + std::to_string(kMaxDepth) +
-                         " levels are allowed");
-    }
-    if (parts > kMaxKeyParts) {
-      throw error_at(
-          path, text.substr(0, i),
-          "dotted key too long; at most " + std::to_string(kMaxKeyParts) + " parts are allowed");
-    }
-    if (word > kMaxWordBytes) {
-      throw error_at(
-          path, text.substr(0, i),
-          "key or value too long; at most " + std::to_string(kMaxWordBytes) + " bytes are allowed");
-    }
-    ++i;
   }
 }
 
@@ -102,9 +99,17 @@ toml::table parse_toml(const std::filesystem::path& path, const std::string& tex
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& e) {
-    throw InputError(path.string() + ":" + std::to_string(e.source().begin.line) +
-                     ": not valid TOML: " + shorten(e.description(), kMaxDescription));
+    throw line_error(path, e.source().begin.line,
+                     "not valid TOML: " + shorten(e.description(), kMaxDescription));
   }
+}
+
+std::string join_key(const std::string& table, const std::string& key) {
+  return table.empty() ? key : fmt::format("{}.{}", table, key);
+}
+
+std::string name_element(const std::string& array, std::size_t index) {
+  return fmt::format("{}[{}]", array, index + 1);
 }
 
 }  // namespace strut

@@ -1,27 +1,27 @@
 #include "io/format/tir.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
 
-#include "base/error/input_error.h"
 #include "base/text/parse_number.h"
 #include "base/text/shorten.h"
 #include "io/file/read_text_file.h"
+#include "io/format/text_line.h"
 
 namespace strut {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{4} << 20U;  // real files have some 20 kB
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20U;  // real files have about 20 kB
 
 std::string quote(std::string_view text) { return "'" + shorten(text) + "'"; }
 
 std::string_view trim(std::string_view text) {
-  const auto is_space = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
+  constexpr std::string_view kBlanks = " \t\n\v\f\r";
+  return strut::trim(text, kBlanks);
 }
 
 std::string to_upper(std::string_view text) {
@@ -30,7 +30,7 @@ std::string to_upper(std::string_view text) {
   return upper;
 }
 
-/// The line without its comment; a comment sign inside quotes is text.
+/// Returns the line without its comment; a comment sign inside quotes is text.
 std::string_view strip_comment(std::string_view line) {
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -46,96 +46,76 @@ std::optional<double> to_number(std::string_view text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// KEY = value
+/// Returns "KEY = value".
 std::string describe(const TirEntry& entry) {
-  return shorten(entry.key) + " = " + (entry.quoted ? quote(entry.text) : shorten(entry.text));
+  return fmt::format("{} = {}", shorten(entry.key),
+                     entry.quoted ? quote(entry.text) : shorten(entry.text));
 }
 
-class Parser {
- public:
-  explicit Parser(const std::filesystem::path& path) { file_.path = path; }
+/// Takes the next line off `content`, without its comment; false at the end.
+bool take_line(std::string_view& content, TextLine& line) {
+  if (content.empty()) return false;
+  const std::size_t end = std::min(content.find('\n'), content.size());
+  line.text = strip_comment(content.substr(0, end));
+  ++line.number;
+  content.remove_prefix(std::min(end + 1, content.size()));
+  return true;
+}
 
-  void parse_line(std::string_view line, int number) {
-    line_ = number;
-    const std::string_view text = strip_comment(line);
-    if (text.empty()) return;
-    if (text.front() == '[') {
-      parse_section(text);
-    } else if (text.front() == '{') {
-      parse_header(text);
-    } else if (text.find('=') != std::string_view::npos) {
-      parse_entry(text);
-    } else {
-      parse_row(text);
-    }
+/// Parses "[NAME]".
+std::string parse_section(const TextLine& line) {
+  if (line.text.back() != ']' || line.text.size() < 3) {
+    throw line_error(line, quote(line.text) + ": a section must read [NAME]");
   }
+  return to_upper(trim(line.text.substr(1, line.text.size() - 2)));
+}
 
-  TirFile take() { return std::move(file_); }
-
- private:
-  InputError error(const std::string& what) const {
-    return InputError(file_.path.string() + ":" + std::to_string(line_) + ": " + what);
+/// Parses "{column names}".
+std::string parse_column_names(const TextLine& line) {
+  if (line.text.back() != '}') {
+    throw line_error(line, quote(line.text) + ": must read {column names}");
   }
+  return std::string(trim(line.text.substr(1, line.text.size() - 2)));
+}
 
-  void parse_section(std::string_view text) {
-    if (text.back() != ']' || text.size() < 3) {
-      throw error(quote(text) + ": a section must read [NAME]");
-    }
-    section_ = to_upper(trim(text.substr(1, text.size() - 2)));
-    in_table_ = false;
+/// Parses "KEY = value" or "KEY = 'text'".
+TirEntry parse_entry(const TextLine& line, const std::string& section) {
+  const std::size_t equals = line.text.find('=');
+  TirEntry entry{section, to_upper(trim(line.text.substr(0, equals))),
+                 std::string(trim(line.text.substr(equals + 1))), false, line.number};
+  if (entry.key.empty()) throw line_error(line, quote(line.text) + ": a name must precede '='");
+  if (entry.text.empty()) throw line_error(line, shorten(entry.key) + ": a value must follow '='");
+  if (!entry.text.starts_with('\'')) return entry;
+  if (entry.text.size() < 2 || entry.text.back() != '\'') {
+    throw line_error(line, describe(entry) + ": the closing quote is missing");
   }
+  entry.text = std::string(trim(std::string_view(entry.text).substr(1, entry.text.size() - 2)));
+  entry.quoted = true;
+  return entry;
+}
 
-  void parse_header(std::string_view text) {
-    if (text.back() != '}') throw error(quote(text) + ": must read {column names}");
-    file_.tables.push_back(
-        {section_, std::string(trim(text.substr(1, text.size() - 2))), {}, line_});
-    in_table_ = true;
+/// Parses the numbers of a row, separated by blanks or commas.
+std::vector<double> parse_row(const TextLine& line) {
+  std::vector<double> row;
+  for (std::string_view rest = line.text; !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of(" \t,"), rest.size());
+    const std::optional<double> value = to_number(rest.substr(0, end));
+    if (!value) throw line_error(line, quote(rest.substr(0, end)) + ": must be a number");
+    row.push_back(*value);
+    rest = trim(rest.substr(std::min(end + 1, rest.size())));
   }
+  return row;
+}
 
-  void parse_entry(std::string_view text) {
-    const std::size_t equals = text.find('=');
-    TirEntry entry{section_, to_upper(trim(text.substr(0, equals))),
-                   std::string(trim(text.substr(equals + 1))), false, line_};
-    if (entry.key.empty()) throw error(quote(text) + ": a name must precede '='");
-    if (entry.text.starts_with('\'')) {
-      if (entry.text.size() < 2 || entry.text.back() != '\'') {
-        throw error(describe(entry) + ": the closing quote is missing");
-      }
-      entry.text = std::string(trim(std::string_view(entry.text).substr(1, entry.text.size() - 2)));
-      entry.quoted = true;
-    } else if (entry.text.empty()) {
-      throw error(shorten(entry.key) + ": a value must follow '='");
-    }
-    check_new(entry);
-    file_.entries.push_back(std::move(entry));
-    in_table_ = false;
-  }
+/// Lines of the entries so far, by section and key.
+using EntryLines = std::map<std::pair<std::string, std::string>, int>;
 
-  void check_new(const TirEntry& entry) {
-    const auto [first, is_new] = lines_.try_emplace({entry.section, entry.key}, entry.line);
-    if (is_new) return;
-    throw error(describe(entry) + ": already given in line " + std::to_string(first->second));
-  }
-
-  void parse_row(std::string_view text) {
-    if (!in_table_) throw error(quote(text) + ": must be KEY = value or [SECTION]");
-    std::vector<double> row;
-    for (std::string_view rest = text; !rest.empty();) {
-      const std::size_t end = std::min(rest.find_first_of(" \t,"), rest.size());
-      const std::optional<double> value = to_number(rest.substr(0, end));
-      if (!value) throw error(quote(rest.substr(0, end)) + ": must be a number");
-      row.push_back(*value);
-      rest = trim(rest.substr(std::min(end + 1, rest.size())));
-    }
-    file_.tables.back().rows.push_back(std::move(row));
-  }
-
-  TirFile file_;
-  std::map<std::pair<std::string, std::string>, int> lines_;  // by section and key
-  std::string section_;
-  bool in_table_ = false;
-  int line_ = 0;
-};
+void refuse_repeated(const TextLine& line, const TirEntry& entry, EntryLines& lines) {
+  const auto [first, is_new] = lines.try_emplace({entry.section, entry.key}, entry.line);
+  if (is_new) return;
+  throw line_error(line,
+                   fmt::format("{}: already given in line {}", describe(entry), first->second));
+}
 
 }  // namespace
 
@@ -146,13 +126,29 @@ const TirEntry* TirFile::find(std::string_view key) const {
 }
 
 TirFile parse_tir(std::string_view content, const std::filesystem::path& path) {
-  Parser parser(path);
-  for (int line = 1; !content.empty(); ++line) {
-    const std::size_t end = std::min(content.find('\n'), content.size());
-    parser.parse_line(content.substr(0, end), line);
-    content.remove_prefix(std::min(end + 1, content.size()));
+  TirFile file{path, {}, {}};
+  EntryLines lines;
+  std::string section;
+  bool in_table = false;
+  for (TextLine line{path}; take_line(content, line);) {
+    if (line.text.empty()) continue;
+    if (line.text.front() == '[') {
+      section = parse_section(line);
+      in_table = false;
+    } else if (line.text.front() == '{') {
+      file.tables.push_back({section, parse_column_names(line), {}, line.number});
+      in_table = true;
+    } else if (line.text.find('=') != std::string_view::npos) {
+      file.entries.push_back(parse_entry(line, section));
+      refuse_repeated(line, file.entries.back(), lines);
+      in_table = false;
+    } else if (in_table) {
+      file.tables.back().rows.push_back(parse_row(line));
+    } else {
+      throw line_error(line, quote(line.text) + ": must be KEY = value or [SECTION]");
+    }
   }
-  return parser.take();
+  return file;
 }
 
 TirFile read_tir(const std::filesystem::path& path) {
@@ -166,8 +162,7 @@ double get_number(const TirFile& file, const TirEntry& entry) {
 }
 
 InputError tir_error(const TirFile& file, const TirEntry& entry, const std::string& what) {
-  return InputError(file.path.string() + ":" + std::to_string(entry.line) + ": " + describe(entry) +
-                    ": " + what);
+  return line_error(file.path, entry.line, fmt::format("{}: {}", describe(entry), what));
 }
 
 }  // namespace strut

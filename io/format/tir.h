@@ -1,4 +1,5 @@
-// Reader of ADAMS property files (.tir): sections, `KEY = value`, tables. Knows no tire model.
+// Reader of ADAMS property files (.tir): sections, `KEY = value`, tables. Independent of tire
+// models.
 //
 //   $ comment          ! comment
 //   [SECTION]
@@ -40,21 +41,22 @@ struct TirFile {
   std::vector<TirEntry> entries;
   std::vector<TirTable> tables;
 
-  /// The entry of this key in whatever section, or nullptr.
+  /// Returns the first entry with this key in any section, or nullptr.
   const TirEntry* find(std::string_view key) const;
 };
 
-/// Reads the file at `path`. Throws InputError "file:line: ..." where it is missing, larger than
-/// 4 MiB, or a line is none of the above, EnvironmentError where it cannot be read.
+/// Reads the file at `path`. Throws InputError if it is missing or larger than 4 MiB, or
+/// "PATH:LINE:
+/// ..." if a line is none of the above; EnvironmentError if it cannot be read.
 TirFile read_tir(const std::filesystem::path& path);
 
-/// Parses the content of a file; `path` only names it in messages.
+/// Parses the content of a file that messages call `path`.
 TirFile parse_tir(std::string_view content, const std::filesystem::path& path);
 
-/// The entry's value as a finite number. Throws InputError otherwise.
+/// Returns the value of an entry. Throws InputError if it is not a finite number.
 double get_number(const TirFile& file, const TirEntry& entry);
 
-/// "file:line: KEY = value: what"
+/// Returns the error "PATH:LINE: KEY = value: WHAT".
 InputError tir_error(const TirFile& file, const TirEntry& entry, const std::string& what);
 
 }  // namespace strut

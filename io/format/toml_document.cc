@@ -1,14 +1,14 @@
 #include "io/format/toml_document.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/shorten.h"
-#include "io/format/parse_toml.h"
+#include "io/format/toml_source.h"
 
 namespace strut {
 
@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Unknown keys that one message lists.
-constexpr std::size_t kMaxUnread = 20;
+// Elements of an array that a message quotes.
+constexpr std::size_t kMaxQuotedElements = 6;
 
 const toml::node& as_node(const void* node) { return *static_cast<const toml::node*>(node); }
 
-std::string describe_type(const toml::node& node) {
+const char* describe_type(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
       return "a table";
@@ -39,92 +39,34 @@ std::string describe_type(const toml::node& node) {
   }
 }
 
-// The value as written, or its type where the text would be long.
+// Returns the value as a message quotes it, or its type if the text would be long.
 std::string describe_value(const toml::node& node) {
   if (const auto* value = node.as_floating_point()) return format_number(value->get());
   if (const auto* value = node.as_integer()) return std::to_string(value->get());
   if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
-  if (const auto* value = node.as_string()) return "\"" + shorten(value->get()) + "\"";
+  if (const auto* value = node.as_string()) return fmt::format("\"{}\"", shorten(value->get()));
   const auto* array = node.as_array();
-  if (array == nullptr || array->size() > 6 || array->is_array_of_tables()) {
-    return "(" + describe_type(node) + ")";
+  if (array == nullptr || array->size() > kMaxQuotedElements || array->is_array_of_tables()) {
+    return fmt::format("({})", describe_type(node));
   }
   std::string text;
   for (const toml::node& item : *array) text += (text.empty() ? "" : ", ") + describe_value(item);
-  return "[" + text + "]";
+  return fmt::format("[{}]", text);
 }
 
 }  // namespace
-
-struct Table::Source {
-  fs::path path;
-  toml::table root;
-  std::map<std::string, std::set<std::string>> asked;  // table name -> keys somebody asked for
-
-  std::string at(const toml::node& node) const {
-    return path.string() + ":" + std::to_string(node.source().begin.line) + ": ";
-  }
-
-  std::vector<std::string> known_keys(const std::string& table_name) const {
-    const auto found = asked.find(table_name);
-    if (found == asked.end()) return {};
-    return {found->second.begin(), found->second.end()};
-  }
-
-  // The keys of a table that nobody has asked for.
-  std::vector<std::string> unread_keys(const toml::table& table, const std::string& name) const {
-    const auto found = asked.find(name);
-    std::vector<std::string> unread;
-    for (const auto& [key, value] : table) {
-      const std::string text(key.str());
-      if (found == asked.end() || found->second.count(text) == 0) unread.push_back(text);
-    }
-    return unread;
-  }
-
-  /// A line for each key that nobody asked for; beyond kMaxUnread, empty ones.
-  void add_unread(const toml::table& table, const std::string& name,
-                  std::vector<std::string>& unread) const;
-  void add_unread_inside(const toml::node& node, const std::string& name,
-                         std::vector<std::string>& unread) const;
-};
-
-void Table::Source::add_unread(const toml::table& table, const std::string& name,
-                               std::vector<std::string>& unread) const {
-  const std::string prefix = name.empty() ? "" : name + ".";
-  for (const std::string& key : unread_keys(table, name)) {
-    if (unread.size() >= kMaxUnread) {
-      unread.emplace_back();  // counts
-      continue;
-    }
-    unread.push_back(at(*table.get(key)) + "unknown key '" + shorten(prefix + key) + "'" +
-                     suggest_name(key, known_keys(name)));
-  }
-  for (const auto& [key, value] : table) {
-    const auto found = asked.find(name);
-    if (found == asked.end() || found->second.count(std::string(key.str())) == 0) continue;
-    add_unread_inside(value, prefix + std::string(key.str()), unread);
-  }
-}
-
-void Table::Source::add_unread_inside(const toml::node& node, const std::string& name,
-                                      std::vector<std::string>& unread) const {
-  if (const toml::table* table = node.as_table()) return add_unread(*table, name, unread);
-  const toml::array* array = node.as_array();
-  if (array == nullptr) return;
-  for (std::size_t i = 0; i < array->size(); ++i) {
-    const toml::table* item = array->get(i)->as_table();
-    if (item != nullptr) add_unread(*item, name + "[" + std::to_string(i + 1) + "]", unread);
-  }
-}
 
 Table::Table(std::shared_ptr<Source> source, const void* node, std::string name)
     : source_(std::move(source)), node_(node), name_(std::move(name)) {
   source_->asked[name_];
 }
 
-std::string Table::full_name(const std::string& key) const {
-  return name_.empty() ? key : name_ + "." + key;
+std::string Table::full_name(const std::string& key) const { return join_key(name_, key); }
+
+InputError Table::value_error(const std::string& key, const void* node,
+                              const std::string& what) const {
+  return source_->error(as_node(node), fmt::format("{} = {}: {}", full_name(key),
+                                                   describe_value(as_node(node)), what));
 }
 
 const void* Table::find(const std::string& key) const {
@@ -135,33 +77,29 @@ const void* Table::find(const std::string& key) const {
 const void* Table::require(const std::string& key) const {
   const void* node = find(key);
   if (node != nullptr) return node;
-  std::string what = "missing key '" + full_name(key) + "'";
-  // A required key is often missing because it is misspelled; say so now, the check of unread keys
-  // is never reached.
-  const auto unread = source_->unread_keys(*as_node(node_).as_table(), name_);
+  std::string what = fmt::format("missing key '{}'", full_name(key));
+  // A required key is often missing because it is misspelled; the check of unread keys is never
+  // reached then.
+  const auto unread = source_->list_unread(*as_node(node_).as_table(), name_);
   const std::string misspelled = nearest_name(key, unread);
-  if (!misspelled.empty()) what += "; is '" + misspelled + "' meant to be it?";
-  throw InputError(source_->at(as_node(node_)) + what);
+  if (!misspelled.empty()) what += fmt::format("; is '{}' meant to be it?", misspelled);
+  throw source_->error(as_node(node_), what);
 }
 
 InputError Table::error(const std::string& key, const std::string& what) const {
   const void* node = find(key);
-  if (node == nullptr) {
-    return InputError(source_->at(as_node(node_)) + full_name(key) + ": " + what);
-  }
-  return InputError(source_->at(as_node(node)) + full_name(key) + " = " +
-                    describe_value(as_node(node)) + ": " + what);
+  if (node != nullptr) return value_error(key, node, what);
+  return source_->error(as_node(node_), fmt::format("{}: {}", full_name(key), what));
 }
 
 InputError Table::error(const std::string& what) const {
-  if (name_.empty()) return InputError(source_->path.string() + ": " + what);
-  return InputError(source_->at(as_node(node_)) + "[" + name_ + "]: " + what);
+  if (name_.empty()) return InputError(fmt::format("{}: {}", source_->path.string(), what));
+  return source_->error(as_node(node_), fmt::format("[{}]: {}", name_, what));
 }
 
 InputError Table::wrong_type(const std::string& key, const void* node,
                              const std::string& wanted) const {
-  return InputError(source_->at(as_node(node)) + full_name(key) + " = " +
-                    describe_value(as_node(node)) + ": must be " + wanted);
+  return value_error(key, node, "must be " + wanted);
 }
 
 double Table::checked_number(const std::string& key, const void* node, const Range& range) const {
@@ -170,8 +108,7 @@ double Table::checked_number(const std::string& key, const void* node, const Ran
   if (range.contains(value)) return value;
   const std::string allowed =
       std::isfinite(value) ? range.describe() : "must be a finite number; " + range.describe();
-  throw InputError(source_->at(as_node(node)) + full_name(key) + " = " +
-                   describe_value(as_node(node)) + ": " + allowed);
+  throw value_error(key, node, allowed);
 }
 
 bool Table::has(const std::string& key) const { return find(key) != nullptr; }
@@ -201,7 +138,7 @@ std::int64_t Table::integer(const std::string& key, std::int64_t low, std::int64
   const auto* value = as_node(node).as_integer();
   if (value == nullptr) throw wrong_type(key, node, "a whole number");
   if (value->get() >= low && value->get() <= high) return value->get();
-  throw error(key, "must lie in [" + std::to_string(low) + ", " + std::to_string(high) + "]");
+  throw error(key, fmt::format("must lie in [{}, {}]", low, high));
 }
 
 std::int64_t Table::integer_or(const std::string& key, std::int64_t fallback, std::int64_t low,
@@ -253,7 +190,7 @@ std::vector<double> Table::checked_numbers(const std::string& key, const void* n
   if (array == nullptr) throw wrong_type(key, node, "an array of numbers");
   std::vector<double> values;
   for (std::size_t i = 0; i < array->size(); ++i) {
-    values.push_back(checked_number(key + "[" + std::to_string(i + 1) + "]", array->get(i), range));
+    values.push_back(checked_number(name_element(key, i), array->get(i), range));
   }
   return values;
 }
@@ -265,15 +202,16 @@ std::vector<double> Table::numbers(const std::string& key, const Range& range) c
 std::vector<std::vector<double>> Table::rows(const std::string& key, const Range& range) const {
   const void* node = require(key);
   const toml::array* array = as_node(node).as_array();
-  if (array == nullptr || array->empty())
+  if (array == nullptr || array->empty()) {
     throw wrong_type(key, node, "an array of rows of numbers");
+  }
   std::vector<std::vector<double>> rows;
   for (std::size_t i = 0; i < array->size(); ++i) {
-    const std::string row = key + "[" + std::to_string(i + 1) + "]";
+    const std::string row = name_element(key, i);
     rows.push_back(checked_numbers(row, array->get(i), range));
     const std::size_t wanted = std::max<std::size_t>(rows.front().size(), 1);
     if (rows.back().size() == wanted) continue;
-    throw wrong_type(row, array->get(i), "an array of " + std::to_string(wanted) + " numbers");
+    throw wrong_type(row, array->get(i), fmt::format("an array of {} numbers", wanted));
   }
   return rows;
 }
@@ -299,7 +237,8 @@ int Table::choice(const std::string& key, const std::vector<std::string>& names)
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] == name) return static_cast<int>(i);
   }
-  throw error(key, "must be one of " + join_names(names) + suggest_name(name, names));
+  throw error(key,
+              fmt::format("must be one of {}{}", join_names(names), suggest_name(name, names)));
 }
 
 int Table::choice_or(const std::string& key, int fallback,
@@ -316,7 +255,7 @@ fs::path Table::file(const std::string& key) const {
   const std::string what = fs::exists(status)                          ? "not a file"
                            : status.type() == fs::file_type::not_found ? "file not found"
                                                                        : code.message();
-  throw error(key, what + ": " + shorten(path.string(), 4 * kMaxQuoted));
+  throw error(key, fmt::format("{}: {}", what, shorten(path.string(), 4 * kMaxQuoted)));
 }
 
 Table Table::table(const std::string& key) const {
@@ -334,11 +273,11 @@ std::vector<Table> Table::tables(const std::string& key) const {
   const void* node = require(key);
   const toml::array* array = as_node(node).as_array();
   if (array == nullptr || !array->is_array_of_tables()) {
-    throw wrong_type(key, node, "an array of tables, [[" + full_name(key) + "]]");
+    throw wrong_type(key, node, fmt::format("an array of tables, [[{}]]", full_name(key)));
   }
   std::vector<Table> found;
   for (std::size_t i = 0; i < array->size(); ++i) {
-    found.push_back({source_, array->get(i), full_name(key) + "[" + std::to_string(i + 1) + "]"});
+    found.push_back({source_, array->get(i), name_element(full_name(key), i)});
   }
   return found;
 }
@@ -362,7 +301,7 @@ void Document::check_all_read() const {
   const std::size_t shown = std::min(unread.size(), kMaxUnread);
   for (std::size_t i = 1; i < shown; ++i) message += "\n" + unread[i];
   if (shown < unread.size()) {
-    message += "\nand " + std::to_string(unread.size() - shown) + " more unknown keys";
+    message += fmt::format("\nand {} more unknown keys", unread.size() - shown);
   }
   throw InputError(message);
 }

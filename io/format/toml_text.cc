@@ -1,14 +1,15 @@
 #include "io/format/toml_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <sstream>
 #include <string_view>
 
-#include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "io/format/parse_toml.h"
+#include "io/format/text_line.h"
 
 namespace strut {
 namespace {
@@ -24,30 +25,30 @@ std::string describe(const toml::node& node) {
 void add_values(const toml::node& node, const std::string& name, TomlValues& values) {
   if (const toml::table* table = node.as_table()) {
     for (const auto& [key, value] : *table) {
-      add_values(value, (name.empty() ? "" : name + ".") + std::string(key.str()), values);
+      add_values(value, join_key(name, std::string(key.str())), values);
     }
   } else if (const toml::array* array = node.as_array()) {
     for (std::size_t i = 0; i < array->size(); ++i) {
-      add_values(*array->get(i), name + "[" + std::to_string(i + 1) + "]", values);
+      add_values(*array->get(i), name_element(name, i), values);
     }
   } else {
     values.emplace_back(name, describe(node));
   }
 }
 
-/// Place in `text` of a line and column as the parser counts them: from 1, columns in code points,
-/// from behind a byte order mark on.
-std::size_t find_place(const std::string& text, const toml::source_position& position) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  std::size_t place = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  for (toml::source_index line = 1; line < position.line; ++line)
-    place = text.find('\n', place) + 1;
+/// Returns the offset in `text` of a line and column as the parser counts them: from 1, columns in
+/// code points, starting after a byte order mark.
+std::size_t find_offset(const std::string& text, const toml::source_position& position) {
+  std::size_t offset = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+  for (toml::source_index line = 1; line < position.line; ++line) {
+    offset = text.find('\n', offset) + 1;
+  }
   for (toml::source_index column = 1; column < position.column; ++column) {
     do {
-      ++place;
-    } while (place < text.size() && (static_cast<unsigned char>(text[place]) & 0xC0U) == 0x80U);
+      ++offset;
+    } while (offset < text.size() && (static_cast<unsigned char>(text[offset]) & 0xC0U) == 0x80U);
   }
-  return place;
+  return offset;
 }
 
 TomlValues flatten(const std::filesystem::path& path, const std::string& text) {
@@ -57,22 +58,23 @@ TomlValues flatten(const std::filesystem::path& path, const std::string& text) {
   return values;
 }
 
-/// The text with a line of `key` set in a table that does not have it: in an inline table in front
-/// of the others, else below the table's heading, or a new table at the end.
+/// Returns the text with `key` added to its table: as the first key of an inline table, else below
+/// the table's heading, or in a new table at the end.
 std::string insert_value(const std::string& text, const toml::table& root, const std::string& key,
                          const std::string& literal) {
   const std::size_t dot = key.rfind('.');
-  const std::string line = key.substr(dot + 1) + " = " + literal;
+  const std::string line = fmt::format("{} = {}", key.substr(dot + 1), literal);
   if (dot == std::string::npos) return line + "\n" + text;
   const std::string name = key.substr(0, dot);
   const toml::node* node = root.at_path(name).node();
   const toml::table* table = node == nullptr ? nullptr : node->as_table();
-  if (table == nullptr) return text + "\n[" + name + "]\n" + line + "\n";
-  const std::size_t begin = find_place(text, table->source().begin);
-  const std::size_t place = text.find(table->is_inline() ? '{' : '\n', begin);
-  if (place == std::string::npos) return text + "\n" + line + "\n";
-  const std::string inserted = table->is_inline() ? " " + line + "," : line + "\n";
-  return text.substr(0, place + 1) + inserted + text.substr(place + 1);
+  if (table == nullptr) return fmt::format("{}\n[{}]\n{}\n", text, name, line);
+  const std::size_t begin = find_offset(text, table->source().begin);
+  const std::size_t before = text.find(table->is_inline() ? '{' : '\n', begin);
+  if (before == std::string::npos) return fmt::format("{}\n{}\n", text, line);
+  const std::string inserted =
+      table->is_inline() ? fmt::format(" {},", line) : fmt::format("{}\n", line);
+  return text.substr(0, before + 1) + inserted + text.substr(before + 1);
 }
 
 std::string set_value(const std::filesystem::path& path, const std::string& text,
@@ -80,11 +82,12 @@ std::string set_value(const std::filesystem::path& path, const std::string& text
   const toml::table root = parse_toml(path, text);
   const toml::node* node = root.at_path(key).node();
   if (node == nullptr) return insert_value(text, root, key, literal);
-  const std::size_t begin = find_place(text, node->source().begin);
-  return text.substr(0, begin) + literal + text.substr(find_place(text, node->source().end));
+  const std::size_t begin = find_offset(text, node->source().begin);
+  return text.substr(0, begin) + literal + text.substr(find_offset(text, node->source().end));
 }
 
-/// Layouts of a file are many: what was to be set must be, and nothing else.
+/// Throws InputError unless `after` holds the values of `before` with `literals` set and no other
+/// change: files have many layouts.
 void check_set(const std::filesystem::path& path, const std::string& before,
                const std::string& after, const TomlValues& literals) {
   std::map<std::string, std::string> wanted;
@@ -96,14 +99,15 @@ void check_set(const std::filesystem::path& path, const std::string& before,
              value.first.starts_with(key + ".");
     };
     std::erase_if(wanted, is_of_key);
-    for (const auto& [name, value] : flatten(path, probe + " = " + literal)) {
+    for (const auto& [name, value] : flatten(path, fmt::format("{} = {}", probe, literal))) {
       wanted[key + name.substr(probe.size())] = value;
     }
   }
   const TomlValues all(wanted.begin(), wanted.end());
   if (flatten(path, after) == all) return;
-  throw InputError(path.string() + ": " + literals.front().first +
-                   ": cannot be set there; write it as a key of its own line in its [table]");
+  throw InputError(fmt::format(
+      "{}: {}: cannot be set in this layout; write it on a line of its own in its [table]",
+      path.string(), literals.front().first));
 }
 
 }  // namespace
@@ -117,9 +121,7 @@ std::string quote_toml(const std::string& text) {
       quoted += c;
       continue;
     }
-    char escaped[8];
-    std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(byte));
-    quoted += escaped;
+    quoted += fmt::format("\\u{:04X}", byte);
   }
   return quoted + "\"";
 }
@@ -144,10 +146,10 @@ std::string replace_toml_texts(const std::filesystem::path& path, const TomlValu
   for (const auto& [key, value] : values) {
     const toml::node* node = root.at_path(key).node();
     if (node == nullptr || !node->is_string()) {
-      throw InputError(path.string() + ": " + key + ": no text there");
+      throw InputError(fmt::format("{}: {}: must be a text in quotes", path.string(), key));
     }
     changes.push_back(
-        {{find_place(text, node->source().begin), find_place(text, node->source().end)},
+        {{find_offset(text, node->source().begin), find_offset(text, node->source().end)},
          quote_toml(value)});
   }
   std::sort(changes.begin(), changes.end());

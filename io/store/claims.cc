@@ -1,6 +1,7 @@
 #include "io/store/claims.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/random.h>
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 
 #include "base/text/parse_number.h"
 #include "io/file/process_identity.h"
+#include "io/file/sha256.h"
 #include "io/file/temporary_file.h"
 #include "io/store/heartbeat.h"
 
@@ -30,22 +32,20 @@ constexpr std::string_view kRunnerPrefix = "runner.";
 constexpr std::string_view kNewPrefix = "new.";
 constexpr char kTakeoverMark = '~';
 constexpr std::size_t kNonceDigits = 16;
+constexpr char kHexDigits[] = "0123456789abcdef";
 
 std::string calc_nonce() {
   std::array<unsigned char, kNonceDigits / 2> bytes{};
   if (::getentropy(bytes.data(), bytes.size()) != 0) {
-    throw file_failure("claims", "no random numbers", errno);
+    throw file_failure("claims", "random numbers are not available", errno);
   }
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string nonce;
-  for (const unsigned char byte : bytes) nonce += {kDigits[byte >> 4], kDigits[byte & 15]};
-  return nonce;
+  return to_hex(bytes);
 }
 
-// The end of HOST.PID.NONCE; of a text that is no such name, something that a file name can hold.
+// Returns the end of HOST.PID.NONCE; for any other text, one that a file name can contain.
 std::string get_nonce(const std::string& runner) {
   const std::string nonce = runner.substr(runner.rfind('.') + 1);
-  const bool is_plain = nonce.find_first_not_of("0123456789abcdef") == std::string::npos;
+  const bool is_plain = nonce.find_first_not_of(kHexDigits) == std::string::npos;
   return is_plain ? nonce : "unknown";
 }
 
@@ -54,7 +54,7 @@ bool is_unit_name(const std::string& name) {
          !name.starts_with(kRunnerPrefix) && !name.starts_with(kNewPrefix) && name[0] != '.';
 }
 
-// HOST.PID.NONCE, taken apart.
+// Parts of HOST.PID.NONCE.
 struct RunnerName {
   std::string host;
   std::string process;
@@ -65,15 +65,16 @@ std::optional<RunnerName> parse_runner_name(const std::string& runner) {
   const auto process =
       nonce == std::string::npos || nonce == 0 ? std::string::npos : runner.rfind('.', nonce - 1);
   if (process == std::string::npos || process == 0) return std::nullopt;
-  const bool is_nonce =
-      runner.size() - nonce - 1 == kNonceDigits &&
-      runner.find_first_not_of("0123456789abcdef", nonce + 1) == std::string::npos;
+  const bool is_nonce = runner.size() - nonce - 1 == kNonceDigits &&
+                        runner.find_first_not_of(kHexDigits, nonce + 1) == std::string::npos;
   const std::string number = runner.substr(process + 1, nonce - process - 1);
   if (!is_nonce || parse_number<pid_t>(number).value_or(0) <= 0) return std::nullopt;
   return RunnerName{runner.substr(0, process), number};
 }
 
-// The runner that a claim names; nullopt: there is no claim.
+std::string make_claim_text(const std::string& runner) { return runner + "\n"; }
+
+// Returns the runner that a claim names; nullopt if there is no claim.
 std::optional<std::string> read_holder(const Folder& folder, const std::string& claim) {
   const auto text = folder.read_if_present(claim);
   if (!text) return std::nullopt;
@@ -99,14 +100,16 @@ struct Claims::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  void collect();
-  bool is_abandoned_file(const std::string& file);
+  void remove_abandoned();
+  bool is_abandoned(const std::string& file);
+  bool is_abandoned_takeover(const std::string& file);
+  bool is_abandoned_temporary(const std::string& file);
   struct Judgment {
-    Life life;
-    bool stands_still;  // for a lease
+    Liveness liveness;
+    bool is_stalled;  // the counter did not change for a lease
   };
   Judgment judge(const std::string& runner);
-  bool stands_still(const std::string& runner, const std::string& text);
+  bool is_stalled(const std::string& runner, const std::string& text);
   bool acquire(const std::string& claim);
   bool take_over(const std::string& claim, const std::string& holder);
   void remove_own(const std::string& claim) const;
@@ -121,27 +124,27 @@ struct Claims::State {
   std::mutex mutex;
   std::set<std::string> held;
 
-  struct Seen {
-    std::string text;
+  struct Observation {
+    std::string text;  // of the runner's file
     Clock::time_point since;
   };
-  std::map<std::string, Seen> seen;  // by runner: what its file said, and since when
+  std::map<std::string, Observation> observations;  // by runner
   std::optional<Heartbeat> heartbeat;
 };
 
 Claims::State::State(const Folder& claims_folder, const ClaimOptions& claim_options)
     : folder(claims_folder), options(claim_options), identity(find_own_identity()) {
-  name = identity.host + "." + identity.process + "." + calc_nonce();
+  name = fmt::format("{}.{}.{}", identity.host, identity.process, calc_nonce());
   const std::string runner_file = get_runner_file(name);
   {
     TemporaryFile file = make_temporary(runner_file);
     const std::string text = write_runner_text(identity, 0);
     file.write(text);
-    // Else a power cut may leave an empty file, of which only the lease tells that nobody lives.
+    // Otherwise a power cut may leave an empty file, whose runner only the lease would prove dead.
     file.flush_and_compare(std::as_bytes(std::span(text)));
     file.name_over();
   }
-  collect();
+  remove_abandoned();
   heartbeat.emplace(folder, runner_file, identity, options.heartbeat);
 }
 
@@ -152,58 +155,66 @@ Claims::State::~State() {
   folder.try_remove(get_runner_file(name));
 }
 
-// Removes what killed runners of this host left: their own files, which leaves their claims without
-// a runner for anybody to take, files on the way to a name, and rights to take over.
-void Claims::State::collect() {
+// Removes the files of dead runners of this host: their own files first, after which their claims
+// are stale for everybody, then temporary files and rights to take over.
+void Claims::State::remove_abandoned() {
   for (const std::string& file : folder.list()) {
     if (file.starts_with(kRunnerPrefix)) {
       const auto content = read_runner(folder, file.substr(kRunnerPrefix.size()));
-      if (content && judge_process(content->identity, identity) == Life::kGone) {
+      if (content && check_liveness(content->identity, identity) == Liveness::kDead) {
         folder.try_remove(file);
       }
     }
   }
   for (const std::string& file : folder.list()) {
-    if (is_abandoned_file(file)) folder.try_remove(file);
+    if (is_abandoned(file)) folder.try_remove(file);
   }
 }
 
-bool Claims::State::is_abandoned_file(const std::string& file) {
-  if (file.find(kTakeoverMark) != std::string::npos &&
-      is_unit_name(file.substr(0, file.find('~')))) {
-    const auto holder = read_holder(folder, file);
-    return holder && judge(*holder).life == Life::kGone;
+bool Claims::State::is_abandoned(const std::string& file) {
+  const std::size_t mark = file.find(kTakeoverMark);
+  if (mark != std::string::npos && is_unit_name(file.substr(0, mark))) {
+    return is_abandoned_takeover(file);
   }
-  if (!file.starts_with(kNewPrefix)) return false;
-  // new.RUNNER.NUMBER
+  return file.starts_with(kNewPrefix) && is_abandoned_temporary(file);
+}
+
+// UNIT~NONCE
+bool Claims::State::is_abandoned_takeover(const std::string& file) {
+  const auto holder = read_holder(folder, file);
+  return holder && judge(*holder).liveness == Liveness::kDead;
+}
+
+// new.RUNNER.NUMBER
+bool Claims::State::is_abandoned_temporary(const std::string& file) {
   const std::string runner = file.substr(
       kNewPrefix.size(), file.rfind('.') - std::min(file.rfind('.'), kNewPrefix.size()));
   const auto parsed = parse_runner_name(runner);
   if (!parsed || runner == name || read_runner(folder, runner)) return false;
   const auto text = folder.read_if_present(file);
   if (!text) return false;
-  // A claim on the way to its name, and its runner has ended.
-  if (*text == runner + "\n") return true;
-  // A runner's file on the way to its name, perhaps right now.
+  // A claim before it got its name, whose runner has ended.
+  if (*text == make_claim_text(runner)) return true;
+  // A runner's file before it got its name, which may be about to happen.
   const RunnerFile content = read_runner_text(*text);
   if (!content.identity.start.empty()) {
-    return judge_process(content.identity, identity) == Life::kGone;
+    return check_liveness(content.identity, identity) == Liveness::kDead;
   }
-  // Killed before it could write who it is. A runner that is about to, in a container that shares
-  // this host's name, loses its file, says so and ends.
+  // Its runner was killed before it wrote its identity. A runner that is about to write it, in a
+  // container that shares this host's name, loses its file, reports that and ends.
   return parsed->host == identity.host && !is_process_number_taken(parsed->process);
 }
 
-// A runner makes its file first and removes it last: no file, no runner.
+// A runner makes its file first and removes it last: without a file the runner is dead.
 Claims::State::Judgment Claims::State::judge(const std::string& runner) {
   const auto content = read_runner(folder, runner);
-  if (!content) return {Life::kGone, true};
-  return {judge_process(content->identity, identity), stands_still(runner, content->text)};
+  if (!content) return {Liveness::kDead, true};
+  return {check_liveness(content->identity, identity), is_stalled(runner, content->text)};
 }
 
-bool Claims::State::stands_still(const std::string& runner, const std::string& text) {
+bool Claims::State::is_stalled(const std::string& runner, const std::string& text) {
   const Clock::time_point now = Clock::now();
-  const auto [known, is_new] = seen.try_emplace(runner, Seen{text, now});
+  const auto [known, is_new] = observations.try_emplace(runner, Observation{text, now});
   if (is_new || known->second.text != text) {
     known->second = {text, now};
     return false;
@@ -214,20 +225,20 @@ bool Claims::State::stands_still(const std::string& runner, const std::string& t
 bool Claims::State::acquire(const std::string& claim) {
   {
     TemporaryFile file = make_temporary(claim);
-    file.write(name + "\n");
+    file.write(make_claim_text(name));
     if (file.name_new()) return true;
   }
   const auto holder = read_holder(folder, claim);
-  if (!holder) return false;         // given back this moment
-  if (*holder == name) return true;  // made, though the answer was an error
+  if (!holder) return false;         // released just now
+  if (*holder == name) return true;  // link(2) succeeded, though it reported an error
   const Judgment judgment = judge(*holder);
-  const bool stale = judgment.life == Life::kGone || judgment.stands_still;
+  const bool stale = judgment.liveness == Liveness::kDead || judgment.is_stalled;
   return stale && take_over(claim, *holder);
 }
 
-// Of several that found the claim of `holder` stale one may replace it: the one that holds the
-// claim "CLAIM~NONCE of the holder", an ordinary claim that can be taken over itself. Whoever gets
-// it later finds another holder named and leaves it.
+// Of several runners that find the claim of `holder` stale, only the one that holds the claim
+// "CLAIM~NONCE of the holder" may replace it; that is an ordinary claim, which can be taken over
+// itself. A runner that gets it later finds another holder named and leaves the claim alone.
 bool Claims::State::take_over(const std::string& claim, const std::string& holder) {
   const std::string right = claim + kTakeoverMark + get_nonce(holder);
   if (!acquire(right)) return false;
@@ -235,7 +246,7 @@ bool Claims::State::take_over(const std::string& claim, const std::string& holde
   if (unchanged) {
     try {
       TemporaryFile file = make_temporary(claim);
-      file.write(name + "\n");
+      file.write(make_claim_text(name));
       file.name_over();
     } catch (const EnvironmentError&) {
       remove_own(right);
@@ -246,8 +257,8 @@ bool Claims::State::take_over(const std::string& claim, const std::string& holde
   return unchanged;
 }
 
-// Not where another runner took us for dead and the claim is its own now. What cannot be removed is
-// stale when this process ends.
+// Removes a claim unless another runner considered this one dead and holds the claim now. A claim
+// that cannot be removed is stale once this process ends.
 void Claims::State::remove_own(const std::string& claim) const {
   try {
     if (read_holder(folder, claim) == name) folder.try_remove(claim);
@@ -263,7 +274,9 @@ Claims::~Claims() = default;
 const std::string& Claims::runner() const { return state_->name; }
 
 Claims::Answer Claims::claim(const std::string& unit) {
-  if (!is_unit_name(unit)) throw std::invalid_argument("Claims: '" + unit + "' is no unit's name");
+  if (!is_unit_name(unit)) {
+    throw std::invalid_argument(fmt::format("Claims: '{}' is not the name of a unit", unit));
+  }
   const std::lock_guard lock(state_->mutex);
   if (state_->held.contains(unit) || !state_->acquire(unit)) return Answer::kTaken;
   state_->held.insert(unit);
@@ -275,12 +288,12 @@ void Claims::release(const std::string& unit) {
   if (state_->held.erase(unit) > 0) state_->remove_own(unit);
 }
 
-bool Claims::may_live(const std::string& runner) {
+bool Claims::may_be_alive(const std::string& runner) {
   const std::lock_guard lock(state_->mutex);
   if (runner == state_->name) return true;
   const State::Judgment judgment = state_->judge(runner);
-  return judgment.life == Life::kRuns ||
-         (judgment.life == Life::kUnknown && !judgment.stands_still);
+  return judgment.liveness == Liveness::kAlive ||
+         (judgment.liveness == Liveness::kUnknown && !judgment.is_stalled);
 }
 
 bool Claims::is_runner_name(const std::string& name) { return parse_runner_name(name).has_value(); }
@@ -294,7 +307,7 @@ std::vector<ClaimInfo> list_claims(const Folder& folder) {
     if (!is_unit_name(unit)) continue;
     const auto holder = read_holder(folder, unit);
     const auto runner = holder ? read_runner(folder, *holder) : std::nullopt;
-    if (runner && judge_process(runner->identity, own) != Life::kGone) {
+    if (runner && check_liveness(runner->identity, own) != Liveness::kDead) {
       claims.push_back({unit, *holder});
     }
   }

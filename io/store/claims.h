@@ -1,13 +1,14 @@
-// Who works on which shard: files that need no locks of the file system and no common clock.
+// Assigns units of work (shards) to runners, by files that need neither file locks nor a common
+// clock.
 //
-// A runner shows that it lives by a counter in `claims/runner.NAME`, which a thread of its own
-// raises every heartbeat. A claim is a file `claims/UNIT` that names its runner, made by link(2),
-// so that one of many wins. A claim is stale when its runner's process is gone (told by its number
-// only on the same host, boot and namespace of process ids, and with the same start time), when its
-// runner's file is gone, or when the counter stood still for a whole lease by the reader's own
-// monotonic clock. No wall clock and no time of a file is ever read. Taking a stale claim over may,
-// in rare races, let two runners do the same shard: harmless, since a published shard is never
-// replaced, and counted.
+// A runner proves that it is alive by a counter in `claims/runner.NAME`, which a thread increments
+// at every heartbeat. A claim is a file `claims/UNIT` that names its runner; it is made by link(2),
+// so that exactly one runner wins. A claim is stale if its runner's process is dead (decided by
+// process number and start time, on the same host, boot and namespace only), if its runner's file
+// is missing, or if the counter did not change for a whole lease of the reader's own monotonic
+// clock. No wall clock and no file time is ever read. In rare races, taking over a stale claim may
+// let two runners do the same shard: harmless, since a published shard is never replaced; such
+// duplicates are counted.
 #pragma once
 
 #include <chrono>
@@ -22,7 +23,7 @@ namespace strut {
 
 struct ClaimOptions {
   std::chrono::milliseconds heartbeat{1000};
-  std::chrono::milliseconds lease{30000};  // a counter that stands still that long is a dead runner
+  std::chrono::milliseconds lease{30000};  // a runner is dead if its counter stalls this long
 };
 
 struct ClaimInfo {
@@ -32,35 +33,35 @@ struct ClaimInfo {
 
 class Claims {
  public:
-  /// Starts the heartbeat of this process in `folder`, by a thread that takes no signals and that a
-  /// full disk does not end; removes what killed runners of this host left of themselves. Throws
-  /// EnvironmentError; InputError where a link or pipe stands in a claim's place.
+  /// Starts the heartbeat of this process in `folder`, on a thread that takes no signals and that a
+  /// full disk does not end; removes the files of dead runners of this host. Throws
+  /// EnvironmentError; InputError if a link or pipe stands in place of a claim.
   Claims(const Folder& folder, const ClaimOptions& options);
-  /// Stops the heartbeat and gives back all claims.
+  /// Stops the heartbeat and releases all claims.
   ~Claims();
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  /// HOST.PID.NONCE
+  /// Returns the name of this runner, HOST.PID.NONCE.
   const std::string& runner() const;
 
   enum class Answer { kMine, kTaken };
-  /// Claims `unit`, taking over a stale claim. Never blocks for the lease: of a claim whose process
-  /// is not known to be gone it notes the counter and answers kTaken until that stood still for the
-  /// lease between two calls. A unit that this object holds is kTaken. Throws EnvironmentError; and
-  /// std::invalid_argument where the name is "", has '/' or '~', or starts with ".", "runner." or
-  /// "new.". All may be called from any thread.
+  /// Claims `unit`, taking over a stale claim. Never blocks for the lease: if the process of a
+  /// claim is not known to be dead, the counter is noted, and the answer is kTaken until the
+  /// counter has not changed for a lease between two calls. A unit that this object holds is
+  /// kTaken. Throws EnvironmentError, and std::invalid_argument if the name is "", contains '/' or
+  /// '~', or starts with ".", "runner." or "new.". All methods may be called from any thread.
   Answer claim(const std::string& unit);
-  /// Does nothing to a claim that another runner took over. What cannot be removed is stale once
-  /// this process ends.
+  /// Releases a claim, unless another runner took it over. A claim that cannot be removed is stale
+  /// once this process ends.
   void release(const std::string& unit);
 
-  /// False where the runner of that name is gone: it ended properly, or its process ended, or,
-  /// where its process cannot be seen from here, its counter stood still for a lease between two
-  /// calls. To collect what it left in tmp/.
-  bool may_live(const std::string& runner);
+  /// Returns false if the runner of that name is dead: it ended normally, its process ended, or, if
+  /// its process cannot be observed from here, its counter did not change for a lease between two
+  /// calls. Its files in tmp/ may then be removed.
+  bool may_be_alive(const std::string& runner);
 
-  /// Whether a name is HOST.PID.NONCE, as runners are named.
+  /// Returns whether a name has the form of a runner's, HOST.PID.NONCE.
   static bool is_runner_name(const std::string& name);
 
  private:
@@ -68,8 +69,8 @@ class Claims {
   std::unique_ptr<State> state_;
 };
 
-/// The claims in `folder` whose runners may live at one look, for status; stands beside, changes
-/// nothing. Throws EnvironmentError; InputError where a link or pipe stands in a claim's place.
+/// Lists the claims in `folder` whose runners may be alive, judged once, for status; changes
+/// nothing. Throws EnvironmentError; InputError if a link or pipe stands in place of a claim.
 std::vector<ClaimInfo> list_claims(const Folder& folder);
 
 }  // namespace strut

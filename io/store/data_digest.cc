@@ -1,5 +1,7 @@
 #include "io/store/data_digest.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 
 #include "base/error/input_error.h"
@@ -15,18 +17,16 @@ std::array<std::uint64_t, 4> read_words(const Hash& hash) {
   return words;
 }
 
-std::string to_digits(std::uint64_t value, int base) {
-  std::array<char, 24> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, base);
-  return {digits.data(), end.ptr};
+InputError digest_error(const std::string& text) {
+  return InputError(fmt::format("data digest '{}': not a digest", text));
 }
 
-// The number at `at`, which moves behind it and one separator.
+// Reads the number at `at` and advances `at` past it and one separator.
 std::uint64_t take_number(const std::string& text, std::size_t& at, int base) {
   std::uint64_t value = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data() + at, end, value, base);
-  if (error != std::errc{}) throw InputError("data digest '" + text + "': not a digest");
+  if (error != std::errc{}) throw digest_error(text);
   at = static_cast<std::size_t>(stop - text.data()) + (stop == end ? 0 : 1);
   return value;
 }
@@ -44,18 +44,10 @@ void DataDigest::add(const DataDigest& other) {
   count_ += other.count_;
 }
 
-void DataDigest::subtract(const Hash& row) {
-  const auto words = read_words(row);
-  for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] -= words[i];
-  --count_;
-}
-
 std::string DataDigest::text() const { return to_hex(calc_sha256(state())); }
 
 std::string DataDigest::state() const {
-  std::string text = to_digits(count_, 10);
-  for (const std::uint64_t word : sum_) text += ":" + to_digits(word, 16);
-  return text;
+  return fmt::format("{}:{:x}", count_, fmt::join(sum_, ":"));
 }
 
 DataDigest DataDigest::parse(const std::string& state) {
@@ -63,8 +55,8 @@ DataDigest DataDigest::parse(const std::string& state) {
   std::size_t at = 0;
   digest.count_ = take_number(state, at, 10);
   for (std::uint64_t& word : digest.sum_) word = take_number(state, at, 16);
-  // One way to write each digest: signs, spaces, leading zeros and trailing text are damage.
-  if (digest.state() != state) throw InputError("data digest '" + state + "': not a digest");
+  // Each digest has one notation: signs, spaces, leading zeros and trailing text are damage.
+  if (digest.state() != state) throw digest_error(state);
   return digest;
 }
 

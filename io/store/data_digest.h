@@ -1,4 +1,4 @@
-// A digest of a set of rows that does not depend on their order.
+// An order-independent digest of a set of rows.
 #pragma once
 
 #include <array>
@@ -9,18 +9,16 @@
 
 namespace strut {
 
-/// Sum of row hashes: each SHA-256 read as four little-endian 64-bit words, word by word modulo
-/// 2^64 (an additive multiset hash, Clarke et al. 2003, after Bellare and Micciancio's AdHash). So
-/// shards, threads and jobs may be summed in any order.
+/// Sum of row hashes: each SHA-256 is read as four little-endian 64-bit words, which are added word
+/// by word modulo 2^64 (an additive multiset hash, Clarke et al. 2003, after Bellare and
+/// Micciancio's AdHash). Shards, threads and jobs may therefore be summed in any order.
 class DataDigest {
  public:
   void add(const Hash& row);
   void add(const DataDigest& other);
-  /// Takes a row out again, as where a retry replaces it.
-  void subtract(const Hash& row);
-  /// SHA-256 of count and sum, 64 digits.
+  /// Returns the SHA-256 of count and sum, 64 digits.
   std::string text() const;
-  /// Count and sum as text, and back. `parse` throws InputError.
+  /// Converts count and sum to text, and back. `parse` throws InputError.
   std::string state() const;
   static DataDigest parse(const std::string& state);
   std::uint64_t count() const { return count_; }

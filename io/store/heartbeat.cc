@@ -1,6 +1,7 @@
 #include "io/store/heartbeat.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 
 #include <csignal>
 #include <map>
@@ -16,10 +17,8 @@ namespace strut {
 
 namespace {
 
-constexpr std::size_t kCounterDigits = 20;  // of any 64 bits
-
-// No signal is delivered to the calling thread, nor to threads it starts: those go to the threads
-// that expect them.
+// Blocks all signals in the calling thread and in threads that it starts, so that other threads
+// receive them.
 class BlockedSignals {
  public:
   BlockedSignals() {
@@ -38,17 +37,16 @@ class BlockedSignals {
 }  // namespace
 
 std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter) {
-  std::string digits = std::to_string(counter);
-  digits.insert(0, kCounterDigits - digits.size(), '0');
-  return "host " + identity.host + "\nboot " + identity.boot + "\nnamespace " +
-         identity.name_space + "\nprocess " + identity.process + "\nstart " + identity.start +
-         "\ncounter " + digits + "\n";
+  // 20 digits hold any 64 bits.
+  return fmt::format("host {}\nboot {}\nnamespace {}\nprocess {}\nstart {}\ncounter {:020}\n",
+                     identity.host, identity.boot, identity.name_space, identity.process,
+                     identity.start, counter);
 }
 
 RunnerFile read_runner_text(const std::string& text) {
   std::map<std::string, std::string> values;
   std::istringstream lines(text);
-  // Without its end a line may be cut short: half a number would be another process's.
+  // A line without its end may be truncated: part of a number would name another process.
   for (std::string line; std::getline(lines, line) && !lines.eof();) {
     const auto space = line.find(' ');
     if (space != std::string::npos) values[line.substr(0, space)] = line.substr(space + 1);
@@ -64,8 +62,8 @@ Heartbeat::Heartbeat(const Folder& folder, std::string file, ProcessIdentity ide
   try {
     thread_ = std::thread([this] { run(); });
   } catch (const std::system_error& error) {
-    throw EnvironmentError(folder_.path_of(file_).string() +
-                           ": no thread for the heartbeat: " + error.what());
+    throw EnvironmentError(fmt::format("{}: the thread of the heartbeat cannot be started: {}",
+                                       folder_.path_of(file_).string(), error.what()));
   }
 }
 
@@ -86,15 +84,15 @@ void Heartbeat::run() {
   }
 }
 
-// Opened each time: on a network file system others see it from the close on. Written in place,
-// which a full disk allows; where it does not, the counter stands still and the claims go to
-// others in time. Made anew where somebody removed it.
+// Opens the file each time, since on a network file system others see the content once it is
+// closed. Writes in place, which a full disk usually allows; if not, the counter stalls and the
+// claims pass to other runners. Makes the file again if it was removed.
 void Heartbeat::beat(std::uint64_t counter) const {
   try {
     const std::string text = write_runner_text(identity_, counter);
     const FileDescriptor file = folder_.open_file(file_, O_WRONLY | O_CREAT);
     if (file.is_open()) write_once(file.get(), std::as_bytes(std::span(text)));
-  } catch (const std::exception&) {  // one beat less
+  } catch (const std::exception&) {  // this beat is lost
   }
 }
 

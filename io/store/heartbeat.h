@@ -1,4 +1,4 @@
-// How a runner shows that it lives: a file with its process and a counter that a thread raises.
+// Proof that a runner is alive: a file with its process and a counter that a thread increments.
 #pragma once
 
 #include <chrono>
@@ -15,20 +15,21 @@ namespace strut {
 
 struct RunnerFile {
   ProcessIdentity identity;
-  std::string text;  // all of it; a heartbeat changes it
+  std::string text;  // the whole file, which changes at every heartbeat
 };
 
-/// One key and value a line; always the same length, so that it can be written in place.
+/// Returns one key and value per line; for one runner the length is fixed, so that the text can be
+/// written in place.
 std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter);
 
-/// What is missing, or was cut short, is empty.
+/// Parses such a text; fields that are missing or truncated are empty.
 RunnerFile read_runner_text(const std::string& text);
 
-/// A thread that raises the counter in a runner's file until the destructor. It takes no signals,
-/// and no trouble with the file ends it: then the counter stands still.
+/// A thread that increments the counter in a runner's file until the destructor. It takes no
+/// signals, and failures of the file do not end it: the counter then stalls.
 class Heartbeat {
  public:
-  /// Throws EnvironmentError where no thread can be made.
+  /// Throws EnvironmentError if no thread can be started.
   Heartbeat(const Folder& folder, std::string file, ProcessIdentity identity,
             std::chrono::milliseconds interval);
   ~Heartbeat();

@@ -1,15 +1,16 @@
 #include "io/store/journal.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <optional>
 #include <string_view>
 
+#include "base/text/format_number.h"
 #include "base/text/parse_number.h"
 #include "io/file/sha256.h"
 
@@ -22,14 +23,12 @@ namespace fs = std::filesystem;
 constexpr std::string_view kFirstKey = "file=";
 constexpr std::string_view kCheckKey = " check=";
 constexpr std::size_t kCheckDigits = 16;
-constexpr const char* kNotWritten = "cannot be written";
 
 using Fields = std::map<std::string, std::string, std::less<>>;
 
-// Percent-encoding of all that could be mistaken for the line's own marks.
+// Percent-encodes all characters that could be mistaken for delimiters of the line.
 std::string encode(std::string_view text) {
   constexpr std::string_view kPlain = "._/+-";
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
   std::string code;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -37,7 +36,7 @@ std::string encode(std::string_view text) {
     if (letter || kPlain.find(c) != std::string_view::npos) {
       code += c;
     } else {
-      code += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+      code += fmt::format("%{:02X}", byte);
     }
   }
   return code;
@@ -57,13 +56,6 @@ std::string decode(std::string_view code) {
 }
 
 template <typename Number>
-std::string write_number(Number value) {
-  std::array<char, 32> buffer;
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), result.ptr};
-}
-
-template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto parsed = parse_number<Number>(text);
   value = parsed.value_or(Number{});
@@ -77,29 +69,22 @@ std::string calc_check(std::string_view text) {
 std::string write_failures(const std::map<std::string, std::int64_t>& failures) {
   std::string text;
   for (const auto& [reason, cases] : failures) {
-    if (!text.empty()) text += ',';
-    text += encode(reason) + ':' + write_number(cases);
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", encode(reason), cases);
   }
   return text;
 }
 
 std::string write_line(const JournalEntry& entry) {
-  std::string line(kFirstKey);
-  line += encode(entry.file);
-  line += " cases=" + write_number(entry.cases);
-  line += " failures=" + write_failures(entry.failures);
-  line += " bytes=" + write_number(entry.bytes);
-  line += " sha256=" + encode(entry.sha256);
-  line += " digest=" + encode(entry.digest);
-  line += " seconds=" + write_number(entry.seconds);
-  line += " time=" + write_number(entry.time);
-  line += " runner=" + encode(entry.runner);
-  line += " duplicate=" + write_number(static_cast<int>(entry.duplicate));
-  line += std::string(kCheckKey) + calc_check(line);
-  return line + '\n';
+  const std::string line = fmt::format(
+      "{}{} cases={} failures={} bytes={} sha256={} digest={} seconds={} time={} runner={} "
+      "duplicate={:d}",
+      kFirstKey, encode(entry.file), entry.cases, write_failures(entry.failures), entry.bytes,
+      encode(entry.sha256), encode(entry.digest), format_number(entry.seconds), entry.time,
+      encode(entry.runner), entry.duplicate);
+  return fmt::format("{}{}{}\n", line, kCheckKey, calc_check(line));
 }
 
-// Cuts what stands before the first `mark` off `text`, and the mark.
+// Removes the part of `text` before the first `mark`, and the mark, and returns the part.
 std::string_view cut(std::string_view& text, char mark) {
   const auto at = text.find(mark);
   const std::string_view head = text.substr(0, at);
@@ -126,8 +111,8 @@ Fields read_fields(std::string_view text) {
   return fields;
 }
 
-// `text` is a line up to its checksum, which was right. A key that is not known is left for a
-// newer version.
+// Parses the part of a line before its checksum, which was correct. Unknown keys, which a newer
+// version may write, are ignored.
 std::optional<JournalEntry> read_entry(std::string_view text) {
   Fields fields = read_fields(text);
   JournalEntry entry;
@@ -143,11 +128,11 @@ std::optional<JournalEntry> read_entry(std::string_view text) {
   return whole ? std::optional(entry) : std::nullopt;
 }
 
-// One line, or several whose ends between them were damaged: each entry begins with the first key,
-// which encoded values cannot contain, and ends with its checksum. False: there was more, or less,
-// than one whole entry.
+// Adds the entries of one line, or of several that a damaged line end joined: each entry begins
+// with the first key, which encoded values cannot contain, and ends with its checksum. Returns
+// whether the line is exactly one whole entry.
 bool add_line(std::string_view line, std::vector<JournalEntry>& entries) {
-  bool clean = line.substr(0, kFirstKey.size()) == kFirstKey;
+  bool clean = line.starts_with(kFirstKey);
   std::size_t found = 0;
   for (auto at = line.find(kFirstKey); at != std::string_view::npos;) {
     const auto next = line.find(kFirstKey, at + 1);
@@ -167,8 +152,8 @@ bool add_line(std::string_view line, std::vector<JournalEntry>& entries) {
   return clean && found == 1;
 }
 
-// Two runners may see the same torn end, or one the line that another is just writing: then there
-// is an empty line, which means nothing.
+// Two runners may see the same torn end, or one may see a line that another is writing: the result
+// is an empty line, which is ignored.
 bool ends_torn(int descriptor, off_t size) {
   char last = '\n';
   return size > 0 && ::pread(descriptor, &last, 1, size - 1) == 1 && last != '\n';
@@ -185,8 +170,8 @@ void append_journal(const Folder& folder, const std::string& name, const Journal
   const std::string line = (ends_torn(file.get(), status.st_size) ? "\n" : "") + write_line(entry);
   const std::ptrdiff_t written = write_once(file.get(), std::as_bytes(std::span(line)));
   if (written < 0) throw file_failure(journal, kNotWritten, errno);
-  // A file takes less than it is given only where space ends. The rest would not follow directly if
-  // another runner wrote meanwhile, so the line stays torn.
+  // A write is partial only if space runs out. Another runner might write before the rest, so the
+  // line stays torn.
   if (static_cast<std::size_t>(written) != line.size()) {
     throw file_failure(journal, kNotWritten, ENOSPC);
   }

@@ -1,5 +1,6 @@
-// The journal of a sweep folder: one checksummed line a finished shard. A cache: what it says can
-// be read from the shards at any time, so a torn or missing line costs time, never data.
+// The journal of a sweep folder: one checksummed line per finished shard. It is a cache: its
+// content can be read from the shards at any time, so a torn or missing line costs time, never
+// data.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +21,15 @@ struct JournalEntry {
   std::string sha256;     // of the seal
   std::string digest;     // DataDigest::state()
   double seconds = 0.0;   // of simulation, summed over threads
-  std::int64_t time = 0;  // s since 1970, for people and rates only
+  std::int64_t time = 0;  // s since 1970, for display and rates only
   std::string runner;
-  bool duplicate = false;  // somebody else's file was there first: the work was done twice
+  bool duplicate = false;  // another runner published the shard first: the work was done twice
 };
 
 /// Appends one line with one write(2) to a file opened with O_APPEND, and flushes it: writers on
-/// one host lose nothing to each other; on a network file system, which may not know O_APPEND, they
-/// may lose a line. A line that an earlier crash left without end is ended first. Throws
-/// EnvironmentError; InputError where a link or pipe stands in the journal's place.
+/// one host never overwrite each other; on a network file system, which may not support O_APPEND, a
+/// line may be lost. A line that an earlier crash left without end is ended first. Throws
+/// EnvironmentError; InputError if a link or pipe stands in place of the journal.
 ///
 ///     file=shards/000042.h5 cases=512 failures=diverged:3 bytes=... ... check=0123456789abcdef
 ///
@@ -37,11 +38,11 @@ void append_journal(const Folder& folder, const std::string& journal, const Jour
 
 struct Journal {
   std::vector<JournalEntry> entries;  // in the order of the file
-  std::size_t bad_lines = 0;          // torn or changed; what else is whole in them is an entry
+  std::size_t bad_lines = 0;          // torn or changed; whole entries in them still count
 };
 
-/// An absent file is an empty journal. Throws an EnvironmentError where a present one cannot be
-/// read.
+/// Reads a journal; a missing file is an empty journal. Throws EnvironmentError if the file cannot
+/// be read.
 Journal read_journal(const std::filesystem::path& journal);
 
 }  // namespace strut

@@ -1,28 +1,30 @@
 #include "io/store/measurement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/error/check.h"
-#include "base/text/nearest_name.h"
 #include "io/format/hdf5.h"
+#include "io/store/shard_layout.h"
 
 namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the columns of an HDF5 file are.
+/// The columns of an HDF5 file in any of its layouts.
 class Hdf5Columns {
  public:
   Hdf5Columns(const fs::path& path, MeasuredPart part) : path_(path), file_(path) {
-    const std::string group = part == MeasuredPart::kSnapshot ? "/snapshot" : "/history";
-    const std::string other = part == MeasuredPart::kSnapshot ? "/history" : "/snapshot";
+    const bool is_snapshot = part == MeasuredPart::kSnapshot;
+    const std::string group = is_snapshot ? kSnapshotName : kHistoryGroup;
+    const std::string other = is_snapshot ? kHistoryGroup : kSnapshotName;
     if (file_.has(group)) {
       open(group);
     } else if (file_.has(other)) {
-      throw InputError(path.string() + ": " + group + ": no such group; the file has only " +
-                       other);
+      throw error(group, fmt::format("no such group; the file has only {}", other));
     } else {
       names_ = file_.list("/");
     }
@@ -32,35 +34,35 @@ class Hdf5Columns {
 
   CsvColumn read(const std::string& name) const {
     if (is_table_) return cut_column(name);
-    const std::string dataset = prefix_ + "/" + name;
+    const std::string dataset = fmt::format("{}/{}", group_, name);
     Hdf5Dataset data = file_.read(dataset);
-    const bool cases = data.shape.size() == 2 && data.shape.front() > 1;
-    if (cases && prefix_ == "/history") {
-      throw InputError(path_.string() + ": " + dataset + ": histories of " +
-                       std::to_string(data.shape.front()) +
-                       " cases; must be one: put it into a file of its own");
+    const bool has_rows = data.shape.size() == 2 && data.shape.front() > 1;
+    if (has_rows && group_ == kHistoryGroup) {
+      throw error(dataset,
+                  fmt::format("histories of {} cases; must be one: put it into a file of its own",
+                              data.shape.front()));
     }
-    if (data.shape.size() == 2 && data.shape.front() > 1 && data.shape.back() > 1) {
-      throw InputError(path_.string() + ": " + dataset + ": must have one dimension");
-    }
+    if (has_rows && data.shape.back() > 1) throw error(dataset, "must have one dimension");
     return {name, data.label.unit, std::move(data.values)};
   }
 
  private:
   void open(const std::string& group) {
-    // A dataset has a unit, a group has none.
+    // Only datasets have a unit.
     is_table_ = file_.has_attribute(group, "unit");
     if (is_table_) {
       table_ = file_.read(group);
       names_ = table_.label.names;
     } else {
       names_ = file_.list(group);
-      prefix_ = group;
+      group_ = group;
     }
     const bool fits = !is_table_ || (table_.shape.size() == 2 && table_.shape[1] == names_.size());
-    if (!fits) {
-      throw InputError(path_.string() + ": " + group + ": must have a name for each column");
-    }
+    if (!fits) throw error(group, "must have a name for each column");
+  }
+
+  InputError error(const std::string& object, const std::string& what) const {
+    return InputError(fmt::format("{}: {}: {}", path_.string(), object, what));
   }
 
   CsvColumn cut_column(const std::string& name) const {
@@ -79,12 +81,12 @@ class Hdf5Columns {
   fs::path path_;
   Hdf5Reader file_;
   std::vector<std::string> names_;
-  std::string prefix_;
+  std::string group_;  // of the columns, unless they are a table
   Hdf5Dataset table_;
   bool is_table_ = false;
 };
 
-/// Takes what `request` asks for from a file whose columns are `names`.
+/// Reads the columns of `request` from a file whose columns are `names`.
 template <class Read>
 void take_columns(const MeasurementRequest& request, const std::vector<std::string>& names,
                   const Read& read, Measurement& measurement) {
@@ -92,10 +94,7 @@ void take_columns(const MeasurementRequest& request, const std::vector<std::stri
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   for (const std::string& name : request.required) {
-    if (!has(name)) {
-      throw InputError(measurement.path.string() + ": no column '" + name + "' among " +
-                       join_names(names) + suggest_name(name, names));
-    }
+    if (!has(name)) throw missing_column_error(measurement.path, name, names);
     measurement.columns.push_back(read(name));
   }
   for (const std::string& name : request.optional) {
@@ -103,22 +102,27 @@ void take_columns(const MeasurementRequest& request, const std::vector<std::stri
   }
 }
 
+void check_length(const Measurement& measurement, const CsvColumn& column) {
+  if (column.values.size() == measurement.row_count()) return;
+  throw InputError(fmt::format("{}: column '{}' has {} values, '{}' {}; must be of one length",
+                               measurement.path.string(), column.name, column.values.size(),
+                               measurement.columns.front().name, measurement.row_count()));
+}
+
+void check_finite(const Measurement& measurement, const CsvColumn& column, MissingCells missing) {
+  const bool is_complete = missing == MissingCells::kRefused;
+  const auto bad = std::find_if(column.values.begin(), column.values.end(), [&](double x) {
+    return is_complete ? !std::isfinite(x) : std::isinf(x);
+  });
+  if (bad == column.values.end()) return;
+  const auto row = static_cast<std::size_t>(bad - column.values.begin());
+  throw InputError(fmt::format("{}: {} is not finite", measurement.locate(row), column.name));
+}
+
 void check_columns(const Measurement& measurement, MissingCells missing) {
   for (const CsvColumn& column : measurement.columns) {
-    if (column.values.size() != measurement.row_count()) {
-      throw InputError(measurement.path.string() + ": column '" + column.name + "' has " +
-                       std::to_string(column.values.size()) + " values, '" +
-                       measurement.columns.front().name + "' " +
-                       std::to_string(measurement.row_count()));
-    }
-    const auto bad = std::find_if(column.values.begin(), column.values.end(), [&](double x) {
-      const bool there = missing == MissingCells::kRefused;
-      return there ? !std::isfinite(x) : std::isinf(x);
-    });
-    if (bad != column.values.end()) {
-      const auto row = static_cast<std::size_t>(bad - column.values.begin());
-      throw InputError(measurement.locate(row) + ": " + column.name + " is not finite");
-    }
+    check_length(measurement, column);
+    check_finite(measurement, column, missing);
   }
   if (!measurement.columns.empty() && measurement.row_count() == 0) {
     throw InputError(measurement.path.string() + ": no rows");
@@ -140,8 +144,8 @@ const std::vector<double>& Measurement::values(const std::string& name) const {
 }
 
 std::string Measurement::locate(std::size_t row) const {
-  if (row < lines.size()) return path.string() + ":" + std::to_string(lines[row]);
-  return path.string() + ": row " + std::to_string(row);
+  if (row < lines.size()) return fmt::format("{}:{}", path.string(), lines[row]);
+  return fmt::format("{}: row {}", path.string(), row);
 }
 
 Measurement read_measurement(const fs::path& path, const MeasurementRequest& request) {
@@ -169,8 +173,8 @@ void require_units(const Measurement& measurement, const std::vector<ColumnInfo>
   for (const ColumnInfo& column : expected) {
     const std::string& unit = measurement.find(column.name)->unit;
     if (unit.empty() || unit == column.unit) continue;
-    throw InputError(measurement.path.string() + ": " + column.name + " is in " + unit +
-                     "; must be in " + column.unit);
+    throw InputError(fmt::format("{}: {} is in {}; must be in {}", measurement.path.string(),
+                                 column.name, unit, column.unit));
   }
 }
 

@@ -1,4 +1,6 @@
-// A shard's file to rows.
+// Reads the rows of a shard from its file.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <type_traits>
@@ -11,21 +13,20 @@ namespace {
 namespace fs = std::filesystem;
 
 void require(bool good, const fs::path& path, const std::string& object, const std::string& what) {
-  if (!good) throw InputError(path.string() + ": " + object + ": " + what);
+  if (!good) throw InputError(fmt::format("{}: {}: {}", path.string(), object, what));
 }
 
 void check_schema_version(const fs::path& path, const Hdf5Reader& file) {
-  // Models and checkpoints count their versions apart; they alone say what they are.
+  // Models and checkpoints have version numbers of their own; only they have this attribute.
   constexpr char kKindKey[] = "kind";
   if (file.has_attribute("/", kKindKey)) {
-    throw InputError(path.string() + ": a " + file.read_attribute("/", kKindKey) +
-                     "; must be a sweep's shard or merged file");
+    throw InputError(fmt::format("{}: a {}; must be a shard or a merged file of a sweep",
+                                 path.string(), file.read_attribute("/", kKindKey)));
   }
   const std::int64_t version = file.read_integer_attribute("/", kSchemaVersionKey);
   require(version == kShardSchemaVersion, path, kSchemaVersionKey,
-          "is " + std::to_string(version) + "; this program reads " +
-              std::to_string(kShardSchemaVersion) +
-              (version > kShardSchemaVersion ? ": written by a newer strut" : ""));
+          fmt::format("is {}; this program reads {}{}", version, kShardSchemaVersion,
+                      version > kShardSchemaVersion ? ": written by a newer strut" : ""));
 }
 
 std::vector<ColumnInfo> read_columns(const fs::path& path, const Hdf5Reader& file,
@@ -33,7 +34,7 @@ std::vector<ColumnInfo> read_columns(const fs::path& path, const Hdf5Reader& fil
   const Hdf5Label label = file.read_label(name);
   const std::size_t count = label.names.size();
   require(label.units.size() == count && label.descriptions.size() == count, path, name,
-          "names, units and descriptions do not fit each other");
+          "damaged: the numbers of names, units and descriptions differ");
   std::vector<ColumnInfo> columns;
   columns.reserve(count);
   for (std::size_t c = 0; c < count; ++c) {
@@ -45,13 +46,9 @@ std::vector<ColumnInfo> read_columns(const fs::path& path, const Hdf5Reader& fil
 ShardRows read_rows(const fs::path& path, const Hdf5Reader& file, const ShardSchema& schema) {
   ShardRows rows;
   rows.history.resize(schema.history.size());
-  const std::size_t count = file.read_shape("/case_id").front();
+  const std::size_t count = file.read_shape(kCaseIdName).front();
   visit_shard_columns(schema, rows, [&](const ShardColumn& column, auto& values) {
-    std::vector<std::size_t> shape = {count};
-    if (column.columns > 0) shape.push_back(column.columns);
-    require(file.read_shape(column.name) == shape, path, column.name,
-            "must have " + std::to_string(count) + " rows, one per case, and " +
-                std::to_string(std::max<std::size_t>(column.columns, 1)) + " columns");
+    require_shape(path, file, column, count);
     using Value = typename std::decay_t<decltype(values)>::value_type;
     if constexpr (std::is_same_v<Value, std::string>) {
       values = file.read_texts(column.name);
@@ -82,6 +79,15 @@ ShardProvenance read_provenance(const Hdf5Reader& file) {
 
 }  // namespace
 
+void require_shape(const fs::path& path, const Hdf5Reader& file, const ShardColumn& column,
+                   std::size_t rows) {
+  std::vector<std::size_t> shape = {rows};
+  if (column.columns > 0) shape.push_back(column.columns);
+  require(file.read_shape(column.name) == shape, path, column.name,
+          fmt::format("must have {} rows, one per case, and {} columns", rows,
+                      std::max<std::size_t>(column.columns, 1)));
+}
+
 ShardSchema read_shard_schema(const fs::path& path, const Hdf5Reader& file) {
   check_schema_version(path, file);
   ShardSchema schema;
@@ -89,12 +95,14 @@ ShardSchema read_shard_schema(const fs::path& path, const Hdf5Reader& file) {
   if (file.has(kSnapshotName)) schema.snapshot = read_columns(path, file, kSnapshotName);
   if (file.has(kHistoryGroup)) {
     for (const std::string& channel : file.read_attribute_list(kHistoryGroup, "names")) {
-      const Hdf5Label label = file.read_label(kHistoryGroup + ("/" + channel));
-      schema.history.push_back({channel, label.unit, label.description});
+      ColumnInfo& info = schema.history.emplace_back(ColumnInfo{channel, "", ""});
+      const Hdf5Label label = file.read_label(get_history_name(info));
+      info.unit = label.unit;
+      info.description = label.description;
     }
   }
   if (!schema.history.empty()) {
-    const std::string name = kHistoryGroup + ("/" + schema.history.front().name);
+    const std::string name = get_history_name(schema.history.front());
     const auto shape = file.read_shape(name);
     require(shape.size() == 2, path, name, "must have two dimensions");
     schema.history_samples = shape.back();
@@ -115,11 +123,11 @@ Shard read_shard(const fs::path& path, ShardParts parts) {
   shard.rows = read_rows(path, file, wanted);
   shard.provenance = read_provenance(file);
   require(shard.provenance.plan_hash == seal.plan_hash && shard.provenance.shard == seal.shard,
-          path, "seal", "names another plan or shard than the file");
+          path, "seal", "damaged: names another plan or shard than the file");
   if (parts == ShardParts::kTables) return shard;
   shard.digest = calc_rows_digest(shard.rows);
   require(shard.digest.text() == file.read_attribute("/", kChecksumKey), path, kChecksumKey,
-          "the rows have another one");
+          "damaged: does not match the rows");
   return shard;
 }
 

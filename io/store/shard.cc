@@ -29,7 +29,7 @@ void append_numbers(std::vector<std::byte>& bytes, const std::vector<double>& va
   }
 }
 
-// What calc_row_hash hashes, into `bytes`.
+// Writes the bytes that calc_row_hash hashes to `bytes`.
 void render_row(const ShardRows& rows, std::size_t row, std::vector<std::byte>& bytes) {
   bytes.clear();
   append_bytes(bytes, rows.case_id[row]);
@@ -79,8 +79,9 @@ void ShardRows::set_row(std::size_t to, const ShardRows& other, std::size_t from
   event_time[to] = other.event_time[from];
   failure_time[to] = other.failure_time[from];
   reason[to] = other.reason[from];
-  for (std::size_t c = 0; c < history.size(); ++c)
+  for (std::size_t c = 0; c < history.size(); ++c) {
     copy_row(history[c], to, n, other.history[c], from);
+  }
 }
 
 Hash calc_row_hash(const ShardRows& rows, std::size_t row) {

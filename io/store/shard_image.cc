@@ -1,4 +1,6 @@
-// Rows to the bytes of a shard's file: compression, then HDF5.
+// Converts rows to the bytes of a shard's file: compression, then HDF5.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <type_traits>
@@ -10,7 +12,7 @@
 namespace strut {
 namespace {
 
-// Chunks of whole rows; what the last one has too much is zero.
+// Compresses chunks of whole rows; the last is padded with zeros.
 std::vector<std::vector<std::byte>> compress_rows(std::span<const std::byte> bytes,
                                                   std::size_t chunk_bytes,
                                                   std::size_t element_size) {
@@ -32,7 +34,7 @@ Hdf5Chunks make_chunks(const ShardColumn& column, std::size_t rows, Hdf5Type typ
   const std::size_t element = get_element_size(type, text_length);
   const std::size_t row_bytes = std::max<std::size_t>(column.columns, 1) * element;
   STRUT_CHECK(bytes.size() == rows * row_bytes,
-              "shard: " + column.name + " does not fit its schema");
+              fmt::format("shard: {} does not match its schema", column.name));
   Hdf5Chunks chunks{.name = column.name,
                     .type = type,
                     .shape = {rows},
@@ -49,7 +51,7 @@ Hdf5Chunks make_chunks(const ShardColumn& column, std::size_t rows, Hdf5Type typ
 
 CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows) {
   STRUT_CHECK(rows.history.size() == schema.history.size(),
-              "shard: histories do not fit their schema");
+              "shard: histories do not match their schema");
   CompressedShard shard;
   visit_shard_columns(schema, rows, [&](const ShardColumn& column, const auto& values) {
     using Values = std::decay_t<decltype(values)>;
@@ -73,7 +75,7 @@ CompressedShard compress_shard(const ShardSchema& schema, const ShardRows& rows)
 
 std::vector<std::byte> make_shard_image(const CompressedShard& shard,
                                         const ShardProvenance& provenance) {
-  Hdf5Writer file(Hdf5InMemory{"shard " + std::to_string(provenance.shard)},
+  Hdf5Writer file(Hdf5InMemory{fmt::format("shard {}", provenance.shard)},
                   {.seal = make_shard_label(provenance.plan_hash, provenance.shard)});
   for (const Hdf5Chunks& dataset : shard.datasets) file.write_chunks(dataset);
   write_shard_attributes(file, shard.history_names, shard.history_interval, shard.status_meaning,

@@ -1,5 +1,4 @@
-// Datasets and attributes of a shard's file, listed once for its writer, its reader and those who
-// merge shards.
+// Datasets and attributes of a shard's file, listed once for its writer, its reader and the merge.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +25,15 @@ inline constexpr char kChecksumKey[] = "checksum";
 inline constexpr char kStatusMeaningKey[] = "status_meaning";
 inline constexpr char kHistoryIntervalKey[] = "history_interval";
 
+inline constexpr char kCaseIdName[] = "/case_id";
 inline constexpr char kParametersName[] = "/parameters";
 inline constexpr char kSnapshotName[] = "/snapshot";
 inline constexpr char kReasonName[] = "/reason";
 inline constexpr char kHistoryGroup[] = "/history";
+
+inline std::string get_history_name(const ColumnInfo& channel) {
+  return kHistoryGroup + ("/" + channel.name);
+}
 
 inline ShardColumn make_table_column(const char* name, const std::vector<ColumnInfo>& columns,
                                      const char* description) {
@@ -53,7 +57,7 @@ void visit_shard_columns(const ShardSchema& schema, Rows& rows, const Visit& vis
   const auto plain = [](const char* name, const char* unit, const std::string& description) {
     return ShardColumn{name, 0, {unit, description, {}}};
   };
-  visit(plain("/case_id", "1", "number of the case in the plan"), rows.case_id);
+  visit(plain(kCaseIdName, "1", "number of the case in the plan"), rows.case_id);
   visit(make_table_column(kParametersName, schema.parameters, "parameters of the case"),
         rows.parameters);
   if (!schema.snapshot.empty()) {
@@ -70,14 +74,14 @@ void visit_shard_columns(const ShardSchema& schema, Rows& rows, const Visit& vis
   visit(plain(kReasonName, "1", "why the case failed; empty: it did not"), rows.reason);
   for (std::size_t c = 0; c < schema.history.size(); ++c) {
     const ColumnInfo& channel = schema.history[c];
-    visit(ShardColumn{kHistoryGroup + ("/" + channel.name),
+    visit(ShardColumn{get_history_name(channel),
                       schema.history_samples,
                       {channel.unit, channel.description, {}}},
           rows.history[c]);
   }
 }
 
-/// The attributes that make a file's datasets those of a schema; `File` is any writer.
+/// Writes the attributes that complete a schema; `File` is any writer of HDF5.
 template <class File>
 void write_shard_attributes(File& file, const std::vector<std::string>& history_names,
                             double history_interval, const std::string& status_meaning,
@@ -90,9 +94,13 @@ void write_shard_attributes(File& file, const std::vector<std::string>& history_
   if (!history_names.empty()) file.write_attribute_list(kHistoryGroup, "names", history_names);
 }
 
-/// What the rows of a shard or of a merged file consist of; `path` stands in messages. Throws
-/// InputError where a dataset is missing or misshapen, or the schema version is unknown.
+/// Reads the schema of a shard or a merged file, which messages call `path`. Throws InputError if a
+/// dataset is missing or has the wrong shape, or if the schema version is unknown.
 ShardSchema read_shard_schema(const std::filesystem::path& path, const Hdf5Reader& file);
+
+/// Throws InputError unless the dataset has `rows` rows, one per case, and the columns of `column`.
+void require_shape(const std::filesystem::path& path, const Hdf5Reader& file,
+                   const ShardColumn& column, std::size_t rows);
 
 inline std::vector<std::string> list_names(const std::vector<ColumnInfo>& columns) {
   std::vector<std::string> names;

@@ -1,4 +1,6 @@
-// The seal of a shard: which plan's, and which number.
+// The seal of a shard: its plan and its number.
+#include <fmt/format.h>
+
 #include "base/text/parse_number.h"
 #include "io/store/shard.h"
 
@@ -21,25 +23,25 @@ ShardSeal make_shard_seal(const FileSeal& seal) {
 }
 
 ShardSeal read_shard_seal(const fs::path& path) {
-  return make_shard_seal(require_sound(path, check_seal(path, kShardSeal)));
+  return make_shard_seal(require_intact(path, check_seal(path, kShardSeal)));
 }
 
 ShardSeal read_shard_seal(const fs::path& path, std::span<const std::byte> bytes) {
-  return make_shard_seal(require_sound(path, check_seal(bytes, bytes.size(), kShardSeal)));
+  return make_shard_seal(require_intact(path, check_seal(bytes, bytes.size(), kShardSeal)));
 }
 
 ShardSeal check_shard_bytes(const fs::path& path) {
-  return make_shard_seal(require_sound(path, check_sealed_file(path, kShardSeal)));
+  return make_shard_seal(require_intact(path, check_sealed_file(path, kShardSeal)));
 }
 
 ShardSeal check_shard_bytes(const fs::path& path, std::span<const std::byte> bytes) {
-  return make_shard_seal(require_sound(path, check_sealed_bytes(bytes, kShardSeal)));
+  return make_shard_seal(require_intact(path, check_sealed_bytes(bytes, kShardSeal)));
 }
 
 std::string find_misplacement(const ShardSeal& seal, const std::string& plan_hash,
                               std::int64_t shard) {
   if (seal.plan_hash != plan_hash) return "belongs to another plan";
-  if (seal.shard != shard) return "is shard " + std::to_string(seal.shard) + " of the plan";
+  if (seal.shard != shard) return fmt::format("is shard {} of the plan", seal.shard);
   return "";
 }
 

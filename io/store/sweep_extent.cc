@@ -1,7 +1,8 @@
 #include "io/store/sweep_extent.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <limits>
 
 #include "base/text/parse_number.h"
 #include "io/store/shard_layout.h"
@@ -14,7 +15,8 @@ namespace fs = std::filesystem;
 constexpr char kPointsKey[] = "points", kCasesKey[] = "cases", kShardCasesKey[] = "shard_cases",
                kShardsKey[] = "shards", kDrawnName[] = "/drawn";
 
-/// Plans of earlier versions say it in words: "8; shard s holds positions [s * 512, (s + 1) * ...".
+/// Parses the cases per shard from the only place where plans of earlier versions hold them: "8;
+/// shard s holds positions [s * 512, (s + 1) * ...".
 std::int64_t parse_shard_cases(const std::string& words) {
   const std::string before = "[s * ";
   const std::size_t begin = words.find(before);
@@ -25,9 +27,8 @@ std::int64_t parse_shard_cases(const std::string& words) {
 }
 
 std::string describe_shards(const SweepExtent& extent) {
-  const std::string cases = std::to_string(extent.shard_cases);
-  return std::to_string(extent.shard_count()) + "; shard s holds positions [s * " + cases +
-         ", (s + 1) * " + cases + ") of the run order";
+  return fmt::format("{0}; shard s holds positions [s * {1}, (s + 1) * {1}) of the run order",
+                     extent.shard_count(), extent.shard_cases);
 }
 
 }  // namespace
@@ -71,37 +72,49 @@ SweepExtent read_sweep_extent(const fs::path& path, const Hdf5Reader& plan) {
                     (drawn == 0 ? extent.cases == extent.points : extent.cases == drawn) &&
                     std::is_sorted(extent.drawn.begin(), extent.drawn.end());
   if (!good) {
-    throw InputError(path.string() + ": damaged: points, cases and shards do not fit each other; " +
-                     kPlanSeal.remedy);
+    throw InputError(fmt::format("{}: damaged: points, cases and shards are inconsistent; {}",
+                                 path.string(), kPlanSeal.remedy));
   }
   return extent;
 }
 
-void require_shard(const fs::path& file, const SweepExtent& extent, std::int64_t shard,
-                   const ShardSeal& seal, const std::vector<std::int64_t>& case_ids) {
-  std::string fault = find_misplacement(seal, extent.plan_hash, shard);
+namespace {
+
+/// Returns the reason why the file cannot be the shard; "" if it can.
+std::string find_fault(const SweepExtent& extent, std::int64_t shard, const ShardSeal& seal,
+                       const std::vector<std::int64_t>& case_ids) {
+  std::string misplacement = find_misplacement(seal, extent.plan_hash, shard);
+  if (!misplacement.empty()) return misplacement;
+  if (shard >= extent.shard_count()) return fmt::format("the plan has no shard {}", shard);
   const auto count = static_cast<std::int64_t>(case_ids.size());
-  if (fault.empty() && shard >= extent.shard_count()) {
-    fault = "the plan has no shard " + std::to_string(shard);
-  } else if (fault.empty() && count != extent.shard_size(shard)) {
-    fault = "has " + std::to_string(count) + " cases; the plan has " +
-            std::to_string(extent.shard_size(shard)) + " in this shard";
+  if (count != extent.shard_size(shard)) {
+    return fmt::format("has {} cases; the plan has {} in this shard", count,
+                       extent.shard_size(shard));
   }
   const auto foreign = std::find_if_not(case_ids.begin(), case_ids.end(),
                                         [&](std::int64_t id) { return extent.holds(id); });
-  if (fault.empty() && foreign != case_ids.end()) {
-    fault = "case " + std::to_string(*foreign) + " is not in the plan";
-  }
-  if (const std::int64_t twice = find_repeated(case_ids); fault.empty() && twice >= 0) {
-    fault = "holds case " + std::to_string(twice) + " twice";
-  }
-  if (!fault.empty()) throw InputError(file.string() + ": " + fault + "; " + kShardSeal.remedy);
+  if (foreign != case_ids.end()) return fmt::format("case {} is not in the plan", *foreign);
+  return describe_repeated(case_ids);
+}
+
+}  // namespace
+
+void require_shard(const fs::path& file, const SweepExtent& extent, std::int64_t shard,
+                   const ShardSeal& seal, const std::vector<std::int64_t>& case_ids) {
+  const std::string fault = find_fault(extent, shard, seal, case_ids);
+  if (fault.empty()) return;
+  throw InputError(fmt::format("{}: {}; {}", file.string(), fault, kShardSeal.remedy));
 }
 
 std::int64_t find_repeated(std::vector<std::int64_t> case_ids) {
   std::sort(case_ids.begin(), case_ids.end());
-  const auto twice = std::adjacent_find(case_ids.begin(), case_ids.end());
-  return twice == case_ids.end() ? -1 : *twice;
+  const auto repeated = std::adjacent_find(case_ids.begin(), case_ids.end());
+  return repeated == case_ids.end() ? -1 : *repeated;
+}
+
+std::string describe_repeated(const std::vector<std::int64_t>& case_ids) {
+  const std::int64_t repeated = find_repeated(case_ids);
+  return repeated < 0 ? "" : fmt::format("holds case {} twice", repeated);
 }
 
 }  // namespace strut

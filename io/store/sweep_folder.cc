@@ -1,7 +1,8 @@
 #include "io/store/sweep_folder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <system_error>
 
@@ -17,15 +18,19 @@ ShardSeal get_seal(const Shard& shard) {
   return {.plan_hash = shard.provenance.plan_hash, .shard = shard.provenance.shard, .sha256 = {}};
 }
 
+InputError retry_error(const fs::path& file, const std::string& fault) {
+  return InputError(fmt::format("{}: {}; {}", file.string(), fault, kShardSeal.remedy));
+}
+
 /// Throws InputError unless `overlay` can be a retry of some cases of `shard`.
 void require_retry(const fs::path& file, const Shard& shard, const Shard& overlay) {
   std::string fault =
       find_misplacement(get_seal(overlay), shard.provenance.plan_hash, shard.provenance.shard);
-  if (fault.empty() && overlay.schema != shard.schema) fault = "has other columns than its shard";
-  if (const std::int64_t twice = find_repeated(overlay.rows.case_id); fault.empty() && twice >= 0) {
-    fault = "holds case " + std::to_string(twice) + " twice";
+  if (fault.empty() && overlay.schema != shard.schema) {
+    fault = "its columns differ from those of its shard";
   }
-  if (!fault.empty()) throw InputError(file.string() + ": " + fault + "; " + kShardSeal.remedy);
+  if (fault.empty()) fault = describe_repeated(overlay.rows.case_id);
+  if (!fault.empty()) throw retry_error(file, fault);
 }
 
 }  // namespace
@@ -35,10 +40,10 @@ std::string SweepFolder::name() const {
   return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
-std::string SweepFolder::shard_name(std::int64_t shard) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06lld", static_cast<long long>(shard));
-  return name;
+std::string SweepFolder::shard_name(std::int64_t shard) { return fmt::format("{:06}", shard); }
+
+fs::path SweepFolder::retry(std::int64_t number, int round) const {
+  return retries() / fmt::format("{}.{}.h5", shard_name(number), round);
 }
 
 std::int64_t SweepFolder::parse_shard_name(const std::string& name) {
@@ -55,7 +60,7 @@ std::vector<std::int64_t> list_shards(const SweepFolder& folder) {
     const std::int64_t shard = SweepFolder::parse_shard_name(path.stem().string());
     if (shard >= 0 && path == folder.shard(shard)) shards.push_back(shard);
   }
-  if (error) throw EnvironmentError(folder.shards().string() + ": " + error.message());
+  if (error) throw file_failure(folder.shards(), "cannot be listed", error.value());
   std::sort(shards.begin(), shards.end());
   return shards;
 }
@@ -84,20 +89,20 @@ void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts) {
     for (std::size_t row = 0; row < overlay.rows.size(); ++row) {
       const auto found = row_of.find(overlay.rows.case_id[row]);
       if (found == row_of.end()) {
-        throw InputError(file.string() + ": case " + std::to_string(overlay.rows.case_id[row]) +
-                         " is not in shard " + std::to_string(number) + "; " + kShardSeal.remedy);
+        throw retry_error(
+            file, fmt::format("case {} is not in shard {}", overlay.rows.case_id[row], number));
       }
       rows.set_row(found->second, overlay.rows, row);
     }
   }
 }
 
-Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
-                        ShardParts parts) {
-  Shard mended = read_shard(folder.shard(shard), parts);
-  require_shard(folder.shard(shard), extent, shard, get_seal(mended), mended.rows.case_id);
-  apply_retries(folder, mended, parts);
-  return mended;
+Shard read_shard_with_retries(const SweepFolder& folder, const SweepExtent& extent,
+                              std::int64_t shard, ShardParts parts) {
+  Shard read = read_shard(folder.shard(shard), parts);
+  require_shard(folder.shard(shard), extent, shard, get_seal(read), read.rows.case_id);
+  apply_retries(folder, read, parts);
+  return read;
 }
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// The files of a sweep folder: their names, and the shards as retries left them.
+// The files of a sweep folder: their names, and shards with their retries applied.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct SweepFolder {
   std::filesystem::path root;
 
   std::filesystem::path request() const { return root / "request.toml"; }
-  std::filesystem::path inputs() const { return root / "request"; }  // copies of the named files
+  std::filesystem::path inputs() const { return root / "request"; }  // copies of the input files
   std::filesystem::path plan() const { return root / "plan.h5"; }
   std::filesystem::path journal() const { return root / "journal"; }
   std::filesystem::path shards() const { return root / "shards"; }
@@ -26,54 +26,54 @@ struct SweepFolder {
   std::filesystem::path quarantine() const { return root / "quarantine"; }
   std::filesystem::path logs() const { return root / "logs"; }
 
-  /// `subfolder`, one of the above, for writing. Throws InputError where it is missing or a link.
+  /// Opens `subfolder`, one of the above, for writing. Throws InputError if it is missing or a
+  /// link.
   Folder open(const std::filesystem::path& subfolder) const {
     return Folder(root).open_folder(subfolder.filename().string());
   }
 
-  /// The folder's own: "cars" of "cars/", of "../cars" and, within it, of ".".
+  /// Returns the name of the folder itself: "cars" for "cars/", "../cars" and, within it, ".".
   std::string name() const;
 
-  /// "000042": of the file, and of the claim on it.
+  /// Returns "000042", the name of the file and of the claim on it.
   static std::string shard_name(std::int64_t shard);
-  /// The number of such a name; -1 for any other text.
+  /// Returns the number in such a name; -1 for any other text.
   static std::int64_t parse_shard_name(const std::string& name);
-  /// The claim on the next retry of a shard.
+  /// Returns the name of the claim on the next retry of a shard.
   static std::string retry_unit(std::int64_t shard) { return kRetryPrefix + shard_name(shard); }
-  static bool is_retry_unit(const std::string& unit) { return unit.rfind(kRetryPrefix, 0) == 0; }
+  static bool is_retry_unit(const std::string& unit) { return unit.starts_with(kRetryPrefix); }
 
-  /// "shards/000042.h5": how journal and messages call a file of the folder.
+  /// Returns "shards/000042.h5", the name of a file in the journal and in messages.
   std::string name_of(const std::filesystem::path& file) const {
     return file.lexically_relative(root).generic_string();
   }
   std::filesystem::path shard(std::int64_t number) const {
     return shards() / (shard_name(number) + ".h5");
   }
-  /// The overlay that the `round`-th retry of a shard wrote.
-  std::filesystem::path retry(std::int64_t number, int round) const {
-    return retries() / (shard_name(number) + "." + std::to_string(round) + ".h5");
-  }
+  /// Returns the file of the `round`-th retry of a shard.
+  std::filesystem::path retry(std::int64_t number, int round) const;
 
  private:
   static constexpr const char* kRetryPrefix = "retry-";
 };
 
-/// Numbers of the shards that `shards/` holds, ascending, by name alone.
+/// Returns the numbers of the shards in `shards/`, ascending, by name alone. Throws
+/// EnvironmentError.
 std::vector<std::int64_t> list_shards(const SweepFolder& folder);
 
-/// Rounds of retries that `retries/` holds for a shard: 0, 1, ... without a gap.
+/// Returns the number of rounds of retries in `retries/` for a shard: 0, 1, ... without a gap.
 int count_retries(const SweepFolder& folder, std::int64_t shard);
 
-/// What plan.h5 says. Throws InputError where it is missing or damaged.
+/// Reads the extent from plan.h5. Throws InputError if it is missing or damaged.
 SweepExtent read_sweep_extent(const SweepFolder& folder);
 
-/// Replaces the rows of a shard by those of its retries. Throws InputError where one is damaged or
-/// not of this shard.
+/// Replaces rows of a shard by those of its retries. Throws InputError if a retry is damaged or
+/// belongs to another shard.
 void apply_retries(const SweepFolder& folder, Shard& shard, ShardParts parts = ShardParts::kAll);
 
-/// A shard with its rows as the retries left them. Throws InputError where a file is damaged, or
-/// not the plan's (require_shard), or a retry is not of this shard.
-Shard read_mended_shard(const SweepFolder& folder, const SweepExtent& extent, std::int64_t shard,
-                        ShardParts parts = ShardParts::kAll);
+/// Reads a shard and applies its retries. Throws InputError if a file is damaged or does not belong
+/// to the plan (require_shard), or if a retry belongs to another shard.
+Shard read_shard_with_retries(const SweepFolder& folder, const SweepExtent& extent,
+                              std::int64_t shard, ShardParts parts = ShardParts::kAll);
 
 }  // namespace strut

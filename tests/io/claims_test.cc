@@ -77,8 +77,8 @@ TEST_CASE("A claimed unit is taken until it is given back", "[io]") {
   CHECK(b.claim("000001") == Answer::kTaken);
   a.release("000001");
   CHECK(b.claim("000001") == Answer::kMine);
-  CHECK(a.may_live(b.runner()));
-  CHECK(a.may_live(a.runner()));
+  CHECK(a.may_be_alive(b.runner()));
+  CHECK(a.may_be_alive(a.runner()));
 }
 
 TEST_CASE("A runner that ends gives everything back and leaves nothing", "[io]") {
@@ -91,7 +91,7 @@ TEST_CASE("A runner that ends gives everything back and leaves nothing", "[io]")
     CHECK(b.claim("1") == Answer::kMine);
     CHECK(b.claim("2") == Answer::kMine);
   }
-  CHECK_FALSE(a.may_live(name));
+  CHECK_FALSE(a.may_be_alive(name));
   CHECK(list_files(folder / "") == std::set<std::string>{"runner." + a.runner()});
   CHECK(a.claim("1") == Answer::kMine);
 }
@@ -159,7 +159,7 @@ TEST_CASE("Threads that share one runner never hold one unit together", "[io][th
     threads.emplace_back([&] {
       for (std::size_t i = 0; i < kUnits; ++i) {
         if (claims.claim(std::to_string(i)) == Answer::kMine) ++mine[i];
-        if (claims.may_live("elsewhere.1.0123456789abcdef")) ++overlaps;
+        if (claims.may_be_alive("elsewhere.1.0123456789abcdef")) ++overlaps;
         // One that goes from hand to hand.
         if (claims.claim("shared") != Answer::kMine) continue;
         if (++holders > 1) ++overlaps;
@@ -199,23 +199,23 @@ TEST_CASE("A killed runner's claims are free at once on its host", "[io]") {
   Holder holder(folder / "", "1");
   REQUIRE(holder.is_mine());
   CHECK(claims.claim("1") == Answer::kTaken);
-  CHECK(claims.may_live(holder.runner()));
+  CHECK(claims.may_be_alive(holder.runner()));
   SECTION("while nobody has asked how it ended") {
     holder.end_unasked(SIGKILL);
     CHECK(claims.claim("1") == Answer::kMine);
-    CHECK_FALSE(claims.may_live(holder.runner()));
+    CHECK_FALSE(claims.may_be_alive(holder.runner()));
   }
   SECTION("and after") {
     holder.end(SIGKILL);
     CHECK(claims.claim("1") == Answer::kMine);
-    CHECK_FALSE(claims.may_live(holder.runner()));
+    CHECK_FALSE(claims.may_be_alive(holder.runner()));
   }
   claims.release("1");
   // The next runner clears what the killed one left.
   Claims next(Folder(folder / ""), kLongLease);
   CHECK(list_files(folder / "") ==
         std::set<std::string>{"runner." + claims.runner(), "runner." + next.runner()});
-  CHECK_FALSE(claims.may_live(holder.runner()));
+  CHECK_FALSE(claims.may_be_alive(holder.runner()));
 }
 
 TEST_CASE("A runner that gets SIGTERM ends as its program wishes, and gives back", "[io]") {
@@ -280,14 +280,14 @@ TEST_CASE("Another host's claim is held while its counter moves, and free a leas
   for (int beat = 0; std::chrono::steady_clock::now() - start < 3 * kOptions.lease; ++beat) {
     write_runner(folder / "", runner, claims, key, value, beat);
     REQUIRE(claims.claim("1") == Answer::kTaken);
-    REQUIRE(claims.may_live(runner));
+    REQUIRE(claims.may_be_alive(runner));
     std::this_thread::sleep_for(milliseconds(20));
   }
   const auto last = std::chrono::steady_clock::now();
   CHECK(claims.claim("1") == Answer::kTaken);
   CHECK(wait_until([&] { return claims.claim("1") == Answer::kMine; }));
   CHECK(std::chrono::steady_clock::now() - last >= kOptions.lease - milliseconds(40));
-  CHECK_FALSE(claims.may_live(runner));
+  CHECK_FALSE(claims.may_be_alive(runner));
 }
 
 TEST_CASE("A process number given out again is not taken for the old runner", "[io]") {
@@ -296,12 +296,12 @@ TEST_CASE("A process number given out again is not taken for the old runner", "[
   // This process, but started at another time.
   write_runner(folder / "", "a.1.000000000000000a", claims, "start", "12");
   folder.write("1", "a.1.000000000000000a\n");
-  CHECK_FALSE(claims.may_live("a.1.000000000000000a"));
+  CHECK_FALSE(claims.may_be_alive("a.1.000000000000000a"));
   CHECK(claims.claim("1") == Answer::kMine);
   // The same start: the same process.
   write_runner(folder / "", "a.1.000000000000000b", claims, "none", "");
   folder.write("2", "a.1.000000000000000b\n");
-  CHECK(claims.may_live("a.1.000000000000000b"));
+  CHECK(claims.may_be_alive("a.1.000000000000000b"));
   CHECK(claims.claim("2") == Answer::kTaken);
 }
 
@@ -316,7 +316,7 @@ TEST_CASE("A stopped runner keeps its claim for a lease, and its name", "[io]") 
   const auto start = std::chrono::steady_clock::now();
   CHECK(wait_until([&] { return claims.claim("1") == Answer::kMine; }));
   CHECK(std::chrono::steady_clock::now() - start >= kOptions.lease - milliseconds(40));
-  CHECK(claims.may_live(holder.runner()));
+  CHECK(claims.may_be_alive(holder.runner()));
   // It wakes up, and takes nothing away from the new holder.
   holder.send(SIGCONT);
   holder.end(SIGTERM);
@@ -345,7 +345,7 @@ TEST_CASE("A runner's file cut anywhere is never taken for a dead runner's", "[i
   for (std::size_t size = 0; size <= text.size(); ++size) {
     folder.write("runner.half.1.000000000000000d", text.substr(0, size));
     INFO("'" << text.substr(0, size) << "'");
-    REQUIRE(claims.may_live("half.1.000000000000000d"));
+    REQUIRE(claims.may_be_alive("half.1.000000000000000d"));
     REQUIRE(claims.claim("1") == Answer::kTaken);
   }
 }

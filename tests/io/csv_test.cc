@@ -58,13 +58,13 @@ TEST_CASE("A table with other line ends, comments, quotes and blanks is the same
 TEST_CASE("A bad table names file and line", "[io]") {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) { return read_csv(folder.write("a.csv", text)); };
-  CHECK_THROWS_WITH(read("a,b\n1,2\n1\n"), EndsWith("a.csv:3: 1 cells, but 2 columns"));
+  CHECK_THROWS_WITH(read("a,b\n1,2\n1\n"), EndsWith("a.csv:3: 1 cells; must be 2, one per column"));
   CHECK_THROWS_WITH(read("a,b\n1,x\n"), EndsWith("a.csv:2: b = 'x': must be a finite number"));
   CHECK_THROWS_WITH(read("a,b\n1,\n"), Contains("a.csv:2: b = ''"));
   CHECK_THROWS_WITH(read("a,b\n1,nan\n"), Contains("a.csv:2: b = 'nan'"));
   CHECK_THROWS_WITH(read("a,b\n1,1e999\n"), Contains("a.csv:2: b = '1e999'"));
   CHECK_THROWS_WITH(read("a,b\n1,2 m\n"), Contains("'2 m'"));
-  CHECK_THROWS_WITH(read("a,a\n"), Contains("a.csv:1: column 'a' stands there twice"));
+  CHECK_THROWS_WITH(read("a,a\n"), Contains("a.csv:1: column 'a' is given twice"));
   CHECK_THROWS_WITH(read("a,\n"), Contains("a.csv:1: a column has no name"));
   CHECK_THROWS_WITH(read("1,2\n3,4\n"), Contains("a.csv:1: column name expected"));
   CHECK_THROWS_AS(read(""), InputError);

@@ -60,15 +60,16 @@ TEST_CASE("Every flipped bit of a sealed file is found with reason and remedy", 
   const std::string remedy = "`strut merge DIR -o FILE --force` makes it anew";
   CHECK(test::count_missed_flips(
             path, [&] { Hdf5Reader(path, kMergedSeal); }, remedy) == 0);
-  const auto check = [&] { require_sound(path, check_sealed_file(path, kMergedSeal)); };
+  const auto check = [&] { require_intact(path, check_sealed_file(path, kMergedSeal)); };
   CHECK(test::count_missed_flips(path, check, remedy) == 0);
 }
 
 TEST_CASE("A sealed file of another kind, cut short or extended is refused", "[io]") {
   const TemporaryFolder folder;
   const fs::path path = write_streamed(folder);
-  CHECK_THROWS_WITH(Hdf5Reader(path, kModelSeal),
-                    Contains("streamed.h5: no model file of strut, but sealed as merged"));
+  CHECK_THROWS_WITH(
+      Hdf5Reader(path, kModelSeal),
+      Contains("streamed.h5: not a model file of strut: its seal is that of a merged file"));
   const std::uintmax_t size = fs::file_size(path);
   for (const std::uintmax_t other :
        {std::uintmax_t{0}, std::uintmax_t{511}, std::uintmax_t{512}, size - 1, size + 1}) {

@@ -57,7 +57,7 @@ TEST_CASE("A folder that the user names may be reached by links, its subfolders 
   CHECK_FALSE(root.find_folder("no"));
   CHECK_THROWS_WITH(root.open_folder("no"), Contains("no such folder"));
   places.folder.write("ours/file", "");
-  CHECK_THROWS_WITH(root.open_folder("file"), Contains("must be a folder"));
+  CHECK_THROWS_WITH(root.open_folder("file"), Contains("file: not a folder; must be one"));
   CHECK_THROWS_AS(Folder(places.ours / "file"), InputError);
   CHECK_THROWS_AS(Folder(places.ours / "no"), InputError);
   CHECK(places.is_untouched());

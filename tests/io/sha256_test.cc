@@ -53,15 +53,6 @@ TEST_CASE("A digest depends on the rows, not on their order or grouping", "[unit
   }
 }
 
-TEST_CASE("A row taken out of a digest leaves no trace", "[unit][property]") {
-  DataDigest digest = digest_of({1, 2, 3});
-  digest.subtract(row(2));
-  CHECK(digest == digest_of({1, 3}));
-  digest.subtract(row(1));
-  digest.subtract(row(3));
-  CHECK(digest == DataDigest());
-}
-
 // Independent truth: the same sum in plain Python integers,
 //   h = hashlib.sha256; w = lambda b: [int.from_bytes(b[i:i+8], "little") for i in (0, 8, 16, 24)]
 TEST_CASE("A digest's state is count and sum", "[unit][reference]") {

@@ -150,8 +150,8 @@ TEST_CASE("What is no shard is not read, however large", "[io]") {
   const TemporaryFolder folder;
   const fs::path path = folder.write("shard.h5", "no shard");
   fs::resize_file(path, std::uintmax_t{1} << 42);  // sparse; more than any memory
-  CHECK_THROWS_WITH(check_shard_bytes(path), Contains("shard.h5: damaged, or no shard"));
-  CHECK_THROWS_WITH(read_shard(path), Contains("shard.h5: damaged, or no shard"));
+  CHECK_THROWS_WITH(check_shard_bytes(path), Contains("shard.h5: damaged, or not a shard"));
+  CHECK_THROWS_WITH(read_shard(path), Contains("shard.h5: damaged, or not a shard"));
 }
 
 TEST_CASE("The bytes behind the user block have the seal's SHA-256", "[io][reference]") {
@@ -300,17 +300,13 @@ TEST_CASE("A shard of another schema version or shape is refused by name", "[io]
 }
 
 TEST_CASE("A data digest counts its rows", "[unit]") {
-  DataDigest once, twice, removed;
+  DataDigest once, twice;
   const Hash row = calc_sha256("x");
   once.add(row);
   twice.add(row);
   twice.add(Hash{});  // adds nothing to the sums
   CHECK(once.text() != twice.text());
   CHECK(DataDigest().text() != once.text());
-  removed.add(row);
-  removed.add(calc_sha256("y"));
-  removed.subtract(calc_sha256("y"));
-  CHECK(removed.text() == once.text());
 }
 
 TEST_CASE("A damaged shard never reaches the HDF5 library", "[io][property]") {

@@ -286,7 +286,7 @@ TEST_CASE("identify refuses what it cannot read, and says what is allowed", "[io
   check_refused(write(names + "1,2,3,4\n") + desk.set(x), {"--set", "no file beside it"});
   CHECK_THAT(run_program("identify").messages, Contains("MODEL: missing"));
   CHECK_THAT(run_program("identify " + write(names)).messages,
-             Contains("a.csv: damaged, or no model file"));
+             Contains("a.csv: damaged, or not a model file"));
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ TEST_CASE("Status counts no shard whose seal, size, place or data are wrong", "[
   }
   SECTION("garbage") {
     std::ofstream(file) << std::string(9000, 'x');
-    check_fault("damaged, or no shard");
+    check_fault("damaged, or not a shard");
   }
   SECTION("another's") {
     fs::copy_file(folder.shard(2), file, fs::copy_options::overwrite_existing);
@@ -293,7 +293,7 @@ TEST_CASE("A resume tries a case once, however many runners help", "[unit][threa
   }
   int still_failing = 0;
   for (const std::int64_t shard : list_shards(folder)) {
-    const ShardRows rows = read_mended_shard(folder, sweep.plan().make_extent(), shard).rows;
+    const ShardRows rows = read_shard_with_retries(folder, sweep.plan().make_extent(), shard).rows;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       CHECK(rows.attempt[row] <= 2);
       still_failing += rows.status[row] != 0 ? 1 : 0;

@@ -74,7 +74,7 @@ TEST_CASE("A folder, its shards in any order and a merged file are the same rows
     check_same(other.read(0, 27), rows);
     check_same(other.read(3, 9), whole.read(3, 9));
   }
-  CHECK_THROWS_WITH(whole.read(20, 8), Contains("there are 27"));
+  CHECK_THROWS_WITH(whole.read(20, 8), Contains("has 27 rows"));
 }
 
 TEST_CASE("A sweep folder that lacks shards is refused unless told otherwise", "[io]") {
@@ -94,15 +94,15 @@ TEST_CASE("Files of another plan, of other columns, or given twice are refused b
   const ShardRows rows = test::make_example_rows(schema, 5);
   const fs::path foreign =
       write_shard(folder / "foreign.h5", 3, schema, rows, std::string(64, 'b'));
-  CHECK_THROWS_WITH(Dataset({one, foreign}), Contains("foreign.h5: a shard of another plan") &&
+  CHECK_THROWS_WITH(Dataset({one, foreign}), Contains("foreign.h5: of another plan") &&
                                                  Contains("1.h5") && Contains("bbbb"));
   ShardSchema other = schema;
   other.parameters[0].unit = "kN/m";
   const fs::path misfit = write_shard(folder / "misfit.h5", 3, other, rows);
-  CHECK_THROWS_WITH(Dataset({one, misfit}), Contains("misfit.h5: has other columns"));
+  CHECK_THROWS_WITH(Dataset({one, misfit}), Contains("misfit.h5: its columns differ"));
   CHECK_THROWS_WITH(Dataset({one, two, one}), Contains("shard 1 is given twice"));
   CHECK_THROWS_WITH(Dataset({folder / "none.h5"}), Contains("none.h5: not found"));
-  CHECK_THROWS_WITH(Dataset({folder / "."}), Contains("no sweep folder"));
+  CHECK_THROWS_WITH(Dataset({folder / "."}), Contains("not a sweep folder"));
   CHECK_THROWS_AS(Dataset({folder.write("text.h5", "no data")}), InputError);
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("A folder's shard under another's name or of another sweep is refused 
     replace_shard(folder.shard(1), sweep, 1, other);
     CHECK_THROWS_WITH(Dataset({folder.root}), Contains("000001.h5") &&
                                                   Contains("000002.h5: case") &&
-                                                  Contains("is there twice"));
+                                                  Contains("appears twice"));
   }
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("A retry of another shard or sweep is refused", "[io]") {
           dataset.read(0, 27);
         }(),
         Contains("retries/000001.0.h5: " + what));
-    CHECK_THROWS_WITH(read_mended_shard(folder, sweep.plan().make_extent(), 1),
+    CHECK_THROWS_WITH(read_shard_with_retries(folder, sweep.plan().make_extent(), 1),
                       Contains("retries/000001.0.h5: " + what));
   };
   const ShardRows rows = read_shard(folder.shard(1)).rows;
@@ -196,7 +196,7 @@ TEST_CASE("A retry of another shard or sweep is refused", "[io]") {
   ShardSchema fewer = schema;
   fewer.snapshot.pop_back();
   write_shard(file, 1, fewer, ShardRows::make(fewer, 1), sweep.plan().hash());
-  check("has other columns than its shard");
+  check("its columns differ from those of its shard");
   replace_shard(file, sweep, 1, rows);
   CHECK(Dataset({folder.root}).read(0, 27).case_id[5] == rows.case_id[0]);
 }
@@ -209,7 +209,7 @@ TEST_CASE("Shards given alone bear their own number, and no case is there twice"
   const ShardSchema schema = test::make_example_schema();
   write_shard(other, 2, schema, test::make_example_rows(schema, 20, 119));
   CHECK_THROWS_WITH(Dataset({one, other}),
-                    Contains("1.h5") && Contains("000002.h5: case 119 is there twice"));
+                    Contains("1.h5") && Contains("000002.h5: case 119 appears twice"));
   CHECK(Dataset({other}).row_count() == 20);
 }
 

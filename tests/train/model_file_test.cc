@@ -143,7 +143,7 @@ TEST_CASE("What is no model, or one that does not fit itself, is refused", "[io]
   write_trained_model(file, make_model());
   CHECK_THROWS_WITH(read_checkpoint(file), Contains("m.h5: no checkpoint file of strut"));
   CHECK_THROWS_WITH(read_trained_model(folder.write("text.h5", "text")),
-                    Contains("text.h5: damaged, or no model file"));
+                    Contains("text.h5: damaged, or not a model file"));
   TrainedModel model = make_model();
   model.weights.pop_back();
   write_trained_model(file, model);
