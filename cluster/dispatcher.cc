@@ -1,5 +1,7 @@
 #include "cluster/dispatcher.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "cluster/local.h"
@@ -17,8 +19,9 @@ std::unique_ptr<Dispatcher> make() {
 using Maker = std::unique_ptr<Dispatcher> (*)();
 
 const std::map<std::string, Maker>& get_makers() {
-  static const std::map<std::string, Maker> makers = {{"local", &make<LocalDispatcher>},
-                                                      {"slurm", &make<SlurmDispatcher>}};
+  static const std::map<std::string, Maker> makers = {
+      {LocalDispatcher().name(), &make<LocalDispatcher>},
+      {SlurmDispatcher().name(), &make<SlurmDispatcher>}};
   return makers;
 }
 
@@ -26,15 +29,16 @@ const std::map<std::string, Maker>& get_makers() {
 
 std::string make_job_mark(const std::filesystem::path& sweep, const std::string& job_name) {
   constexpr std::size_t kDigits = 32;
-  const std::string text = std::filesystem::canonical(sweep).string() + ":" + job_name;
+  const std::string text =
+      fmt::format("{}:{}", std::filesystem::canonical(sweep).string(), job_name);
   return to_hex(calc_sha256(text)).substr(0, kDigits);
 }
 
 std::string describe_foreign(const std::string& job, const std::string& name) {
-  return job + " runs, but is not proved to be job " + name +
-         " of this folder: the folder was copied, renamed or is seen by another path, or the job "
-         "is "
-         "of an earlier build";
+  return fmt::format(
+      "{} runs, but is not proved to be job {} of this folder: the folder was copied, renamed or "
+      "reached by another path, or the job belongs to an earlier build",
+      job, name);
 }
 
 std::vector<std::string> list_dispatchers() {
@@ -43,7 +47,9 @@ std::vector<std::string> list_dispatchers() {
   return names;
 }
 
-std::string find_dispatcher() { return SlurmDispatcher::is_there() ? "slurm" : "local"; }
+std::string find_dispatcher() {
+  return SlurmDispatcher::is_available() ? SlurmDispatcher().name() : LocalDispatcher().name();
+}
 
 std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name) {
   return get_makers().at(name)();

@@ -5,17 +5,16 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
-#include "base/error/input_error.h"
+#include "io/file/file_sync.h"
 
 namespace strut {
 
 std::string find_local_file_system(const std::filesystem::path& folder) {
   struct statfs facts {};
   if (::statfs(folder.c_str(), &facts) != 0) {
-    throw EnvironmentError(folder.string() + ": cannot be looked at: " + std::strerror(errno));
+    throw file_failure(folder, "its file system cannot be determined", errno);
   }
   constexpr long kXfs = 0x58465342, kZfs = 0x2fc12fc1;
   static constexpr std::array<std::pair<long, const char*>, 8> kLocal = {{

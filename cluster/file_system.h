@@ -1,4 +1,4 @@
-// What kind of file system a folder lies on.
+// Detects file systems that only one machine sees.
 #pragma once
 
 #include <filesystem>
@@ -6,8 +6,8 @@
 
 namespace strut {
 
-/// "tmpfs", "ext4", ...: of a file system that other machines do not see; "" where they may: a
-/// network's, or one that is not known here. Throws EnvironmentError where it cannot be asked.
+/// Returns the kind ("tmpfs", "ext4", ...) of the folder's file system if other machines cannot see
+/// it; "" if they may: a network file system or an unknown one. Throws EnvironmentError.
 std::string find_local_file_system(const std::filesystem::path& folder);
 
 }  // namespace strut

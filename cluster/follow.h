@@ -1,4 +1,4 @@
-// How far a submission has come: what its scheduler says, and what its tasks told.
+// Progress of a submission, from its scheduler and from the records of its tasks.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +14,31 @@ namespace strut {
 
 enum class QueueState {
   kQueued,   // tasks wait or run
-  kEnded,    // none does
-  kUnknown,  // the scheduler does not say: neither of the above may be assumed
+  kEnded,    // no task waits or runs
+  kUnknown,  // the scheduler gives no answer: neither of the above may be assumed
 };
 
 const char* get_name(QueueState state);
 
 struct SubmissionState {
   QueueState queue = QueueState::kUnknown;
-  std::string why;  // it is unknown
+  std::string why_unknown;  // reason for kUnknown
   std::int64_t pending = 0, running = 0;
-  std::map<std::string, std::int64_t> reasons;  // for which tasks wait
+  std::map<std::string, std::int64_t> reasons;  // why tasks wait -> tasks
   std::map<TaskFate, std::int64_t> fates;       // of array tasks that are not queued
-  std::int64_t restarts = 0;                    // lives beyond each task's first
-  std::vector<ShardRange> live;                 // shards of tasks that wait or run
+  std::int64_t restarts = 0;                    // attempts after the first of each task
+  std::vector<ShardRange> queued_shards;        // shards of tasks that wait or run
   bool retries = false;                         // its task for failed cases waits or runs
-  TaskWords words;                              // of tasks that ended
+  SchedulerStates scheduler_states;             // of tasks that ended
 };
 
-/// Looks, and marks a submission that was queued in full and has ended as over: of such a one
-/// nobody is asked again. Throws InputError where its files are damaged, or name a job that is none
-/// of its own.
+/// Determines the state of a submission. If it was queued in full and has ended, marks it as
+/// finished: its scheduler is not asked again. Throws InputError if its files are damaged or name a
+/// job that cannot be its own.
 SubmissionState follow(const Submission& submission);
 
-/// The jobs of a submission; those included that were queued by a submit that was killed before it
-/// could say so. Throws EnvironmentError where that cannot be told.
+/// Finds the jobs of a submission, including those that a killed submit queued without recording
+/// them. Throws EnvironmentError if they cannot be determined.
 std::vector<JobRecord> find_jobs(const Submission& submission, const Dispatcher& dispatcher);
 
 }  // namespace strut

@@ -1,6 +1,7 @@
 #include "cluster/local.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kMark = "STRUT_JOB";
 
 std::string write_identity(const ProcessIdentity& p) {
-  return p.host + "/" + p.boot + "/" + p.name_space + "/" + p.process + "/" + p.start;
+  return fmt::format("{}/{}/{}/{}/{}", p.host, p.boot, p.name_space, p.process, p.start);
 }
 
 ProcessIdentity read_identity(const std::string& text) {
@@ -39,65 +40,72 @@ ProcessIdentity read_identity(const std::string& text) {
 }
 
 InputError record_error(const JobRecord& record, const std::string& what) {
-  return InputError(record.file.string() + ": " + what + "; nothing is stopped" + kRecordRemedy);
+  return InputError(
+      fmt::format("{}: {}; nothing is stopped; {}", record.file.string(), what, kRecordRemedy));
 }
 
-/// The process of a record. Throws InputError where its text is none of write_identity().
+/// Returns the process of a record. Throws InputError if write_identity() cannot have written it.
 ProcessIdentity parse_record(const JobRecord& record) {
   const std::string letters =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._:[]";
   ProcessIdentity process = read_identity(record.job);
   const auto number = parse_number<pid_t>(process.process);
   const auto start = parse_number<std::uint64_t>(process.start);
-  const bool is_written_so = write_identity(process) == record.job && !process.host.empty() &&
-                             record.job.find_first_not_of(letters + "/") == std::string::npos &&
-                             number && process.process == std::to_string(*number) && start &&
-                             process.start == std::to_string(*start);
-  if (!is_written_so) {
+  const bool is_valid = write_identity(process) == record.job && !process.host.empty() &&
+                        record.job.find_first_not_of(letters + "/") == std::string::npos &&
+                        number && process.process == std::to_string(*number) && start &&
+                        process.start == std::to_string(*start);
+  if (!is_valid) {
     throw record_error(record, "not a job: must be HOST/BOOT/NAMESPACE/PROCESS/START");
   }
   if (*number <= 1 || *number == ::getpid()) {
-    throw record_error(record, "process " + process.process + ": never a job's");
+    throw record_error(record, fmt::format("process {}: cannot be a job", process.process));
   }
   return process;
 }
 
-/// Why a process is not the job that a record tells of; "" where it is.
+/// Returns why a process is not the job of a record; "" if it is.
 std::string find_doubt(const std::string& process, const JobRecord& record) {
   const auto owner = find_process_owner(process);
-  if (!owner) return "it may not be looked at";
-  if (owner->user != ::geteuid()) return "it is another user's";
-  if (owner->group != process || owner->session != process) return "it leads no session";
-  const std::string wanted = std::string(kMark) + "=" + record.mark;
+  if (!owner) return "its owner cannot be determined";
+  if (owner->user != ::geteuid()) return "it belongs to another user";
+  if (owner->group != process || owner->session != process) return "it does not lead a session";
+  const std::string wanted = fmt::format("{}={}", kMark, record.mark);
   const auto& variables = owner->environment;
   const bool is_marked = std::find(variables.begin(), variables.end(), wanted) != variables.end();
-  return is_marked ? "" : std::string(kMark) + " in its environment is not " + record.mark;
+  return is_marked ? "" : fmt::format("{} in its environment is not {}", kMark, record.mark);
 }
 
-/// Whether the job of a record runs, and why a process that does is not proved to be it.
-struct JobLife {
+/// Liveness of the job of a record, and why a running process is not proved to be that job.
+struct JobLiveness {
   Liveness liveness;
   std::string doubt = {};
 };
 
-JobLife judge_job(const JobRecord& record, const ProcessIdentity& process,
-                  const ProcessIdentity& own) {
-  // What ran before a host was started again has ended.
+JobLiveness judge_job(const JobRecord& record, const ProcessIdentity& process,
+                      const ProcessIdentity& own) {
+  // All processes ended when the host was booted again.
   if (process.host == own.host && process.boot != own.boot) return {Liveness::kDead};
   Liveness liveness = check_liveness(process, own);
-  if (life != Liveness::kAlive) return {life};
+  if (liveness != Liveness::kAlive) return {liveness};
   const std::string doubt = find_doubt(process.process, record);
-  life = check_liveness(process, own);  // it may have ended while it was looked at
-  return {life, life == Liveness::kAlive ? doubt : ""};
+  liveness = check_liveness(process, own);  // it may have ended meanwhile
+  return {liveness, liveness == Liveness::kAlive ? doubt : ""};
 }
 
-/// In the child: begins a session, so that it outlives the terminal, tells who it is and becomes
-/// the script. `tell` is closed by that: until then nobody may look for the mark.
-[[noreturn]] void become(const std::vector<std::string>& command, const std::string& mark,
-                         int tell) {
+std::string describe_doubt(const JobRecord& record, const ProcessIdentity& process,
+                           const std::string& doubt) {
+  const std::string job = fmt::format("process {}", process.process);
+  return fmt::format("{} ({})", describe_foreign(job, record.name), doubt);
+}
+
+/// Runs in the child: starts a session, so that it outlives the terminal, writes its identity to
+/// `report` and executes the script, which closes `report`: until then the mark is not in place.
+[[noreturn]] void execute(const std::vector<std::string>& command, const std::string& mark,
+                          int report) {
   ::setsid();
   const std::string identity = write_identity(find_own_identity());
-  const bool told = ::write(tell, identity.data(), identity.size()) >= 0;
+  const bool reported = ::write(report, identity.data(), identity.size()) >= 0;
   const int nothing = ::open("/dev/null", O_RDWR);
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     ::dup2(nothing, descriptor);
@@ -110,13 +118,13 @@ JobLife judge_job(const JobRecord& record, const ProcessIdentity& process,
   words.reserve(command.size() + 1);
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  if (told && ::setenv(kMark, mark.c_str(), 1) == 0) ::execvp(words[0], words.data());
+  if (reported && ::setenv(kMark, mark.c_str(), 1) == 0) ::execvp(words[0], words.data());
   const std::string failure = std::string("\n") + std::strerror(errno);
-  (void)!::write(tell, failure.data(), failure.size());
+  (void)!::write(report, failure.data(), failure.size());
   ::_exit(127);
 }
 
-/// Until its other end is closed.
+/// Reads until the other end is closed.
 std::string read_all(int descriptor) {
   std::string text;
   std::array<char, 1024> buffer;
@@ -127,33 +135,53 @@ std::string read_all(int descriptor) {
   }
 }
 
+/// Starts a command in a session of its own, whose identity it returns. Throws EnvironmentError
+/// that names `script`.
+std::string start_session(const std::vector<std::string>& command, const std::string& mark,
+                          const fs::path& script) {
+  constexpr char kNotStarted[] = "cannot be started";
+  std::array<int, 2> ends{-1, -1};
+  const pid_t child = ::pipe2(ends.data(), O_CLOEXEC) == 0 ? ::fork() : -1;
+  if (child < 0) throw file_failure(script, kNotStarted, errno);
+  if (child == 0) {
+    // Its parent ends at once, so that init, not this program, waits for it.
+    if (::fork() == 0) execute(command, mark, ends[1]);
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  std::string text = read_all(ends[0]);
+  ::close(ends[0]);
+  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) continue;
+  const std::size_t failure = text.find('\n');
+  if (!text.empty() && failure == std::string::npos) return text;
+  const std::string cause = text.empty() ? "" : ": bash: " + text.substr(failure + 1);
+  throw EnvironmentError(fmt::format("{}: {}{}", script.string(), kNotStarted, cause));
+}
+
 }  // namespace
 
 SiteLimits LocalDispatcher::check(const Resources& resources, const fs::path&) const {
   if (!resources.partition.empty() || !resources.account.empty() || !resources.constraint.empty() ||
       !resources.memory.empty() || resources.seconds > 0.0 || !resources.extra.empty()) {
     throw InputError(
-        "--partition, --account, --constraint, --memory, --time, --option: this machine has no "
-        "such thing; they go with --to slurm");
+        "--partition, --account, --constraint, --memory, --time, --option: not available on this "
+        "machine; they require --to slurm");
   }
   return {};
 }
 
 Findings LocalDispatcher::examine(const Resources&, const fs::path&) const {
-  return {{"scheduler", Health::kGood, "none: this machine alone",
-           "`strut submit --to local` works in the background"}};
+  return {{"scheduler", Health::kGood, "none: this machine only",
+           "`strut submit --to local` runs in the background"}};
 }
 
-std::vector<NodeAnswer> LocalDispatcher::ask_nodes(const Resources&) const {
-  std::string names;
-  for (const char* name : list_instruction_sets()) {
-    names += (names.empty() ? "" : " ") + std::string(name);
-  }
-  return {{find_own_identity().host, names}};
+std::vector<NodeInstructionSets> LocalDispatcher::list_node_instruction_sets(
+    const Resources&) const {
+  return {{find_own_identity().host, fmt::format("{}", fmt::join(list_instruction_sets(), " "))}};
 }
 
 std::string LocalDispatcher::make_script(const TaskArray& tasks) const {
-  // A zombie, which in a container may stay for ever, has ended, too.
+  // A zombie, which in a container may stay forever, has ended as well.
   std::string text = R"(#!/bin/bash
 # $1, $2: the process to wait for, if any, and when it was started
 set -u
@@ -163,11 +191,12 @@ while [[ -n ${1:-} ]] && read -r stat 2>/dev/null </proc/"$1"/stat; do
   sleep 0.2
 done
 )";
-  text += "exec >>" + quote_word((tasks.folder / (tasks.name + ".log")).string()) + " 2>&1\n";
-  text += "threads=" + std::to_string(tasks.resources.threads) + "\n";
-  text += "for ((task = 0; task < " + std::to_string(tasks.tasks) + "; ++task)); do\n";
-  for (const std::string& line : tasks.preparation) text += "  " + line + "\n";
-  return text + "  " + tasks.program + "\ndone\n";
+  const std::string log = (tasks.folder / (tasks.name + ".log")).string();
+  text += fmt::format("exec >>{} 2>&1\n", quote_word(log));
+  text += fmt::format("threads={}\n", tasks.resources.threads);
+  text += fmt::format("for ((task = 0; task < {}; ++task)); do\n", tasks.tasks);
+  for (const std::string& line : tasks.preparation) text += fmt::format("  {}\n", line);
+  return text + fmt::format("  {}\ndone\n", tasks.program);
 }
 
 std::vector<std::string> LocalDispatcher::make_command(const TaskArray&, const fs::path& script,
@@ -183,26 +212,7 @@ std::string LocalDispatcher::submit(const TaskArray& tasks, const fs::path& scri
     const ProcessIdentity process = read_identity(wait_for);
     command.insert(command.end(), {process.process, process.start});
   }
-  std::array<int, 2> ends{-1, -1};
-  const pid_t child = ::pipe2(ends.data(), O_CLOEXEC) == 0 ? ::fork() : -1;
-  if (child < 0) {
-    throw EnvironmentError(script.string() + ": cannot be started: " + std::strerror(errno));
-  }
-  if (child == 0) {
-    // Its parent ends at once, so that init, not this program, waits for it.
-    if (::fork() == 0) become(command, tasks.mark, ends[1]);
-    ::_exit(0);
-  }
-  ::close(ends[1]);
-  const std::string text = read_all(ends[0]);
-  ::close(ends[0]);
-  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) continue;
-  const std::size_t failure = text.find('\n');
-  if (text.empty() || failure != std::string::npos) {
-    throw EnvironmentError(script.string() + ": cannot be started" +
-                           (text.empty() ? "" : ": bash: " + text.substr(failure + 1)));
-  }
-  return last_ = text;
+  return last_ = start_session(command, tasks.mark, script);
 }
 
 QueueAnswer LocalDispatcher::query(const std::vector<JobRecord>& jobs) const {
@@ -210,13 +220,11 @@ QueueAnswer LocalDispatcher::query(const std::vector<JobRecord>& jobs) const {
   QueueAnswer answer;
   for (const JobRecord& record : jobs) {
     const ProcessIdentity process = parse_record(record);
-    const JobLife job = judge_job(record, process, own);
-    if (job.life == Liveness::kUnknown) return {{}, "it was submitted on " + process.host};
-    if (!job.doubt.empty()) {
-      return {{},
-              describe_foreign("process " + process.process, record.name) + " (" + job.doubt + ")"};
-    }
-    if (job.life == Liveness::kAlive) {
+    const JobLiveness job = judge_job(record, process, own);
+    if (job.liveness == Liveness::kUnknown)
+      return {{}, fmt::format("it was submitted on {}", process.host)};
+    if (!job.doubt.empty()) return {{}, describe_doubt(record, process, job.doubt)};
+    if (job.liveness == Liveness::kAlive) {
       answer.tasks.push_back({record.job, -1, 1, TaskState::kRunning, "RUNNING", ""});
     }
   }
@@ -225,21 +233,17 @@ QueueAnswer LocalDispatcher::query(const std::vector<JobRecord>& jobs) const {
 
 void LocalDispatcher::cancel(const std::vector<JobRecord>& jobs) const {
   const ProcessIdentity own = find_own_identity();
-  std::vector<pid_t> leaders;  // all are proved before one is stopped
+  std::vector<pid_t> leaders;  // all are proved before any is stopped
   for (const JobRecord& record : jobs) {
     const ProcessIdentity process = parse_record(record);
-    const JobLife job = judge_job(record, process, own);
-    if (!job.doubt.empty()) {
-      throw record_error(record, describe_foreign("process " + process.process, record.name) +
-                                     " (" + job.doubt + ")");
-    }
-    if (job.life != Liveness::kAlive) continue;
+    const JobLiveness job = judge_job(record, process, own);
+    if (!job.doubt.empty()) throw record_error(record, describe_doubt(record, process, job.doubt));
+    if (job.liveness != Liveness::kAlive) continue;
     leaders.push_back(*parse_number<pid_t>(process.process));
   }
   for (const pid_t leader : leaders) {
     if (::kill(-leader, SIGTERM) != 0 && errno != ESRCH) {
-      throw EnvironmentError("process " + std::to_string(leader) +
-                             ": cannot be stopped: " + std::strerror(errno));
+      throw file_failure(fmt::format("process {}", leader), "cannot be stopped", errno);
     }
   }
 }

@@ -8,17 +8,17 @@
 namespace strut {
 namespace {
 
-/// A sweep with holes everywhere is not worth a job each.
-constexpr std::size_t kMostRanges = 16;
+/// Bound on the arrays of a sweep with gaps everywhere.
+constexpr std::size_t kMaxRanges = 16;
 
-/// Closes the narrowest gaps until at most so many ranges are left, fewer where gaps are alike.
-void close_gaps(std::vector<ShardRange>& ranges, std::size_t most) {
-  if (ranges.size() <= most) return;
+/// Closes the narrowest gaps until at most `max_ranges` ranges remain; fewer if gaps are equal.
+void close_gaps(std::vector<ShardRange>& ranges, std::size_t max_ranges) {
+  if (ranges.size() <= max_ranges) return;
   std::vector<std::int64_t> gaps;
   for (std::size_t i = 1; i < ranges.size(); ++i) {
     gaps.push_back(ranges[i].first - ranges[i - 1].end);
   }
-  auto cut = gaps.begin() + static_cast<std::ptrdiff_t>(most - 1);
+  auto cut = gaps.begin() + static_cast<std::ptrdiff_t>(max_ranges - 1);
   std::nth_element(gaps.begin(), cut, gaps.end(), std::greater<>());
   const std::int64_t narrow = *cut;
   std::vector<ShardRange> wide = {ranges.front()};
@@ -32,9 +32,9 @@ void close_gaps(std::vector<ShardRange>& ranges, std::size_t most) {
   ranges = std::move(wide);
 }
 
-std::int64_t count_tasks(const std::vector<ShardRange>& ranges, std::int64_t shards_a_task) {
+std::int64_t count_tasks(const std::vector<ShardRange>& ranges, std::int64_t shards_per_task) {
   std::int64_t tasks = 0;
-  for (const ShardRange& range : ranges) tasks += PackedArray{range, shards_a_task}.tasks();
+  for (const ShardRange& range : ranges) tasks += PackedArray{range, shards_per_task}.tasks();
   return tasks;
 }
 
@@ -57,26 +57,26 @@ std::vector<ShardRange> list_missing(std::int64_t shards, const std::vector<std:
 }
 
 ShardRange PackedArray::get_task(std::int64_t task) const {
-  const std::int64_t first = shards.first + task * shards_a_task;
-  return {first, std::min(first + shards_a_task, shards.end)};
+  const std::int64_t first = shards.first + task * shards_per_task;
+  return {first, std::min(first + shards_per_task, shards.end)};
 }
 
 std::vector<PackedArray> pack_shards(std::vector<ShardRange> missing,
                                      const PackingRequest& request) {
-  close_gaps(missing, std::min(kMostRanges, static_cast<std::size_t>(request.limits.tasks)));
+  close_gaps(missing, std::min(kMaxRanges, static_cast<std::size_t>(request.limits.tasks)));
   const double fit = std::floor(request.task_seconds / request.shard_seconds);
-  std::int64_t shards_a_task = std::max<std::int64_t>(1, std::llround(std::min(fit, 1e15)));
+  std::int64_t shards_per_task = std::max<std::int64_t>(1, std::llround(std::min(fit, 1e15)));
   std::int64_t total = 0;
   for (const ShardRange& range : missing) total += range.count();
-  shards_a_task = std::min(shards_a_task, std::max<std::int64_t>(total, 1));
-  while (count_tasks(missing, shards_a_task) > request.limits.tasks && shards_a_task < total) {
-    shards_a_task = std::min(total, std::max(shards_a_task + 1, shards_a_task * 5 / 4));
+  shards_per_task = std::min(shards_per_task, std::max<std::int64_t>(total, 1));
+  while (count_tasks(missing, shards_per_task) > request.limits.tasks && shards_per_task < total) {
+    shards_per_task = std::min(total, std::max(shards_per_task + 1, shards_per_task * 5 / 4));
   }
   std::vector<PackedArray> arrays;
-  const std::int64_t most = std::min(request.limits.array_tasks, total) * shards_a_task;
+  const std::int64_t max_shards = std::min(request.limits.array_tasks, total) * shards_per_task;
   for (const ShardRange& range : missing) {
-    for (std::int64_t first = range.first; first < range.end; first += most) {
-      arrays.push_back({{first, std::min(range.end, first + most)}, shards_a_task});
+    for (std::int64_t first = range.first; first < range.end; first += max_shards) {
+      arrays.push_back({{first, std::min(range.end, first + max_shards)}, shards_per_task});
     }
   }
   return arrays;

@@ -1,4 +1,4 @@
-// Which task does which shards.
+// Distributes shards over tasks.
 #pragma once
 
 #include <cstdint>
@@ -16,34 +16,34 @@ struct ShardRange {
   bool operator==(const ShardRange&) const = default;
 };
 
-/// [0, shards) without `present` (ascending) and without `taken`, as ranges in ascending order:
-/// nothing is enumerated but what is present.
+/// Returns [0, shards) without `present` (ascending) and without `taken`, as ascending ranges. The
+/// cost grows with the number of present shards and ranges, not with `shards`.
 std::vector<ShardRange> list_missing(std::int64_t shards, const std::vector<std::int64_t>& present,
                                      std::vector<ShardRange> taken = {});
 
-/// Tasks of equal size: task t does [first + t * shards_a_task, ...) up to the range's end.
+/// Tasks of equal size: task t covers [first + t * shards_per_task, ...) up to the end of the
+/// range.
 struct PackedArray {
   ShardRange shards;
-  std::int64_t shards_a_task = 1;
+  std::int64_t shards_per_task = 1;
 
-  std::int64_t tasks() const { return (shards.count() + shards_a_task - 1) / shards_a_task; }
+  std::int64_t tasks() const { return (shards.count() + shards_per_task - 1) / shards_per_task; }
   ShardRange get_task(std::int64_t task) const;
   bool operator==(const PackedArray&) const = default;
 };
 
-/// Of one submission: the tasks' own records are read one by one.
-constexpr std::int64_t kMostTasks = 1'000'000;
+/// Bound on the tasks of one submission, whose records are read one by one.
+constexpr std::int64_t kMaxTasks = 1'000'000;
 
 struct PackingRequest {
-  double shard_seconds = 1.0;   // wall clock of one shard on one task's threads
-  double task_seconds = 600.0;  // aimed at
+  double shard_seconds = 1.0;   // wall clock of one shard on the threads of one task
+  double task_seconds = 600.0;  // target
   SiteLimits limits;
 };
 
-/// Arrays that cover the ranges, within the limits: larger tasks where there would be too many.
-/// What lies between ranges may be covered, too, where arrays would be too many: tasks pass over
-/// shards that are there. A task may then be longer than the site's wall clock: it stops in time
-/// and is queued again.
+/// Returns arrays that cover the ranges within the limits, with larger tasks if there would be too
+/// many. To limit the number of arrays, gaps between ranges may be covered too: tasks skip shards
+/// that exist. A task may exceed the site's time limit: it then stops in time and is queued again.
 std::vector<PackedArray> pack_shards(std::vector<ShardRange> missing,
                                      const PackingRequest& request);
 

@@ -3,7 +3,7 @@
 namespace strut {
 namespace {
 
-/// A million tasks, each with a line about its end, take half of this.
+/// Twice the size of a record of a million tasks, one line each.
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 }  // namespace

@@ -8,11 +8,11 @@
 
 namespace strut {
 
-/// What is to be done about a damaged one.
-constexpr const char* kRecordRemedy = "; move this file away";
+/// Remedy for a damaged file.
+inline constexpr char kRecordRemedy[] = "move this file away";
 
-/// The content of a file; nullopt where it is missing. Throws InputError for a link, for anything
-/// else that is not a regular file, and for one larger than any that strut writes.
+/// Reads a file; nullopt if it is missing. Throws InputError for a link, for anything else that is
+/// not a regular file, and for a file larger than any that strut writes.
 std::optional<std::string> read_record_file(const Folder& folder, const std::string& name);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "cluster/scripts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error/input_error.h"
@@ -9,13 +11,13 @@
 namespace strut {
 namespace {
 
-/// The lines that set $program: this one, or a node's own copy of it. Only a copy that is the same
-/// and our own is trusted: others may write to a node's folder, too.
+/// Returns the lines that set $program to this program or to a node's copy of it. Only an identical
+/// copy that this user owns is trusted: others may write to a node's folder as well.
 std::vector<std::string> make_preparation(const std::string& scratch) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   std::vector<std::string> lines = {"program=" + quote_word(program)};
   if (scratch.empty()) return lines;
-  lines.push_back("set +u; copy=\"" + scratch + "/strut-$UID\"; set -u");
+  lines.push_back(fmt::format("set +u; copy=\"{}/strut-$UID\"; set -u", scratch));
   lines.emplace_back(
       "is_ours() { [[ -O $copy && -x $copy && ! -L $copy ]] && cmp -s \"$program\" \"$copy\"; }");
   lines.emplace_back(
@@ -25,7 +27,7 @@ std::vector<std::string> make_preparation(const std::string& scratch) {
   return lines;
 }
 
-/// Of the $NAME or ${NAME} that the text begins with; 0: it begins with neither.
+/// Returns the length of the $NAME or ${NAME} at the beginning of the text; 0 if there is none.
 std::size_t measure_variable(const std::string& text) {
   constexpr char kDigits[] = "0123456789";
   constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
@@ -48,41 +50,44 @@ void check_scratch(const std::string& scratch) {
     is_safe = measure_variable(scratch.substr(i)) > 0;
   }
   if (is_safe) return;
-  throw InputError("--scratch " + quote_if_needed(scratch) +
-                   ": must be an absolute folder, with no more for bash to expand than $NAME and "
-                   "${NAME}, and without quotes and backslashes, as in '/local/$USER'");
+  throw InputError(fmt::format(
+      "--scratch {}: must be an absolute folder without quotes and backslashes, in which "
+      "bash expands only $NAME and ${{NAME}}, such as '/local/$USER'",
+      quote_if_needed(scratch)));
 }
 
 std::vector<TaskArray> list_task_arrays(const SweepFolder& folder, const Submission& submission,
                                         const ScriptOptions& options) {
-  std::vector<TaskArray> all;
   const std::string root = quote_word(folder.root.string());
-  const auto add_task = [&](const std::string& part, const std::string& words) -> TaskArray& {
+  const auto make_task = [&](const std::string& part, const std::string& command) {
     TaskArray task;
     task.name = submission.job_name(part);
     task.preparation = make_preparation(options.scratch);
-    task.program = "\"$program\" " + words;
+    task.program = fmt::format("\"$program\" {}", command);
     task.is_array = false;
     task.resources = options.resources;
     task.folder = folder.logs();
     task.mark = make_job_mark(folder.root, task.name);
-    all.push_back(std::move(task));
-    return all.back();
+    return task;
   };
+  std::vector<TaskArray> all;
   for (std::size_t i = 0; i < submission.arrays.size(); ++i) {
-    TaskArray& array =
-        add_task(submission.array_name(i), "run " + root + " --threads \"$threads\" --task " +
-                                               make_task_name(submission.name(), i, "\"$task\""));
+    const std::string task = make_task_name(submission.name(), i, "\"$task\"");
+    TaskArray& array = all.emplace_back(
+        make_task(submission.array_name(i),
+                  fmt::format("run {} --threads \"$threads\" --task {}", root, task)));
     array.is_array = true;
     array.tasks = submission.arrays[i].tasks();
     array.at_once = options.at_once;
   }
   if (submission.retries) {
-    add_task(Submission::kRetry, "resume " + root + " --threads \"$threads\"");
+    all.push_back(
+        make_task(Submission::kRetry, fmt::format("resume {} --threads \"$threads\"", root)));
   }
   if (submission.collects) {
-    add_task(Submission::kCollect,
-             "merge " + root + " -o " + quote_word((folder.root / kMerged).string()) + " --force");
+    const std::string merged = quote_word((folder.root / kMerged).string());
+    all.push_back(
+        make_task(Submission::kCollect, fmt::format("merge {} -o {} --force", root, merged)));
   }
   return all;
 }

@@ -1,4 +1,4 @@
-// What the tasks of a submission run.
+// Makes the commands that the tasks of a submission run.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,23 @@
 
 namespace strut {
 
-/// What the collector writes in the sweep's folder.
+/// The file that the last task of a submission merges, in the sweep's folder.
 constexpr const char* kMerged = "merged.h5";
 
 struct ScriptOptions {
   Resources resources;
-  std::int64_t at_once = 0;  // tasks of an array; 0: as many as there is room for
-  /// Node-local folder in which each node keeps a copy of the program, as in double quotes of bash:
-  /// check_scratch(). "": none.
+  std::int64_t at_once = 0;  // max. number of tasks of an array that run at once; 0: no limit
+  /// Node-local folder for a copy of the program on each node, as a text in double quotes of bash;
+  /// see check_scratch(). "": none.
   std::string scratch;
 };
 
-/// Refuses a scratch folder that is not absolute, or of which bash would expand more than $NAME and
-/// ${NAME}. Throws InputError.
+/// Throws InputError if a scratch folder is not absolute, or if bash would expand more in it than
+/// $NAME and ${NAME}.
 void check_scratch(const std::string& scratch);
 
-/// The tasks of all parts, in the order of Submission::list_parts(). `folder` is absolute.
+/// Returns the tasks of all parts in the order of Submission::list_parts(). `folder` must be
+/// absolute.
 std::vector<TaskArray> list_task_arrays(const SweepFolder& folder, const Submission& submission,
                                         const ScriptOptions& options);
 

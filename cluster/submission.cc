@@ -1,5 +1,6 @@
 #include "cluster/submission.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,24 +21,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kMost = std::int64_t{1} << 53;
+constexpr std::int64_t kMaxShards = std::int64_t{1} << 53;
 
 constexpr const char* kJobs = "jobs";
 constexpr const char* kSubmission = "submission.toml";
+constexpr const char* kJobEnd = ".job";
 constexpr const char* kDigits = "0123456789";
 
-/// "001", as make_next() names them.
-std::string format_number(int number) {
-  std::string name = std::to_string(number);
-  return name.insert(0, name.size() < 3 ? 3 - name.size() : 0, '0');
-}
+/// Returns the name of the folder of a submission: "001".
+std::string format_number(int number) { return fmt::format("{:03}", number); }
 
 bool is_submission_name(const std::string& name) {
   const auto number = parse_number<int>(name);
   return number && *number > 0 && name == format_number(*number);
 }
 
-/// The first of "001", "002", ... that is not there, made: of two who try, one gets it.
+/// Makes the first of "001", "002", ... that does not exist; of two processes only one gets a name.
 Folder make_next(const Folder& jobs) {
   for (int number = 1;; ++number) {
     const std::string name = format_number(number);
@@ -46,49 +45,49 @@ Folder make_next(const Folder& jobs) {
 }
 
 void write_submission(const Submission& s, const Folder& folder) {
-  std::string text = "dispatcher = " + quote_toml(s.dispatcher) +
-                     "\nplace = " + quote_toml(s.place) + "\nuser = " + quote_toml(s.user) +
-                     "\njob_prefix = " + quote_toml(s.job_prefix) +
-                     "\nretries = " + (s.retries ? "true" : "false") +
-                     "\ncollects = " + (s.collects ? "true" : "false") + "\n";
+  std::string text = fmt::format(
+      "dispatcher = {}\nplace = {}\nuser = {}\njob_prefix = {}\nretries = {}\ncollects = {}\n",
+      quote_toml(s.dispatcher), quote_toml(s.cluster_name), quote_toml(s.user),
+      quote_toml(s.job_prefix), s.retries, s.collects);
   for (const PackedArray& array : s.arrays) {
-    text += "\n[[array]]\nfirst = " + std::to_string(array.shards.first) +
-            "\nend = " + std::to_string(array.shards.end) +
-            "\nshards_a_task = " + std::to_string(array.shards_a_task) + "\n";
+    text += fmt::format("\n[[array]]\nfirst = {}\nend = {}\nshards_a_task = {}\n",
+                        array.shards.first, array.shards.end, array.shards_per_task);
   }
   write_text_file(folder, kSubmission, text);
 }
 
-/// A text that begins so and of which every character is one of `allowed`. Throws InputError.
-std::string read_word(const Table& root, const std::string& key, const std::string& begin,
+/// Reads a text that starts with `prefix` and consists of characters of `allowed`. Throws
+/// InputError.
+std::string read_word(const Table& root, const std::string& key, const std::string& prefix,
                       const std::string& allowed) {
   std::string word = root.text(key);
-  constexpr std::size_t kMostBytes = 255;
-  if (word.size() <= kMostBytes && word.starts_with(begin) &&
+  constexpr std::size_t kMaxWordBytes = 255;
+  if (word.size() <= kMaxWordBytes && word.starts_with(prefix) &&
       word.find_first_not_of(allowed) == std::string::npos) {
     return word;
   }
-  throw InputError(key + ": must " + (begin.empty() ? "" : "begin with " + begin + " and ") +
-                   "hold at most " + std::to_string(kMostBytes) + " of " + allowed);
+  const std::string start = prefix.empty() ? "" : fmt::format("start with {} and ", prefix);
+  throw InputError(
+      fmt::format("{}: must {}hold at most {} of {}", key, start, kMaxWordBytes, allowed));
 }
 
 std::string read_dispatcher(const Table& root) {
   const std::vector<std::string> names = list_dispatchers();
   std::string name = root.text("dispatcher");
   if (std::find(names.begin(), names.end(), name) != names.end()) return name;
-  throw InputError("dispatcher: must be one of " + join_names(names));
+  throw InputError(fmt::format("dispatcher: must be one of {}", join_names(names)));
 }
 
 Submission read_submission(const Folder& folder) {
   const fs::path file = folder.path_of(kSubmission);
-  read_record_file(folder, kSubmission);  // is a regular file, and no large one
+  read_record_file(folder, kSubmission);  // refuses links and large files
   Document document(file);
   const Table root = document.root();
   const std::string name = std::string(kDigits) + "abcdefghijklmnopqrstuvwxyz-";
   Submission s;
   s.folder = folder.path();
   s.dispatcher = read_dispatcher(root);
-  s.place = read_word(root, "place", "", name + "ABCDEFGHIJKLMNOPQRSTUVWXYZ_.");
+  s.cluster_name = read_word(root, "place", "", name + "ABCDEFGHIJKLMNOPQRSTUVWXYZ_.");
   s.user = read_word(root, "user", "", kDigits);
   s.job_prefix = read_word(root, "job_prefix", "strut-", name);
   s.retries = root.boolean_or("retries", false);
@@ -96,25 +95,26 @@ Submission read_submission(const Folder& folder) {
   const std::vector<Table> arrays = root.has("array") ? root.tables("array") : std::vector<Table>();
   std::int64_t tasks = 0;
   for (const Table& table : arrays) {
-    const std::int64_t first = table.integer("first", 0, kMost);
-    s.arrays.push_back({{first, table.integer("end", first + 1, kMost)},
-                        table.integer("shards_a_task", 1, kMost)});
-    tasks += std::min(s.arrays.back().tasks(), kMostTasks + 1);
-    if (tasks > kMostTasks) {
-      throw InputError("array: more than " + std::to_string(kMostTasks) + " tasks in all");
+    const std::int64_t first = table.integer("first", 0, kMaxShards);
+    s.arrays.push_back({{first, table.integer("end", first + 1, kMaxShards)},
+                        table.integer("shards_a_task", 1, kMaxShards)});
+    tasks += std::min(s.arrays.back().tasks(), kMaxTasks + 1);
+    if (tasks > kMaxTasks) {
+      throw InputError(fmt::format("array: more than {} tasks in all arrays", kMaxTasks));
     }
   }
   document.check_all_read();
   return s;
 }
 
-/// The same, with the file and what to do about it in every message.
+/// As read_submission, with the file and the remedy in every message.
 Submission read_submission_file(const Folder& folder) {
   try {
     return read_submission(folder);
   } catch (const InputError& e) {
     const std::string what = e.what(), file = folder.path_of(kSubmission).string();
-    throw InputError((what.starts_with(file) ? "" : file + ": ") + what + kRecordRemedy);
+    const std::string location = what.starts_with(file) ? "" : file + ": ";
+    throw InputError(fmt::format("{}{}; {}", location, what, kRecordRemedy));
   }
 }
 
@@ -131,35 +131,35 @@ std::vector<std::string> Submission::list_parts() const {
 Folder Submission::open() const { return Folder(sweep()).open_folder(kJobs).open_folder(name()); }
 
 JobRecord Submission::read_job(const std::string& part) const {
-  const std::string file = part + ".job";
+  const std::string file = part + kJobEnd;
   std::string job = read_record_file(open(), file).value_or("");
   job.erase(job.find_last_not_of('\n') + 1);
   return {part, job, job_name(part), make_job_mark(sweep(), job_name(part)), folder / file};
 }
 
 void Submission::write_job(const std::string& part, const std::string& job) const {
-  write_text_file(open(), part + ".job", job + "\n");
+  write_text_file(open(), part + kJobEnd, job + "\n");
 }
 
-void Submission::mark_cancelled() const { write_text_file(open(), "cancelled", ""); }
+void Submission::mark_cancelled() const { write_text_file(open(), kCancelled, ""); }
 
-void Submission::take_back_cancelled() const { open().remove("cancelled"); }
+void Submission::unmark_cancelled() const { open().remove(kCancelled); }
 
-void Submission::mark_over(const TaskWords& words) const {
-  std::ostringstream text;
-  for (const auto& [task, word] : words) {
-    text << task.first << ' ' << task.second << ' ' << word << '\n';
+void Submission::mark_finished(const SchedulerStates& states) const {
+  std::string text;
+  for (const auto& [task, state] : states) {
+    text += fmt::format("{} {} {}\n", task.first, task.second, state);
   }
-  write_text_file(open(), "over", text.str());
+  write_text_file(open(), kOver, text);
 }
 
-TaskWords Submission::read_words() const {
-  TaskWords words;
-  std::istringstream text(read_record_file(open(), "over").value_or(""));
+SchedulerStates Submission::read_scheduler_states() const {
+  SchedulerStates states;
+  std::istringstream text(read_record_file(open(), kOver).value_or(""));
   std::size_t array = 0;
   std::int64_t task = 0;
-  for (std::string word; text >> array >> task >> word;) words[{array, task}] = word;
-  return words;
+  for (std::string state; text >> array >> task >> state;) states[{array, task}] = state;
+  return states;
 }
 
 std::string find_user() { return std::to_string(::getuid()); }
@@ -167,9 +167,8 @@ std::string find_user() { return std::to_string(::getuid()); }
 Submission make_submission(const SweepFolder& folder, Submission s) {
   const Folder made = make_next(Folder(folder.root).make_folder(kJobs));
   s.folder = made.path();
-  std::ostringstream prefix;  // copies of a folder have the same plan and the same numbers
-  prefix << s.job_prefix << '-' << std::hex << std::random_device()() << '-' << s.name();
-  s.job_prefix = prefix.str();
+  // Random, since copies of a folder have the same plan and the same numbers.
+  s.job_prefix = fmt::format("{}-{:x}-{}", s.job_prefix, std::random_device()(), s.name());
   s.user = find_user();
   for (std::size_t i = 0; i < s.arrays.size(); ++i) made.make_new_folder(s.array_name(i));
   write_submission(s, made);
@@ -178,34 +177,34 @@ Submission make_submission(const SweepFolder& folder, Submission s) {
 
 Submission find_submission(const SweepFolder& folder, const std::string& name) {
   const auto jobs = Folder(folder.root).find_folder(kJobs);
-  const auto place = jobs && is_submission_name(name) ? jobs->find_folder(name) : std::nullopt;
-  if (!place || !place->has(kSubmission)) {
-    throw InputError(folder.root.string() + ": holds no submission '" + name +
-                     "'; `strut status` lists them");
+  const auto found = jobs && is_submission_name(name) ? jobs->find_folder(name) : std::nullopt;
+  if (!found || !found->has(kSubmission)) {
+    throw InputError(fmt::format("{}: holds no submission '{}'; `strut status` lists them",
+                                 folder.root.string(), name));
   }
-  return read_submission_file(*place);
+  return read_submission_file(*found);
 }
 
 std::vector<Submission> list_submissions(const SweepFolder& folder,
                                          std::vector<std::string>* faults) {
   std::vector<Submission> all;
-  const auto read = [faults](const auto& some) {
+  const auto collect_faults = [faults](const auto& read) {
     try {
-      some();
+      read();
     } catch (const InputError& e) {
       if (faults == nullptr) throw;
       faults->push_back(e.what());
     }
   };
-  read([&] {
+  collect_faults([&] {
     const auto jobs = Folder(folder.root).find_folder(kJobs);
     if (!jobs) return;
     for (const std::string& name : jobs->list()) {
       if (!is_submission_name(name)) continue;
-      read([&] {
-        const Folder place = jobs->open_folder(name);
-        // Killed before it was written: nothing of it was queued.
-        if (place.has(kSubmission)) all.push_back(read_submission_file(place));
+      collect_faults([&] {
+        const Folder found = jobs->open_folder(name);
+        // A submit that was killed before it wrote the file queued nothing.
+        if (found.has(kSubmission)) all.push_back(read_submission_file(found));
       });
     }
   });

@@ -1,5 +1,7 @@
 #include "cluster/task_record.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <sstream>
 
@@ -9,77 +11,81 @@
 namespace strut {
 namespace {
 
-constexpr std::array<const char*, 5> kEnds = {"done", "failed", "drained", "stopped", "error"};
+constexpr std::array<const char*, 5> kOutcomes = {"done", "failed", "drained", "stopped", "error"};
+/// In place of an outcome, while a task runs.
+constexpr char kBegun[] = "begun";
 constexpr std::array<const char*, 9> kFates = {"never begun", "done",    "failed",
                                                "drained",     "timeout", "preempted",
                                                "cancelled",   "error",   "lost"};
-/// How long before its time limit a task may already be stopped for it [s].
-constexpr std::int64_t kBefore = 5;
+/// A task that is stopped this close to the end of its time limit was stopped by it [s].
+constexpr std::int64_t kTimeoutMargin = 5;
 
-std::optional<TaskEnd> find_end(const std::string& name) {
-  for (std::size_t i = 0; i < kEnds.size(); ++i) {
-    if (name == kEnds[i]) return static_cast<TaskEnd>(i);
+std::optional<TaskOutcome> find_outcome(const std::string& name) {
+  for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
+    if (name == kOutcomes[i]) return static_cast<TaskOutcome>(i);
   }
   return std::nullopt;
 }
 
-std::optional<TaskFate> find_fate(const std::string& word) {
-  if (word == "TIMEOUT" || word == "DEADLINE") return TaskFate::kTimeout;
-  if (word == "PREEMPTED") return TaskFate::kPreempted;
-  if (word == "CANCELLED") return TaskFate::kCancelled;
+std::optional<TaskFate> find_fate(const std::string& scheduler_state) {
+  if (scheduler_state == "TIMEOUT" || scheduler_state == "DEADLINE") return TaskFate::kTimeout;
+  if (scheduler_state == "PREEMPTED") return TaskFate::kPreempted;
+  if (scheduler_state == "CANCELLED") return TaskFate::kCancelled;
   return std::nullopt;
 }
 
 }  // namespace
 
-const char* get_name(TaskEnd end) { return kEnds[static_cast<std::size_t>(end)]; }
+const char* get_name(TaskOutcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }
 const char* get_name(TaskFate fate) { return kFates[static_cast<std::size_t>(fate)]; }
 
-TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled, const std::string& word) {
-  const bool has_begun = !lives.empty();
-  const TaskLife last = has_begun ? lives.back() : TaskLife();
-  if (last.how == TaskEnd::kDone) return TaskFate::kDone;
-  if (last.how == TaskEnd::kFailed) return TaskFate::kFailed;
-  if (last.how == TaskEnd::kError) return TaskFate::kError;
+TaskFate judge_task(const std::vector<TaskAttempt>& attempts, bool cancelled,
+                    const std::string& scheduler_state) {
+  const bool has_started = !attempts.empty();
+  const TaskAttempt last = has_started ? attempts.back() : TaskAttempt();
+  if (last.outcome == TaskOutcome::kDone) return TaskFate::kDone;
+  if (last.outcome == TaskOutcome::kFailed) return TaskFate::kFailed;
+  if (last.outcome == TaskOutcome::kError) return TaskFate::kError;
   if (cancelled) return TaskFate::kCancelled;
-  if (last.how == TaskEnd::kDrained) return TaskFate::kDrained;
-  if (const auto fate = find_fate(word)) return *fate;
-  if (!has_begun) return word.empty() ? TaskFate::kNeverBegun : TaskFate::kLost;
-  if (last.how == TaskEnd::kStopped) {
-    const bool in_time = last.limit == 0 || last.end < last.limit - kBefore;
+  if (last.outcome == TaskOutcome::kDrained) return TaskFate::kDrained;
+  if (const auto fate = find_fate(scheduler_state)) return *fate;
+  if (!has_started) return scheduler_state.empty() ? TaskFate::kNeverStarted : TaskFate::kLost;
+  if (last.outcome == TaskOutcome::kStopped) {
+    const bool in_time = last.limit == 0 || last.end < last.limit - kTimeoutMargin;
     return in_time ? TaskFate::kPreempted : TaskFate::kTimeout;
   }
   return TaskFate::kLost;
 }
 
-std::vector<TaskLife> read_task_lives(const Folder& array, const std::string& task) {
-  std::vector<TaskLife> lives;
+std::vector<TaskAttempt> read_task_attempts(const Folder& array, const std::string& task) {
+  std::vector<TaskAttempt> attempts;
   std::istringstream lines(read_record_file(array, task).value_or(""));
   std::string line;
   while (std::getline(lines, line)) {
     std::istringstream words(line);
-    TaskLife life;
-    std::string how;
-    if (!(words >> life.host >> life.begin >> life.limit >> life.restart >> how >> life.end >>
-          life.shards)) {
-      throw InputError(array.path_of(task).string() + ": line " + std::to_string(lives.size() + 1) +
-                       ": not the life of a task" + kRecordRemedy);
+    TaskAttempt attempt;
+    std::string outcome;
+    if (!(words >> attempt.host >> attempt.begin >> attempt.limit >> attempt.restart >> outcome >>
+          attempt.end >> attempt.shards)) {
+      throw InputError(fmt::format("{}:{}: not an attempt of a task; {}",
+                                   array.path_of(task).string(), attempts.size() + 1,
+                                   kRecordRemedy));
     }
-    life.how = find_end(how);
-    lives.push_back(life);
+    attempt.outcome = find_outcome(outcome);
+    attempts.push_back(attempt);
   }
-  return lives;
+  return attempts;
 }
 
-void write_task_lives(const Folder& array, const std::string& task,
-                      const std::vector<TaskLife>& lives) {
-  std::ostringstream text;
-  for (const TaskLife& life : lives) {
-    text << life.host << ' ' << life.begin << ' ' << life.limit << ' ' << life.restart << ' '
-         << (life.how ? get_name(*life.how) : "begun") << ' ' << life.end << ' ' << life.shards
-         << '\n';
+void write_task_attempts(const Folder& array, const std::string& task,
+                         const std::vector<TaskAttempt>& attempts) {
+  std::string text;
+  for (const TaskAttempt& attempt : attempts) {
+    text += fmt::format("{} {} {} {} {} {} {}\n", attempt.host, attempt.begin, attempt.limit,
+                        attempt.restart, attempt.outcome ? get_name(*attempt.outcome) : kBegun,
+                        attempt.end, attempt.shards);
   }
-  write_text_file(array, task, text.str());
+  write_text_file(array, task, text);
 }
 
 }  // namespace strut

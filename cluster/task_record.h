@@ -1,5 +1,5 @@
-// The lives of one task, as it told them itself: the only account that is there without a
-// scheduler's database.
+// The attempts of one task, recorded by the task itself: the only record without a scheduler's
+// database.
 #pragma once
 
 #include <cstdint>
@@ -11,54 +11,55 @@
 
 namespace strut {
 
-enum class TaskEnd {
-  kDone,     // all its shards are there
-  kFailed,   // they are, but cases have no result
-  kDrained,  // stopped between two shards, warned of its time limit
-  kStopped,  // by a signal
-  kError,    // by an error of input or environment
+enum class TaskOutcome {
+  kDone,     // all its shards exist
+  kFailed,   // all its shards exist, but cases have no result
+  kDrained,  // stopped between two shards after the warning of its time limit
+  kStopped,  // stopped by a signal
+  kError,    // ended by an error of input or environment
 };
 
-const char* get_name(TaskEnd end);
+const char* get_name(TaskOutcome outcome);
 
-/// From a task's begin to its end, or to its being killed.
-struct TaskLife {
+/// One execution of a task, from its start to its end or to its being killed.
+struct TaskAttempt {
   std::string host;
   std::int64_t begin = 0;  // s since 1970
-  std::int64_t limit = 0;  // when its time is over; 0: unknown
-  int restart = 0;         // how often the scheduler began it before
-  std::optional<TaskEnd> how;
-  std::int64_t end = 0;
-  std::int64_t shards = 0;  // that it wrote
+  std::int64_t limit = 0;  // end of its time limit, s since 1970; 0: unknown
+  int restart = 0;         // how often the scheduler started it before
+  std::optional<TaskOutcome> outcome;
+  std::int64_t end = 0;     // s since 1970
+  std::int64_t shards = 0;  // number of shards that it wrote
 };
 
-/// What became of a task: of its last life, and where that was stopped or ended without a word, as
-/// the scheduler says.
+/// Fate of a task, from its last attempt and, if that was stopped or recorded no outcome, from the
+/// scheduler.
 enum class TaskFate {
-  kNeverBegun,
+  kNeverStarted,
   kDone,
   kFailed,
-  kDrained,    // and not put back into the queue
-  kTimeout,    // its time was over before it could stop
-  kPreempted,  // stopped or lost, and begun again by the scheduler
+  kDrained,    // not put back into the queue
+  kTimeout,    // its time limit ended before it could stop
+  kPreempted,  // stopped or lost, and started again by the scheduler
   kCancelled,
   kError,
-  kLost,  // ended without a word: killed, out of memory, its node failed
+  kLost,  // ended without a recorded outcome: killed, out of memory, its node failed
 };
 
 const char* get_name(TaskFate fate);
 
-/// Of a task that is not queued any more. `word`: how it ended as the scheduler remembers, "" where
-/// it does not.
-TaskFate judge_task(const std::vector<TaskLife>& lives, bool cancelled,
-                    const std::string& word = "");
+/// Judges a task that is not queued any more. `scheduler_state`: its end as the scheduler remembers
+/// it;
+/// "" if it does not.
+TaskFate judge_task(const std::vector<TaskAttempt>& attempts, bool cancelled,
+                    const std::string& scheduler_state = "");
 
-/// Of a task's record in the folder of its array; none where it is missing. Throws InputError where
-/// the file is none of ours.
-std::vector<TaskLife> read_task_lives(const Folder& array, const std::string& task);
-/// Of the one process that runs the task. Throws EnvironmentError; InputError where a link stands
-/// in its place.
-void write_task_lives(const Folder& array, const std::string& task,
-                      const std::vector<TaskLife>& lives);
+/// Reads a task's record in the folder of its array; empty if it is missing. Throws InputError if
+/// strut cannot have written the file.
+std::vector<TaskAttempt> read_task_attempts(const Folder& array, const std::string& task);
+/// Writes a task's record; only the process that runs the task may do so. Throws EnvironmentError;
+/// InputError if a link stands in place of the record.
+void write_task_attempts(const Folder& array, const std::string& task,
+                         const std::vector<TaskAttempt>& attempts);
 
 }  // namespace strut

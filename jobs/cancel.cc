@@ -23,7 +23,7 @@ void cancel(const Submission& submission) {
     std::cout << "submission " << submission.name() << ": " << jobs.size()
               << (jobs.size() == 1 ? " job cancelled\n" : " jobs cancelled\n");
   } catch (const std::runtime_error&) {
-    submission.take_back_cancelled();
+    submission.unmark_cancelled();
     throw;
   }
 }
@@ -52,7 +52,7 @@ int run_cancel(const Arguments& arguments) {
     if (state.queue == QueueState::kEnded) continue;
     if (state.queue == QueueState::kUnknown) {
       print_error("submission " + submission.name() +
-                  ": whether it still runs is unknown: " + state.why +
+                  ": whether it still runs is unknown: " + state.why_unknown +
                   "; nothing of it is cancelled; try again later, or stop its job by hand");
       is_unknown = true;
       continue;

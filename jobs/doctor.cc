@@ -34,11 +34,11 @@ SpaceNeeds calc_needs(const fs::path& root) {
 }
 
 /// All alike: the same bits everywhere.
-Finding compare_nodes(const std::vector<NodeAnswer>& nodes) {
+Finding compare_nodes(const std::vector<NodeInstructionSets>& nodes) {
   std::set<std::string> widest;
   std::string text;
-  for (const NodeAnswer& node : nodes) {
-    const std::string first = node.answer.substr(0, node.answer.find(' '));
+  for (const NodeInstructionSets& node : nodes) {
+    const std::string first = node.sets.substr(0, node.sets.find(' '));
     widest.insert(first);
     text += (text.empty() ? "" : ", ") + node.name + ": " + first;
   }
@@ -75,7 +75,7 @@ Findings examine(const Arguments& arguments, const fs::path& root) {
   for (Finding& f : dispatcher->examine(resources, root)) findings.push_back(std::move(f));
   if (!arguments.is_on("nodes")) return findings;
   try {
-    findings.push_back(compare_nodes(dispatcher->ask_nodes(resources)));
+    findings.push_back(compare_nodes(dispatcher->list_node_instruction_sets(resources)));
   } catch (const std::runtime_error& e) {
     findings.push_back({"instruction sets of the nodes", Health::kWarning, e.what(), "ask again"});
   }

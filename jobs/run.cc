@@ -176,10 +176,10 @@ bool is_complete_sweep(const OpenSweep& sweep, const RunProgress& progress) {
   return progress.cases == sweep.plan.case_count() && is_complete(progress);
 }
 
-TaskEnd judge_end(const RunProgress& progress, const RunSummary& summary) {
-  if (summary.stopped) return TaskEnd::kStopped;
-  if (!is_complete(progress)) return TaskEnd::kDrained;
-  return summary.failed > 0 || !summary.damaged.empty() ? TaskEnd::kFailed : TaskEnd::kDone;
+TaskOutcome judge_end(const RunProgress& progress, const RunSummary& summary) {
+  if (summary.stopped) return TaskOutcome::kStopped;
+  if (!is_complete(progress)) return TaskOutcome::kDrained;
+  return summary.failed > 0 || !summary.damaged.empty() ? TaskOutcome::kFailed : TaskOutcome::kDone;
 }
 
 /// run_sweep as a task that tells how it ends.
@@ -192,7 +192,7 @@ RunSummary run_task(TaskRun& task, const OpenSweep& sweep, const RunOptions& opt
     return summary;
   } catch (...) {
     try {
-      task.end(TaskEnd::kError, 0);
+      task.end(TaskOutcome::kError, 0);
     } catch (const std::runtime_error&) {
       // As on a full disk; what stopped the run is what is to be told.
     }

@@ -54,7 +54,7 @@ Json make_json(const Followed& followed) {
   return Json{{"submission", followed.submission.name()},
               {"to", followed.submission.dispatcher},
               {"state", get_name(state.queue)},
-              {"why_unknown", state.why},
+              {"why_unknown", state.why_unknown},
               {"cancelled", followed.submission.is_cancelled()},
               {"pending", state.pending},
               {"running", state.running},
@@ -67,7 +67,7 @@ Json make_json(const Followed& followed) {
 std::string describe(const Followed& followed) {
   const SubmissionState& state = followed.state;
   std::string text = followed.submission.name() + " on " + followed.submission.dispatcher + ": ";
-  if (state.queue == QueueState::kUnknown) return text + "unknown (" + state.why + ")";
+  if (state.queue == QueueState::kUnknown) return text + "unknown (" + state.why_unknown + ")";
   text += format_count(state.running) + " running, " + format_count(state.pending) + " pending";
   std::string reasons;
   for (const auto& [reason, tasks] : state.reasons) {

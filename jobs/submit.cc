@@ -57,8 +57,7 @@ class Submitter {
     read_resources();
     if (arguments.has("scratch")) check_scratch(arguments.text("scratch"));
     limits_ = dispatcher_->check(resources_, sweep_.folder.root);
-    limits_.tasks =
-        std::min(arguments.integer_or("tasks", kMostTasks, 1, kMostTasks), limits_.tasks);
+    limits_.tasks = std::min(arguments.integer_or("tasks", kMaxTasks, 1, kMaxTasks), limits_.tasks);
   }
 
   int run() {
@@ -123,19 +122,19 @@ class Submitter {
   std::vector<ShardRange> find_missing() {
     std::vector<ShardRange> live;
     for (const Submission& s : list_submissions(sweep_.folder)) {
-      if (s.is_over()) continue;
+      if (s.is_finished()) continue;
       const SubmissionState state = follow(s);
       if (state.queue == QueueState::kUnknown && !arguments_.is_on("again")) {
         throw EnvironmentError("submission " + s.name() +
-                               ": whether it still runs is unknown: " + state.why +
+                               ": whether it still runs is unknown: " + state.why_unknown +
                                "; nothing is submitted; try again later, or with --again");
       }
       // Nobody else is submitting: what a killed submit left unfinished will not be finished.
       if (state.queue == QueueState::kEnded && !arguments_.is_on("dry-run")) {
-        s.mark_over(state.words);
+        s.mark_finished(state.scheduler_states);
       }
       retry_is_queued_ = retry_is_queued_ || state.retries;
-      live.insert(live.end(), state.live.begin(), state.live.end());
+      live.insert(live.end(), state.queued_shards.begin(), state.queued_shards.end());
     }
     present_ = list_shards(sweep_.folder);
     return list_missing(sweep_.plan.shard_count(), present_, std::move(live));
@@ -225,7 +224,7 @@ class Submitter {
   Submission make_request() const {
     Submission s;
     s.dispatcher = dispatcher_->name();
-    s.place = dispatcher_->find_place();
+    s.cluster_name = dispatcher_->find_cluster_name();
     s.job_prefix = "strut-" + sweep_.plan.hash().substr(0, 8);
     s.arrays = arrays_;
     s.retries = retries();
@@ -247,7 +246,7 @@ class Submitter {
     std::string text =
         format_count(tasks) + (tasks == 1 ? " task" : " tasks") + " in " +
         std::to_string(arrays_.size()) + (arrays_.size() == 1 ? " array" : " arrays") + ", each " +
-        format_count(arrays_.front().shards_a_task) + " shards, some " +
+        format_count(arrays_.front().shards_per_task) + " shards, some " +
         format_duration(task_seconds_) + " on " + std::to_string(resources_.threads) + " threads";
     if (resources_.seconds > 0.0) text += ", walltime " + format_slurm_time(resources_.seconds);
     return text;
@@ -270,7 +269,7 @@ class Submitter {
         std::cout << " " << quote_if_needed(word);
       }
       std::cout << "\n" << dispatcher_->make_script(tasks[i]);
-      const std::string said = i == 0 ? dispatcher_->try_tasks(tasks[i]) : "";
+      const std::string said = i == 0 ? dispatcher_->dry_run(tasks[i]) : "";
       if (!said.empty()) std::cout << "(" << dispatcher_->name() << " says: " << said << ")\n";
     }
     std::cout << "\n";
@@ -297,7 +296,7 @@ class Submitter {
     const InterruptGuard guard;  // a job that is queued is also written down
     Submission s = make_request();
     prepare_folder();
-    dispatcher_->try_tasks(list_tasks(s).front());
+    dispatcher_->dry_run(list_tasks(s).front());
     s = make_submission(sweep_.folder, std::move(s));
     const std::vector<TaskArray> tasks = list_tasks(s);
     const std::vector<std::string> parts = s.list_parts();

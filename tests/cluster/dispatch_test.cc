@@ -72,7 +72,7 @@ TEST_CASE("A task is as long as it should be", "[unit]") {
   // A shard takes a minute, a task ten.
   const auto arrays = pack_shards({{0, 35}}, make_request(1000, 1000));
   REQUIRE(arrays.size() == 1);
-  CHECK(arrays[0].shards_a_task == 10);
+  CHECK(arrays[0].shards_per_task == 10);
   CHECK(arrays[0].tasks() == 4);
   CHECK(arrays[0].get_task(3) == ShardRange{30, 35});
 }
@@ -98,29 +98,29 @@ TEST_CASE("Slurm's times are read and written", "[unit]") {
   CHECK(format_slurm_time(60.0) == "0-00:01:00");
 }
 
-TaskLife make_life(std::optional<TaskEnd> how, std::int64_t limit = 0) {
-  return {"node", 1000, limit, 0, how, how ? 2000 : 0, 3};
+TaskAttempt make_attempt(std::optional<TaskOutcome> outcome, std::int64_t limit = 0) {
+  return {"node", 1000, limit, 0, outcome, outcome ? 2000 : 0, 3};
 }
 
 TEST_CASE("What became of a task is told from its last life", "[unit]") {
-  CHECK(judge_task({}, false) == TaskFate::kNeverBegun);
+  CHECK(judge_task({}, false) == TaskFate::kNeverStarted);
   CHECK(judge_task({}, true) == TaskFate::kCancelled);
-  CHECK(judge_task({make_life(TaskEnd::kDone)}, true) == TaskFate::kDone);
-  CHECK(judge_task({make_life(TaskEnd::kFailed)}, false) == TaskFate::kFailed);
-  CHECK(judge_task({make_life(TaskEnd::kError)}, false) == TaskFate::kError);
-  CHECK(judge_task({make_life(TaskEnd::kDrained)}, false) == TaskFate::kDrained);
-  CHECK(judge_task({make_life(TaskEnd::kDrained), make_life(TaskEnd::kDone)}, false) ==
-        TaskFate::kDone);
+  CHECK(judge_task({make_attempt(TaskOutcome::kDone)}, true) == TaskFate::kDone);
+  CHECK(judge_task({make_attempt(TaskOutcome::kFailed)}, false) == TaskFate::kFailed);
+  CHECK(judge_task({make_attempt(TaskOutcome::kError)}, false) == TaskFate::kError);
+  CHECK(judge_task({make_attempt(TaskOutcome::kDrained)}, false) == TaskFate::kDrained);
+  CHECK(judge_task({make_attempt(TaskOutcome::kDrained), make_attempt(TaskOutcome::kDone)},
+                   false) == TaskFate::kDone);
   // Stopped when its time was over; long before; by `strut cancel`.
-  CHECK(judge_task({make_life(TaskEnd::kStopped, 2003)}, false) == TaskFate::kTimeout);
-  CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, false) == TaskFate::kPreempted);
-  CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, true) == TaskFate::kCancelled);
-  CHECK(judge_task({make_life(std::nullopt)}, false) == TaskFate::kLost);
+  CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 2003)}, false) == TaskFate::kTimeout);
+  CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 9000)}, false) == TaskFate::kPreempted);
+  CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 9000)}, true) == TaskFate::kCancelled);
+  CHECK(judge_task({make_attempt(std::nullopt)}, false) == TaskFate::kLost);
   // Where it says little, what the scheduler remembers.
-  CHECK(judge_task({make_life(std::nullopt)}, false, "TIMEOUT") == TaskFate::kTimeout);
-  CHECK(judge_task({make_life(TaskEnd::kStopped, 9000)}, false, "CANCELLED") ==
+  CHECK(judge_task({make_attempt(std::nullopt)}, false, "TIMEOUT") == TaskFate::kTimeout);
+  CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 9000)}, false, "CANCELLED") ==
         TaskFate::kCancelled);
-  CHECK(judge_task({make_life(TaskEnd::kDone)}, false, "CANCELLED") == TaskFate::kDone);
+  CHECK(judge_task({make_attempt(TaskOutcome::kDone)}, false, "CANCELLED") == TaskFate::kDone);
   CHECK(judge_task({}, false, "FAILED") == TaskFate::kLost);
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   CHECK(all[0].read_job("array-0").job.empty());
   CHECK(all[0].read_job("array-1").job == "4711");
   CHECK(all[0].is_cancelled());
-  CHECK_FALSE(all[0].is_over());
+  CHECK_FALSE(all[0].is_finished());
   CHECK(all[1].name() == "002");
   CHECK(all[1].list_parts() == std::vector<std::string>{"array-0"});
 
@@ -202,13 +202,13 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   const SubmissionState running = follow(ended);
   CHECK(running.queue == QueueState::kQueued);
   CHECK(running.running == 1);
-  CHECK(running.live == Ranges{{0, 5}, {5, 10}});
+  CHECK(running.queued_shards == Ranges{{0, 5}, {5, 10}});
   // A job of a copied folder: whether this one's runs is not known, and it is not stopped.
   slurm.say("squeue", "echo '4711|0|RUNNING|None|0123|" + ended.job_name("array-0") + "'");
   slurm.say("scancel", "touch " + (folder / "cancelled").string());
   const SubmissionState copied = follow(ended);
   CHECK(copied.queue == QueueState::kUnknown);
-  CHECK(copied.why.find("copied") != std::string::npos);
+  CHECK(copied.why_unknown.find("copied") != std::string::npos);
   CHECK_THROWS_AS(SlurmDispatcher().cancel({ended.read_job("array-0")}), EnvironmentError);
   CHECK(SlurmDispatcher().find_job(ended.read_job("array-0")).empty());
   CHECK_FALSE(std::filesystem::exists(folder / "cancelled"));
@@ -227,14 +227,14 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
     slurm.say("scontrol", config + script);
     const SubmissionState state = follow(ended);
     CHECK(state.queue == QueueState::kUnknown);
-    CHECK(state.why.find("4711") != std::string::npos);
-    CHECK_FALSE(ended.is_over());
+    CHECK(state.why_unknown.find("4711") != std::string::npos);
+    CHECK_FALSE(ended.is_finished());
   }
   // One that ended: its words outlive the scheduler's memory.
   slurm.say("scontrol", config + "echo 'Invalid job id specified' >&2; exit 1");
   slurm.say("squeue", "echo '4711|0|TIMEOUT|TimeLimit" + name);
   CHECK(follow(ended).fates.at(TaskFate::kTimeout) == 1);
-  REQUIRE(ended.is_over());
+  REQUIRE(ended.is_finished());
   slurm.say("squeue", "");
   CHECK(follow(ended).fates.at(TaskFate::kTimeout) == 1);
 
@@ -246,13 +246,13 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
 
   const SubmissionState elsewhere = follow(queue("theirs"));
   CHECK(elsewhere.queue == QueueState::kUnknown);
-  CHECK(elsewhere.why.find("theirs") != std::string::npos);
+  CHECK(elsewhere.why_unknown.find("theirs") != std::string::npos);
   Submission foreign = queue("ours");
   foreign.user = "4711";
   CHECK(follow(foreign).queue == QueueState::kUnknown);
 }
 
-TEST_CASE("A task knows its shards and tells its lives", "[io]") {
+TEST_CASE("A task knows its shards and tells its attempts", "[io]") {
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
   const Submission s = make_submission(sweep, {"", "local", "", "", "strut", {{{10, 35}, 10}}});
@@ -260,22 +260,22 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   CHECK(task.shards() == ShardRange{30, 35});
   task.begin();
   const Folder array = s.open().open_folder("array-0");
-  REQUIRE(read_task_lives(array, "2").size() == 1);
-  CHECK_FALSE(read_task_lives(array, "2")[0].how);
-  task.end(TaskEnd::kDrained, 0);
-  CHECK(task.requeue().find("does not take it back") != std::string::npos);
+  REQUIRE(read_task_attempts(array, "2").size() == 1);
+  CHECK_FALSE(read_task_attempts(array, "2")[0].outcome);
+  task.end(TaskOutcome::kDrained, 0);
+  CHECK(task.requeue().find("cannot put it back into the queue") != std::string::npos);
   TaskRun second(sweep, "001/0/2", 35);
   second.begin();
-  second.end(TaskEnd::kDrained, 0);
+  second.end(TaskOutcome::kDrained, 0);
   CHECK(second.requeue().find("longer --time") != std::string::npos);
   TaskRun again(sweep, "001/0/2", 35);
   again.begin();
-  again.end(TaskEnd::kDone, 5);
-  const std::vector<TaskLife> lives = read_task_lives(array, "2");
-  REQUIRE(lives.size() == 3);
-  CHECK(lives[0].how == TaskEnd::kDrained);
-  CHECK(lives[2].how == TaskEnd::kDone);
-  CHECK(lives[2].shards == 5);
+  again.end(TaskOutcome::kDone, 5);
+  const std::vector<TaskAttempt> attempts = read_task_attempts(array, "2");
+  REQUIRE(attempts.size() == 3);
+  CHECK(attempts[0].outcome == TaskOutcome::kDrained);
+  CHECK(attempts[2].outcome == TaskOutcome::kDone);
+  CHECK(attempts[2].shards == 5);
 
   for (const char* name : {"001/0/3", "001/1/0", "002/0/0", "001/0", "001/0/x"}) {
     INFO(name);
@@ -284,7 +284,7 @@ TEST_CASE("A task knows its shards and tells its lives", "[io]") {
   // A submission of a larger sweep.
   CHECK_THROWS_AS(TaskRun(sweep, "001/0/0", 34), InputError);
   folder.write("jobs/001/array-0/2", "no life\n");
-  CHECK_THROWS_AS(read_task_lives(array, "2"), InputError);
+  CHECK_THROWS_AS(read_task_attempts(array, "2"), InputError);
 }
 
 }  // namespace

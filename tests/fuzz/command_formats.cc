@@ -16,7 +16,7 @@ void read_submission_file(const fs::path& path) {
   list_submissions(sweep);
   const Submission found = find_submission(sweep, submission.filename().string());
   for (const std::string& part : found.list_parts()) found.read_job(part);
-  found.read_words();
+  found.read_scheduler_states();
 }
 
 /// What a submission keeps beside it.
@@ -63,7 +63,7 @@ std::vector<Format> list_command_formats() {
        {"sweep/jobs/001/array-0/0.seed"},
        words,
        [](const fs::path& path) {
-         judge_task(read_task_lives(Folder(path.parent_path()), path.filename()), false);
+         judge_task(read_task_attempts(Folder(path.parent_path()), path.filename()), false);
        }},
   };
 }

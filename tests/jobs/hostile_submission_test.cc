@@ -162,7 +162,7 @@ TEST_CASE("cancel stops a process that bears the job's mark, and no other", "[io
     const JobRecord record = bystander.make_record(mark);
     CHECK_THROWS_WITH(dispatcher.cancel({record}),
                       Contains("not proved to be job") && Contains("nothing is stopped"));
-    CHECK_THAT(dispatcher.query({record}).silence, Contains("copied"));
+    CHECK_THAT(dispatcher.query({record}).failure, Contains("copied"));
     CHECK(bystander.lives());
   }
   Bystander job(mark);
