@@ -8,9 +8,9 @@ namespace strut {
 
 using Json = nlohmann::ordered_json;
 
-/// As text (RFC 8259) of printable ASCII, which no terminal obeys: other characters are escaped,
-/// bytes that are not UTF-8 replaced by U+FFFD, numbers that are not finite null. Indented by two
-/// blanks a level; arrays and objects without nested ones stand on one line.
+/// Returns the text (RFC 8259) in printable ASCII, which no terminal interprets: other characters are
+/// escaped, bytes that are not UTF-8 are replaced by U+FFFD, and numbers that are not finite become
+/// null. Indents by two blanks per level; arrays and objects without nested ones take one line.
 std::string format_json(const Json& json);
 
 }  // namespace strut

@@ -1,11 +1,13 @@
 #include "io/format/read_json.h"
 
+#include <fmt/format.h>
+
 #include "io/file/folder.h"
 
 namespace strut {
 namespace {
 
-// A page's own file holds names and tables.
+// The file behind a page holds names and tables.
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr int kMaxDepth = 64;
 
@@ -20,13 +22,13 @@ std::string explain(const Json::exception& e) {
 Json parse_json(const std::string& text, const std::filesystem::path& path) {
   const auto check_depth = [&](int depth, Json::parse_event_t /*event*/, const Json& /*parsed*/) {
     if (depth <= kMaxDepth) return true;
-    throw InputError(path.string() + ": nested more than " + std::to_string(kMaxDepth) +
-                     " levels deep");
+    throw InputError(fmt::format("{}: nested too deep; at most {} levels are allowed",
+                                 path.string(), kMaxDepth));
   };
   try {
     return Json::parse(text, check_depth);
   } catch (const Json::exception& e) {
-    throw InputError(path.string() + ": not JSON: " + explain(e));
+    throw InputError(fmt::format("{}: not JSON: {}", path.string(), explain(e)));
   }
 }
 

@@ -1,4 +1,4 @@
-// JSON files, read within limits.
+// Reads JSON files within limits of size and nesting.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace strut {
 
-/// The text of an exception of the library, without the number that it begins with.
+/// Returns the text of an exception of the library without the number at its beginning.
 std::string explain(const Json::exception& e);
 
-/// Throws InputError, which names `path`, where a text is nested more than 64 levels deep or not
-/// JSON.
+/// Parses the content of `path`. Throws InputError that names `path` if the text is not JSON or is
+/// nested more than 64 levels deep.
 Json parse_json(const std::string& text, const std::filesystem::path& path);
 
-/// Reads a regular file, links not followed. Throws InputError where it is missing, a link, larger
+/// Reads a regular file without following links. Throws InputError if it is missing, a link or larger
 /// than 4 MiB, or as parse_json does.
 Json read_json(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// Tasks of a submission: which shards each does, what it tells of itself, and how it is judged.
+// Tasks of a submission: their shards, their records, and how they are judged.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -28,14 +28,14 @@ PackingRequest make_request(std::int64_t array_tasks, std::int64_t tasks) {
   return request;
 }
 
-TEST_CASE("What is missing is told as ranges", "[unit]") {
+TEST_CASE("Missing shards are listed as ranges", "[unit]") {
   CHECK(list_missing(10, {}) == Ranges{{0, 10}});
   CHECK(list_missing(10, {0, 3, 4, 9}) == Ranges{{1, 3}, {5, 9}});
   CHECK(list_missing(10, {3}, {{5, 12}}) == Ranges{{0, 3}, {4, 5}});
   CHECK(list_missing(3, {0, 1, 2}).empty());
 }
 
-TEST_CASE("Tasks cover what is missing, once, within the limits of a site", "[unit][property]") {
+TEST_CASE("Tasks cover each missing shard once, within the limits of a site", "[unit][property]") {
   std::mt19937 draw(7);
   for (int trial = 0; trial < 50; ++trial) {
     const auto shards = static_cast<std::int64_t>(1 + draw() % 400);
@@ -68,8 +68,8 @@ TEST_CASE("Tasks cover what is missing, once, within the limits of a site", "[un
   }
 }
 
-TEST_CASE("A task is as long as it should be", "[unit]") {
-  // A shard takes a minute, a task ten.
+TEST_CASE("A task has the target duration", "[unit]") {
+  // A shard takes one minute, a task ten.
   const auto arrays = pack_shards({{0, 35}}, make_request(1000, 1000));
   REQUIRE(arrays.size() == 1);
   CHECK(arrays[0].shards_per_task == 10);
@@ -83,7 +83,7 @@ TEST_CASE("Two million shards are packed without being listed", "[unit]") {
   CHECK(arrays.back().shards.end == 2'000'000);
 }
 
-TEST_CASE("Slurm's times are read and written", "[unit]") {
+TEST_CASE("Durations of Slurm are parsed and formatted", "[unit]") {
   CHECK(*parse_slurm_time("5") == 300.0);
   CHECK(*parse_slurm_time("04:05") == 245.0);
   CHECK(*parse_slurm_time("03:04:05") == 11045.0);
@@ -102,7 +102,7 @@ TaskAttempt make_attempt(std::optional<TaskOutcome> outcome, std::int64_t limit 
   return {"node", 1000, limit, 0, outcome, outcome ? 2000 : 0, 3};
 }
 
-TEST_CASE("What became of a task is told from its last life", "[unit]") {
+TEST_CASE("The fate of a task follows from its last attempt", "[unit]") {
   CHECK(judge_task({}, false) == TaskFate::kNeverStarted);
   CHECK(judge_task({}, true) == TaskFate::kCancelled);
   CHECK(judge_task({make_attempt(TaskOutcome::kDone)}, true) == TaskFate::kDone);
@@ -111,12 +111,12 @@ TEST_CASE("What became of a task is told from its last life", "[unit]") {
   CHECK(judge_task({make_attempt(TaskOutcome::kDrained)}, false) == TaskFate::kDrained);
   CHECK(judge_task({make_attempt(TaskOutcome::kDrained), make_attempt(TaskOutcome::kDone)},
                    false) == TaskFate::kDone);
-  // Stopped when its time was over; long before; by `strut cancel`.
+  // Stopped at its time limit; long before; by `strut cancel`.
   CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 2003)}, false) == TaskFate::kTimeout);
   CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 9000)}, false) == TaskFate::kPreempted);
   CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 9000)}, true) == TaskFate::kCancelled);
   CHECK(judge_task({make_attempt(std::nullopt)}, false) == TaskFate::kLost);
-  // Where it says little, what the scheduler remembers.
+  // Without a recorded outcome, the scheduler's state decides.
   CHECK(judge_task({make_attempt(std::nullopt)}, false, "TIMEOUT") == TaskFate::kTimeout);
   CHECK(judge_task({make_attempt(TaskOutcome::kStopped, 9000)}, false, "CANCELLED") ==
         TaskFate::kCancelled);
@@ -124,7 +124,7 @@ TEST_CASE("What became of a task is told from its last life", "[unit]") {
   CHECK(judge_task({}, false, "FAILED") == TaskFate::kLost);
 }
 
-TEST_CASE("A submission is read back as it was written", "[io]") {
+TEST_CASE("A submission reads back as it was written", "[io]") {
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
   CHECK(list_submissions(sweep).empty());
@@ -139,7 +139,7 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   REQUIRE(all.size() == 2);
   CHECK(all[0].name() == "001");
   CHECK(all[0].dispatcher == "slurm");
-  CHECK(all[0].place == "ours");
+  CHECK(all[0].cluster_name == "ours");
   CHECK(all[0].user == find_user());
   CHECK(all[0].job_name("collect") == first.job_prefix + ".collect");
   // A copy of the folder has submissions of its own.
@@ -161,7 +161,7 @@ TEST_CASE("A submission is read back as it was written", "[io]") {
   CHECK(faults[0].find("dispatcher") != std::string::npos);
 }
 
-/// Commands of a Slurm that says what the test wants.
+/// Commands of a Slurm with answers that the test sets.
 class SaidSlurm {
  public:
   SaidSlurm() : path_(std::getenv("PATH")) {
@@ -185,7 +185,8 @@ class SaidSlurm {
   test::TemporaryFolder folder_;
 };
 
-TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked", "[unit]") {
+TEST_CASE("An empty queue does not mean the end, and only this user and cluster are asked",
+          "[unit]") {
   const SaidSlurm slurm;
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
@@ -203,7 +204,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   CHECK(running.queue == QueueState::kQueued);
   CHECK(running.running == 1);
   CHECK(running.queued_shards == Ranges{{0, 5}, {5, 10}});
-  // A job of a copied folder: whether this one's runs is not known, and it is not stopped.
+  // A job of a copied folder: whether this folder's job runs is unknown, and nothing is stopped.
   slurm.say("squeue", "echo '4711|0|RUNNING|None|0123|" + ended.job_name("array-0") + "'");
   slurm.say("scancel", "touch " + (folder / "cancelled").string());
   const SubmissionState copied = follow(ended);
@@ -212,12 +213,12 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   CHECK_THROWS_AS(SlurmDispatcher().cancel({ended.read_job("array-0")}), EnvironmentError);
   CHECK(SlurmDispatcher().find_job(ended.read_job("array-0")).empty());
   CHECK_FALSE(std::filesystem::exists(folder / "cancelled"));
-  // What the environment would hide from the answer is kept from the command.
+  // Environment variables that would hide parts of the answer are not passed to the command.
   slurm.say("squeue", "[[ -z ${SQUEUE_PARTITION:-} ]] && echo '4711|0|RUNNING|None" + name);
   ::setenv("SQUEUE_PARTITION", "x", 1);
   CHECK(follow(ended).queue == QueueState::kQueued);
   ::unsetenv("SQUEUE_PARTITION");
-  // Nothing listed, but the controller still knows it, or says nothing.
+  // Not listed, but the controller still knows the job or gives no answer.
   slurm.say("squeue", "");
   const std::string config = "[[ $2 == config ]] && echo 'ClusterName = ours' && exit\n";
   const std::string known =
@@ -230,7 +231,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
     CHECK(state.why_unknown.find("4711") != std::string::npos);
     CHECK_FALSE(ended.is_finished());
   }
-  // One that ended: its words outlive the scheduler's memory.
+  // The final states of an ended submission outlive the scheduler's memory.
   slurm.say("scontrol", config + "echo 'Invalid job id specified' >&2; exit 1");
   slurm.say("squeue", "echo '4711|0|TIMEOUT|TimeLimit" + name);
   CHECK(follow(ended).fates.at(TaskFate::kTimeout) == 1);
@@ -238,7 +239,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   slurm.say("squeue", "");
   CHECK(follow(ended).fates.at(TaskFate::kTimeout) == 1);
 
-  // A number that the scheduler has given to another job since.
+  // A number that the scheduler has reused for another job.
   const Submission lost = queue("ours");
   slurm.say("squeue", "echo '4711|0|RUNNING|None||other'");
   slurm.say("scontrol", config + "echo 'JobId=4711 JobName=other'");
@@ -252,7 +253,7 @@ TEST_CASE("An empty queue is no end, and no other user's or cluster's is asked",
   CHECK(follow(foreign).queue == QueueState::kUnknown);
 }
 
-TEST_CASE("A task knows its shards and tells its attempts", "[io]") {
+TEST_CASE("A task knows its shards and records its attempts", "[io]") {
   const test::TemporaryFolder folder;
   const SweepFolder sweep{folder / "."};
   const Submission s = make_submission(sweep, {"", "local", "", "", "strut", {{{10, 35}, 10}}});

@@ -1,4 +1,4 @@
-// Files that single commands keep: studies, reports, submissions.
+// Files of single commands: studies, reports, submissions.
 #include "cluster/submission.h"
 #include "cluster/task_record.h"
 #include "jobs/study/request.h"

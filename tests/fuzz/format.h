@@ -1,4 +1,4 @@
-// What is fuzzed: the formats that strut reads, each with its readers.
+// Formats to fuzz, each with its readers.
 #pragma once
 
 #include <filesystem>
@@ -10,28 +10,28 @@
 
 namespace strut::fuzz {
 
-/// How mutants of a format are made.
+/// Method by which mutants of a format are made.
 enum class Changes {
   kBytes,            // any bytes
   kBytesAndContent,  // half of them as kContent
-  kContent,          // of HDF5, with a sound structure and seal: see hdf5_tree.h
-  kSealedBytes,      // any bytes, sealed anew
+  kContent,          // of HDF5, with a valid structure and seal: see hdf5_tree.h
+  kSealedBytes,      // any bytes, sealed again
 };
 
 struct Format {
   std::string name;
-  std::filesystem::path file;  // where readers look for the content, within the work folder
+  std::filesystem::path file;                // the file that readers read, within the work folder
   std::vector<std::filesystem::path> seeds;  // within the work folder
   Dictionary dictionary;
-  /// Reads the file, and goes on to what a command would make of it.
+  /// Reads the file and continues as a command would.
   std::function<void(const std::filesystem::path& file)> read;
   Changes changes = Changes::kBytes;
-  /// Left out where no format is named.
+  /// Skipped unless it is named.
   bool only_by_name = false;
 };
 
-/// Fills an empty folder with what the formats read beside their own file: the examples, a planned
-/// sweep with shards, networks, a report.
+/// Fills an empty folder with the other files that the formats read: the examples, a planned sweep
+/// with shards, networks, a report.
 void make_work_folder(const std::filesystem::path& folder);
 
 std::vector<Format> list_formats();

@@ -1,4 +1,4 @@
-// Feeds strut's readers with mutants of sound files: see README.md.
+// Runs strut's readers on mutants of valid files: see README.md.
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 #include "tests/fuzz/watch.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-// Asked by the address sanitizer. The memory limit is the fuzzer's own; one allocation beyond it
-// is a finding whatever is written to it.
+// Called by the address sanitizer. The fuzzer has its own memory limit; a single allocation beyond
+// it is a finding, even if its pages are never used.
 extern "C" const char* __asan_default_options();  // NOLINT(bugprone-reserved-identifier)
 const char* __asan_default_options() {
   return "detect_leaks=0:max_allocation_size_mb=1024:quarantine_size_mb=32";

@@ -35,7 +35,7 @@ void read_network(const fs::path& path) {
   identifier.calc_jacobian(inputs.data());
 }
 
-/// Everything in it, by every reader.
+/// Reads everything in a file with every reader.
 void read_any_hdf5(const Hdf5Reader& file, const std::string& group) {
   const auto ignore = [](const auto& read) {
     try {
@@ -102,7 +102,7 @@ std::vector<Format> list_hdf5_formats() {
                                    .missing = MissingCells::kNan});
          }
        }},
-      // How the library itself bears damaged metadata that a checksum vouches for.
+      // Damaged metadata with a valid seal, to test the library itself.
       {"hdf5_library",
        "input.h5",
        {"merged.h5", "model.h5", "sweep/plan.h5.seed"},
@@ -111,7 +111,7 @@ std::vector<Format> list_hdf5_formats() {
   };
   for (Format& format : formats) {
     format.changes = Changes::kBytesAndContent;
-    // Others write these: nothing vouches for them but the library.
+    // Written by other tools: only the library checks them.
     if (format.name == "measurement") format.changes = Changes::kContent;
     if (format.name != "hdf5_library") continue;
     format.changes = Changes::kSealedBytes;

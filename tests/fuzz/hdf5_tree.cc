@@ -32,7 +32,7 @@ using Attribute = std::variant<std::int64_t, double, std::string, std::vector<st
 
 struct Tree {
   std::map<std::string, Node> datasets;
-  std::map<std::pair<std::string, std::string>, Attribute> attributes;  // of what, key
+  std::map<std::pair<std::string, std::string>, Attribute> attributes;  // by object and key
 };
 
 constexpr char kShownPath[] = "seed";
@@ -84,7 +84,7 @@ void read_group(const Hdf5Reader& file, const std::string& group, Tree& tree) {
   }
 }
 
-/// Seeds are few and read again and again.
+/// Caches the seeds, which are few and read often.
 const Tree& read_tree(const std::string& seed) {
   static std::map<std::string, Tree> trees;
   const auto [at, is_new] = trees.try_emplace(seed);
@@ -381,7 +381,7 @@ void write_tree(Hdf5Writer& file, const Tree& tree, Random& random) {
   }
 }
 
-/// The text that stands in front of a sealed file, without its padding; empty: there is none.
+/// Returns the seal of a file without its padding; empty if there is none.
 std::string get_seal(const std::string& file) {
   const std::string block = file.substr(0, kSealBytes);
   const bool sealed = block.starts_with("strut ") && block.find("\nseal ") != std::string::npos;
@@ -416,7 +416,7 @@ std::string rewrite_hdf5(const std::string& seed, Random& random) {
   for (std::size_t i = 0; i < changes; ++i) change_tree(tree, random);
 
   Hdf5WriterOptions options;
-  if (!get_seal(seed).empty()) options.seal.emplace();  // of which only the room is kept
+  if (!get_seal(seed).empty()) options.seal.emplace();  // only reserves space
   Hdf5Writer file(Hdf5InMemory{kShownPath}, options);
   try {
     write_tree(file, tree, random);

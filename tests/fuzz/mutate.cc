@@ -33,7 +33,7 @@ std::string repeat(const std::string& piece, std::size_t count) {
   return text;
 }
 
-/// The runs of characters that `belongs` accepts and that begin with one that `begins` accepts.
+/// Finds the runs of characters that `belongs` accepts and whose first character `begins` accepts.
 template <class Begins, class Belongs>
 std::vector<Range> find_runs(const std::string& text, const Begins& begins,
                              const Belongs& belongs) {
@@ -59,7 +59,7 @@ std::vector<Range> find_numbers(const std::string& text) {
       [](unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '+'; });
 }
 
-/// Each with its line end.
+/// Finds the lines, each with its line end.
 std::vector<Range> find_lines(const std::string& text) {
   std::vector<Range> lines;
   for (std::size_t i = 0; i < text.size();) {
@@ -158,7 +158,7 @@ void insert_token(std::string& text, const Dictionary& dictionary, Random& rando
   text.insert(random.below(text.size() + 1), random.pick(dictionary.tokens));
 }
 
-/// A line many times, each with a number of its own.
+/// Repeats a line, each time with another number.
 std::string make_many_lines(const std::string& line, Random& random) {
   const std::size_t at = random.below(line.size());
   const std::size_t count = kMaxContent / (line.size() + 6) >> random.below(6);
@@ -169,7 +169,7 @@ std::string make_many_lines(const std::string& line, Random& random) {
   return text;
 }
 
-/// A change that makes the content long.
+/// Makes the content long.
 void blow_up(std::string& text, const Dictionary& dictionary, Random& random) {
   if (text.empty()) text = "\n";
   const std::size_t at = random.below(text.size() + 1);
@@ -179,7 +179,7 @@ void blow_up(std::string& text, const Dictionary& dictionary, Random& random) {
       const std::string piece =
           known ? random.pick(dictionary.nesting) : cut(text, pick_range(text, 8, random));
       const std::size_t count = kMaxContent / 8 / std::max<std::size_t>(piece.size(), 1);
-      // A key of its own, as otherwise the rest of the line is wrong before it is deep.
+      // A line of its own, as otherwise the rest of the line is invalid before it is deep.
       const auto lines = find_lines(text);
       text.insert(random.one_in(4) ? at : random.pick(lines).first,
                   repeat(piece, count >> random.below(8)));

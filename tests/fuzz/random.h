@@ -1,5 +1,5 @@
-// Random numbers of the fuzzer: the same on every machine, from a few numbers that a finding
-// prints.
+// Random numbers of the fuzzer: the same on every machine, determined by a few numbers that a
+// finding prints.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +23,10 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
     return z ^ (z >> 31);
   }
-  /// 0 .. count - 1; 0 where count is 0. The bias of the remainder does not matter here.
+  /// Returns 0 .. count - 1, or 0 if count is 0. The bias of the remainder does not matter here.
   std::size_t below(std::size_t count) { return count == 0 ? 0 : next() % count; }
   bool one_in(std::size_t count) { return below(count) == 0; }
-  /// 1, 2, 4, ..., up to `max`, small ones as often as large ones, and what lies between.
+  /// Returns a number of [1, max]: a uniform power of two, plus a uniform remainder below it.
   std::size_t log_uniform(std::size_t max) {
     std::size_t bits = 0;
     while (max >> bits > 1) ++bits;

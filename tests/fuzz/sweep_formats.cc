@@ -1,4 +1,4 @@
-// What runners leave in a sweep folder beside its shards.
+// Files of runners in a sweep folder, beside its shards.
 #include "io/store/claims.h"
 #include "io/store/journal.h"
 #include "sweep/folder.h"
@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The sweep whose subfolder holds `path`, opened once.
+/// Returns the sweep whose subfolder holds `path`, opened once.
 const Plan& open_plan(const SweepFolder& folder) {
   static const Plan plan = open_sweep_folder(folder);
   return plan;

@@ -23,7 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the model itself may refuse: a car that no spring carries, a road that no wheel follows.
+/// Calls `function`, which the model may refuse: a car that no spring carries, a road that no wheel
+/// follows.
 template <class Function>
 void call_model(const Function& function) {
   try {
@@ -32,7 +33,7 @@ void call_model(const Function& function) {
   }
 }
 
-/// Finds where a car stands, and drives it for some steps.
+/// Trims a car and drives it for some steps.
 void prepare(const Case& c) {
   constexpr double kSeconds = 0.02;
   call_model([&] {

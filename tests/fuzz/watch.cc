@@ -28,9 +28,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// What a worker tells the process that watches it.
+/// Shared memory of a worker and the process that watches it.
 struct Shared {
-  std::atomic<std::uint64_t> number{0};  // of the input at hand
+  std::atomic<std::uint64_t> number{0};  // of the current input
   std::atomic<std::uint64_t> executions{0}, accepted{0}, refused{0};
   char finding[1024] = {};
 };
@@ -82,7 +82,7 @@ Usage read_usage(pid_t process) {
   return usage;
 }
 
-/// The inputs from `first` on, in a process of its own.
+/// Runs the inputs from `first` on in a process of its own.
 [[noreturn]] void work_through(const Format& format, const fs::path& work, const Campaign& campaign,
                                const std::vector<std::string>& seeds, std::uint64_t first,
                                std::uint64_t end, Clock::time_point deadline, Shared& shared) {
@@ -92,7 +92,7 @@ Usage read_usage(pid_t process) {
   ::dup2(messages, STDERR_FILENO);
   const rlimit none = {0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
-  ::setenv("PATH", "/nonexistent", 1);  // no file makes a reader run a program
+  ::setenv("PATH", "/nonexistent", 1);  // no file may make a reader run a program
   for (std::uint64_t number = first; number != end && Clock::now() < deadline; ++number) {
     const Input input = make_input(format, seeds, campaign.seed, number);
     write_input(work / format.file, input);
@@ -109,7 +109,7 @@ Usage read_usage(pid_t process) {
   ::_exit(0);
 }
 
-/// Of a sanitizer's report, what two runs of one fault have in common.
+/// Returns the part of a sanitizer's report that two runs with the same fault share.
 std::string summarize_messages(const fs::path& messages) {
   std::istringstream text(read_file(messages));
   std::string error, frame;
@@ -117,7 +117,7 @@ std::string summarize_messages(const fs::path& messages) {
     const std::size_t runtime = line.find("runtime error: ");
     if (runtime != std::string::npos && error.empty()) error = line;
     if (line.rfind("SUMMARY: ", 0) == 0 && error.empty()) error = line;
-    // The first frame of ours below the sanitizer's and the libraries'.
+    // The first frame of strut below those of the sanitizer and the libraries.
     const std::size_t in = line.find(" in strut::");
     if (in != std::string::npos && frame.empty()) frame = line.substr(in);
   }
@@ -132,7 +132,7 @@ std::string describe_end(int status, const fs::path& work, const Shared& shared)
   return "ended with code " + std::to_string(WEXITSTATUS(status));
 }
 
-/// Waits for a worker; none: it is through. Else how it failed at input `shared.number`.
+/// Waits for a worker. Returns how it failed at input `shared.number`; nullopt if it completed.
 std::optional<std::string> watch(pid_t worker, const fs::path& work, const Campaign& campaign,
                                  const Shared& shared) {
   using Seconds = std::chrono::duration<double>;
@@ -169,8 +169,8 @@ std::optional<std::string> watch(pid_t worker, const fs::path& work, const Campa
   }
 }
 
-/// The same for findings of one kind: without numbers, addresses and the
-/// paths that exceptions of the standard library name in brackets.
+/// Returns a text that is equal for findings of one kind: without numbers, addresses and the paths
+/// that exceptions of the standard library name in brackets.
 std::string make_signature(const std::string& what) {
   std::string signature;
   for (const char c : what.substr(0, what.find('['))) {
@@ -299,7 +299,7 @@ Tally run_campaign(const Format& format, const fs::path& work, const Campaign& c
     keep_finding(format, work, campaign, seeds, *what, shared.number, tally);
     first = shared.number + 1;
   }
-  write_input(work / format.file, sound);  // other formats read it, too
+  write_input(work / format.file, sound);  // other formats read it as well
   tally.executions = shared.executions;
   tally.accepted = shared.accepted;
   tally.refused = shared.refused;

@@ -1,4 +1,4 @@
-// Runs readers on mutants in processes of their own, and tells how they end.
+// Runs readers on mutants in processes of their own and reports how these end.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@
 
 namespace strut::fuzz {
 
-/// What may stand where a file is expected.
+/// Types of file system entries in place of a file.
 enum class Kind { kFile, kFifo, kFolder, kDanglingLink, kZeroDevice };
 
 struct Input {
@@ -20,27 +20,27 @@ struct Input {
   std::string content;
 };
 
-/// Input `number` of a format: a function of these alone.
+/// Makes input `number` of a format, a function of the arguments alone.
 Input make_input(const Format& format, const std::vector<std::string>& seeds, std::uint64_t seed,
                  std::uint64_t number);
 
-/// Puts it at `path`, in place of what is there.
+/// Writes an input to `path`, replacing any entry there.
 void write_input(const std::filesystem::path& path, const Input& input);
-/// What write_input() put there.
+/// Reads what write_input() wrote.
 Input read_input(const std::filesystem::path& path);
 
-/// Contents of a format's seeds.
+/// Reads the seeds of a format.
 std::vector<std::string> read_seeds(const Format& format, const std::filesystem::path& work);
 
-/// Reads `format.file` in `work`. Empty: accepted, or refused as a bad file should be; `refused`,
-/// where given, tells which. Else what is wrong with how it was refused.
+/// Reads `format.file` in `work`. Returns "" if it was accepted or refused properly (`refused`, if
+/// given, is set to which), otherwise the fault of the refusal.
 std::string judge(const Format& format, const std::filesystem::path& work,
                   std::optional<std::string>* refused = nullptr);
 
 struct Campaign {
   std::uint64_t seed = 1, first = 0;
-  std::uint64_t executions = 0;                      // 0: as many as there is time for
-  std::chrono::duration<double> time{0.0};           // 0: as long as it takes
+  std::uint64_t executions = 0;                      // 0: limited by the time
+  std::chrono::duration<double> time{0.0};           // 0: no limit
   std::filesystem::path findings;                    // folder
   double max_seconds = 5.0;                          // of processor time, for one input
   std::uint64_t max_bytes = std::uint64_t{1} << 30;  // resident, beyond those of an idle process

@@ -35,7 +35,7 @@ history = { rate = 10, channels = ["pitch_rate"] }
 cases = 5
 )";
 
-/// Rows as a run would leave them; what the numbers are does not matter to readers.
+/// Makes rows like those of a run; readers do not depend on the numbers.
 ShardRows make_rows(const Plan& plan, const ShardSchema& schema, std::int64_t shard) {
   const auto [first, last] = plan.shard_range(shard);
   ShardRows rows = ShardRows::make(schema, static_cast<std::size_t>(last - first));
@@ -125,7 +125,7 @@ void write_networks(const fs::path& work) {
   write_checkpoint(work / "checkpoint.h5", checkpoint);
 }
 
-/// The original of a file that is to be overwritten, for seeds.
+/// Copies a file that will be overwritten, as a seed.
 void keep(const fs::path& file) { fs::copy_file(file, file.string() + ".seed"); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One unit, one runner; a dead runner's unit goes to another.
+// Each unit has one runner; the unit of a dead runner passes to another.
 #include "io/store/claims.h"
 
 #include <algorithm>
@@ -31,12 +31,12 @@ using test::read_text;
 using test::TemporaryFolder;
 using Answer = Claims::Answer;
 
-// Short, so that a test need not wait; long against what a loaded machine delays a thread.
+// Short, so that tests do not wait; long compared with the delay of a thread on a loaded machine.
 const ClaimOptions kOptions{milliseconds(20), milliseconds(400)};
-// For tests in which a lease must not pass.
+// For tests in which no lease may end.
 const ClaimOptions kLongLease{milliseconds(20), milliseconds(1000000)};
 
-/// Waits for what must come, up to what no machine takes.
+/// Waits until `is_so` holds; false after 10 s, longer than any machine needs.
 bool wait_until(const std::function<bool()>& is_so) {
   for (int i = 0; i < 2000; ++i) {
     if (is_so()) return true;
@@ -45,7 +45,7 @@ bool wait_until(const std::function<bool()>& is_so) {
   return false;
 }
 
-/// A runner's file written by hand: this process, but for one line.
+/// Writes a runner's file that differs from that of `model` in one line.
 void write_runner(const fs::path& folder, const std::string& name, const Claims& model,
                   const std::string& key, const std::string& value, int counter = 0) {
   std::istringstream lines(read_text(folder / ("runner." + model.runner())));
@@ -65,7 +65,7 @@ std::set<std::string> list_files(const fs::path& folder) {
   return names;
 }
 
-TEST_CASE("A claimed unit is taken until it is given back", "[io]") {
+TEST_CASE("A claimed unit is taken until it is released", "[io]") {
   const TemporaryFolder folder;
   Claims a(Folder(folder / ""), kLongLease), b(Folder(folder / ""), kLongLease);
   CHECK(a.runner() != b.runner());
@@ -81,7 +81,7 @@ TEST_CASE("A claimed unit is taken until it is given back", "[io]") {
   CHECK(a.may_be_alive(a.runner()));
 }
 
-TEST_CASE("A runner that ends gives everything back and leaves nothing", "[io]") {
+TEST_CASE("A runner that ends releases its claims and leaves no file", "[io]") {
   const TemporaryFolder folder;
   Claims a(Folder(folder / ""), kLongLease);
   std::string name;
@@ -113,7 +113,7 @@ TEST_CASE("Claims are listed with their runners", "[io]") {
   CHECK(list_claims(Folder(folder / "")).size() == 1);
 }
 
-TEST_CASE("A name that a claim cannot have is refused", "[io]") {
+TEST_CASE("An invalid name of a unit is refused", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   for (const std::string name : {"", "a/b", "a~b", ".", "..", "runner.x", "new.x"}) {
@@ -121,7 +121,7 @@ TEST_CASE("A name that a claim cannot have is refused", "[io]") {
   }
 }
 
-TEST_CASE("Runners in threads never hold one unit together", "[io][threads]") {
+TEST_CASE("No two runners in threads hold the same unit", "[io][threads]") {
   const TemporaryFolder folder;
   std::array<std::atomic<int>, 3> holders{};
   std::atomic<int> overlaps{0}, held{0};
@@ -147,7 +147,7 @@ TEST_CASE("Runners in threads never hold one unit together", "[io][threads]") {
   CHECK(list_files(folder / "").empty());
 }
 
-TEST_CASE("Threads that share one runner never hold one unit together", "[io][threads]") {
+TEST_CASE("No two threads of one runner hold the same unit", "[io][threads]") {
   const TemporaryFolder folder;
   constexpr std::size_t kUnits = 200;
   Claims claims(Folder(folder / ""), kLongLease);
@@ -160,7 +160,7 @@ TEST_CASE("Threads that share one runner never hold one unit together", "[io][th
       for (std::size_t i = 0; i < kUnits; ++i) {
         if (claims.claim(std::to_string(i)) == Answer::kMine) ++mine[i];
         if (claims.may_be_alive("elsewhere.1.0123456789abcdef")) ++overlaps;
-        // One that goes from hand to hand.
+        // A unit that passes from thread to thread.
         if (claims.claim("shared") != Answer::kMine) continue;
         if (++holders > 1) ++overlaps;
         std::this_thread::yield();
@@ -175,7 +175,7 @@ TEST_CASE("Threads that share one runner never hold one unit together", "[io][th
   CHECK(list_files(folder / "").size() == kUnits + 1);
 }
 
-TEST_CASE("Runners in processes never hold one unit together", "[io][threads]") {
+TEST_CASE("No two runners in processes hold the same unit", "[io][threads]") {
   const TemporaryFolder folder;
   fs::create_directories(folder / "claims");
   std::vector<std::thread> threads;
@@ -193,7 +193,7 @@ TEST_CASE("Runners in processes never hold one unit together", "[io][threads]") 
   CHECK(list_files(folder / "claims").empty());
 }
 
-TEST_CASE("A killed runner's claims are free at once on its host", "[io]") {
+TEST_CASE("The claims of a killed runner are free at once on its host", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   Holder holder(folder / "", "1");
@@ -211,14 +211,14 @@ TEST_CASE("A killed runner's claims are free at once on its host", "[io]") {
     CHECK_FALSE(claims.may_be_alive(holder.runner()));
   }
   claims.release("1");
-  // The next runner clears what the killed one left.
+  // The next runner removes the files of the killed one.
   Claims next(Folder(folder / ""), kLongLease);
   CHECK(list_files(folder / "") ==
         std::set<std::string>{"runner." + claims.runner(), "runner." + next.runner()});
   CHECK_FALSE(claims.may_be_alive(holder.runner()));
 }
 
-TEST_CASE("A runner that gets SIGTERM ends as its program wishes, and gives back", "[io]") {
+TEST_CASE("A runner that handles SIGTERM ends normally and releases its claims", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   Holder holder(folder / "", "1");
@@ -227,7 +227,7 @@ TEST_CASE("A runner that gets SIGTERM ends as its program wishes, and gives back
   CHECK(list_files(folder / "") == std::set<std::string>{"runner." + claims.runner()});
 }
 
-TEST_CASE("Of many that find a killed runner's claim one takes it", "[io][threads]") {
+TEST_CASE("One of many runners takes over the claim of a killed runner", "[io][threads]") {
   const TemporaryFolder folder;
   constexpr std::size_t kUnits = 500;
   Holder holder(folder / "", "0");
@@ -248,7 +248,7 @@ TEST_CASE("Of many that find a killed runner's claim one takes it", "[io][thread
   }
   for (std::thread& thread : threads) thread.join();
   CHECK(std::all_of(mine.begin(), mine.end(), [](int count) { return count == 1; }));
-  // No right to take over is left lying about.
+  // No right to take over remains.
   CHECK(list_files(folder / "").size() == kUnits + runners.size() + 1);
 }
 
@@ -259,14 +259,15 @@ TEST_CASE("A runner killed while it takes over blocks nobody", "[io]") {
   REQUIRE((first.is_mine() && second.is_mine()));
   first.end_unasked(SIGKILL);
   second.end_unasked(SIGKILL);
-  // As if the second had died with the right to replace the first's claim in hand.
+  // As if the second had died while it held the right to replace the first one's claim.
   const std::string nonce = first.runner().substr(first.runner().rfind('.') + 1);
   fs::rename(folder / "2", folder / ("1~" + nonce));
   CHECK(claims.claim("1") == Answer::kMine);
   CHECK(list_files(folder / "").count("1~" + nonce) == 0);
 }
 
-TEST_CASE("Another host's claim is held while its counter moves, and free a lease after", "[io]") {
+TEST_CASE("The claim of another host is held while its counter changes, and free one lease later",
+          "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kOptions);
   const std::string runner = "elsewhere.example.org.1.0123456789abcdef";
@@ -290,22 +291,22 @@ TEST_CASE("Another host's claim is held while its counter moves, and free a leas
   CHECK_FALSE(claims.may_be_alive(runner));
 }
 
-TEST_CASE("A process number given out again is not taken for the old runner", "[io]") {
+TEST_CASE("A reused process number is not mistaken for the old runner", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
-  // This process, but started at another time.
+  // This process with another start time.
   write_runner(folder / "", "a.1.000000000000000a", claims, "start", "12");
   folder.write("1", "a.1.000000000000000a\n");
   CHECK_FALSE(claims.may_be_alive("a.1.000000000000000a"));
   CHECK(claims.claim("1") == Answer::kMine);
-  // The same start: the same process.
+  // The same start time: the same process.
   write_runner(folder / "", "a.1.000000000000000b", claims, "none", "");
   folder.write("2", "a.1.000000000000000b\n");
   CHECK(claims.may_be_alive("a.1.000000000000000b"));
   CHECK(claims.claim("2") == Answer::kTaken);
 }
 
-TEST_CASE("A stopped runner keeps its claim for a lease, and its name", "[io]") {
+TEST_CASE("A stopped runner keeps its claim for one lease, and its name", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kOptions);
   Holder holder(folder / "", "1");
@@ -317,27 +318,27 @@ TEST_CASE("A stopped runner keeps its claim for a lease, and its name", "[io]") 
   CHECK(wait_until([&] { return claims.claim("1") == Answer::kMine; }));
   CHECK(std::chrono::steady_clock::now() - start >= kOptions.lease - milliseconds(40));
   CHECK(claims.may_be_alive(holder.runner()));
-  // It wakes up, and takes nothing away from the new holder.
+  // It continues, and leaves the new holder its claim.
   holder.send(SIGCONT);
   holder.end(SIGTERM);
   CHECK(read_text(folder / "1") == claims.runner() + "\n");
 }
 
-TEST_CASE("Claims that say nothing, or nothing true, block nobody", "[io]") {
+TEST_CASE("Empty and wrong claims block no runner", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kOptions);
   folder.write("1", "");
   folder.write("2", "no such runner\n");
   folder.write("3", "../../etc/passwd\n");
   for (const std::string unit : {"1", "2", "3"}) CHECK(claims.claim(unit) == Answer::kMine);
-  // An empty runner's file, as a power cut may leave it: nobody knows, so the lease decides.
+  // An empty runner's file, as a power cut may leave it: only the lease can decide.
   folder.write("runner.x.1.000000000000000c", "");
   folder.write("4", "x.1.000000000000000c\n");
   CHECK(claims.claim("4") == Answer::kTaken);
   CHECK(wait_until([&] { return claims.claim("4") == Answer::kMine; }));
 }
 
-TEST_CASE("A runner's file cut anywhere is never taken for a dead runner's", "[io]") {
+TEST_CASE("A truncated runner's file does not count as that of a dead runner", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   const std::string text = read_text(folder / ("runner." + claims.runner()));
@@ -350,7 +351,7 @@ TEST_CASE("A runner's file cut anywhere is never taken for a dead runner's", "[i
   }
 }
 
-TEST_CASE("The heartbeat goes on where its file was removed", "[io]") {
+TEST_CASE("The heartbeat continues after its file was removed", "[io]") {
   const TemporaryFolder folder;
   Claims claims(Folder(folder / ""), kLongLease);
   const fs::path file = folder / ("runner." + claims.runner());
@@ -360,7 +361,7 @@ TEST_CASE("The heartbeat goes on where its file was removed", "[io]") {
   CHECK(wait_until([&] { return read_text(file) != before; }));
 }
 
-TEST_CASE("A disk that takes no bytes stops the counter, not the process", "[io]") {
+TEST_CASE("A full disk stalls the counter, not the process", "[io]") {
   const TemporaryFolder folder;
   Claims a(Folder(folder / ""), kLongLease), b(Folder(folder / ""), kLongLease);
   REQUIRE(a.claim("1") == Answer::kMine);
@@ -380,7 +381,8 @@ TEST_CASE("A disk that takes no bytes stops the counter, not the process", "[io]
   CHECK(b.claim("1") == Answer::kMine);
 }
 
-TEST_CASE("Any failing call on claims is an error, and no two hold one unit", "[io]") {
+TEST_CASE("Every failing call on claims is an error, and no two runners hold the same unit",
+          "[io]") {
   for (const std::string kind : {"open", "write", "link", "rename", "read", "unlink"}) {
     for (int n = 1;; ++n) {
       INFO(kind << " " << n);
@@ -393,7 +395,7 @@ TEST_CASE("Any failing call on claims is an error, and no two hold one unit", "[
           test::preload_faults(folder / "root", fault),
           "contend " + (folder / "root").string() + " " + (folder / "witness").string() + " 2");
       CHECK((outcome.code == 0 || outcome.code == 3));
-      // Whatever is left names nobody that lives.
+      // No remaining file names a runner that is alive.
       Claims claims(Folder(folder / "root"), kLongLease);
       CHECK(claims.claim("u") == Answer::kMine);
       if (!fs::exists(fired)) {
@@ -404,7 +406,7 @@ TEST_CASE("Any failing call on claims is an error, and no two hold one unit", "[
   }
 }
 
-TEST_CASE("Nothing about claims reads the wall clock", "[io]") {
+TEST_CASE("Claims do not read the wall clock", "[io]") {
   const TemporaryFolder folder;
   const std::string arguments =
       "contend " + (folder / "claims").string() + " " + (folder / "witness").string() + " 50";
@@ -412,11 +414,11 @@ TEST_CASE("Nothing about claims reads the wall clock", "[io]") {
   const std::string preload = test::preload_faults(folder / "claims", "STRUT_NO_WALL_CLOCK=1");
   Holder holder(folder / "claims", "u");
   REQUIRE(holder.is_mine());
-  // Another's counter and the lease, then a takeover.
+  // The counter of another runner and the lease, then a takeover.
   CHECK(test::run_worker(preload, arguments).out == "0\n");
   holder.end_unasked(SIGKILL);
   CHECK(test::run_worker(preload, arguments).out == "50\n");
-  // Seen to work: this one asks for the time.
+  // The check detects a process that reads the time.
   CHECK(test::run_worker(preload, "time").code == -1);
   CHECK(test::run_worker("", "time").code == 0);
 }

@@ -18,7 +18,7 @@ std::vector<CsvColumn> make_columns() {
   return {{"time", "s", {0.0, 0.001, 1.0 / 3.0}}, {"pitch_angle", "rad", {-1e-300, 0.1, 1e22}}};
 }
 
-TEST_CASE("Names stand on the first line, units in a comment below", "[io]") {
+TEST_CASE("The first line holds the names, a comment below it the units", "[io]") {
   const TemporaryFolder folder;
   write_csv(folder / "run.csv", {{"time", "s", {0.0, 0.5}}, {"z", "m", {1.0, -2.0}}});
   CHECK(read_text(folder / "run.csv") == "time,z\n# units: s,m\n0,1\n0.5,-2\n");
@@ -44,7 +44,7 @@ TEST_CASE("A CSV file reads back bit for bit", "[io][property]") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("A table with other line ends, comments, quotes and blanks is the same table", "[io]") {
+TEST_CASE("Line ends, comments, quotes and blanks do not change a table", "[io]") {
   const TemporaryFolder folder;
   const auto path = folder.write(
       "a.csv",
@@ -55,7 +55,7 @@ TEST_CASE("A table with other line ends, comments, quotes and blanks is the same
   CHECK(table.lines == std::vector<int>{4, 6});
 }
 
-TEST_CASE("A bad table names file and line", "[io]") {
+TEST_CASE("The error for an invalid table names file and line", "[io]") {
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) { return read_csv(folder.write("a.csv", text)); };
   CHECK_THROWS_WITH(read("a,b\n1,2\n1\n"), EndsWith("a.csv:3: 1 cells; must be 2, one per column"));
@@ -71,7 +71,7 @@ TEST_CASE("A bad table names file and line", "[io]") {
   CHECK_THROWS_WITH(read_csv(folder / "no.csv"), EndsWith("no.csv: file not found"));
 }
 
-TEST_CASE("A column that is not there is answered with those that are", "[io]") {
+TEST_CASE("The error for a missing column lists the columns of the file", "[io]") {
   const TemporaryFolder folder;
   const CsvTable table = read_csv(folder.write("a.csv", "position,height\n0,1\n"));
   CHECK(table.has("height"));
@@ -80,7 +80,7 @@ TEST_CASE("A column that is not there is answered with those that are", "[io]") 
                     EndsWith("no column 'hight' among position, height; did you mean 'height'?"));
 }
 
-TEST_CASE("A target that cannot be written is the environment's failure", "[io]") {
+TEST_CASE("A target that cannot be written is an environment error", "[io]") {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "run.csv");
   CHECK_THROWS_AS(write_csv(folder / "run.csv", make_columns()), EnvironmentError);

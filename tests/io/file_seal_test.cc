@@ -24,7 +24,7 @@ fs::path write_streamed(const TemporaryFolder& folder) {
   return folder / "streamed.h5";
 }
 
-TEST_CASE("A seal is the text that the documents describe", "[io][reference]") {
+TEST_CASE("A seal has the documented text", "[io][reference]") {
   const TemporaryFolder folder;
   const std::string text = test::read_text(write_streamed(folder));
   const std::string lines = "strut merged seal 1\nplan " + std::string(64, 'a') + "\nsize " +
@@ -35,7 +35,7 @@ TEST_CASE("A seal is the text that the documents describe", "[io][reference]") {
   CHECK(text.substr(0, kSealBytes) == seal);
 }
 
-TEST_CASE("A file sealed in memory and one sealed on disk are read alike", "[io]") {
+TEST_CASE("A file sealed in memory reads like one sealed on disk", "[io]") {
   const TemporaryFolder folder;
   Hdf5Writer writer(folder / "written.h5", {.seal = kLabel});
   writer.write("/x", std::vector<double>{1.0, 2.0, 3.0}, {"m", "", {}});
@@ -50,7 +50,7 @@ TEST_CASE("A file sealed in memory and one sealed on disk are read alike", "[io]
     CHECK(sealed.bytes.size() == fs::file_size(path));
     CHECK(check_sealed_file(path, kMergedSeal).fault.empty());
     CHECK(Hdf5Reader(path, kMergedSeal).read("/x").values == std::vector<double>{1.0, 2.0, 3.0});
-    CHECK(Hdf5Reader(path).read("/x").values.size() == 3);  // as other tools do
+    CHECK(Hdf5Reader(path).read("/x").values.size() == 3);  // as other tools read it
   }
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("Every flipped bit of a sealed file is found with reason and remedy", 
   CHECK(test::count_missed_flips(path, check, remedy) == 0);
 }
 
-TEST_CASE("A sealed file of another kind, cut short or extended is refused", "[io]") {
+TEST_CASE("A sealed file of another kind, truncated or extended, is refused", "[io]") {
   const TemporaryFolder folder;
   const fs::path path = write_streamed(folder);
   CHECK_THROWS_WITH(
@@ -77,14 +77,14 @@ TEST_CASE("A sealed file of another kind, cut short or extended is refused", "[i
     write_streamed(folder);
     fs::resize_file(path, other);
     CHECK_THROWS_WITH(Hdf5Reader(path, kMergedSeal), Contains("streamed.h5: damaged"));
-    if (other <= 512) continue;  // no seal left that could tell, or nothing behind it
+    if (other <= 512) continue;  // the seal is truncated, or the file ends with it
     CHECK_THROWS_WITH(
         Hdf5Reader(path, kMergedSeal),
         Contains("has " + std::to_string(other) + " bytes, was " + std::to_string(size)));
   }
 }
 
-TEST_CASE("A seal whose lines do not fit is a mistake of the program", "[unit]") {
+TEST_CASE("A seal with lines that do not fit is a check error", "[unit]") {
   std::vector<std::byte> image(1024);
   CHECK_THROWS_AS(seal_image({kPlanSeal, {{"plan", std::string(400, 'a')}}}, image),
                   std::logic_error);

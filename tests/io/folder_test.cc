@@ -1,5 +1,5 @@
-// Folders that strut makes: what is inside is reached without following a link, and nothing but
-// regular files is opened.
+// Folders that strut makes: their contents are reached without following links, and only regular
+// files are opened.
 #include "io/file/folder.h"
 
 #include <fcntl.h>
@@ -24,7 +24,7 @@ using Catch::Matchers::Contains;
 using test::read_text;
 using test::TemporaryFolder;
 
-/// A folder of ours, and one of somebody else's beside it.
+/// A folder of ours and a foreign one beside it.
 struct Places {
   TemporaryFolder folder;
   fs::path ours = folder / "ours", theirs = folder / "theirs";
@@ -63,7 +63,7 @@ TEST_CASE("A folder that the user names may be reached by links, its subfolders 
   CHECK(places.is_untouched());
 }
 
-TEST_CASE("An open folder stays the same whatever takes its name", "[io]") {
+TEST_CASE("An open folder stays the same if another file takes its name", "[io]") {
   const Places places;
   const Folder folder(places.ours);
   fs::rename(places.ours, places.folder / "moved");
@@ -113,7 +113,7 @@ TEST_CASE("Links, pipes, devices and folders are not opened as files, and nothin
     check_refused("zero", "device");
   }
   CHECK(places.is_untouched());
-  // Removing takes the link, not what it leads to.
+  // The link is removed, not its target.
   folder.remove("link");
   CHECK_FALSE(folder.has("link"));
   CHECK(places.is_untouched());
@@ -134,7 +134,7 @@ TEST_CASE("Files that a user names are read through links but never from pipes o
   CHECK_THROWS_WITH(read_bytes(places.folder / "missing"), Contains("not found"));
 }
 
-TEST_CASE("Moving aside replaces nothing", "[io]") {
+TEST_CASE("Moving a file aside replaces no other", "[io]") {
   const Places places;
   const Folder ours(places.ours), theirs(places.theirs);
   write_text_file(ours, "a", "1");
@@ -144,7 +144,7 @@ TEST_CASE("Moving aside replaces nothing", "[io]") {
   CHECK(read_text(places.ours / "b") == "1");
 }
 
-TEST_CASE("Temporary files of processes that ended are collected, others are left", "[io]") {
+TEST_CASE("Temporary files of ended processes are removed, others stay", "[io]") {
   const Places places;
   const Folder folder(places.ours);
   std::string own;
@@ -153,10 +153,10 @@ TEST_CASE("Temporary files of processes that ended are collected, others are lef
     own = file.temporary().filename().string();
     CHECK(folder.has(own));
     remove_abandoned_files(folder);
-    CHECK(folder.has(own));  // this process lives
+    CHECK(folder.has(own));  // this process is alive
   }
   CHECK_FALSE(folder.has(own));
-  // The name as a process with this number that started at another time would have given it.
+  // The name that a process with this number and another start time would give.
   const ProcessIdentity identity = find_own_identity();
   const std::string mark = "-" + identity.process + "-" + identity.start + "-";
   const auto at = own.find(mark);
@@ -170,7 +170,7 @@ TEST_CASE("Temporary files of processes that ended are collected, others are lef
   write_text_file(folder, dead, "");
   remove_abandoned_files(folder, "n.h5.");
   CHECK(folder.has(dead));
-  write_text_file(places.ours / "m.h5", "");  // collects what an earlier writer of it left
+  write_text_file(places.ours / "m.h5", "");  // removes the temporary file of an earlier writer
   CHECK_FALSE(folder.has(dead));
   for (const std::string& name : kept) CHECK(folder.has(name));
 }

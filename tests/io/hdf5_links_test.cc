@@ -1,4 +1,4 @@
-// HDF5 files that name others: nothing outside of the file is read.
+// HDF5 files that refer to others: nothing outside the file is read.
 #include <hdf5.h>
 
 #include <array>
@@ -26,7 +26,7 @@ fs::path write_secret(const TemporaryFolder& folder) {
   return path;
 }
 
-// By the library itself: what the writer cannot make.
+// Made by the library itself, since the writer cannot.
 template <class Make>
 fs::path make_file(const TemporaryFolder& folder, const Make& make) {
   fs::path path = folder / "other.h5";
@@ -59,7 +59,7 @@ TEST_CASE("A link to another HDF5 file is not followed", "[io]") {
   CHECK_THROWS_AS(reader.read_attribute("/root", "key"), InputError);
   CHECK_THROWS_AS(reader.list("/group"), InputError);
   CHECK_THROWS_AS(reader.list_attributes("/root"), InputError);
-  // The same through the library as it comes.
+  // The library follows it by default.
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   CHECK(H5Aexists_by_name(file, "/root", "key", H5P_DEFAULT) > 0);
   H5Fclose(file);

@@ -29,7 +29,7 @@ void write_example(const std::filesystem::path& path) {
   file.commit();
 }
 
-TEST_CASE("What is written to HDF5 reads back bit for bit", "[io][property]") {
+TEST_CASE("HDF5 datasets read back bit for bit", "[io][property]") {
   const TemporaryFolder folder;
   write_example(folder / "run.h5");
   const Hdf5Reader file(folder / "run.h5");
@@ -84,7 +84,7 @@ TEST_CASE("Integers, texts and numbers of attributes read back", "[io][property]
   CHECK_THROWS_WITH(file.read_number_attribute("/", "third"), Contains("no such attribute"));
 }
 
-TEST_CASE("A file in memory is that on disk, behind its seal or without", "[io][property]") {
+TEST_CASE("A file in memory equals that on disk, with and without a seal", "[io][property]") {
   const TemporaryFolder folder;
   const bool sealed = GENERATE(false, true);
   const auto fill = [](Hdf5Writer& writer) {
@@ -120,7 +120,7 @@ TEST_CASE("A file that is not committed never appears", "[io]") {
   CHECK(folder.file_count() == 0);
 }
 
-TEST_CASE("A dataset that does not fit its columns is refused", "[io]") {
+TEST_CASE("A dataset that does not match its columns is refused", "[io]") {
   const TemporaryFolder folder;
   Hdf5Writer file(folder / "run.h5");
   CHECK_THROWS_AS(file.write("/a", kValues, 4, {}), std::logic_error);
@@ -154,8 +154,8 @@ TEST_CASE("A file that is missing, foreign or damaged is an input error", "[io]"
   CHECK_THROWS_WITH(Hdf5Reader(folder / "run.h5"), Contains("run.h5: damaged"));
 }
 
-// Without a seal a reader has only the format's own checksums. Chunks that are not compressed have
-// none: their numbers may change, but nothing else, and no damage may end the program.
+// Without a seal a reader has only the checksums of the format. Chunks that are not compressed have
+// none: their numbers may change, but nothing else, and no damage may crash the program.
 TEST_CASE("A flipped bit anywhere is an error or a number, never a crash", "[io][property]") {
   const TemporaryFolder folder;
   write_example(folder / "run.h5");
@@ -183,7 +183,7 @@ TEST_CASE("A flipped bit anywhere is an error or a number, never a crash", "[io]
   CHECK(silent > 0);
 }
 
-// As h5py writes them; the library crashes on damaged ones.
+// h5py writes such attributes; the library crashes on damaged ones.
 TEST_CASE("An attribute of variable length is refused", "[io]") {
   const TemporaryFolder folder;
   const std::string path = folder / "run.h5";
@@ -202,7 +202,7 @@ TEST_CASE("An attribute of variable length is refused", "[io]") {
   CHECK_THROWS_WITH(reader.read_attribute("/", "note"), Contains("texts of fixed length"));
 }
 
-TEST_CASE("A target that cannot hold HDF5 is the environment's failure", "[io]") {
+TEST_CASE("A target that cannot hold HDF5 is an environment error", "[io]") {
   const TemporaryFolder folder;
   CHECK_THROWS_AS(Hdf5Writer(folder / "no_folder/run.h5"), EnvironmentError);
   CHECK_THROWS_AS(Hdf5Writer("/dev/null"), EnvironmentError);

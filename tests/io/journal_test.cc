@@ -39,7 +39,7 @@ bool is_same(const JournalEntry& a, const JournalEntry& b) {
          a.time == b.time && a.runner == b.runner && a.duplicate == b.duplicate;
 }
 
-/// The numbers of the entries, every one of which must be as it was written.
+/// Returns the numbers of the entries, each of which must equal the one written.
 std::multiset<int> read_numbers(const fs::path& journal) {
   std::multiset<int> numbers;
   for (const JournalEntry& entry : read_journal(journal).entries) {
@@ -59,7 +59,7 @@ std::vector<std::string> write_lines(const fs::path& journal, int count) {
   return lines;
 }
 
-TEST_CASE("A journal gives back what was appended, whatever the texts hold", "[io]") {
+TEST_CASE("Journal entries read back, whatever their texts contain", "[io]") {
   const TemporaryFolder folder;
   const fs::path journal = folder / "journal";
   CHECK(read_journal(journal).entries.empty());
@@ -88,7 +88,7 @@ TEST_CASE("A journal line ends with the first digits of its SHA-256", "[io]") {
   CHECK(line.substr(at + 7) == to_hex(calc_sha256(line.substr(0, at))).substr(0, 16) + "\n");
 }
 
-TEST_CASE("A journal cut at any byte keeps the lines before and takes new ones", "[io]") {
+TEST_CASE("A journal truncated at any byte keeps the lines before and takes new ones", "[io]") {
   const TemporaryFolder folder;
   const auto lines = write_lines(folder / "whole", 3);
   const std::string text = lines[0] + lines[1] + lines[2];
@@ -97,7 +97,7 @@ TEST_CASE("A journal cut at any byte keeps the lines before and takes new ones",
     std::multiset<int> expected;
     for (std::size_t line = 0, end = 0; line < lines.size(); ++line) {
       end += lines[line].size();
-      // Without its end a line is as good.
+      // A line is valid without its line end.
       if (size + 1 >= end) expected.insert(static_cast<int>(line));
     }
     INFO(size);
@@ -110,7 +110,7 @@ TEST_CASE("A journal cut at any byte keeps the lines before and takes new ones",
   }
 }
 
-TEST_CASE("A flipped byte anywhere in a journal costs one line at most", "[io]") {
+TEST_CASE("A flipped byte anywhere in a journal costs at most one line", "[io]") {
   const TemporaryFolder folder;
   const auto lines = write_lines(folder / "whole", 3);
   const std::string text = lines[0] + lines[1] + lines[2];
@@ -140,7 +140,7 @@ TEST_CASE("Journal lines may come twice and in any order", "[io]") {
   CHECK(read_journal(journal).bad_lines == 0);
 }
 
-TEST_CASE("Foreign bytes in a journal hurt nothing", "[io]") {
+TEST_CASE("Foreign bytes in a journal are ignored", "[io]") {
   const TemporaryFolder folder;
   const auto lines = write_lines(folder / "whole", 2);
   std::mt19937 random(1);
@@ -151,7 +151,7 @@ TEST_CASE("Foreign bytes in a journal hurt nothing", "[io]") {
   CHECK(read_numbers(journal).count(1) == 1);
 }
 
-TEST_CASE("Processes that append to a journal at once lose no line", "[io][threads]") {
+TEST_CASE("Processes that append to a journal concurrently lose no line", "[io][threads]") {
   const TemporaryFolder folder;
   const fs::path journal = folder / "journal";
   constexpr int kEach = 200;
@@ -173,7 +173,7 @@ TEST_CASE("Processes that append to a journal at once lose no line", "[io][threa
   CHECK(read_journal(journal).bad_lines == 0);
 }
 
-TEST_CASE("A crash at any operation costs the journal its unfinished line only", "[io]") {
+TEST_CASE("A crash at any operation costs the journal only its unfinished line", "[io]") {
   const TemporaryFolder folder;
   fs::create_directories(folder / "root");
   const fs::path journal = folder / "root/journal", log = folder / "log";
@@ -202,7 +202,7 @@ TEST_CASE("A crash at any operation costs the journal its unfinished line only",
   CHECK(test::for_each_crash_state({}, operations, {}, check) >= 30);
 }
 
-TEST_CASE("Any failing call on a journal is an error that costs no other line", "[io]") {
+TEST_CASE("Every failing call on a journal is an error that costs no other line", "[io]") {
   const std::vector<std::pair<std::string, std::string>> faults = {
       {"open", "24:once"}, {"write", "28:once"}, {"write", "28:short"},
       {"write", "4:once"}, {"fsync", "5:once"},  {"read", "5:once"}};

@@ -23,7 +23,7 @@ TEST_CASE("Measured columns come from CSV with their lines", "[io]") {
   CHECK(m.find("d") == nullptr);
   CHECK(m.row_count() == 2);
   CHECK(m.locate(1) == file.string() + ":5");
-  CHECK_NOTHROW(require_units(m, {{"a", "m", ""}, {"b", "kg", ""}}));  // b names none
+  CHECK_NOTHROW(require_units(m, {{"a", "m", ""}, {"b", "kg", ""}}));  // b has none
   CHECK_THROWS_WITH(require_units(m, {{"a", "mm", ""}}),
                     Contains("m.csv: a is in m; must be in mm"));
   CHECK_THROWS_WITH(read_measurement(file, {{"bb"}}),
@@ -63,7 +63,7 @@ TEST_CASE("Measured columns come from HDF5 in each of its layouts", "[io]") {
   CHECK(m.locate(1) == (folder / "m.h5").string() + ": row 1");
 }
 
-TEST_CASE("Of an HDF5 file the part that is asked for is read", "[io]") {
+TEST_CASE("The requested part of an HDF5 file is read", "[io]") {
   const TemporaryFolder folder;
   write_columns(folder / "h.h5", "/history", {1.0, 2.0, 3.0}, {4.0, 5.0, 6.0});
   const MeasurementRequest history = {{"a"}, {}, MeasuredPart::kHistory};
@@ -77,7 +77,8 @@ TEST_CASE("Of an HDF5 file the part that is asked for is read", "[io]") {
                     Contains("/history/a: histories of 2 cases"));
 }
 
-TEST_CASE("Measured columns of other lengths, not finite or missing are named", "[io]") {
+TEST_CASE("Errors name measured columns that differ in length, are not finite or are missing",
+          "[io]") {
   const TemporaryFolder folder;
   const MeasurementRequest both = {{"a", "b"}};
   write_columns(folder / "l.h5", "", {1.0, 2.0}, {1.0});

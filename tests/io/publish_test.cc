@@ -1,4 +1,4 @@
-// A published file is whole or absent, whatever fails or dies.
+// A published file is whole or absent, whichever call fails or process is killed.
 #include "io/file/publish.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ Published publish_text(const SweepLike& sweep, const std::string& text) {
   return publish_at(sweep.target, text, sweep.temporary, "host.1.abc");
 }
 
-TEST_CASE("A published file holds the bytes and leaves nothing else", "[io]") {
+TEST_CASE("A published file holds the bytes, and no other file remains", "[io]") {
   const SweepLike sweep;
   for (const std::size_t size : {0, 1, 100000, (1 << 20) - 1, 1 << 20, (1 << 20) + 1, 3000000}) {
     const std::string text = make_worker_text(size);
@@ -75,7 +75,7 @@ TEST_CASE("A published file is never replaced", "[io]") {
   CHECK_FALSE(sweep.has_leftover());
 }
 
-TEST_CASE("Of many that publish at once one is first", "[io][threads]") {
+TEST_CASE("One of many concurrent publishers is first", "[io][threads]") {
   const SweepLike sweep;
   for (int round = 0; round < 20; ++round) {
     std::array<Published, 4> answers{};
@@ -112,17 +112,17 @@ TEST_CASE("A crash at any operation leaves a published file whole or absent", "[
   CHECK(states >= 10);
   CHECK(whole >= 2);
   CHECK(absent >= 7);
-  // The recording is the truth: its last state is the folder.
+  // The last state of the recording must equal the folder.
   FolderState last;
   for (const test::Operation& operation : operations) last.apply(operation);
   CHECK(last.names().size() == 1);
   CHECK((read_text(sweep.target) == text));
-  // The folder is flushed after it got the name.
+  // The folder is flushed after the file got its name.
   CHECK(operations.back().call == test::FileCall::kSyncFolder);
   CHECK(operations.back().path == "shards");
 }
 
-// Makes the N-th call of a kind fail, N = 1, 2, ..., until none is left to fail.
+// Makes the N-th call of a kind fail, N = 1, 2, ..., until there is no N-th call.
 int check_all_faults(const std::string& kind, int error_number, const std::string& mode) {
   for (int n = 1;; ++n) {
     INFO(kind << " " << n << " " << mode);
@@ -146,7 +146,7 @@ int check_all_faults(const std::string& kind, int error_number, const std::strin
   }
 }
 
-TEST_CASE("Any failing call leaves no wrong published file and nothing behind", "[io]") {
+TEST_CASE("No failing call leaves a wrong published file or a temporary one", "[io]") {
   for (const std::string mode : {"once", "forever"}) {
     CHECK(check_all_faults("open", EMFILE, mode) == 4);  // both folders, the file, its folder again
     CHECK(check_all_faults("write", ENOSPC, mode) == 1);
@@ -162,7 +162,7 @@ TEST_CASE("Any failing call leaves no wrong published file and nothing behind", 
   CHECK(check_all_faults("read", 0, "flip") == 2);
 }
 
-TEST_CASE("Publishing works without links, and still replaces nothing", "[io]") {
+TEST_CASE("Publishing without links replaces no file either", "[io]") {
   const SweepLike sweep;
   const std::string variables =
       test::preload_faults(sweep.root, "STRUT_FAULT=link:1:1:forever STRUT_FAULT_FIRED=" +
@@ -177,7 +177,7 @@ TEST_CASE("Publishing works without links, and still replaces nothing", "[io]") 
   CHECK(fs::exists(sweep.folder / "fired"));
 }
 
-TEST_CASE("A disk that gives back other bytes is an error that publishes nothing", "[io]") {
+TEST_CASE("A disk that returns other bytes is an error, and nothing is published", "[io]") {
   const SweepLike sweep;
   const auto outcome = test::run_worker(
       test::preload_faults(sweep.root, "STRUT_FAULT=read:1:0:flip STRUT_FAULT_FIRED=" +
@@ -189,11 +189,11 @@ TEST_CASE("A disk that gives back other bytes is an error that publishes nothing
   CHECK_FALSE(sweep.has_leftover());
 }
 
-TEST_CASE("A limit of file size is an error, not the end of the process", "[io]") {
+TEST_CASE("A limit on file size is an error and does not end the process", "[io]") {
   const SweepLike sweep;
   {
     const test::LimitedFileSize limit(50000);
-    // As a program has it that never thought of it: the signal's default action is death.
+    // The default action of the signal ends the process.
     std::signal(SIGXFSZ, SIG_DFL);
     CHECK_THROWS_WITH(publish_text(sweep, std::string(kSize, 'x')),
                       Contains(sweep.target.string()) && Contains("File too large"));
@@ -206,7 +206,7 @@ TEST_CASE("A limit of file size is an error, not the end of the process", "[io]"
   CHECK_FALSE(sweep.has_leftover());
 }
 
-TEST_CASE("A folder removed since it was opened is an error that names the target", "[io]") {
+TEST_CASE("The error for a folder removed after it was opened names the target", "[io]") {
   const SweepLike sweep;
   const Folder shards(sweep.root / "shards"), temporary(sweep.temporary);
   fs::remove(sweep.root / "shards");
@@ -215,7 +215,7 @@ TEST_CASE("A folder removed since it was opened is an error that names the targe
   CHECK_FALSE(sweep.has_leftover());
 }
 
-TEST_CASE("A full disk is an error, what is published stays, and more fits once there is room",
+TEST_CASE("A full disk is an error; published files stay, and more fit once there is space",
           "[io]") {
   const SweepLike sweep;
   const test::SmallDisk disk(sweep.root, 1);
@@ -244,7 +244,7 @@ TEST_CASE("A full disk is an error, what is published stays, and more fits once 
   CHECK((read_text(name(3)) == text));
 }
 
-TEST_CASE("Any failing call leaves a replaced file old or new", "[io]") {
+TEST_CASE("Every failing call leaves a replaced file old or new", "[io]") {
   for (const std::string kind : {"open", "write", "fsync", "rename"}) {
     for (int n = 1;; ++n) {
       INFO(kind << " " << n);

@@ -20,7 +20,8 @@ TEST_CASE("SHA-256 gives the published hashes", "[unit][reference]") {
         "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST_CASE("SHA-256 of pieces is that of the whole, and starts anew", "[unit][property]") {
+TEST_CASE("SHA-256 of pieces equals that of the whole, and finish() starts a new hash",
+          "[unit][property]") {
   const std::string text(1000, 'q');
   Sha256 hash;
   for (const std::size_t first : {0U, 1U, 63U, 64U, 65U, 1000U}) {
@@ -53,9 +54,9 @@ TEST_CASE("A digest depends on the rows, not on their order or grouping", "[unit
   }
 }
 
-// Independent truth: the same sum in plain Python integers,
+// Independent reference: the same sum in Python integers,
 //   h = hashlib.sha256; w = lambda b: [int.from_bytes(b[i:i+8], "little") for i in (0, 8, 16, 24)]
-TEST_CASE("A digest's state is count and sum", "[unit][reference]") {
+TEST_CASE("The state of a digest is count and sum", "[unit][reference]") {
   CHECK(DataDigest().state() == "0:0:0:0:0");
   CHECK(digest_of({1, 2}).state() ==
         "2:276f7822d72cdbcf:db1e51a6d0f313e6:bebcf162583df3ca:19b563fb32c7f641");
@@ -63,7 +64,7 @@ TEST_CASE("A digest's state is count and sum", "[unit][reference]") {
         "c30796ff381d52c2a0706f656966dab770d2e6a5ab4b0e6aed90d62eaeae74b0");
 }
 
-TEST_CASE("A digest's state reads back, and nothing else does", "[unit]") {
+TEST_CASE("Only the state of a digest reads back", "[unit]") {
   const DataDigest digest = digest_of({1, 2, 3});
   CHECK(DataDigest::parse(digest.state()) == digest);
   const std::string state = digest.state();

@@ -105,7 +105,7 @@ TEST_CASE("A shard of many chunks reads back bit for bit", "[io][property]") {
   CHECK(same_bits(pieces, rows.history[0]));
 }
 
-TEST_CASE("Equal shards are equal bytes", "[io][property]") {
+TEST_CASE("Equal shards have equal bytes", "[io][property]") {
   CHECK(make_example_image(20) == make_example_image(20));
 }
 
@@ -146,15 +146,15 @@ TEST_CASE("Every truncation of a shard is found by its seal", "[io][property]") 
   CHECK_THROWS_WITH(check_shard_bytes(folder / "no.h5"), Contains("no.h5: file not found"));
 }
 
-TEST_CASE("What is no shard is not read, however large", "[io]") {
+TEST_CASE("A file that is not a shard is not read, however large", "[io]") {
   const TemporaryFolder folder;
   const fs::path path = folder.write("shard.h5", "no shard");
-  fs::resize_file(path, std::uintmax_t{1} << 42);  // sparse; more than any memory
+  fs::resize_file(path, std::uintmax_t{1} << 42);  // sparse; larger than any memory
   CHECK_THROWS_WITH(check_shard_bytes(path), Contains("shard.h5: damaged, or not a shard"));
   CHECK_THROWS_WITH(read_shard(path), Contains("shard.h5: damaged, or not a shard"));
 }
 
-TEST_CASE("The bytes behind the user block have the seal's SHA-256", "[io][reference]") {
+TEST_CASE("The bytes after the user block have the SHA-256 of the seal", "[io][reference]") {
   const TemporaryFolder folder;
   const fs::path path = write_image(folder, make_example_image(4));
   const std::string text = test::read_text(path);
@@ -198,7 +198,7 @@ TEST_CASE("A row's hash changes with every number and with no other row", "[unit
   check_array([](auto& r) -> auto& { return r.history[1]; });
 }
 
-TEST_CASE("Every NaN is the same to a row's hash, zeros of both signs are not", "[unit]") {
+TEST_CASE("All NaNs give the same row hash, zeros of both signs do not", "[unit]") {
   const ShardSchema schema = make_example_schema();
   ShardRows rows = make_example_rows(schema, 1);
   rows.snapshot[0] = std::numeric_limits<double>::quiet_NaN();
@@ -240,7 +240,7 @@ TEST_CASE("Rows copied one by one are the same rows", "[unit][property]") {
   CHECK(calc_rows_digest(copy) == calc_rows_digest(rows));
 }
 
-TEST_CASE("Rows that are not of the schema are refused", "[unit]") {
+TEST_CASE("Rows that do not match the schema are refused", "[unit]") {
   const ShardSchema schema = make_example_schema();
   ShardRows rows = make_example_rows(schema, 5);
   rows.snapshot.pop_back();
@@ -250,7 +250,7 @@ TEST_CASE("Rows that are not of the schema are refused", "[unit]") {
   CHECK_THROWS_AS(compress_shard(schema, rows), std::logic_error);
 }
 
-/// A sealed file with all that a shard has, but for what `change` does.
+/// Writes `shard` to a sealed file with another schema version.
 fs::path write_changed(const TemporaryFolder& folder, const CompressedShard& shard,
                        int schema_version) {
   Hdf5Writer file(Hdf5InMemory{"changed"}, {.seal = make_shard_label("p", 7)});
@@ -264,7 +264,8 @@ fs::path write_changed(const TemporaryFolder& folder, const CompressedShard& sha
   return write_image(folder, file.image());
 }
 
-TEST_CASE("A shard of another schema version or shape is refused by name", "[io]") {
+TEST_CASE("A shard with another schema version or shape is refused with a message that names it",
+          "[io]") {
   const TemporaryFolder folder;
   ShardSchema schema = make_example_schema();
   schema.history.clear();

@@ -29,7 +29,7 @@ length = 0.1
 length = 0.2
 )";
 
-TEST_CASE("What the file says is what is read", "[io]") {
+TEST_CASE("Values read as written", "[io]") {
   const TemporaryFolder folder;
   const Document document(folder.write("car.toml", kCar));
   const Table car = document.root().table("car");
@@ -47,7 +47,7 @@ TEST_CASE("What the file says is what is read", "[io]") {
   CHECK_NOTHROW(document.check_all_read());
 }
 
-TEST_CASE("A fallback stands in only for a key that is absent", "[io]") {
+TEST_CASE("A fallback applies only to a missing key", "[io]") {
   const TemporaryFolder folder;
   const Document document(folder.write("a.toml", "speed = 3\nside = 'left'\n"));
   const Table root = document.root();
@@ -75,7 +75,7 @@ TEST_CASE("Every unread key is an error that names the nearest known one", "[io]
           Contains("car.toml:14: unknown key 'motor'"));
 }
 
-TEST_CASE("A key inside a table nobody opened is not read by opening its neighbor", "[io]") {
+TEST_CASE("A key in an unread table is unknown even if its neighbor is read", "[io]") {
   const TemporaryFolder folder;
   const Document document(folder.write("a.toml", "[a]\nx = 1\n[b]\nx = 1\n"));
   document.root().table("a").number("x");
@@ -131,7 +131,7 @@ TEST_CASE("A vector has three numbers", "[io]") {
   }
 }
 
-TEST_CASE("A file name starts at the folder of the file that names it", "[io]") {
+TEST_CASE("A relative file name starts at the folder of the file that contains it", "[io]") {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "cars");
   folder.write("tire.tir", "");
@@ -141,7 +141,7 @@ TEST_CASE("A file name starts at the folder of the file that names it", "[io]") 
                     Contains("a.toml:2: road = \"no.csv\"") && Contains("file not found"));
 }
 
-TEST_CASE("A file that is missing or not TOML says so", "[io]") {
+TEST_CASE("A missing file and one that is not TOML are refused with the reason", "[io]") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(Document(folder / "no.toml"), EndsWith("no.toml: file not found"));
   CHECK_THROWS_AS(Document(folder / ""), InputError);
@@ -150,7 +150,7 @@ TEST_CASE("A file that is missing or not TOML says so", "[io]") {
   CHECK_NOTHROW(Document(folder.write("empty.toml", "")));
 }
 
-TEST_CASE("An edit distance counts single slips", "[unit]") {
+TEST_CASE("An edit distance counts single typing errors", "[unit]") {
   CHECK(edit_distance("mass", "mass") == 0);
   CHECK(edit_distance("mass", "mas") == 1);
   CHECK(edit_distance("mass", "mess") == 1);
@@ -159,14 +159,14 @@ TEST_CASE("An edit distance counts single slips", "[unit]") {
   CHECK(edit_distance("stiffness", "damping") == edit_distance("damping", "stiffness"));
 }
 
-TEST_CASE("Only a name that is near is suggested", "[unit]") {
+TEST_CASE("Only a near name is suggested", "[unit]") {
   const std::vector<std::string> known = {"front_stiffness", "front_damping", "mass"};
   CHECK(nearest_name("front_stifness", known) == "front_stiffness");
   CHECK(nearest_name("maas", known) == "mass");
   CHECK(nearest_name("quaternion", known).empty());
 }
 
-TEST_CASE("A number's text reads back as the same number", "[property]") {
+TEST_CASE("The text of a number reads back as the same number", "[property]") {
   for (const double value : {0.1, 1.0 / 3.0, -0.0, 1.7976931348623157e308, 1155.0}) {
     CHECK(std::stod(format_number(value)) == value);
   }

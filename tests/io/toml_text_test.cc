@@ -1,4 +1,4 @@
-// TOML files as lists of values, and with texts replaced in place.
+// Flattening TOML files, and replacing texts in them.
 #include "io/format/toml_text.h"
 
 #include <catch2/catch.hpp>
@@ -10,7 +10,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-TEST_CASE("A file is the values it means, not how they are written", "[unit][io]") {
+TEST_CASE("Flattening depends on the values, not on their notation", "[unit][io]") {
   const TemporaryFolder folder;
   const auto one = folder.write("a.toml",
                                 "# a comment\nmass = 1155.0\n[tire]\nfile = \"x.tir\"\n"
@@ -27,7 +27,7 @@ TEST_CASE("A file is the values it means, not how they are written", "[unit][io]
   CHECK(flatten_toml(two) == flatten_toml(one));
 }
 
-TEST_CASE("A replaced text leaves every other byte as it is", "[unit][io]") {
+TEST_CASE("Replacing a text changes no other byte", "[unit][io]") {
   const TemporaryFolder folder;
   const auto file = folder.write(
       "a.toml",
@@ -42,7 +42,7 @@ TEST_CASE("A replaced text leaves every other byte as it is", "[unit][io]") {
   CHECK_THROWS_AS(replace_toml_texts(file, {{"tire", "b"}}), InputError);
 }
 
-TEST_CASE("A text is replaced behind a byte order mark, by any bytes", "[unit][io]") {
+TEST_CASE("Texts are replaced after a byte order mark, by any bytes", "[unit][io]") {
   const TemporaryFolder folder;
   const auto file = folder.write("a.toml", "\xef\xbb\xbfname = \"old\"\n");
   CHECK(replace_toml_texts(file, {{"name", "new"}}) == "\xef\xbb\xbfname = \"new\"\n");

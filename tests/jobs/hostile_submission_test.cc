@@ -1,5 +1,5 @@
-// What a folder's name or files say of jobs: words to a scheduler, never commands, and never a
-// reason to stop what is not this folder's.
+// Names and files of a folder reach a scheduler as words, never as commands, and never cause jobs
+// of another folder to be stopped.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -56,7 +56,8 @@ bool has_word(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-TEST_CASE("A folder of any name is submitted or refused, and nothing of its name runs", "[io]") {
+TEST_CASE("A folder with any name is submitted or refused, and no part of its name is executed",
+          "[io]") {
   const std::string names[] = {"it's",
                                "a\"b",
                                "\\",
@@ -84,7 +85,7 @@ TEST_CASE("A folder of any name is submitted or refused, and nothing of its name
   }
 }
 
-TEST_CASE("The words of sbatch are an array's, whatever its folder is called", "[unit]") {
+TEST_CASE("The words of sbatch do not depend on the name of the folder", "[unit]") {
   TaskArray tasks;
   tasks.name = "strut-1.array-0";
   tasks.tasks = 12;
@@ -106,7 +107,7 @@ TEST_CASE("The words of sbatch are an array's, whatever its folder is called", "
   CHECK(has_word(words, "--output=/\\\\/%j/strut-1.array-0.log"));
 }
 
-/// A process in a session of its own, with STRUT_JOB where `mark` is not empty.
+/// A process in a session of its own, with STRUT_JOB unless `mark` is empty.
 class Bystander {
  public:
   explicit Bystander(const std::string& mark) : pid_(::fork()) {
@@ -132,7 +133,7 @@ class Bystander {
     return !has_ended_;
   }
 
-  /// As a submission's file names it.
+  /// Returns its name in the file of a submission.
   JobRecord make_record(const std::string& mark) const {
     const ProcessIdentity own = find_own_identity();
     constexpr int kStart = 21;  // man 5 proc
@@ -151,10 +152,10 @@ class Bystander {
   }
 
   pid_t pid_;
-  bool has_ended_ = false;  // and its number may be another's
+  bool has_ended_ = false;  // its number may have been reused
 };
 
-TEST_CASE("cancel stops a process that bears the job's mark, and no other", "[io]") {
+TEST_CASE("cancel stops only processes that bear the mark of the job", "[io]") {
   const std::string mark(32, 'b');
   const LocalDispatcher dispatcher;
   for (const std::string& other : {std::string(), std::string(32, 'c')}) {
@@ -167,7 +168,7 @@ TEST_CASE("cancel stops a process that bears the job's mark, and no other", "[io
   }
   Bystander job(mark);
   const Bystander foreign("");
-  // None is stopped where one of them is not proved.
+  // If one of them is not proved, none is stopped.
   CHECK_THROWS_AS(dispatcher.cancel({job.make_record(mark), foreign.make_record(mark)}),
                   InputError);
   CHECK(job.lives());
@@ -178,7 +179,7 @@ TEST_CASE("cancel stops a process that bears the job's mark, and no other", "[io
   CHECK_FALSE(job.lives());
 }
 
-TEST_CASE("A copy of a folder whose sweep runs does not stop it", "[io]") {
+TEST_CASE("Cancelling a copy of a folder does not stop the original sweep", "[io]") {
   static const ProgramSweep slow(test::make_coarse_sweep(8, "", "1e-4"));
   const fs::path sweep = slow.copy("running"), copy = slow / "copied";
   REQUIRE(run_sweep_command("submit", sweep, "--to local --threads 1").code == 0);
@@ -192,7 +193,7 @@ TEST_CASE("A copy of a folder whose sweep runs does not stop it", "[io]") {
   CHECK(submitted.code == 3);
 }
 
-TEST_CASE("A submission that names more shards than the plan has is refused", "[io]") {
+TEST_CASE("A submission with more shards than the plan is refused", "[io]") {
   const fs::path sweep = get_sweep().copy("forged");
   REQUIRE(run_sweep_command("submit", sweep, "--to local --threads 1").code == 0);
   REQUIRE(wait_until_complete(sweep));
@@ -210,7 +211,7 @@ TEST_CASE("A submission that names more shards than the plan has is refused", "[
   }
 }
 
-TEST_CASE("Submitting writes through no link inside a sweep", "[io]") {
+TEST_CASE("Submitting never writes through a link inside a sweep", "[io]") {
   for (const char* place : {"jobs", "jobs/001/array-0", "logs"}) {
     CAPTURE(place);
     const fs::path sweep = get_sweep().copy("linked"), elsewhere = get_sweep() / "elsewhere";

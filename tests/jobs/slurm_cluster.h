@@ -1,5 +1,5 @@
-// A Slurm of the test's own: real daemons of one machine as several nodes, in a folder, with ports
-// and a key of their own. Nothing of the machine's is read or changed.
+// A Slurm cluster of the test: real daemons on one machine as several nodes, in a folder, with
+// their own ports and key. Nothing of the machine's own Slurm is read or changed.
 #pragma once
 
 #include <signal.h>
@@ -22,7 +22,7 @@
 
 namespace strut::test {
 
-/// Whether it came true in time; asked every so many milliseconds.
+/// Returns whether the condition came true in time; polls it.
 inline bool wait_until(const std::function<bool()>& happened, double seconds = 30.0,
                        int milliseconds = 50) {
   using Clock = std::chrono::steady_clock;
@@ -37,7 +37,7 @@ inline bool wait_until(const std::function<bool()>& happened, double seconds = 3
 
 class SlurmCluster {
  public:
-  /// Nodes n1, n2 ... of `processors` each. What runs in this process' shells meets this cluster.
+  /// Starts nodes n1, n2, ... with `processors` each. Shells of this process use this cluster.
   explicit SlurmCluster(int nodes, int processors = 1) : nodes_(nodes) {
     for (const char* name : {"state", "log", "munge", "socket"}) {
       std::filesystem::create_directory(path(name));
@@ -62,8 +62,8 @@ class SlurmCluster {
   ~SlurmCluster() { stop(); }
 
   void start_controller() { start("slurmctld"); }
-  /// Waits until the controller has written down what it knows of its jobs, which it does some
-  /// seconds after something happened to one: what it loses beyond that is Slurm's, not ours.
+  /// Waits until the controller has saved the state of its jobs, which it does some seconds after a
+  /// change: what it loses after that is not strut's fault.
   bool wait_until_saved() {
     const std::string file = path("state/job_state");
     const auto when = [&] {
@@ -74,13 +74,13 @@ class SlurmCluster {
     ask("scontrol update JobId=$(squeue -h -o %F | head -n 1) Requeue=1");
     return wait_until([&] { return when() != before; });
   }
-  /// As if its machine had lost power.
+  /// Kills it, as if its machine had lost power.
   void kill_controller() {
     run("kill -9 $(cat " + path("controller.pid") + ")");
     std::filesystem::remove(path("controller.pid"));
   }
 
-  /// How long the nodes were given to jobs, as their daemons tell [s].
+  /// Returns the time for which nodes were allocated to jobs, from their daemons' logs [s].
   double calc_node_time() const {
     double total = 0.0;
     for (int i = 1; i <= nodes_; ++i) {
@@ -103,7 +103,7 @@ class SlurmCluster {
     return total;
   }
 
-  /// What a command says, without the last line's end; "" where it fails.
+  /// Returns the output of a command without the last line end; "" if it fails.
   static std::string ask(const std::string& command) {
     const Outcome outcome = run_shell(command);
     if (outcome.code != 0) return "";
@@ -131,7 +131,7 @@ class SlurmCluster {
     ask("scancel --user=$(id -un)");
     wait_until([&] { return ask("squeue -h -t running,completing").empty(); }, 10.0);
     const std::vector<std::string> files = list_process_files();
-    // PID 1 of a container may reap nobody: daemons that ended are told by their files.
+    // PID 1 of a container may not reap processes: ended daemons are recognized by their files.
     for (const std::string& file : files) run("kill $(cat " + file + ") 2>/dev/null");
     wait_until([&] {
       return std::none_of(files.begin(), files.end(),
@@ -140,7 +140,7 @@ class SlurmCluster {
     ::unsetenv("SLURM_CONF");
   }
 
-  /// Daemons of a test that is killed must not stay.
+  /// Ends the daemons if the test is killed.
   void watch() {
     std::string command = "setsid sh -c 'while kill -0 " + std::to_string(::getpid()) +
                           " 2>/dev/null; do sleep 1; done; kill";
@@ -155,7 +155,7 @@ class SlurmCluster {
   }
 
   void write_configuration(int processors) {
-    // Daemons of tests that run at once must not meet; below the ports that the system gives out.
+    // Distinct for tests that run at once, and below the ports that the system assigns.
     const int port = 20000 + (static_cast<int>(::getpid()) % 1200) * 10;
     const std::string last = std::to_string(nodes_);
     const std::string names = nodes_ == 1 ? "n1" : "n[1-" + last + "]";
@@ -191,7 +191,7 @@ MaxArraySize=1001
             " NodeAddr=127.0.0.1 Port=" + ports + " CPUs=" + std::to_string(processors) +
             " RealMemory=1000 State=UNKNOWN\nPartitionName=test Nodes=" + names +
             " Default=YES MaxTime=INFINITE State=UP\n" +
-            // Another machine's, of which only the entry is needed.
+            // On another machine; only the entry is needed.
             "NodeName=far NodeAddr=127.0.0.1 Port=" + std::to_string(port + 9) +
             " State=DOWN\nPartitionName=far Nodes=far State=UP\n");
   }

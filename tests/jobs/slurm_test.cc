@@ -1,5 +1,5 @@
-// Sweeps on real Slurm daemons (slurm_cluster.h): whatever befalls the tasks, the data are those of
-// a run on this machine.
+// Sweeps on real Slurm daemons (slurm_cluster.h): despite all failures of tasks, the data equal
+// those of a run on this machine.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -24,7 +24,7 @@ using test::run_sweep_command;
 using test::SlurmCluster;
 using test::wait_until;
 
-/// Tasks of some seconds.
+/// A sweep with tasks of some seconds.
 const ProgramSweep& get_sweep() {
   static const ProgramSweep sweep(test::make_coarse_sweep(4, "", "2e-5"));
   return sweep;
@@ -43,9 +43,10 @@ bool has_ended(const fs::path& sweep) {
   return status.get_child("submissions").back().second.get<std::string>("state") == "ended";
 }
 
-/// Lets tasks that Slurm has put back begin soon, not in two minutes; not at once, as what is left
-/// of their former lives may still end. And what one host as two nodes brings about: a task put
-/// back from one of them is a "duplicate" for the other, which is drained, and the task is held.
+/// Lets requeued tasks start soon instead of in two minutes, but not at once, as processes of their
+/// previous attempts may still be ending. Also undoes an effect of one host that serves as two
+/// nodes: a task requeued from one is a "duplicate" for the other, which is drained, and the task
+/// is held.
 void hurry() {
   SlurmCluster::ask(
       "for job in $(squeue -h -r -t pending -o '%r|%F_%K' | sed -n 's/^BeginTime|//p'); do "
@@ -61,8 +62,8 @@ std::size_t count_shards(const fs::path& sweep) {
       std::distance(fs::directory_iterator(sweep / "shards"), fs::directory_iterator()));
 }
 
-/// Once all tasks have ended; `meanwhile` is done again and again. However slow the machine: only
-/// three minutes without a new shard are the end of patience.
+/// Waits until all tasks have ended, calling `meanwhile` repeatedly; gives up only after three
+/// minutes without a new shard, however slow the machine.
 bool wait_for_end(const fs::path& sweep, const std::function<void()>& meanwhile = {}) {
   bool ended = false;
   std::size_t shards = 0;
@@ -79,7 +80,7 @@ bool wait_for_end(const fs::path& sweep, const std::function<void()>& meanwhile 
   return true;
 }
 
-/// The number of a task of the last submission's first array that runs: "4711_2".
+/// Returns the number of a running task of the first array of the last submission: "4711_2".
 std::string find_running() {
   std::string task;
   REQUIRE(wait_until([&] {
@@ -89,7 +90,7 @@ std::string find_running() {
   return task;
 }
 
-/// That pgrep finds a task of the first array by, and not the shell that asks.
+/// Returns the pattern by which pgrep finds a task of the first array, but not the calling shell.
 std::string make_pattern(const fs::path& sweep, const std::string& task) {
   return "[r]un " + sweep.string() + " .*--task 001/0/" + task + "$";
 }
@@ -98,7 +99,7 @@ bool is_running(const std::string& task) {
   return !SlurmCluster::ask("squeue -h -r -t running,completing -j " + task).empty();
 }
 
-TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[cluster]") {
+TEST_CASE("A sweep on Slurm survives killed and requeued tasks", "[cluster]") {
   const SlurmCluster cluster(1, 2);
   const fs::path sweep = get_sweep().copy("killed");
   const Outcome outcome = submit(sweep, "--merge");
@@ -115,7 +116,8 @@ TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[clus
   const auto& last = first.get_child("submissions").back().second;
   CHECK(last.get<int>("ended.lost") == 1);
   CHECK(last.get<int>("restarts") == 1);
-  // What the killed task had not written is missing, and all that another submission queues.
+  // Only the shards that the killed task had not written are missing, and the next submission
+  // queues just those.
   CHECK_FALSE(first.get<bool>("complete"));
   REQUIRE(submit(sweep, "--merge").code == 0);
   REQUIRE(wait_for_end(sweep));
@@ -124,12 +126,12 @@ TEST_CASE("A sweep on Slurm outlives tasks that are killed and put back", "[clus
   CHECK(fs::exists(sweep / "merged.h5"));
 }
 
-TEST_CASE("A task warned of its time limit goes on in its next life", "[cluster]") {
+TEST_CASE("A task warned of its time limit continues in its next attempt", "[cluster]") {
   const SlurmCluster cluster(1);
   const fs::path sweep = get_sweep().copy("warned");
   REQUIRE(submit(sweep, "--tasks 1").code == 0);
   REQUIRE(wait_until([&] { return !fs::is_empty(sweep / "shards"); }));
-  // The signal that Slurm sends --signal's seconds before the limit.
+  // The signal that Slurm sends before the limit, by --signal.
   SlurmCluster::ask("scancel --signal=USR1 --batch " + find_running());
   REQUIRE(wait_for_end(sweep));
   INFO(test::read_text(sweep / "jobs/001/array-0/0")
@@ -146,8 +148,8 @@ TEST_CASE("Slurm warns a task of its time limit", "[cluster][slow]") {
   const SlurmCluster cluster(1);
   static const ProgramSweep slow(test::make_coarse_sweep(4, "", "5e-6"));
   const fs::path sweep = slow.copy("slow");
-  // A minute of time, of which the warning leaves ten seconds or, Slurm looking rarely, none; the
-  // second life may take what it needs.
+  // One minute, of which the warning leaves ten seconds or, since Slurm checks rarely, none; the
+  // second attempt may take as long as it needs.
   REQUIRE(submit(sweep, "--tasks 1 --option=--time=1 --option=--signal=B:USR1@50").code == 0);
   const auto read_submission = [&] {
     return read_status(sweep).get_child("submissions").back().second;
@@ -169,11 +171,11 @@ TEST_CASE("Slurm warns a task of its time limit", "[cluster][slow]") {
   slow.check_whole(sweep);
 }
 
-TEST_CASE("A task whose time is over is told from one that failed", "[cluster][slow]") {
+TEST_CASE("A timed-out task is distinguished from a failed one", "[cluster][slow]") {
   const SlurmCluster cluster(1);
   const fs::path sweep = get_sweep().copy("timeout");
-  // Slurm counts in minutes. This task hangs, as on a file system that does not answer: whatever
-  // wakes it, it is stopped again.
+  // Slurm counts in minutes. This task hangs, as on a file system that does not answer: it is
+  // stopped again whenever it continues.
   REQUIRE(submit(sweep, "--tasks 2 --option=--time=1 --option=--signal=B:URG@1").code == 0);
   REQUIRE(wait_until([&] { return fs::exists(sweep / "jobs/001/array-0/0"); }));
   const std::string stop = "pkill -STOP -f '" + make_pattern(sweep, "0") + "'";
@@ -188,7 +190,7 @@ TEST_CASE("A task whose time is over is told from one that failed", "[cluster][s
   get_sweep().check_whole(sweep);
 }
 
-TEST_CASE("A thousand million cases are queued as arrays, none of them listed", "[cluster]") {
+TEST_CASE("A billion cases are queued as arrays without being listed", "[cluster]") {
   const SlurmCluster cluster(1);
   std::string text = test::make_coarse_sweep(65536);
   const std::size_t grid = text.find("[grid]\n") + 7;
@@ -199,7 +201,7 @@ TEST_CASE("A thousand million cases are queued as arrays, none of them listed", 
   const fs::path request = get_sweep() / "large.toml", sweep = get_sweep() / "large";
   std::ofstream(request) << text;
   REQUIRE(test::run_program("plan " + request.string() + " -o " + sweep.string()).code == 0);
-  // The cases' numbers alone would take 8 GB.
+  // The numbers of the cases alone would take 8 GB.
   const Outcome outcome = test::run_shell("(ulimit -v 2000000; " STRUT_PROGRAM " submit " +
                                           sweep.string() + " --to slurm --json)");
   INFO(outcome.messages);
@@ -211,12 +213,12 @@ TEST_CASE("A thousand million cases are queued as arrays, none of them listed", 
   CHECK(run_sweep_command("cancel", sweep).code == 0);
 }
 
-TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]") {
+TEST_CASE("A sweep on two nodes survives the loss of its scheduler and of a node", "[cluster]") {
   SlurmCluster cluster(2);
   const fs::path sweep = get_sweep().copy("two");
   REQUIRE(submit(sweep).code == 0);
-  // However fast the machine: no task ends before its node does. Only those are stopped that have
-  // written down that they began.
+  // However fast the machine, no task ends before its node does. Only tasks that have recorded
+  // their start are stopped.
   const fs::path records = sweep / "jobs/001/array-0";
   const auto signal_tasks = [&](const std::string& signal) {
     if (!fs::exists(records)) return;
@@ -234,7 +236,7 @@ TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]")
   REQUIRE(cluster.wait_until_saved());
   signal_tasks("STOP");
   cluster.kill_controller();
-  // Nobody knows: that is neither the end nor a reason to queue anything anew.
+  // The state is unknown: that is neither the end nor a reason to queue tasks again.
   const auto silent = read_status(sweep).get_child("submissions").back().second;
   CHECK(silent.get<std::string>("state") == "unknown");
   const Outcome refused = submit(sweep);
@@ -245,7 +247,7 @@ TEST_CASE("A sweep on two nodes outlives its scheduler and a node", "[cluster]")
           0);
   signal_tasks("CONT");
   REQUIRE(wait_for_end(sweep));
-  // The scheduler put what ran there back by itself.
+  // The scheduler requeued the tasks of that node by itself.
   const auto ended = read_status(sweep);
   CHECK(ended.get_child("submissions").back().second.get<int>("restarts") >= 1);
   CHECK(ended.get<bool>("complete"));
@@ -271,7 +273,7 @@ TEST_CASE("Of the nodes' time, the scheduler costs the paper's grid less than 2 
   CHECK(given > simulated);
 }
 
-TEST_CASE("Slurm is asked before anything is queued", "[cluster]") {
+TEST_CASE("Submissions that Slurm would refuse fail before anything is queued", "[cluster]") {
   const SlurmCluster cluster(1);
   const fs::path sweep = get_sweep().copy("refused");
   const Outcome partition = submit(sweep, "--partition nowhere");
@@ -280,7 +282,7 @@ TEST_CASE("Slurm is asked before anything is queued", "[cluster]") {
   const Outcome constraint = submit(sweep, "--constraint gpu_of_tomorrow");
   CHECK(constraint.code == 3);
   CHECK_THAT(constraint.messages, Contains("feature"));
-  // A walltime shorter than a shard and the warning before it; a folder that nodes cannot see.
+  // A time limit shorter than a shard and the warning before it; a folder that nodes cannot see.
   const Outcome walltime = submit(sweep, "--time 1");
   CHECK(walltime.code == 2);
   CHECK_THAT(walltime.messages, Contains("--time 0-00:01:00") && Contains("one shard takes"));

@@ -28,7 +28,7 @@ test::JsonTree read_status(const fs::path& sweep) {
   return test::parse_json(run_sweep_command("status", sweep, "--json").out);
 }
 
-/// Until the last submission has ended.
+/// Waits until the last submission has ended.
 test::JsonTree wait_for_end(const fs::path& sweep) {
   const Clock::time_point end = Clock::now() + std::chrono::seconds(60);
   for (;;) {
@@ -39,7 +39,7 @@ test::JsonTree wait_for_end(const fs::path& sweep) {
   }
 }
 
-TEST_CASE("A sweep submitted here is the sweep that was run", "[io]") {
+TEST_CASE("A sweep submitted here equals the sweep that was run", "[io]") {
   const fs::path sweep = get_sweep().copy("submitted");
   const Outcome outcome =
       run_sweep_command("submit", sweep, "--to local --threads 1 --minutes 0.001 --merge --json");
@@ -60,7 +60,7 @@ TEST_CASE("A sweep submitted here is the sweep that was run", "[io]") {
   CHECK_THAT(again.out, Contains("nothing to submit"));
 }
 
-TEST_CASE("A submission is cancelled, and another does the rest", "[io]") {
+TEST_CASE("A submission is cancelled, and another completes the sweep", "[io]") {
   const fs::path sweep = get_sweep().copy("cancelled");
   REQUIRE(run_sweep_command("submit", sweep, "--to local --threads 1").code == 0);
   const Outcome second = run_sweep_command("submit", sweep, "--to local");
@@ -77,7 +77,7 @@ TEST_CASE("A submission is cancelled, and another does the rest", "[io]") {
   CHECK_FALSE(fs::exists(sweep / "merged.h5"));
 }
 
-TEST_CASE("What failed is tried once more behind the arrays", "[io]") {
+TEST_CASE("Failed cases are retried after the arrays", "[io]") {
   const test::TemporaryFolder folder;
   const std::string file = folder.write("failing.toml", test::make_failing_sweep()).string();
   const fs::path sweep = folder / "failing";
@@ -89,7 +89,7 @@ TEST_CASE("What failed is tried once more behind the arrays", "[io]") {
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.out, Contains("one task for") && Contains("retry: local"));
   wait_for_end(sweep);
-  // Cases that no smaller step mends, but they were looked at, behind no array, before the merge.
+  // No smaller step helps these cases, but they were tried, after no array and before the merge.
   std::string told;
   for (const fs::directory_entry& log : fs::directory_iterator(sweep / "logs")) {
     if (log.path().string().find(".retry.log") != std::string::npos) {
@@ -110,7 +110,7 @@ TEST_CASE("A dry run shows the scripts and queues nothing", "[io]") {
   CHECK_FALSE(fs::exists(sweep / "jobs"));
 }
 
-TEST_CASE("A sweep warned of its time limit finishes the shard in hand", "[io]") {
+TEST_CASE("A sweep warned of its time limit finishes the current shard", "[io]") {
   const fs::path sweep = get_sweep().copy("warned");
   const Outcome outcome = test::run_shell(
       "(" STRUT_PROGRAM " run " + sweep.string() +
@@ -120,14 +120,14 @@ TEST_CASE("A sweep warned of its time limit finishes the shard in hand", "[io]")
   CHECK_THAT(outcome.messages, Contains("time limit") && Contains("goes on from here"));
   const auto json = test::parse_json(outcome.out);
   CHECK(json.get<int>("written") < 48);
-  // What was begun was finished: nothing simulated is lost.
+  // The shard in progress was finished: no simulated case is lost.
   CHECK(json.get<int>("written") % 8 == 0);
   CHECK(fs::is_empty(sweep / "claims"));
   CHECK(run_sweep_command("run", sweep).code == 0);
   get_sweep().check_whole(sweep);
 }
 
-TEST_CASE("What cannot be submitted is told before anything is queued", "[io]") {
+TEST_CASE("An invalid submission is refused before anything is queued", "[io]") {
   const fs::path sweep = get_sweep().copy("refused");
   const auto submit = [&](const std::string& options, const std::string& variables = "") {
     return run_sweep_command("submit", sweep, options, variables);
@@ -145,7 +145,7 @@ TEST_CASE("What cannot be submitted is told before anything is queued", "[io]") 
   CHECK_THAT(run_sweep_command("cancel", sweep).out, Contains("nothing to cancel"));
 }
 
-TEST_CASE("The doctor says which promises hold", "[io]") {
+TEST_CASE("The doctor reports which promises hold", "[io]") {
   const fs::path sweep = get_sweep().copy("doctor");
   const Outcome outcome = run_sweep_command("doctor", sweep, "--to local --json");
   CHECK(outcome.code == 0);
@@ -159,7 +159,7 @@ TEST_CASE("The doctor says which promises hold", "[io]") {
                              "files", "clock of the file system", "scheduler"}) {
     CHECK(std::find(checks.begin(), checks.end(), wanted) != checks.end());
   }
-  // It leaves nothing behind.
+  // It leaves no files.
   for (const fs::directory_entry& entry : fs::directory_iterator(sweep)) {
     CHECK(entry.path().filename().string().rfind("doctor.", 0) != 0);
   }

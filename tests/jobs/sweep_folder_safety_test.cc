@@ -1,5 +1,6 @@
-// Sweep folders that came from elsewhere: links, pipes and foreign files in the place of what strut
-// writes. Nothing outside the folder changes, nothing waits for ever, and what is refused is named.
+// Sweep folders that came from elsewhere: links, pipes and foreign files in place of the files that
+// strut writes. Nothing outside the folder changes, nothing waits forever, and errors name the
+// file.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -28,7 +29,7 @@ const ProgramSweep& get_sweep() {
   return sweep;
 }
 
-/// Content of every file below a folder, by its path.
+/// Reads every file below a folder, by its path.
 std::map<std::string, std::string> read_all(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -37,7 +38,7 @@ std::map<std::string, std::string> read_all(const fs::path& folder) {
   return files;
 }
 
-/// Somebody's folder, with names that could be taken for ours.
+/// A foreign folder with names that could be mistaken for ours.
 fs::path make_victim(const std::string& name) {
   fs::path victim = get_sweep() / name;
   fs::remove_all(victim);
@@ -77,7 +78,7 @@ TEST_CASE("No command writes or deletes through a link that takes a subfolder's 
   }
 }
 
-TEST_CASE("Damaged files are moved aside within the folder alone", "[io]") {
+TEST_CASE("Damaged files are moved aside only within the folder", "[io]") {
   const fs::path victim = make_victim("victim");
   const auto before = read_all(victim);
   const fs::path sweep = get_sweep().copy("damaged");
@@ -101,10 +102,10 @@ TEST_CASE("A journal that is a link is neither appended to nor replaced", "[io]"
   CHECK(outcome.code == 2);
   CHECK_THAT(outcome.messages, Contains("journal: a symbolic link"));
   CHECK(read_text(theirs) == "alias ll='ls -l'\n");
-  CHECK(fs::is_empty(sweep / "shards"));  // told before anything was simulated
+  CHECK(fs::is_empty(sweep / "shards"));  // refused before any simulation
 }
 
-TEST_CASE("A run deletes nothing that strut did not name", "[io]") {
+TEST_CASE("A run deletes only files with names of strut", "[io]") {
   const fs::path sweep = get_sweep().copy("foreign");
   const std::set<std::string> foreign = {"tmp/thesis.tex", "tmp/notes.1", "tmp/host.1.abc.0",
                                          "claims/readme",  "plan.h5.bak", "plan.h5.aaaaaa",
@@ -117,10 +118,10 @@ TEST_CASE("A run deletes nothing that strut did not name", "[io]") {
   }
 }
 
-TEST_CASE("What killed processes leave in a sweep folder is collected by the next run", "[io]") {
+TEST_CASE("The next run removes the files of killed processes from a sweep folder", "[io]") {
   const fs::path sweep = get_sweep().copy("killed");
   const ProcessIdentity own = find_own_identity();
-  // No process has this number: the kernel gives out numbers below 2^22.
+  // No process has this number: the kernel assigns numbers below 2^22.
   const std::string dead = own.host + ".4194305.0123456789abcdef";
   const std::string identity = "host " + own.host + "\nboot " + own.boot + "\nnamespace " +
                                own.name_space +
@@ -134,7 +135,7 @@ TEST_CASE("What killed processes leave in a sweep folder is collected by the nex
   std::ofstream(sweep / names[3]) << dead << "\n";  // while it took a claim over
   std::ofstream(sweep / names[4]) << "half a shard";
   {
-    // As an earlier process with this one's number would have named it.
+    // The name that an earlier process with this number would have given.
     const AtomicFile file(Folder(sweep), "plan.h5");
     std::string name = file.temporary().filename().string();
     const std::string start = "-" + own.start + "-";
@@ -150,10 +151,11 @@ TEST_CASE("What killed processes leave in a sweep folder is collected by the nex
   get_sweep().check_whole(sweep);
 }
 
-TEST_CASE("Pipes, devices and dangling links in a sweep folder end in a message", "[io]") {
+TEST_CASE("Pipes, devices and dangling links in a sweep folder are refused with a message",
+          "[io]") {
   struct Place {
     std::string file;
-    std::vector<std::string> commands;  // that meet it
+    std::vector<std::string> commands;  // that read or write it
   };
   const std::vector<Place> places = {
       {"journal", {"run", "status", "verify"}},
@@ -181,7 +183,7 @@ TEST_CASE("Pipes, devices and dangling links in a sweep folder end in a message"
                            (space == std::string::npos ? "" : command.substr(space)));
         const bool is_shard = place.file.starts_with("shards/");
         const bool is_report = command.starts_with("status") || command.starts_with("verify");
-        // A link to no journal is a missing journal to whoever only reads it.
+        // For readers, a dangling link is a missing journal.
         const bool is_missing = place.file == "journal" && kind == "dangling link" && is_report;
         if (is_missing) {
           CHECK(outcome.code <= 1);
@@ -195,7 +197,9 @@ TEST_CASE("Pipes, devices and dangling links in a sweep folder end in a message"
   }
 }
 
-TEST_CASE("Of two different plans into one folder at once one wins and the other is told", "[io]") {
+TEST_CASE(
+    "If two different plans are written to one folder at once, one wins and the other is refused",
+    "[io]") {
   const fs::path a = get_sweep() / "a.toml", b = get_sweep() / "b.toml";
   std::ofstream(a) << test::make_coarse_sweep(12);
   std::ofstream(b) << test::make_coarse_sweep(16);
@@ -211,14 +215,14 @@ TEST_CASE("Of two different plans into one folder at once one wins and the other
     const bool a_won = outcome.out.find("a 0") != std::string::npos;
     const bool b_won = outcome.out.find("b 0") != std::string::npos;
     CHECK(a_won != b_won);
-    // The folder is the winner's: planning it again changes nothing, the other is refused.
+    // The folder belongs to the winner: planning it again changes nothing, the other is refused.
     CHECK(run_shell(plan(a)).code == (a_won ? 0 : 2));
     CHECK(run_shell(plan(b)).code == (b_won ? 0 : 2));
     CHECK(run_sweep_command("status", folder).code == 0);
   }
 }
 
-TEST_CASE("The doctor tells of links in a sweep folder", "[io]") {
+TEST_CASE("The doctor reports links in a sweep folder", "[io]") {
   const fs::path sweep = get_sweep().copy("examined");
   CHECK_THAT(run_sweep_command("doctor", sweep, "--to local").out, Contains("links inside: none"));
   fs::remove(sweep / "tmp");
