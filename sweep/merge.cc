@@ -28,7 +28,7 @@ struct FileSize {
 
 FileSize read_size(const fs::path& path) {
   const Hdf5Reader file(path, read_sealed(path, kShardSeal).bytes);
-  return {file.read_shape("/case_id").front(), file.read_text_length(kReasonName)};
+  return {file.read_shape(kCaseIdName).front(), file.read_text_length(kReasonName)};
 }
 
 Places find_places(const SweepFolder& folder) {

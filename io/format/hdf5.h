@@ -111,8 +111,8 @@ struct Hdf5Sink {
 };
 
 /// Writes one file, which appears under its name at `commit` or not at all. It is built in memory,
-/// since on a full disk the library loses chunks and reports success.
-/// Failures are EnvironmentError.
+/// since on a full disk the library loses chunks and reports success. Failures are
+/// EnvironmentError.
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(const std::filesystem::path& path, const Hdf5WriterOptions& options = {});
