@@ -215,7 +215,7 @@ TEST_CASE("The error for a folder removed after it was opened names the target",
   CHECK_FALSE(sweep.has_leftover());
 }
 
-TEST_CASE("A full disk is an error; published files stay, and more fit once there is space",
+TEST_CASE("A full disk is an error, published files stay, and more fit once there is space",
           "[io]") {
   const SweepLike sweep;
   const test::SmallDisk disk(sweep.root, 1);
