@@ -8,9 +8,10 @@ namespace strut {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns the text (RFC 8259) in printable ASCII, which no terminal interprets: other characters are
-/// escaped, bytes that are not UTF-8 are replaced by U+FFFD, and numbers that are not finite become
-/// null. Indents by two blanks per level; arrays and objects without nested ones take one line.
+/// Returns the text (RFC 8259) in printable ASCII, which no terminal interprets: other characters
+/// are escaped, bytes that are not UTF-8 are replaced by U+FFFD, and numbers that are not finite
+/// become null. Indents by two blanks per level; arrays and objects without nested ones take one
+/// line.
 std::string format_json(const Json& json);
 
 }  // namespace strut

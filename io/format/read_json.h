@@ -16,8 +16,8 @@ std::string explain(const Json::exception& e);
 /// nested more than 64 levels deep.
 Json parse_json(const std::string& text, const std::filesystem::path& path);
 
-/// Reads a regular file without following links. Throws InputError if it is missing, a link or larger
-/// than 4 MiB, or as parse_json does.
+/// Reads a regular file without following links. Throws InputError if it is missing, a link or
+/// larger than 4 MiB, or as parse_json does.
 Json read_json(const std::filesystem::path& path);
 
 }  // namespace strut
