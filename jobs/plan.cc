@@ -41,13 +41,13 @@ std::string describe_cases(const Plan& plan) {
 }
 
 void print_layers(const Plan& plan) {
-  std::cout << "layers    " << plan.layers().size() << " by " << plan.request().sample.by << "\n";
+  std::cout << "layers    " << plan.strata().size() << " by " << plan.request().sample.by << "\n";
   char line[160];
   std::snprintf(line, sizeof line, "%9s %14s %14s %16s %16s\n", "layer", "from", "to", "cases",
                 "drawn");
   std::cout << line;
   std::size_t number = 0;
-  for (const Layer& layer : plan.layers()) {
+  for (const Stratum& layer : plan.strata()) {
     std::snprintf(line, sizeof line, "%9zu %14.7g %14.7g %16lld %16lld\n", ++number, layer.lower,
                   layer.upper, static_cast<long long>(layer.population),
                   static_cast<long long>(layer.drawn));
@@ -69,7 +69,7 @@ void print_text(const Plan& plan, const SweepEstimate& estimate) {
 void print_json(const Plan& plan, const SweepEstimate& estimate,
                 const std::optional<SweepFolder>& folder) {
   Json layers = Json::array();
-  for (const Layer& layer : plan.layers()) {
+  for (const Stratum& layer : plan.strata()) {
     layers.push_back(Json{{"lower", layer.lower},
                           {"upper", layer.upper},
                           {"population", layer.population},

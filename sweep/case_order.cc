@@ -9,7 +9,7 @@
 namespace strut {
 namespace {
 
-/// All axes, slow ones first; empty where none is slow.
+/// All axes, slow ones first; empty if none is slow.
 std::vector<std::size_t> sort_axes(const SweepRequest& request) {
   std::vector<std::size_t> order = find_slow_axes(request);
   if (order.empty()) return order;
@@ -88,19 +88,19 @@ std::vector<std::int64_t> CaseOrder::list_drawn() const {
 }
 
 std::int64_t CaseOrder::calc_case_id(std::int64_t position) const {
-  const std::int64_t place = shuffle_ ? shuffle_->apply(position) : position;
-  return calc_id(members_ ? (*members_)[static_cast<std::size_t>(place)] : place);
+  const std::int64_t index = shuffle_ ? shuffle_->apply(position) : position;
+  return calc_id(members_ ? (*members_)[static_cast<std::size_t>(index)] : index);
 }
 
 std::int64_t CaseOrder::find_position(std::int64_t case_id) const {
   if (case_id < 0 || case_id >= points_) return -1;
-  std::int64_t place = calc_rank(case_id);
+  std::int64_t index = calc_rank(case_id);
   if (members_) {
-    const auto found = std::lower_bound(members_->begin(), members_->end(), place);
-    if (found == members_->end() || *found != place) return -1;
-    place = found - members_->begin();
+    const auto found = std::lower_bound(members_->begin(), members_->end(), index);
+    if (found == members_->end() || *found != index) return -1;
+    index = found - members_->begin();
   }
-  return shuffle_ ? shuffle_->invert(place) : place;
+  return shuffle_ ? shuffle_->invert(index) : index;
 }
 
 }  // namespace strut

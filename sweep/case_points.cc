@@ -43,13 +43,13 @@ void CasePoints::calc_coordinates(std::int64_t id, std::span<std::int64_t> coord
       const std::int64_t begin = scale_down(kCoordinates, cell, count_);
       const std::int64_t width = scale_down(kCoordinates, cell + 1, count_) - begin;
       const std::uint64_t bits =
-          calc_random_bits(seed_, get_stream(RandomStream::kPlace, a), number);
-      const auto place = static_cast<std::int64_t>(bits >> 2);
-      coordinates[a] = begin + scale_down(width, place, kCoordinates);
+          calc_random_bits(seed_, get_stream(RandomStream::kOffset, a), number);
+      const auto offset = static_cast<std::int64_t>(bits >> 2);
+      coordinates[a] = begin + scale_down(width, offset, kCoordinates);
     }
     return;
   }
-  // The engine leaves out the first point, zero, without which the others are less even.
+  // The engine skips the first point, zero, without which the sequence is less even.
   boost::random::sobol engine = sobol_->engine;
   if (id > 0) engine.seed(number - 1);
   for (std::size_t a = 0; a < coordinates.size(); ++a) {
@@ -68,8 +68,9 @@ void CasePoints::calc_values(std::int64_t id, std::span<double> values) const {
     if (method_ == SampleMethod::kGrid) {
       values[a] = axis.calc_value(coordinates[a]);
     } else {
-      const double share = static_cast<double>(coordinates[a]) / static_cast<double>(kCoordinates);
-      values[a] = axis.from + share * (axis.last() - axis.from);
+      const double fraction =
+          static_cast<double>(coordinates[a]) / static_cast<double>(kCoordinates);
+      values[a] = axis.from + fraction * (axis.last() - axis.from);
     }
   }
 }

@@ -1,5 +1,7 @@
 #include "sweep/facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/text/format_number.h"
@@ -11,6 +13,8 @@
 
 namespace strut {
 namespace {
+
+constexpr char kAbsent[] = "absent";
 
 void add_sample(const SweepRequest& request, Facts& facts) {
   const SampleRequest& sample = request.sample;
@@ -24,16 +28,17 @@ void add_sample(const SweepRequest& request, Facts& facts) {
 void add_grid(const SweepRequest& request, Facts& facts) {
   const auto& axes = request.grid.axes();
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    facts.emplace_back("grid[" + std::to_string(a + 1) + "]",
-                       axes[a].name + " from " + format_number(axes[a].from) + " step " +
-                           format_number(axes[a].step) + " count " + std::to_string(axes[a].count));
+    facts.emplace_back(
+        fmt::format("grid[{}]", a + 1),
+        fmt::format("{} from {} step {} count {}", axes[a].name, format_number(axes[a].from),
+                    format_number(axes[a].step), axes[a].count));
   }
 }
 
 void add_integrate(const SolverOptions& request, Facts& facts) {
   const auto closure = static_cast<std::size_t>(request.options.closure);
   if (request.solver == Solver::kCvode) {
-    facts.emplace_back("integrate.method", "cvode");
+    facts.emplace_back("integrate.method", kIntegrators[kIntegratorCvode]);
     facts.emplace_back("integrate.relative_tolerance",
                        format_number(request.reference.relative_tolerance));
     facts.emplace_back("integrate.absolute_tolerance",
@@ -50,12 +55,12 @@ void add_integrate(const SolverOptions& request, Facts& facts) {
 }
 
 std::string list_channels(const std::vector<int>& channels) {
-  std::string text;
+  std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const int channel : channels) {
-    text +=
-        (text.empty() ? "" : ", ") + list_car_channels()[static_cast<std::size_t>(channel)].name;
+    names.push_back(list_car_channels()[static_cast<std::size_t>(channel)].name);
   }
-  return text;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 void add_record(const SweepRequest& request, Facts& facts) {
@@ -79,13 +84,6 @@ void add_file(const std::string& prefix, const std::filesystem::path& path, Fact
         prefix + key,
         named == files.end() ? value : "SHA-256 " + to_hex(calc_sha256(read_bytes(named->path))));
   }
-}
-
-const std::string* find_value(const Facts& facts, const std::string& name) {
-  for (const auto& [key, value] : facts) {
-    if (key == name) return &value;
-  }
-  return nullptr;
 }
 
 }  // namespace
@@ -112,14 +110,12 @@ std::string calc_hash(const Facts& facts) {
 std::vector<std::string> compare_facts(const Facts& was, const Facts& is) {
   std::vector<std::string> lines;
   for (const auto& [name, value] : was) {
-    const std::string* now = find_value(is, name);
-    if (now == nullptr) lines.push_back(name + ": was " + value + ", is absent");
-    if (now != nullptr && *now != value) {
-      lines.push_back(name + ": was " + value + ", is " + *now);
-    }
+    const std::string now = find_text(is, name).value_or(kAbsent);
+    if (now != value) lines.push_back(fmt::format("{}: was {}, is {}", name, value, now));
   }
   for (const auto& [name, value] : is) {
-    if (find_value(was, name) == nullptr) lines.push_back(name + ": was absent, is " + value);
+    if (!find_text(was, name))
+      lines.push_back(fmt::format("{}: was {}, is {}", name, kAbsent, value));
   }
   return lines;
 }

@@ -1,4 +1,4 @@
-// Everything that a sweep's results depend on, as text: the identity of a plan.
+// Everything that the results of a sweep depend on, as text: the identity of a plan.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace strut {
 
-/// Raised with every change of this program after which the same request gives other numbers.
+/// To be raised with every change of this program after which the same request gives other numbers.
 inline constexpr int kResultsVersion = 1;
 
-/// "name = value" of everything that enters the plan's hash, in order.
+/// The (name, value) pairs that the plan's hash covers, in order.
 using Facts = NamedTexts;
 
-/// Request, defaults resolved; vehicle and maneuver, every value of their files; the files that
-/// those name, by SHA-256. Names of files, comments and the order of keys have no part in it, but
-/// the order of the grid's axes has. Throws InputError where a file is missing.
+/// Lists the request with its defaults resolved, every value of the vehicle and maneuver files, and
+/// the SHA-256 of each file that those name. File names, comments and the order of keys do not
+/// matter; the order of the grid's axes does. Throws InputError if a file is missing.
 Facts list_facts(const SweepRequest& request);
 
-/// 64 digits: SHA-256 over the lines "name = value".
+/// SHA-256 over the lines "name = value", 64 hexadecimal digits.
 std::string calc_hash(const Facts& facts);
 
-/// Lines "name: was A, is B" where two requests differ.
+/// One line "name: was A, is B" for each difference.
 std::vector<std::string> compare_facts(const Facts& was, const Facts& is);
 
 }  // namespace strut

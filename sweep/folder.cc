@@ -1,5 +1,7 @@
 #include "sweep/folder.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error/input_error.h"
@@ -13,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The claim of a planning that is under way.
+/// Name of the claim that a running `strut plan` holds.
 constexpr char kPlanUnit[] = "plan";
 
 std::vector<fs::path> list_subfolders(const SweepFolder& folder) {
@@ -22,14 +24,12 @@ std::vector<fs::path> list_subfolders(const SweepFolder& folder) {
 }
 
 std::string list_changes(const Facts& was, const Facts& is) {
-  std::string text;
-  for (const std::string& line : compare_facts(was, is)) text += "\n  " + line;
-  return text;
+  return fmt::format("\n  {}", fmt::join(compare_facts(was, is), "\n  "));
 }
 
-/// The rest of a planning that was stopped: nothing else.
-bool is_leftover(const SweepFolder& folder, const fs::directory_entry& entry) {
-  const auto is_file_of = [&entry](const fs::path& path) {  // or its temporary, AtomicFile's
+/// True only for what an interrupted `strut plan` leaves.
+bool is_of_interrupted_plan(const SweepFolder& folder, const fs::directory_entry& entry) {
+  const auto is_file_of = [&entry](const fs::path& path) {  // or its temporary (AtomicFile)
     return entry.path().filename().string().rfind(path.filename().string(), 0) == 0;
   };
   if (entry.is_regular_file()) return is_file_of(folder.request()) || is_file_of(folder.plan());
@@ -42,12 +42,13 @@ bool is_leftover(const SweepFolder& folder, const fs::directory_entry& entry) {
 void check_free(const SweepFolder& folder) {
   if (!fs::exists(folder.root)) return;
   if (!fs::is_directory(folder.root)) {
-    throw InputError(folder.root.string() + ": a file; must be a new or empty folder");
+    throw InputError(folder.root.string() + ": is a file; must be a new or empty folder");
   }
   for (const auto& entry : fs::directory_iterator(folder.root)) {
-    if (is_leftover(folder, entry)) continue;
-    throw InputError(folder.root.string() + ": not a sweep folder (no plan.h5), but it holds '" +
-                     entry.path().filename().string() + "'; must be a new or empty folder");
+    if (is_of_interrupted_plan(folder, entry)) continue;
+    throw InputError(fmt::format(
+        "{}: not a sweep folder (no plan.h5), but it holds '{}'; must be a new or empty folder",
+        folder.root.string(), entry.path().filename().string()));
   }
 }
 
@@ -58,10 +59,11 @@ void check_same(const SweepFolder& folder, const Plan& plan) {
     if (!is_sealed(folder.plan())) write_plan(folder.plan(), plan);
     return;
   }
-  throw InputError(folder.root.string() + ": planned for another request than " +
-                   plan.request().path.string() +
-                   "; allowed: the same, or another folder. Changed:" +
-                   list_changes(record.facts, plan.facts()));
+  throw InputError(fmt::format(
+      "{}: already planned for a different request than {}; allowed: the same request, or another "
+      "folder. Differences:{}",
+      folder.root.string(), plan.request().path.string(),
+      list_changes(record.facts, plan.facts())));
 }
 
 }  // namespace
@@ -84,11 +86,11 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
   }
   make_folder(folder.root);
   make_subfolders(folder);
-  // One of two processes that plan into a folder at once goes on. If it dies, it locks nobody out.
+  // Of two processes planning into one folder, one continues. If it dies, its claim becomes stale.
   Claims claims(folder.open(folder.claims()), ClaimOptions());
   if (claims.claim(kPlanUnit) != Claims::Answer::kMine) {
     throw EnvironmentError(folder.root.string() +
-                           ": another `strut plan` is making it right now; nothing was changed");
+                           ": another `strut plan` is creating it right now; nothing was changed");
   }
   if (fs::exists(folder.plan())) {
     check_same(folder, plan);
@@ -97,7 +99,7 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
   freeze_inputs(plan.request(), folder);
   if (calc_hash(list_facts(read_request(folder.request()))) != plan.hash()) {
     throw EnvironmentError(folder.request().string() +
-                           ": its files changed while they were copied; plan again");
+                           ": its files changed while they were copied; run `strut plan` again");
   }
   write_plan(folder.plan(), plan);
   remove_abandoned_files(Folder(folder.root));
@@ -107,16 +109,17 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
 
 Plan open_sweep_folder(const SweepFolder& folder) {
   if (!fs::exists(folder.plan())) {
-    throw InputError(folder.root.string() +
-                     ": not a sweep folder: no plan.h5; `strut plan SWEEP.toml -o DIR` makes one");
+    throw InputError(
+        folder.root.string() +
+        ": not a sweep folder: no plan.h5; `strut plan SWEEP.toml -o DIR` creates one");
   }
   const PlanRecord record = read_plan(folder.plan());
   Plan plan(read_request(folder.request()));
   if (record.extent.plan_hash != plan.hash()) {
-    throw InputError(folder.request().string() +
-                     ": no longer what was planned; allowed: the planned request, or another "
-                     "folder. Changed:" +
-                     list_changes(record.facts, plan.facts()));
+    throw InputError(fmt::format(
+        "{}: no longer what was planned; allowed: the planned request, or another folder. "
+        "Differences:{}",
+        folder.request().string(), list_changes(record.facts, plan.facts())));
   }
   require_same_plan(folder.plan(), record, plan);
   return plan;

@@ -1,4 +1,4 @@
-// Making and opening a sweep folder.
+// Creates and opens sweep folders.
 #pragma once
 
 #include <filesystem>
@@ -8,19 +8,19 @@
 
 namespace strut {
 
-/// Makes the subfolders that are not there: a copy may have lost the empty ones. Throws
+/// Creates missing subfolders: a copy of a sweep folder may have lost the empty ones. Throws
 /// EnvironmentError.
 void make_subfolders(const SweepFolder& folder);
 
-/// Makes the folder of a plan: request.toml with copies of every file it names, plan.h5, the empty
-/// subfolders; plan.h5 last, so a folder is planned or it is not. Planning the same request again
-/// changes nothing, but seals a plan.h5 of an earlier version. Throws InputError where `root` holds
-/// another plan (it lists what changed) or is no folder of ours, EnvironmentError where it cannot
-/// be written.
+/// Creates the folder of a plan: request.toml with copies of every file it names, the empty
+/// subfolders and, last, plan.h5, so that a folder is either fully planned or not at all. Planning
+/// the same request again only seals a plan.h5 of an earlier version. Throws InputError if `root`
+/// holds another plan (the message lists the differences) or foreign files, EnvironmentError if it
+/// cannot be written.
 SweepFolder make_sweep_folder(const std::filesystem::path& root, const Plan& plan);
 
-/// Opens a planned folder. Throws InputError where it is none, or its request was edited since (it
-/// lists what changed).
+/// Opens a planned folder. Throws InputError if it is not one, or if its request was edited since
+/// planning (the message lists the differences).
 Plan open_sweep_folder(const SweepFolder& folder);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "sweep/freeze_inputs.h"
 
+#include <fmt/format.h>
+
 #include <map>
 
 #include "io/file/atomic_file.h"
@@ -12,49 +14,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names in the folder of copies, one a file, though two may be called the same.
-class Copies {
- public:
-  explicit Copies(const Folder& folder) : folder_(folder) {}
+/// Name of each copy and the file that it was copied from.
+using CopyNames = std::map<std::string, fs::path>;
 
-  /// Copies a file and, first, those it names; returns the copy's name.
-  std::string copy(const fs::path& source) {
-    std::string name = choose_name(source);
-    if (source.extension() != ".toml") {
-      write_text_file(folder_, name, read_text_file(source));
-      return name;
-    }
-    TomlValues changes;
-    for (const NamedFile& named : list_named_files(source)) {
-      changes.emplace_back(named.key, copy(named.path));
-    }
-    write_text_file(folder_, name, replace_toml_texts(source, changes));
+/// Reserves a name for the copy of `source`; distinct files of the same name are numbered.
+std::string choose_name(const fs::path& source, CopyNames& names) {
+  const fs::path path = fs::weakly_canonical(source);
+  std::string name = source.filename().string();
+  for (int i = 2; names.count(name) > 0 && names[name] != path; ++i) {
+    name = fmt::format("{}_{}{}", source.stem().string(), i, source.extension().string());
+  }
+  names[name] = path;
+  return name;
+}
+
+/// Copies a file and, first, the files that it names; returns the copy's name.
+std::string copy_file(const fs::path& source, const Folder& folder, CopyNames& names) {
+  std::string name = choose_name(source, names);
+  if (source.extension() != ".toml") {
+    write_text_file(folder, name, read_text_file(source));
     return name;
   }
-
- private:
-  std::string choose_name(const fs::path& source) {
-    const fs::path path = fs::weakly_canonical(source);
-    std::string name = source.filename().string();
-    for (int i = 2; names_.count(name) > 0 && names_[name] != path; ++i) {
-      name = source.stem().string() + "_" + std::to_string(i) + source.extension().string();
-    }
-    names_[name] = path;
-    return name;
+  TomlValues changes;
+  for (const NamedFile& named : list_named_files(source)) {
+    changes.emplace_back(named.key, copy_file(named.path, folder, names));
   }
-
-  Folder folder_;
-  std::map<std::string, fs::path> names_;
-};
+  write_text_file(folder, name, replace_toml_texts(source, changes));
+  return name;
+}
 
 }  // namespace
 
 void freeze_inputs(const SweepRequest& request, const SweepFolder& folder) {
-  Copies copies(folder.open(folder.inputs()));
+  const Folder inputs = folder.open(folder.inputs());
   const std::string inside = folder.inputs().filename().string() + "/";
-  // Two statements: the order of the copies' names must not be the compiler's.
-  const std::string vehicle = inside + copies.copy(request.vehicle);
-  const std::string maneuver = inside + copies.copy(request.maneuver);
+  CopyNames names;
+  // Two statements: the compiler must not choose the order in which names are assigned.
+  const std::string vehicle = inside + copy_file(request.vehicle, inputs, names);
+  const std::string maneuver = inside + copy_file(request.maneuver, inputs, names);
   write_text_file(Folder(folder.root), folder.request().filename().string(),
                   replace_toml_texts(request.path, {{"vehicle", vehicle}, {"maneuver", maneuver}}));
 }

@@ -1,5 +1,7 @@
 #include "sweep/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -13,15 +15,15 @@
 namespace strut {
 namespace {
 
-/// Numbers of drawn cases are kept in memory and in the plan's file.
-constexpr std::int64_t kMostDrawn = 10'000'000;
-/// Each is a file in one folder, a claim and a line of the journal; a list of them is kept in
+/// The ids of drawn cases are kept in memory and in the plan's file.
+constexpr std::int64_t kMaxDrawn = 10'000'000;
+/// Each shard is a file in one folder, a claim and a line of the journal; their list is kept in
 /// memory.
 constexpr std::int64_t kMaxShards = 10'000'000;
 
 InputError count_error(const SweepRequest& request, const std::string& what) {
-  return InputError(request.path.string() +
-                    ": sample.count = " + std::to_string(request.sample.count) + ": " + what);
+  return InputError(
+      fmt::format("{}: sample.count = {}: {}", request.path.string(), request.sample.count, what));
 }
 
 void check_count(const SweepRequest& request) {
@@ -29,38 +31,55 @@ void check_count(const SweepRequest& request) {
   if (count < 0) return;
   const bool levels = request.sample.method == SampleMethod::kGrid;
   if (levels && count > request.grid.size()) {
-    throw count_error(request, "more than the grid has; must lie in [1, " +
-                                   std::to_string(request.grid.size()) + "] or be \"all\"");
+    throw count_error(request,
+                      fmt::format("more than the grid has; must lie in [1, {}] or be \"all\"",
+                                  request.grid.size()));
   }
-  if (count > kMostDrawn) {
-    throw count_error(request, "must lie in [1, " + std::to_string(kMostDrawn) + "]" +
-                                   (levels ? " or be \"all\"" : ""));
+  if (count > kMaxDrawn) {
+    throw count_error(
+        request, fmt::format("must lie in [1, {}]{}", kMaxDrawn, levels ? " or be \"all\"" : ""));
   }
 }
 
 void check_shards(const SweepRequest& request, std::int64_t cases) {
   const std::int64_t shards = (cases - 1) / request.shard_cases + 1;
   if (shards <= kMaxShards) return;
-  throw InputError(request.path.string() + ": " + std::to_string(cases) + " cases in shards of " +
-                   std::to_string(request.shard_cases) + " make " + std::to_string(shards) +
-                   " shards; at most " + std::to_string(kMaxShards) +
-                   " can be run, each a file in one folder: allow fewer by sample.count, fewer "
-                   "levels in [grid] or more cases a shard in [shards]");
+  throw InputError(fmt::format(
+      "{}: {} cases in shards of {} make {} shards; at most {} are allowed, each a file in one "
+      "folder: reduce sample.count or the levels in [grid], or raise shards.cases",
+      request.path.string(), cases, request.shard_cases, shards, kMaxShards));
 }
 
-std::vector<std::int64_t> allocate(const SweepRequest& request, const std::vector<Layer>& layers) {
+/// Number of cases to draw from each stratum.
+std::vector<std::int64_t> allocate(const SweepRequest& request,
+                                   const std::vector<Stratum>& strata) {
   std::vector<std::int64_t> populations;
-  populations.reserve(layers.size());
-  for (const Layer& layer : layers) populations.push_back(layer.population);
+  populations.reserve(strata.size());
+  for (const Stratum& stratum : strata) populations.push_back(stratum.population);
   std::vector<std::int64_t> quotas = allocate_proportionally(request.sample.count, populations);
   const auto empty = std::find(quotas.begin(), quotas.end(), 0);
   if (empty == quotas.end()) return quotas;
-  // Each layer's share of this many is at least one.
-  const std::int64_t least = *std::min_element(populations.begin(), populations.end());
-  const std::int64_t enough = (request.grid.size() + least - 1) / least;
-  throw count_error(request, "leaves layer " + std::to_string(empty - quotas.begin() + 1) + " of " +
-                                 std::to_string(layers.size()) + " empty; allowed: at least " +
-                                 std::to_string(enough) + ", or fewer strata");
+  // The smallest count whose proportional allocation gives every stratum at least one case.
+  const std::int64_t smallest = *std::min_element(populations.begin(), populations.end());
+  const std::int64_t enough = (request.grid.size() + smallest - 1) / smallest;
+  throw count_error(
+      request, fmt::format("leaves stratum {} of {} empty; allowed: at least {}, or fewer strata",
+                           empty - quotas.begin() + 1, strata.size(), enough));
+}
+
+/// Sets the number of drawn cases of each stratum; returns their ids, or nothing if all run.
+std::optional<std::vector<std::int64_t>> draw_cases(const SweepRequest& request,
+                                                    const CasePoints& points, Strata& strata) {
+  const bool all = points.method() != SampleMethod::kGrid || request.sample.count < 0;
+  if (all) {
+    for (Stratum& stratum : strata.list) stratum.drawn = stratum.population;
+    return std::nullopt;
+  }
+  const std::vector<std::int64_t> quotas = allocate(request, strata.list);
+  for (std::size_t i = 0; i < quotas.size(); ++i) strata.list[i].drawn = quotas[i];
+  const Permutation order(points.size(), request.sample.seed, get_stream(RandomStream::kDraw));
+  return draw_stratified(quotas, order,
+                         [&](std::int64_t id) { return calc_stratum(strata, points, id); });
 }
 
 ColumnInfo describe(const ParameterInfo& p) { return {p.name, p.unit, p.description}; }
@@ -79,35 +98,23 @@ std::vector<ColumnInfo> describe(const std::vector<int>& channels) {
 
 struct Plan::State {
   explicit State(const SweepRequest& asked)
-      : request(asked), points(request), rule(request, points), layers(rule.layers()) {
-    order.emplace(request, points, draw());
-    check_shards(request, order->size());
+      : request(asked),
+        points(request),
+        strata(make_strata(request, points)),
+        order(request, points, draw_cases(request, points, strata)) {
+    check_shards(request, order.size());
     facts = list_facts(request);
     hash = calc_hash(facts);
     for (const Axis& axis : request.grid.axes()) parameters.push_back(&find_parameter(axis.name));
   }
 
-  /// Sets how many each layer gives; nothing where all run.
-  std::optional<std::vector<std::int64_t>> draw() {
-    const bool all = points.method() != SampleMethod::kGrid || request.sample.count < 0;
-    if (all) {
-      for (Layer& layer : layers) layer.drawn = layer.population;
-      return std::nullopt;
-    }
-    const std::vector<std::int64_t> quotas = allocate(request, layers);
-    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].drawn = quotas[i];
-    const Permutation walk(points.size(), request.sample.seed, get_stream(RandomStream::kDraw));
-    return draw_stratified(quotas, walk, [this](std::int64_t id) { return rule.calc_layer(id); });
-  }
-
   const SweepRequest request;
   const CasePoints points;
-  const LayerRule rule;
-  std::vector<Layer> layers;
-  std::optional<CaseOrder> order;
+  Strata strata;
+  const CaseOrder order;
   Facts facts;
   std::string hash;
-  std::vector<const ParameterInfo*> parameters;  // of each axis
+  std::vector<const ParameterInfo*> parameters;  // one per axis
 };
 
 Plan::Plan(const SweepRequest& request) {
@@ -121,9 +128,9 @@ Plan::Plan(Plan&&) noexcept = default;
 const SweepRequest& Plan::request() const { return state_->request; }
 const std::string& Plan::hash() const { return state_->hash; }
 const Facts& Plan::facts() const { return state_->facts; }
-const std::vector<Layer>& Plan::layers() const { return state_->layers; }
+const std::vector<Stratum>& Plan::strata() const { return state_->strata.list; }
 std::int64_t Plan::point_count() const { return state_->points.size(); }
-std::int64_t Plan::case_count() const { return state_->order->size(); }
+std::int64_t Plan::case_count() const { return state_->order.size(); }
 
 std::int64_t Plan::shard_count() const {
   const std::int64_t cases = request().shard_cases;
@@ -140,27 +147,29 @@ std::int64_t Plan::shard_size(std::int64_t shard) const {
   return last - first;
 }
 
-std::vector<std::int64_t> Plan::list_drawn() const { return state_->order->list_drawn(); }
+std::vector<std::int64_t> Plan::list_drawn() const { return state_->order.list_drawn(); }
 
 std::int64_t Plan::calc_case_id(std::int64_t position) const {
-  return state_->order->calc_case_id(position);
+  return state_->order.calc_case_id(position);
 }
 
 std::int64_t Plan::find_position(std::int64_t case_id) const {
-  return state_->order->find_position(case_id);
+  return state_->order.find_position(case_id);
 }
 
 void Plan::calc_parameters(std::int64_t case_id, std::span<double> values) const {
   state_->points.calc_values(case_id, values);
 }
 
-int Plan::calc_layer(std::int64_t case_id) const { return state_->rule.calc_layer(case_id); }
+int Plan::calc_stratum(std::int64_t case_id) const {
+  return strut::calc_stratum(state_->strata, state_->points, case_id);
+}
 
 Case Plan::make_case(std::int64_t case_id) const {
   Case c = request().base;
   std::vector<double> values(state_->parameters.size());
   calc_parameters(case_id, values);
-  // No check of the range here: the last level may be a rounding beyond the bound it stands for.
+  // Not checked against the range: the last level may exceed its bound by rounding.
   for (std::size_t a = 0; a < values.size(); ++a) state_->parameters[a]->set(c, values[a]);
   return c;
 }

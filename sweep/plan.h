@@ -1,12 +1,11 @@
-// A planned sweep: which cases, in which order, in which shards. Everything is computed by index,
-// so a plan of 10^9 cases costs what one of ten does.
+// A planned sweep: its cases, their order and their shards. Everything is computed by index, so a
+// plan of 10^9 cases costs no more than one of ten.
 //
-// position  0 .. case_count - 1, the order in which cases run; shard s holds the positions
-//           [s * shard_cases, (s + 1) * shard_cases)
-//           (case_order.h says in which order)
+// position  0 .. case_count - 1, the order in which cases run (case_order.h); shard s holds the
+//           positions [s * shard_cases, (s + 1) * shard_cases)
 // case id   grid: mixed radix of the levels, first axis slowest; latin_hypercube, sobol: the number
 //           of the sample
-// layer     stratum of the case, 0 .. strata - 1
+// stratum   0 .. strata - 1 (strata.h)
 #pragma once
 
 #include <cstdint>
@@ -20,41 +19,41 @@
 #include "io/store/shard.h"
 #include "io/store/sweep_extent.h"
 #include "sweep/facts.h"
-#include "sweep/layers.h"
 #include "sweep/request.h"
+#include "sweep/strata.h"
 
 namespace strut {
 
 class Plan {
  public:
-  /// Throws InputError that names the key: a count beyond the grid, an empty layer, ...
+  /// Throws InputError that names the key, for example a count beyond the grid or an empty stratum.
   explicit Plan(const SweepRequest& request);
   ~Plan();
   Plan(Plan&&) noexcept;
 
   const SweepRequest& request() const;
-  /// 64 digits: SHA-256 over everything that changes a result.
+  /// SHA-256 over everything that changes a result, 64 hexadecimal digits.
   const std::string& hash() const;
   const Facts& facts() const;
-  const std::vector<Layer>& layers() const;
+  const std::vector<Stratum>& strata() const;
 
-  /// Points of the grid, or samples: what the cases are drawn from.
+  /// Number of grid points or samples that the cases are drawn from.
   std::int64_t point_count() const;
   std::int64_t case_count() const;
   std::int64_t shard_count() const;
   /// Positions [first, last) of a shard.
   std::pair<std::int64_t, std::int64_t> shard_range(std::int64_t shard) const;
-  /// Cases of a shard.
+  /// Number of cases of a shard.
   std::int64_t shard_size(std::int64_t shard) const;
 
-  /// The drawn cases, ascending; empty where all run.
+  /// Ids of the drawn cases, ascending; empty if all run.
   std::vector<std::int64_t> list_drawn() const;
   std::int64_t calc_case_id(std::int64_t position) const;
-  /// -1 where the case is not in the plan.
+  /// -1 if the case is not in the plan.
   std::int64_t find_position(std::int64_t case_id) const;
-  /// One value per axis.
+  /// Writes one value per axis.
   void calc_parameters(std::int64_t case_id, std::span<double> values) const;
-  int calc_layer(std::int64_t case_id) const;
+  int calc_stratum(std::int64_t case_id) const;
   /// The base case with the case's parameters.
   Case make_case(std::int64_t case_id) const;
 

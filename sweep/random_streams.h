@@ -1,4 +1,4 @@
-// Who draws from which stream of a sweep's seed (base/math/random.h).
+// Streams of a sweep's seed, one per use (base/math/random.h).
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 namespace strut {
 
 enum class RandomStream : std::uint64_t {
-  kDraw = 1,      // which cases of the grid
-  kRunOrder = 2,  // in which order they run
-  kCell = 3,      // Latin hypercube: the cell of a sample along an axis
-  kPlace = 4,     // Latin hypercube: the place within its cell
-  kShift = 5,     // Sobol: the digital shift of an axis
+  kDraw = 1,      // cases drawn from the grid
+  kRunOrder = 2,  // order in which cases run
+  kCell = 3,      // Latin hypercube: cell of a sample along an axis
+  kOffset = 4,    // Latin hypercube: offset within the cell
+  kShift = 5,     // Sobol: digital shift of an axis
 };
 
 constexpr std::uint64_t get_stream(RandomStream stream, std::size_t axis = 0) {

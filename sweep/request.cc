@@ -1,5 +1,7 @@
 #include "sweep/request.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,33 +22,35 @@
 namespace strut {
 namespace {
 
-/// Distance, in steps, that `to` may be off the last level: decimal fractions are not exact.
+/// Tolerance between `to` and the last level, in steps: decimal fractions are not exact.
 constexpr double kLevelSlack = 1e-6;
-constexpr double kMostLevels = 9e15;  // integers that a double counts
-constexpr std::int64_t kMostLayers = 100000;
-constexpr std::int64_t kMostShardCases = 65536;
-/// Values a case or a shard may record over time: every worker holds some of each in memory.
-constexpr double kMostSamples = 20000;
-constexpr double kMostShardBytes = 64e6;
+constexpr double kMaxLevels = 9e15;  // a double counts integers exactly up to about this
+constexpr std::int64_t kMaxStrata = 100000;
+constexpr std::int64_t kMaxShardCases = 65536;
+/// Maximum history of a case [samples] and of a shard [bytes], which workers hold in memory.
+constexpr double kMaxSamples = 20000;
+constexpr double kMaxShardBytes = 64e6;
 
 InputError unreached_error(const Table& table, const Axis& axis, double steps) {
   const double below = axis.from + std::floor(steps) * axis.step;
   const double above = axis.from + std::ceil(steps) * axis.step;
-  return table.error("to", "not reached by steps of " + format_number(axis.step) + " from " +
-                               format_number(axis.from) + "; nearest: " + format_number(below) +
-                               " or " + format_number(above));
+  return table.error("to", fmt::format("not reached by steps of {} from {}; nearest: {} or {}",
+                                       format_number(axis.step), format_number(axis.from),
+                                       format_number(below), format_number(above)));
 }
 
-/// `step` leads from `from` to `to`.
+/// Reads `step`, which must lead from `from` to `to`.
 void read_step(const Table& table, double to, const Range& allowed, Axis& axis) {
   axis.step = table.number("step", any_number(allowed.unit));
-  const std::string sign = to > axis.from ? "> 0" : "< 0";
+  const char* const allowed_step = to == axis.from ? "not 0" : to > axis.from ? "> 0" : "< 0";
   if (axis.step == 0.0 || (to != axis.from && (axis.step > 0.0) != (to > axis.from))) {
-    throw table.error("step", "must be " + (to == axis.from ? "not 0" : sign) + " to lead from " +
-                                  format_number(axis.from) + " to " + format_number(to));
+    throw table.error("step", fmt::format("must be {} to lead from {} to {}", allowed_step,
+                                          format_number(axis.from), format_number(to)));
   }
   const double steps = (to - axis.from) / axis.step;
-  if (steps > kMostLevels) throw table.error("step", "too small: more than 9e15 levels");
+  if (steps > kMaxLevels) {
+    throw table.error("step", fmt::format("too small: more than {:g} levels", kMaxLevels));
+  }
   if (std::fabs(steps - std::round(steps)) > kLevelSlack) {
     throw unreached_error(table, axis, steps);
   }
@@ -54,18 +58,19 @@ void read_step(const Table& table, double to, const Range& allowed, Axis& axis) 
 }
 
 void read_count(const Table& table, double to, Axis& axis) {
-  const auto most = static_cast<std::int64_t>(kMostLevels);
-  axis.count = table.integer("count", to == axis.from ? 1 : 2, to == axis.from ? 1 : most);
+  const bool single = to == axis.from;
+  axis.count =
+      table.integer("count", single ? 1 : 2, single ? 1 : static_cast<std::int64_t>(kMaxLevels));
   if (axis.count > 1) axis.step = (to - axis.from) / static_cast<double>(axis.count - 1);
 }
 
-/// Samples between the bounds need no levels.
+/// Reads an axis; `levels`: whether it needs levels (grid), or only its bounds (samples).
 Axis read_bounds(const Table& table, const std::string& name, bool levels) {
   const Range& allowed = find_parameter(name).allowed;
   Axis axis{.name = name, .from = table.number("from", allowed)};
   const double to = table.number("to", allowed);
   const bool has_step = table.has("step"), has_count = table.has("count");
-  if (has_step && has_count) throw table.error("count", "must not stand beside 'step'");
+  if (has_step && has_count) throw table.error("count", "must not be given together with 'step'");
   if (has_count) read_count(table, to, axis);
   if (!has_count && (has_step || levels)) read_step(table, to, allowed, axis);
   if (!levels) {
@@ -80,8 +85,8 @@ Axis read_axis(const Table& grid, const std::string& name, bool levels, Case pro
   names.reserve(list_parameters().size());
   for (const ParameterInfo& parameter : list_parameters()) names.push_back(parameter.name);
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw grid.error(
-        name, "no parameter" + suggest_name(name, names) + "; parameters: " + join_names(names));
+    throw grid.error(name, fmt::format("unknown parameter{}; parameters: {}",
+                                       suggest_name(name, names), join_names(names)));
   }
   Axis axis = read_bounds(grid.table(name), name, levels);
   try {
@@ -92,7 +97,7 @@ Axis read_axis(const Table& grid, const std::string& name, bool levels, Case pro
   return axis;
 }
 
-/// Two axes must not set the same quantity, as front_stiffness and front_left_stiffness do.
+/// Throws if two axes set the same quantity, as front_stiffness and front_left_stiffness do.
 void check_independence(const Table& grid, const std::vector<Axis>& axes, const Case& base) {
   for (const Axis& first : axes) {
     for (const Axis& second : axes) {
@@ -101,11 +106,13 @@ void check_independence(const Table& grid, const std::vector<Axis>& axes, const 
       const ParameterInfo& parameter = find_parameter(first.name);
       parameter.set(c, first.from);
       const double before = parameter.get(c);
-      // A value that no case has, so that it shows.
+      // An unlikely value, so that setting it shows.
       find_parameter(second.name).set(c, 0.5 * second.from + 0.125);
       if (parameter.get(c) == before) continue;
-      throw grid.error(second.name,
-                       "sets what the axis '" + first.name + "' sets; allowed: one of the two");
+      throw grid.error(
+          second.name,
+          fmt::format("sets the same quantity as the axis '{}'; allowed: one of the two",
+                      first.name));
     }
   }
 }
@@ -119,7 +126,7 @@ Grid read_grid(const Table& root, const SweepRequest& request) {
   }
   if (axes.empty()) {
     throw table.error(
-        "no axis; for example front_stiffness = { from = 40000, to = 35500, "
+        "no axis; needs at least one, for example front_stiffness = { from = 40000, to = 35500, "
         "step = -500 }");
   }
   check_independence(table, axes, request.base);
@@ -134,22 +141,22 @@ SampleRequest read_sample(const std::optional<Table>& table) {
   SampleRequest sample;
   if (!table) return sample;
   sample.method = static_cast<SampleMethod>(table->choice_or("method", 0, kSampleMethods));
-  sample.strata = static_cast<int>(table->integer_or("strata", sample.strata, 1, kMostLayers));
-  const std::int64_t most = std::numeric_limits<std::int64_t>::max();
-  sample.seed = static_cast<std::uint64_t>(table->integer_or("seed", 1, 0, most));
+  sample.strata = static_cast<int>(table->integer_or("strata", sample.strata, 1, kMaxStrata));
+  const std::int64_t max = std::numeric_limits<std::int64_t>::max();
+  sample.seed = static_cast<std::uint64_t>(table->integer_or("seed", 1, 0, max));
   if (table->is_text("count")) {
     table->choice("count", {"all"});
   } else if (table->has("count")) {
-    sample.count = table->integer("count", 1, most);
+    sample.count = table->integer("count", 1, max);
   }
   if (sample.method != SampleMethod::kGrid && sample.count < 0) {
-    throw table->error("count",
-                       "must be a number of samples for method \"" + table->text("method") + "\"");
+    throw table->error("count", fmt::format("must be a number of samples for method \"{}\"",
+                                            table->text("method")));
   }
   return sample;
 }
 
-/// After the grid, whose axes are the names allowed.
+/// Reads `by`, after the grid, whose axes are the allowed names.
 void read_by(const std::optional<Table>& table, const Grid& grid, SampleRequest& sample) {
   sample.by = grid.axes().front().name;
   if (!table || !table->has("by")) return;
@@ -162,24 +169,24 @@ void read_by(const std::optional<Table>& table, const Grid& grid, SampleRequest&
   for (const Axis& axis : grid.axes()) {
     if (axis.from != 0.0) continue;
     throw table->error(
-        "by", "needs grid." + axis.name + ".from other than 0, which a loss is relative to");
+        "by", fmt::format("needs grid.{}.from other than 0: losses are relative to it", axis.name));
   }
 }
 
-/// Nobody asked for ten layers: no more than there are levels, points or samples.
+/// Limits the default number of strata to the number of levels, points and samples.
 void limit_default_strata(const std::optional<Table>& table, const Grid& grid,
                           SampleRequest& sample) {
   if (table && table->has("strata")) return;
-  std::int64_t most = sample.method == SampleMethod::kGrid ? grid.size() : sample.count;
-  if (sample.count > 0) most = std::min(most, sample.count);
+  std::int64_t max = sample.method == SampleMethod::kGrid ? grid.size() : sample.count;
+  if (sample.count > 0) max = std::min(max, sample.count);
   for (const Axis& axis : grid.axes()) {
     const bool levels = sample.method == SampleMethod::kGrid && axis.name == sample.by;
-    if (levels) most = std::min(most, axis.count);
+    if (levels) max = std::min(max, axis.count);
   }
-  sample.strata = static_cast<int>(std::min<std::int64_t>(sample.strata, most));
+  sample.strata = static_cast<int>(std::min<std::int64_t>(sample.strata, max));
 }
 
-/// The longest of all cases [s].
+/// Longest duration of all cases [s].
 double find_longest_duration(const SweepRequest& request) {
   double longest = request.base.maneuver.duration;
   for (const Axis& axis : request.grid.axes()) {
@@ -197,7 +204,9 @@ SolverOptions read_integrate(const std::optional<Table>& table, double longest_d
   if (method == kIntegratorCvode) {
     request.solver = Solver::kCvode;
     for (const char* key : {"step", "coarse_step", "locate_events"}) {
-      if (table->has(key)) throw table->error(key, "cvode chooses its own; allowed with rk4, abm4");
+      if (table->has(key))
+        throw table->error(
+            key, "not allowed with cvode, which controls its steps; allowed with rk4, abm4");
     }
     return request;
   }
@@ -225,7 +234,7 @@ std::vector<int> read_channels(const Table& table) {
   for (const std::string& name : table.texts("channels")) {
     const int channel = read_channel(table, name);
     if (std::find(channels.begin(), channels.end(), channel) != channels.end()) {
-      throw table.error("channels", "'" + name + "' twice; allowed: once");
+      throw table.error("channels", fmt::format("'{}' twice; allowed: once", name));
     }
     channels.push_back(channel);
   }
@@ -235,14 +244,14 @@ std::vector<int> read_channels(const Table& table) {
 
 void read_history(const Table& table, SweepRequest& request) {
   const double duration = request.base.maneuver.duration;
-  const double most = std::floor(kMostSamples / duration);
-  request.history.rate = table.number("rate", between(1.0 / duration, most, "1/s"));
+  const double max_rate = std::floor(kMaxSamples / duration);
+  request.history.rate = table.number("rate", between(1.0 / duration, max_rate, "1/s"));
   request.history.channels = read_channels(table);
   for (const Axis& axis : request.grid.axes()) {
     if (axis.name != "duration") continue;
     throw table.error(
-        "must not be recorded where 'duration' is a grid axis: all cases of a shard "
-        "have as many samples");
+        "must not be recorded if 'duration' is a grid axis: all cases of a shard need the same "
+        "number of samples");
   }
 }
 
@@ -259,17 +268,16 @@ void read_record(const Table& record, SweepRequest& request) {
   throw record.error("nothing to record; allowed: snapshot, history, or both");
 }
 
-/// Cases of a shard: a worker holds the history of all of them in memory.
+/// Reads the number of cases per shard, limited by the history that a worker holds in memory.
 void read_shards(const std::optional<Table>& table, SweepRequest& request) {
   const double bytes = 8.0 * static_cast<double>(request.history.channels.size()) *
                        static_cast<double>(count_samples(make_sample_plan(request)));
-  std::int64_t most = kMostShardCases;
-  if (bytes * static_cast<double>(most) > kMostShardBytes) {
-    most = std::max(std::int64_t{1}, static_cast<std::int64_t>(kMostShardBytes / bytes));
+  std::int64_t max = kMaxShardCases;
+  if (bytes * static_cast<double>(max) > kMaxShardBytes) {
+    max = std::max(std::int64_t{1}, static_cast<std::int64_t>(kMaxShardBytes / bytes));
   }
-  const std::int64_t usual = std::min<std::int64_t>(most, request.shard_cases);
-  request.shard_cases =
-      static_cast<int>(table ? table->integer_or("cases", usual, 1, most) : usual);
+  const std::int64_t usual = std::min<std::int64_t>(max, request.shard_cases);
+  request.shard_cases = static_cast<int>(table ? table->integer_or("cases", usual, 1, max) : usual);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A sweep file as data.
+// The content of a sweep file.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ enum class SampleMethod { kGrid, kLatinHypercube, kSobol };
 
 struct SampleRequest {
   SampleMethod method = SampleMethod::kGrid;
-  int strata = 10;          // absent: at most as many as there are levels of `by`
-  std::string by;           // a grid parameter, or "degradation"; absent: the first axis
+  int strata = 10;          // default: at most the number of levels of `by`
+  std::string by;           // a grid parameter, or kDegradation; default: the first axis
   std::int64_t count = -1;  // -1: all
   std::uint64_t seed = 1;
 };
 
 struct SnapshotRequest {
   bool on = true;
-  double offset = 0.0;        // m, the snapshot's line ahead of the bump's center
+  double offset = 0.0;        // m, distance of the snapshot's line ahead of the bump's center
   std::vector<int> channels;  // CarChannel
 };
 
@@ -34,7 +34,7 @@ struct HistoryRequest {
 };
 
 struct SweepRequest {
-  std::filesystem::path path, vehicle, maneuver;  // the files it was read from
+  std::filesystem::path path, vehicle, maneuver;  // files that it was read from
   Case base;
   Grid grid;
   SampleRequest sample;
@@ -45,11 +45,11 @@ struct SweepRequest {
   bool shuffle = true;  // run order, see case_order.h
 };
 
-/// Reads `sweeps/*.toml` (docs/sweeps.md lists every key). Throws InputError with file, line, key,
+/// Reads a sweep file; docs/sweeps.md lists every key. Throws InputError with file, line, key,
 /// value and what is allowed.
 SweepRequest read_request(const std::filesystem::path& path);
 
-/// The samples that simulations of this request record.
+/// Samples that the simulations of this request record.
 SamplePlan make_sample_plan(const SweepRequest& request);
 
 }  // namespace strut

@@ -5,7 +5,8 @@
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
-#include "sweep/leftovers.h"
+#include "io/store/shard_layout.h"
+#include "sweep/clean_up.h"
 #include "sweep/shard_source.h"
 #include "sweep/shard_store.h"
 #include "sweep/shard_writer.h"
@@ -16,243 +17,269 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const SweepFolder& prepare(const SweepFolder& folder) {
-  make_subfolders(folder);
-  // Before hours of work, not behind the first shard.
-  check_regular(Folder(folder.root).descriptor(), folder.journal().filename().string(),
-                folder.journal());
-  return folder;
-}
+/// The arguments of a run and what follows from them; all threads read it.
+struct RunInput {
+  const SweepFolder& folder;
+  const Plan& plan;
+  const RunOptions& options;
+  RunProgress& progress;
+  std::atomic<bool>& halt;
+  const ShardSchema schema;
+  const SweepExtent extent;
 
-/// One sweep, one runner.
-class Run {
+  bool is_stopping() const { return halt || (options.drain != nullptr && *options.drain); }
+};
+
+/// The counts of a run that its threads raise.
+class SharedSummary {
  public:
-  Run(const SweepFolder& folder, const Plan& plan, const RunOptions& options, RunProgress& progress,
-      std::atomic<bool>& halt)
-      : folder_(folder),
-        plan_(plan),
-        options_(options),
-        progress_(progress),
-        halt_(halt),
-        schema_(plan.make_schema()),
-        extent_(plan.make_extent()),
-        claims_(prepare(folder).open(folder.claims()), options.claims) {
-    remove_leftovers(folder_, claims_);
-    if (options_.retry_failed) rounds_before_ = count_all_retries();
-  }
-
-  RunSummary run() {
-    ShardSource source(folder_, plan_, options_, claims_, progress_);
-    summary_.notes = source.notes();
-    summary_.shards_written = with_writer(
-        [&](ShardWriter& writer) {
-          run_team(options_.threads, halt_, [&] { simulate_shards(source, writer); });
-        },
-        [this](const JournalEntry& entry) { count_written(entry); });
-    if (options_.retry_failed && !halt_) {
-      const std::vector<std::int64_t> shards = list_failing_shards();
-      std::atomic<std::size_t> next{0};
-      summary_.retries_written = with_writer(
-          [&](ShardWriter& writer) {
-            run_team(options_.threads, halt_, [&] { retry_shards(shards, next, writer); });
-          },
-          [](const JournalEntry&) {});
-    }
-    summary_.stopped = halt_;
-    count_failed();
-    return summary_;
-  }
-
- private:
-  /// Lets `produce` push into a writer; returns the number of files written.
-  template <class Produce>
-  std::int64_t with_writer(const Produce& produce, ShardWriter::OnPublished on_published) {
-    ShardWriter writer(folder_, {plan_.hash(), make_provenance()}, claims_, halt_,
-                       std::move(on_published));
-    std::exception_ptr failure;
-    try {
-      produce(writer);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-    const WriterTotals totals = writer.finish();
-    if (failure) std::rethrow_exception(failure);
-    summary_.duplicates += totals.duplicates;
-    summary_.bytes += totals.bytes;
-    summary_.write += totals.seconds;
-    return totals.shards;
-  }
-
-  void count_written(const JournalEntry& entry) {
-    if (entry.duplicate) {
-      progress_.simulated -= entry.cases;
-      progress_.elsewhere += entry.cases;
-    } else {
-      progress_.written += entry.cases;
-      progress_.failed += count_failures(entry);
-    }
-  }
-
-  std::vector<std::pair<std::string, std::string>> make_provenance() const {
-    auto texts = options_.provenance;
-    texts.emplace_back("instruction_set", options_.kernel->isa);
-    texts.emplace_back("threads", std::to_string(options_.threads));
-    return texts;
-  }
-
-  void simulate_shards(ShardSource& source, ShardWriter& writer) {
-    CaseSimulator simulator(plan_, *options_.kernel);
-    while (!halt_) {
-      const std::optional<Batch> batch = source.next(simulator.batch_size(), halt_);
-      if (!batch) break;
-      ShardJob& job = *batch->job;
-      const double before = simulator.seconds().total();
-      if (!simulator.simulate(batch->cases(), job.rows, batch->first_row, halt_)) break;
-      job.seconds += simulator.seconds().total() - before;
-      progress_.simulated += static_cast<std::int64_t>(batch->count);
-      if (job.left.fetch_sub(batch->count) == batch->count) {
-        writer.push(make_finished(job.shard, folder_.shard(job.shard),
-                                  SweepFolder::shard_name(job.shard), job.rows,
-                                  job.seconds.load()));
-      }
-    }
-    add_seconds(simulator.seconds());
-  }
-
-  /// The failing cases of each shard, one after the other, into one overlay a shard.
-  void retry_shards(const std::vector<std::int64_t>& shards, std::atomic<std::size_t>& next,
-                    ShardWriter& writer) {
-    CaseSimulator simulator(plan_, *options_.kernel);
-    for (std::size_t i = next++; i < shards.size() && !halt_ && !is_drained(); i = next++) {
-      const std::int64_t shard = shards[i];
-      const std::string unit = SweepFolder::retry_unit(shard);
-      if (claims_.claim(unit) != Claims::Answer::kMine) continue;
-      const int round = count_retries(folder_, shard);
-      const double before = simulator.seconds().total();
-      ShardRows overlay;
-      // Another runner's round counts as this one's: a resume tries a case once, however many help.
-      if (round == find_rounds_before(shard)) overlay = retry_shard(shard, simulator);
-      if (overlay.size() == 0 || halt_) {
-        claims_.release(unit);
-        continue;
-      }
-      writer.push(make_finished(shard, folder_.retry(shard, round), unit, overlay,
-                                simulator.seconds().total() - before));
-    }
-    add_seconds(simulator.seconds());
-  }
-
-  bool is_drained() const { return options_.drain != nullptr && *options_.drain; }
-
-  /// None, and told, where the shard is damaged.
-  ShardRows read_rows(std::int64_t shard) {
-    try {
-      return read_shard_with_retries(folder_, extent_, shard).rows;
-    } catch (const InputError& e) {
-      const std::lock_guard lock(mutex_);
-      summary_.damaged[shard] = e.what();
-      return {};
-    }
-  }
-
-  ShardRows retry_shard(std::int64_t shard, CaseSimulator& simulator) {
-    const ShardRows rows = read_rows(shard);
-    std::vector<std::size_t> failing;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      if (may_retry(rows.status[row]) && rows.attempt[row] < kLastAttempt) failing.push_back(row);
-    }
-    ShardRows overlay = ShardRows::make(schema_, failing.size());
-    for (std::size_t i = 0; i < failing.size() && !halt_; ++i) {
-      const std::size_t row = failing[i];
-      simulator.retry(rows.case_id[row], rows.attempt[row] + 1, overlay, i);
-      ++progress_.retried;
-      const bool mended = overlay.status[i] == 0;
-      const std::lock_guard lock(mutex_);
-      ++(mended ? summary_.mended : summary_.still_failing);
-    }
-    return overlay;
-  }
-
-  std::map<std::int64_t, int> count_all_retries() const {
-    std::map<std::int64_t, int> rounds;
-    for (const std::int64_t shard : list_shards(folder_)) {
-      const int count = count_retries(folder_, shard);
-      if (count > 0) rounds[shard] = count;
-    }
-    return rounds;
-  }
-
-  int find_rounds_before(std::int64_t shard) const {
-    const auto known = rounds_before_.find(shard);
-    return known == rounds_before_.end() ? 0 : known->second;
-  }
-
-  FinishedShard make_finished(std::int64_t shard, const fs::path& target, const std::string& unit,
-                              const ShardRows& rows, double seconds) {
-    double compress = 0.0;
-    FinishedShard finished{shard, target, unit, {}, {}};
-    {
-      const Timer timer(compress);
-      finished.data = compress_shard(schema_, rows);
-      finished.entry = make_journal_entry(folder_, target, rows);
-    }
-    finished.entry.seconds = seconds;
+  void add_compress(double seconds) {
     const std::lock_guard lock(mutex_);
-    summary_.compress += compress;
-    return finished;
+    summary_.compress += seconds;
   }
-
-  /// Calls `act(shard, entry)` for each of the shards asked for that is there and can be read.
-  template <class Act>
-  void for_each_present(const Act& act) {
-    const ShardRecords records(folder_, extent_);
-    const std::int64_t end = options_.find_end_shard(plan_);
-    for (const std::int64_t shard : list_shards(folder_)) {
-      if (shard < options_.first_shard || shard >= end) continue;
-      try {
-        act(shard, records.get(shard));
-      } catch (const InputError& e) {  // one bad file must not stop the rest
-        summary_.damaged[shard] = e.what();
-      }
-    }
-  }
-
-  std::vector<std::int64_t> list_failing_shards() {
-    std::vector<std::int64_t> shards;
-    for_each_present([&](std::int64_t shard, const JournalEntry& entry) {
-      if (!entry.failures.empty()) shards.push_back(shard);
-    });
-    return shards;
-  }
-
-  void count_failed() {
-    for_each_present(
-        [&](std::int64_t, const JournalEntry& entry) { summary_.failed += count_failures(entry); });
-  }
-
-  void add_seconds(const SimulationSeconds& seconds) {
+  void add_simulation(const SimulationSeconds& seconds) {
     const std::lock_guard lock(mutex_);
     summary_.simulation += seconds;
   }
+  void add_retry(bool mended) {
+    const std::lock_guard lock(mutex_);
+    ++(mended ? summary_.mended : summary_.still_failing);
+  }
+  void add_damaged(std::int64_t shard, const std::string& error) {
+    const std::lock_guard lock(mutex_);
+    summary_.damaged[shard] = error;
+  }
+  void add_writer(const WriterTotals& totals) {
+    const std::lock_guard lock(mutex_);
+    summary_.duplicates += totals.duplicates;
+    summary_.bytes += totals.bytes;
+    summary_.write += totals.seconds;
+  }
+  /// Call only after the threads have ended.
+  RunSummary take() { return std::move(summary_); }
 
-  const SweepFolder& folder_;
-  const Plan& plan_;
-  const RunOptions& options_;
-  RunProgress& progress_;
-  std::atomic<bool>& halt_;
-  const ShardSchema schema_;
-  const SweepExtent extent_;
-  Claims claims_;
-  std::map<std::int64_t, int> rounds_before_;  // shards that were retried before this run began
-  std::mutex mutex_;                           // guards summary_ while the team works
+ private:
+  std::mutex mutex_;
   RunSummary summary_;
 };
+
+void prepare_folder(const SweepFolder& folder) {
+  make_subfolders(folder);
+  // Fails before hours of work rather than when the first shard is published.
+  check_regular(Folder(folder.root).descriptor(), folder.journal().filename().string(),
+                folder.journal());
+}
+
+ShardWriter::Settings make_writer_settings(const RunInput& run) {
+  ShardWriter::Settings settings{run.plan.hash(), run.options.provenance};
+  settings.provenance.emplace_back(kInstructionSetKey, run.options.kernel->isa);
+  settings.provenance.emplace_back("threads", std::to_string(run.options.threads));
+  return settings;
+}
+
+/// Calls `produce(writer)` on each thread of a team; returns the number of files written.
+template <class Produce>
+std::int64_t run_writing_team(const RunInput& run, Claims& claims, SharedSummary& summary,
+                              ShardWriter::OnPublished on_published, const Produce& produce) {
+  ShardWriter writer(run.folder, make_writer_settings(run), claims, run.halt,
+                     std::move(on_published));
+  std::exception_ptr failure;
+  try {
+    run_team(run.options.threads, run.halt, [&] { produce(writer); });
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const WriterTotals totals = writer.finish();
+  if (failure) std::rethrow_exception(failure);
+  summary.add_writer(totals);
+  return totals.shards;
+}
+
+FinishedShard make_finished(const RunInput& run, std::int64_t shard, const fs::path& target,
+                            const std::string& unit, const ShardRows& rows, double seconds,
+                            SharedSummary& summary) {
+  double compress = 0.0;
+  FinishedShard finished{shard, target, unit, {}, {}};
+  {
+    const Timer timer(compress);
+    finished.data = compress_shard(run.schema, rows);
+    finished.entry = make_journal_entry(run.folder, target, rows);
+  }
+  finished.entry.seconds = seconds;
+  summary.add_compress(compress);
+  return finished;
+}
+
+// --- missing shards --------------------------------------------------------------------------
+
+void count_written(const JournalEntry& entry, RunProgress& progress) {
+  if (entry.duplicate) {
+    progress.simulated -= entry.cases;
+    progress.elsewhere += entry.cases;
+  } else {
+    progress.written += entry.cases;
+    progress.failed += count_failures(entry);
+  }
+}
+
+/// The work of one thread: simulates batches, and pushes each shard whose last batch it finished.
+void simulate_shards(const RunInput& run, ShardSource& source, ShardWriter& writer,
+                     SharedSummary& summary) {
+  CaseSimulator simulator(run.plan, *run.options.kernel);
+  while (!run.halt) {
+    const std::optional<Batch> batch = source.next(simulator.batch_size(), run.halt);
+    if (!batch) break;
+    ShardJob& job = *batch->job;
+    const double before = simulator.seconds().total();
+    if (!simulator.simulate(batch->cases(), job.rows, batch->first_row, run.halt)) break;
+    job.seconds += simulator.seconds().total() - before;
+    run.progress.simulated += static_cast<std::int64_t>(batch->count);
+    if (job.remaining.fetch_sub(batch->count) == batch->count) {
+      writer.push(make_finished(run, job.shard, run.folder.shard(job.shard),
+                                SweepFolder::shard_name(job.shard), job.rows, job.seconds.load(),
+                                summary));
+    }
+  }
+  summary.add_simulation(simulator.seconds());
+}
+
+// --- retries ---------------------------------------------------------------------------------
+
+/// Number of retries of each shard that has any.
+using RetryCounts = std::map<std::int64_t, int>;
+
+RetryCounts count_all_retries(const SweepFolder& folder) {
+  RetryCounts counts;
+  for (const std::int64_t shard : list_shards(folder)) {
+    const int count = count_retries(folder, shard);
+    if (count > 0) counts[shard] = count;
+  }
+  return counts;
+}
+
+/// Returns no rows, and notes the error, if the shard is damaged.
+ShardRows read_rows(const RunInput& run, std::int64_t shard, SharedSummary& summary) {
+  try {
+    return read_shard_with_retries(run.folder, run.extent, shard).rows;
+  } catch (const InputError& e) {
+    summary.add_damaged(shard, e.what());
+    return {};
+  }
+}
+
+/// Retries the failed cases of a shard; returns the rows of its overlay.
+ShardRows retry_shard(const RunInput& run, std::int64_t shard, CaseSimulator& simulator,
+                      SharedSummary& summary) {
+  const ShardRows rows = read_rows(run, shard, summary);
+  std::vector<std::size_t> failing;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (may_retry(rows.status[row]) && rows.attempt[row] < kLastAttempt) failing.push_back(row);
+  }
+  ShardRows overlay = ShardRows::make(run.schema, failing.size());
+  for (std::size_t i = 0; i < failing.size() && !run.halt; ++i) {
+    const std::size_t row = failing[i];
+    simulator.retry(rows.case_id[row], rows.attempt[row] + 1, overlay, i);
+    ++run.progress.retried;
+    summary.add_retry(overlay.status[i] == 0);
+  }
+  return overlay;
+}
+
+/// The work of one thread: retries the next of `shards` until none remains.
+void retry_shards(const RunInput& run, const std::vector<std::int64_t>& shards,
+                  const RetryCounts& before, std::atomic<std::size_t>& next, Claims& claims,
+                  ShardWriter& writer, SharedSummary& summary) {
+  CaseSimulator simulator(run.plan, *run.options.kernel);
+  for (std::size_t i = next++; i < shards.size() && !run.is_stopping(); i = next++) {
+    const std::int64_t shard = shards[i];
+    const std::string unit = SweepFolder::retry_unit(shard);
+    if (claims.claim(unit) != Claims::Answer::kMine) continue;
+    const int round = count_retries(run.folder, shard);
+    const auto known = before.find(shard);
+    const double start = simulator.seconds().total();
+    ShardRows overlay;
+    // Another runner's round counts as this one's: a resume retries a case once, however many help.
+    if (round == (known == before.end() ? 0 : known->second)) {
+      overlay = retry_shard(run, shard, simulator, summary);
+    }
+    if (overlay.size() == 0 || run.halt) {
+      claims.release(unit);
+      continue;
+    }
+    writer.push(make_finished(run, shard, run.folder.retry(shard, round), unit, overlay,
+                              simulator.seconds().total() - start, summary));
+  }
+  summary.add_simulation(simulator.seconds());
+}
+
+// --- results ---------------------------------------------------------------------------------
+
+/// Calls `act(shard, entry)` for each requested shard that exists and can be read.
+template <class Act>
+void for_each_present(const RunInput& run, SharedSummary& summary, const Act& act) {
+  const ShardRecords records(run.folder, run.extent);
+  const std::int64_t end = run.options.find_end_shard(run.plan);
+  for (const std::int64_t shard : list_shards(run.folder)) {
+    if (shard < run.options.first_shard || shard >= end) continue;
+    try {
+      act(shard, records.get(shard));
+    } catch (const InputError& e) {  // one bad file must not stop the others
+      summary.add_damaged(shard, e.what());
+    }
+  }
+}
+
+std::vector<std::int64_t> list_failing_shards(const RunInput& run, SharedSummary& summary) {
+  std::vector<std::int64_t> shards;
+  for_each_present(run, summary, [&](std::int64_t shard, const JournalEntry& entry) {
+    if (!entry.failures.empty()) shards.push_back(shard);
+  });
+  return shards;
+}
+
+std::int64_t count_failed(const RunInput& run, SharedSummary& summary) {
+  std::int64_t failed = 0;
+  for_each_present(run, summary, [&](std::int64_t, const JournalEntry& entry) {
+    failed += count_failures(entry);
+  });
+  return failed;
+}
 
 }  // namespace
 
 RunSummary run_sweep(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
                      RunProgress& progress, std::atomic<bool>& halt) {
-  return Run(folder, plan, options, progress, halt).run();
+  const RunInput run{folder, plan, options, progress, halt, plan.make_schema(), plan.make_extent()};
+  prepare_folder(folder);
+  Claims claims(folder.open(folder.claims()), options.claims);
+  clean_up(folder, claims);
+  const RetryCounts before = options.retry_failed ? count_all_retries(folder) : RetryCounts();
+
+  SharedSummary shared;
+  ShardSource source(folder, plan, options, claims, progress);
+  const std::int64_t shards_written = run_writing_team(
+      run, claims, shared, [&](const JournalEntry& entry) { count_written(entry, progress); },
+      [&](ShardWriter& writer) { simulate_shards(run, source, writer, shared); });
+  std::int64_t retries_written = 0;
+  if (options.retry_failed && !halt) {
+    const std::vector<std::int64_t> shards = list_failing_shards(run, shared);
+    std::atomic<std::size_t> next{0};
+    retries_written = run_writing_team(
+        run, claims, shared, [](const JournalEntry&) {},
+        [&](ShardWriter& writer) {
+          retry_shards(run, shards, before, next, claims, writer, shared);
+        });
+  }
+
+  const bool stopped = halt;
+  const std::int64_t failed = count_failed(run, shared);
+  RunSummary summary = shared.take();
+  summary.stopped = stopped;
+  summary.shards_written = shards_written;
+  summary.retries_written = retries_written;
+  summary.failed = failed;
+  summary.notes = source.notes();
+  return summary;
 }
 
 }  // namespace strut

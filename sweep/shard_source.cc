@@ -1,5 +1,7 @@
 #include "sweep/shard_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -10,7 +12,7 @@
 namespace strut {
 namespace {
 
-/// Time between looks at the shards that other runners work on.
+/// Interval at which shards claimed by other runners are polled.
 constexpr std::chrono::milliseconds kPoll{100};
 
 }  // namespace
@@ -27,23 +29,23 @@ ShardSource::ShardSource(const SweepFolder& folder, const Plan& plan, const RunO
 }
 
 void ShardSource::scan(std::int64_t first, std::int64_t end) {
-  const std::vector<std::int64_t> there = list_shards(folder_);
-  auto present = std::lower_bound(there.begin(), there.end(), first);
+  const std::vector<std::int64_t> existing = list_shards(folder_);
+  auto present = std::lower_bound(existing.begin(), existing.end(), first);
   for (std::int64_t shard = first; shard < end; ++shard) {
     const std::int64_t cases = plan_.shard_size(shard);
     progress_.cases += cases;
-    if (present != there.end() && *present == shard) {
+    if (present != existing.end() && *present == shard) {
       ++present;
       const std::string fault = find_seal_fault(folder_, plan_, shard);
       if (fault.empty()) {
         progress_.present += cases;
         continue;
       }
-      notes_.push_back("shard " + std::to_string(shard) +
-                       " moved to quarantine, to be simulated again: " + fault);
+      notes_.push_back(
+          fmt::format("shard {} moved to quarantine, to be simulated again: {}", shard, fault));
       quarantine(folder_, folder_.shard(shard));
     }
-    to_do_.push_back(shard);
+    missing_.push_back(shard);
   }
 }
 
@@ -53,7 +55,7 @@ std::optional<Batch> ShardSource::next(std::size_t size, const std::atomic<bool>
       const std::lock_guard lock(mutex_);
       if (!job_) {
         const Taken taken = open_job();
-        if (taken == Taken::kNothingLeft) return std::nullopt;
+        if (taken == Taken::kNoneLeft) return std::nullopt;
       }
       if (job_) {
         const std::size_t count = std::min(size, job_->cases.size() - next_row_);
@@ -69,15 +71,15 @@ std::optional<Batch> ShardSource::next(std::size_t size, const std::atomic<bool>
 }
 
 ShardSource::Taken ShardSource::open_job() {
-  if (drain_ != nullptr && *drain_) return Taken::kNothingLeft;
-  while (next_ < to_do_.size()) {
-    if (take(to_do_[next_++])) return Taken::kJob;
+  if (drain_ != nullptr && *drain_) return Taken::kNoneLeft;
+  while (next_ < missing_.size()) {
+    if (take(missing_[next_++])) return Taken::kJob;
   }
-  // Whoever held these may have finished, or died. One thread asks for all: a folder on the network
-  // is slow.
+  // The runners that held these may have finished or died. One thread polls for all, since network
+  // folders are slow.
   const auto now = std::chrono::steady_clock::now();
-  if (!elsewhere_.empty() && now < ask_again_) return Taken::kNothingNow;
-  ask_again_ = now + kPoll;
+  if (!elsewhere_.empty() && now < next_poll_) return Taken::kNoneNow;
+  next_poll_ = now + kPoll;
   std::vector<std::int64_t> again;
   again.swap(elsewhere_);
   for (std::size_t i = 0; i < again.size(); ++i) {
@@ -86,13 +88,13 @@ ShardSource::Taken ShardSource::open_job() {
                       again.end());
     return Taken::kJob;
   }
-  return elsewhere_.empty() ? Taken::kNothingLeft : Taken::kNothingNow;
+  return elsewhere_.empty() ? Taken::kNoneLeft : Taken::kNoneNow;
 }
 
 bool ShardSource::take(std::int64_t shard) {
   const std::string unit = SweepFolder::shard_name(shard);
   const bool mine = claims_.claim(unit) == Claims::Answer::kMine;
-  // Looked at after the claim: a shard is published before its claim is given back.
+  // Checked after claiming: a shard is published before its claim is released.
   if (std::filesystem::exists(folder_.shard(shard))) {
     if (mine) claims_.release(unit);
     progress_.elsewhere += plan_.shard_size(shard);
@@ -116,7 +118,7 @@ std::shared_ptr<ShardJob> ShardSource::make_job(std::int64_t shard) const {
     job->cases.push_back(plan_.calc_case_id(position));
   }
   job->rows = ShardRows::make(schema_, job->cases.size());
-  job->left = job->cases.size();
+  job->remaining = job->cases.size();
   return job;
 }
 

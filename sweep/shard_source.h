@@ -1,4 +1,4 @@
-// Hands the shards that a runner has to do to its workers, batch by batch.
+// Gives the workers of a runner the missing shards, batch by batch.
 #pragma once
 
 #include <atomic>
@@ -18,13 +18,13 @@
 
 namespace strut {
 
-/// A shard in the making. Workers fill disjoint rows.
+/// A shard in progress. Workers fill disjoint rows.
 struct ShardJob {
   std::int64_t shard = 0;
   std::vector<std::int64_t> cases;
   ShardRows rows;
-  std::atomic<std::size_t> left{0};  // cases without a result yet
-  std::atomic<double> seconds{0.0};  // of simulation, summed over threads
+  std::atomic<std::size_t> remaining{0};  // cases without a result yet
+  std::atomic<double> seconds{0.0};       // simulation time, summed over threads
 };
 
 struct Batch {
@@ -38,21 +38,21 @@ struct Batch {
 
 class ShardSource {
  public:
-  /// Shards of `options` that are not in the folder; those that are but cannot be the plan's are
-  /// moved aside and done again. The arguments must outlive it.
+  /// Finds the shards of `options` that are missing; moves those that do not match the plan to
+  /// quarantine, to be simulated again. The arguments must outlive the source.
   ShardSource(const SweepFolder& folder, const Plan& plan, const RunOptions& options,
               Claims& claims, RunProgress& progress);
 
-  /// The files that were moved aside, and why.
+  /// The files moved to quarantine, and why.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// Up to `size` cases to simulate. Waits where all that is left is in other runners' hands.
-  /// Empty: nothing is left, `halt` is true, or a shard would have to be begun while the run
-  /// drains.
+  /// Returns up to `size` cases to simulate. Waits while other runners hold all remaining shards.
+  /// Returns nothing once none remains, `halt` is true, or the next shard would have to be started
+  /// while the run drains.
   std::optional<Batch> next(std::size_t size, const std::atomic<bool>& halt);
 
  private:
-  enum class Taken { kJob, kNothingNow, kNothingLeft };
+  enum class Taken { kJob, kNoneNow, kNoneLeft };
 
   void scan(std::int64_t first, std::int64_t end);
   Taken open_job();
@@ -67,11 +67,11 @@ class ShardSource {
   const ShardSchema schema_;
   std::vector<std::string> notes_;
 
-  std::mutex mutex_;                 // guards all below
-  std::vector<std::int64_t> to_do_;  // from next_ on
+  std::mutex mutex_;                   // guards all below
+  std::vector<std::int64_t> missing_;  // those before next_ were taken
   std::size_t next_ = 0;
-  std::vector<std::int64_t> elsewhere_;  // in other runners' hands when last asked
-  std::chrono::steady_clock::time_point ask_again_;
+  std::vector<std::int64_t> elsewhere_;  // claimed by other runners at the last poll
+  std::chrono::steady_clock::time_point next_poll_;
   std::shared_ptr<ShardJob> job_;
   std::size_t next_row_ = 0;
 };

@@ -1,5 +1,7 @@
 #include "sweep/shard_store.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "base/error/input_error.h"
@@ -10,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kOtherData[] = "does not hold the data that were published under this name";
+constexpr char kOtherData[] = "does not hold the data published under this name";
 
 }  // namespace
 
@@ -40,23 +42,23 @@ ShardRecords::ShardRecords(const SweepFolder& folder, SweepExtent extent)
     if (journal_.entries[i].duplicate) {
       ++duplicates_;
     } else {
-      lines_[journal_.entries[i].file] = i;
+      last_entries_[journal_.entries[i].file] = i;
     }
   }
 }
 
-const JournalEntry* ShardRecords::find_line(const fs::path& file) const {
-  const auto line = lines_.find(folder_.name_of(file));
-  return line == lines_.end() ? nullptr : &journal_.entries[line->second];
+const JournalEntry* ShardRecords::find_entry(const fs::path& file) const {
+  const auto last = last_entries_.find(folder_.name_of(file));
+  return last == last_entries_.end() ? nullptr : &journal_.entries[last->second];
 }
 
 std::string ShardRecords::find_fault(const fs::path& file, std::int64_t shard,
                                      const ShardSeal& seal) const {
   std::string fault = find_misplacement(seal, extent_.plan_hash, shard);
   if (!fault.empty()) return fault;
-  const JournalEntry* const line = find_line(file);
-  const bool is_as_published = line == nullptr || line->sha256 == seal.sha256 ||
-                               line->digest == calc_rows_digest(read_shard(file).rows).state();
+  const JournalEntry* const published = find_entry(file);
+  const bool is_as_published = published == nullptr || published->sha256 == seal.sha256 ||
+                               published->digest == calc_rows_digest(read_shard(file).rows).state();
   return is_as_published ? "" : kOtherData;
 }
 
@@ -64,12 +66,14 @@ JournalEntry ShardRecords::get(std::int64_t shard) const {
   const fs::path file = folder_.shard(shard);
   const ShardSeal seal = read_shard_seal(file);
   const std::string fault = find_fault(file, shard, seal);
-  if (!fault.empty()) throw InputError(file.string() + ": " + fault + "; " + kShardSeal.remedy);
-  const JournalEntry* const line = find_line(file);
-  if (line != nullptr && count_retries(folder_, shard) == 0) return *line;
+  if (!fault.empty()) {
+    throw InputError(fmt::format("{}: {}; {}", file.string(), fault, kShardSeal.remedy));
+  }
+  const JournalEntry* const published = find_entry(file);
+  if (published != nullptr && count_retries(folder_, shard) == 0) return *published;
   const JournalEntry mended =
       make_journal_entry(folder_, file, read_shard_with_retries(folder_, extent_, shard).rows);
-  JournalEntry entry = line == nullptr ? mended : *line;
+  JournalEntry entry = published == nullptr ? mended : *published;
   entry.bytes = seal.size;
   entry.failures = mended.failures;
   entry.digest = mended.digest;

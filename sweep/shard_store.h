@@ -1,4 +1,4 @@
-// The shards of a sweep folder against its plan and its journal.
+// Checks the shards of a sweep folder against its plan and its journal.
 #pragma once
 
 #include <cstdint>
@@ -13,45 +13,45 @@
 
 namespace strut {
 
-/// Why a shard cannot be what the plan asks for, by its seal alone (512 bytes and the size); empty
-/// where nothing speaks against it.
+/// Returns why a shard does not match the plan, judged by its seal alone (512 bytes and the size);
+/// empty if it may match.
 std::string find_seal_fault(const SweepFolder& folder, const Plan& plan, std::int64_t shard);
 
-/// Moves a file aside, into `quarantine/`, under a name that is free there. Nothing is deleted.
+/// Moves a file to `quarantine/`, under a free name. Nothing is deleted.
 void quarantine(const SweepFolder& folder, const std::filesystem::path& file);
 
-/// The record of each shard: the journal's, or the file's own where the journal has none.
+/// The record of each shard: from the journal, or from the file if the journal has none.
 class ShardRecords {
  public:
   ShardRecords(const SweepFolder& folder, SweepExtent extent);
 
-  /// The record of a shard that exists; failures as the last retry left them. Throws InputError
-  /// where its seal or size is wrong, or not the plan's or the journal's.
+  /// The record of an existing shard, with the failures that remain after the last retry. Throws
+  /// InputError if its seal or size is wrong or does not match the plan or the journal.
   JournalEntry get(std::int64_t shard) const;
-  /// Why a file with this seal, a shard or a retry of it, is not the plan's or not what the journal
-  /// says was published; empty where it is. A shard that was moved aside and made again by a runner
-  /// that died before it could say so is another file with the same rows.
+  /// Returns why a file with this seal, a shard or a retry of it, does not match the plan or the
+  /// journal; empty if it matches. A runner that simulates a quarantined shard again and dies
+  /// before it writes the journal leaves a different file with the same rows, which matches.
   std::string find_fault(const std::filesystem::path& file, std::int64_t shard,
                          const ShardSeal& seal) const;
-  /// Lines that were no lines; entries of work done twice.
+  /// Number of malformed lines, and of entries for work done twice.
   std::size_t bad_lines() const { return journal_.bad_lines; }
   std::int64_t duplicates() const { return duplicates_; }
   const Journal& journal() const { return journal_; }
 
  private:
-  const JournalEntry* find_line(const std::filesystem::path& file) const;  // null: none
+  const JournalEntry* find_entry(const std::filesystem::path& file) const;  // null: none
 
   SweepFolder folder_;
   SweepExtent extent_;
   Journal journal_;
-  std::map<std::string, std::size_t> lines_;  // file -> its last entry
+  std::map<std::string, std::size_t> last_entries_;  // file -> index of its last entry
   std::int64_t duplicates_ = 0;
 };
 
-/// Cases of an entry that have no result.
+/// Number of cases of an entry without a result.
 std::int64_t count_failures(const JournalEntry& entry);
 
-/// The journal's line of a shard's rows; time, seconds and runner are left to the caller.
+/// The journal entry of a shard's rows; the caller sets time, seconds and runner.
 JournalEntry make_journal_entry(const SweepFolder& folder, const std::filesystem::path& file,
                                 const ShardRows& rows);
 

@@ -8,7 +8,7 @@
 namespace strut {
 namespace {
 
-/// "2026-11-21T09:30:00Z"
+/// Formats a time as "2026-11-21T09:30:00Z".
 std::string format_utc(std::time_t time) {
   std::tm parts{};
   gmtime_r(&time, &parts);

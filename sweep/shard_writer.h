@@ -1,5 +1,5 @@
-// The one thread of a runner that writes: takes compressed shards from a bounded queue, publishes
-// them, and tells the journal.
+// The writer thread of a runner: takes compressed shards from a bounded queue, publishes them and
+// records them in the journal.
 #pragma once
 
 #include <atomic>
@@ -26,9 +26,9 @@ namespace strut {
 struct FinishedShard {
   std::int64_t shard = 0;
   std::filesystem::path target;
-  std::string unit;  // the claim it was made under
+  std::string unit;  // the claim under which it was made
   CompressedShard data;
-  JournalEntry entry;  // all but bytes, hash, time and runner
+  JournalEntry entry;  // the writer sets bytes, hash, time and runner
 };
 
 struct WriterTotals {
@@ -45,21 +45,21 @@ class ShardWriter {
     std::size_t queue_length = 4;
   };
 
-  /// Called from the writer's thread with what the journal was told.
+  /// Called by the writer's thread with each entry that it appended to the journal.
   using OnPublished = std::function<void(const JournalEntry&)>;
 
-  /// `halt` turns true where writing fails. The references must outlive it.
+  /// Sets `halt` if writing fails. The references must outlive the writer.
   ShardWriter(const SweepFolder& folder, Settings settings, Claims& claims, std::atomic<bool>& halt,
               OnPublished on_published);
-  /// As finish(), but for the exception.
+  /// Like finish(), without the exception.
   ~ShardWriter();
   ShardWriter(const ShardWriter&) = delete;
   ShardWriter& operator=(const ShardWriter&) = delete;
 
-  /// Waits while the queue is full. After a failure shards are dropped.
+  /// Waits while the queue is full. Drops the shard if writing has failed.
   void push(FinishedShard shard);
 
-  /// Writes what is queued and ends the thread. Throws what made it fail.
+  /// Writes the queued shards and ends the thread. Rethrows the exception that made writing fail.
   WriterTotals finish();
 
  private:
@@ -72,7 +72,7 @@ class ShardWriter {
   Claims& claims_;
   std::atomic<bool>& halt_;
   const OnPublished on_published_;
-  WriterTotals totals_;  // the thread's own until it has ended
+  WriterTotals totals_;  // the thread's until it has ended
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,4 +1,4 @@
-// One car through one maneuver, alone: what `strut simulate` runs.
+// Simulates a single case: what `strut simulate` runs.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 namespace strut {
 
 /// Runs a prepared case in plain double on the widest instruction set of this processor, or by
-/// CVODE, and reads all channels as their sensors do: the snapshot and, with `interval` [s] above
-/// 0, their history. One lane. Whether the run got through is in `status` (0: it did) and
-/// `failure_time`.
+/// CVODE, and reads all channels through their sensors: the snapshot and, if `interval` [s] is
+/// above 0, their history. Returns one lane; its `status` is 0 if the run completed, else
+/// `failure_time` is when it failed.
 LaneResults simulate_case(const PreparedCase& c, const SolverOptions& integrate = {},
                           double interval = 0.0);
 
-/// True where the snapshot's line was reached.
+/// True if the car reached the snapshot's line.
 bool has_snapshot(const LaneResults& results);
 
-/// One channel of the history of `channels` channels, of one lane.
+/// Returns one channel of a one-lane history of `channels` channels.
 std::vector<double> get_history(const LaneResults& results, std::size_t channels,
                                 std::size_t channel);
 

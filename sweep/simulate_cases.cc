@@ -1,5 +1,7 @@
 #include "sweep/simulate_cases.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,12 +39,12 @@ void fail(ShardRows& rows, std::size_t row, RunStatus status, double time, std::
 }  // namespace
 
 std::string describe_case_status() {
-  std::string text;
+  std::vector<std::string> texts;
+  texts.reserve(kRunStatuses.size());
   for (const RunStatusInfo& info : kRunStatuses) {
-    text += (text.empty() ? "" : ", ") + std::to_string(static_cast<int>(info.status)) + " " +
-            info.name;
+    texts.push_back(fmt::format("{} {}", static_cast<int>(info.status), info.name));
   }
-  return text;
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 bool may_retry(std::int32_t status) {
@@ -99,7 +101,7 @@ void CaseSimulator::retry(std::int64_t case_id, int attempt, ShardRows& rows, st
   record(results, 0, rows, row);
 }
 
-/// Everything but parameters and layer neutral, whatever stood there before.
+/// Writes parameters and stratum of a row; resets everything else.
 void CaseSimulator::start_row(std::int64_t case_id, ShardRows& rows, std::size_t row) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const SweepRequest& request = plan_.request();
@@ -107,7 +109,7 @@ void CaseSimulator::start_row(std::int64_t case_id, ShardRows& rows, std::size_t
   const std::size_t channels = request.snapshot.on ? request.snapshot.channels.size() : 0;
   rows.case_id[row] = case_id;
   plan_.calc_parameters(case_id, std::span(rows.parameters).subspan(row * axes, axes));
-  rows.layer[row] = plan_.calc_layer(case_id);
+  rows.layer[row] = plan_.calc_stratum(case_id);
   rows.status[row] = rows.attempt[row] = 0;
   rows.event_time[row] = rows.failure_time[row] = kNone;
   rows.reason[row].clear();
@@ -143,8 +145,8 @@ std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std
   return ready;
 }
 
-/// Runs the first of `ready` with as many of its successors as may share lanes with it; returns how
-/// many ran.
+/// Runs the first of `ready` together with as many of its successors as may share lanes with it;
+/// returns their number.
 std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& rows) {
   const Timer timer(seconds_.integrate);
   const SolverOptions& integrate = plan_.request().integrate;

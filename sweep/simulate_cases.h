@@ -1,4 +1,4 @@
-// Some cases of a plan through the simulation into rows of a shard, failures and retries included.
+// Simulates cases of a plan into rows of a shard, including failures and retries.
 #pragma once
 
 #include <atomic>
@@ -13,16 +13,16 @@
 
 namespace strut {
 
-/// "0 done, 1 diverged, ..."
+/// Lists the statuses of a case: "0 done, 1 diverged, ..."
 std::string describe_case_status();
 
-/// Whether another try with a smaller step may mend a failure.
+/// True if a retry with a smaller step may mend this failure.
 bool may_retry(std::int32_t status);
 
-/// Retries divide the step by 4 each; the last one still allowed.
+/// Last allowed retry; each divides the step by 4.
 inline constexpr int kLastAttempt = 4;
 
-/// Time spent, by part [s].
+/// Time spent in each part [s].
 struct SimulationSeconds {
   double prepare = 0.0, integrate = 0.0, retry = 0.0;
 
@@ -30,23 +30,23 @@ struct SimulationSeconds {
   SimulationSeconds& operator+=(const SimulationSeconds& other);
 };
 
-/// One thread's simulator; not to be shared.
+/// Simulator of one thread; not thread-safe.
 class CaseSimulator {
  public:
-  /// Both must outlive it.
+  /// Both arguments must outlive the simulator.
   CaseSimulator(const Plan& plan, const Kernel& kernel);
 
-  /// Cases that are best simulated together.
+  /// Number of cases that fill one batch of lanes.
   std::size_t batch_size() const;
 
-  /// Simulates `cases` (ids) into the rows from `first_row` on. A case that fails in lanes is tried
-  /// once more at once (attempt 1 of `retry`). A case's row does not depend on the others, nor on
-  /// how they are grouped. Returns false, rows incomplete, where `stop` turned true on the way.
+  /// Simulates `cases` (ids) into the rows from `first_row` on. A case that fails in lanes is
+  /// retried at once (attempt 1 of `retry`). A case's row depends neither on the other cases nor on
+  /// how they are grouped. Returns false, with incomplete rows, if `stop` turned true meanwhile.
   bool simulate(std::span<const std::int64_t> cases, ShardRows& rows, std::size_t first_row,
                 const std::atomic<bool>& stop);
 
-  /// Simulates one case alone in plain double with the request's step divided by 4^attempt
-  /// everywhere, contact events located.
+  /// Simulates one case in plain double, with the request's step divided by 4^attempt throughout
+  /// and contact events located.
   void retry(std::int64_t case_id, int attempt, ShardRows& rows, std::size_t row);
 
   const SimulationSeconds& seconds() const { return seconds_; }

@@ -1,5 +1,7 @@
 #include "sweep/status.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <ctime>
 #include <limits>
@@ -13,13 +15,13 @@ namespace {
 
 constexpr std::int64_t kRateWindow = 60;  // s
 
-/// Cases a second over the journal's last minute; 0 where it says nothing of now.
+/// Cases/s over the journal's last minute; 0 if it has no recent entry.
 double calc_rate(const Journal& journal) {
   const std::int64_t now = std::time(nullptr);
   std::int64_t first = now, cases = 0;
   for (const JournalEntry& entry : journal.entries) {
     if (entry.duplicate || entry.time < now - kRateWindow || entry.time > now) continue;
-    // The first entry marks when the others' work began.
+    // The first entry marks when work on the others began.
     if (entry.time < first) {
       first = entry.time;
     } else {
@@ -29,7 +31,7 @@ double calc_rate(const Journal& journal) {
   return now > first ? static_cast<double>(cases) / static_cast<double>(now - first) : 0.0;
 }
 
-/// Cases of an entry that failed in a way that a smaller step may mend.
+/// Number of failed cases of an entry that a smaller step may mend.
 std::int64_t count_mendable(const JournalEntry& entry) {
   std::int64_t count = 0;
   for (const RunStatusInfo& info : kRunStatuses) {
@@ -74,8 +76,8 @@ SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
   std::vector<std::int64_t> shards = list_shards(folder);
   const auto end = std::lower_bound(shards.begin(), shards.end(), status.shards);
   for (auto foreign = end; foreign != shards.end(); ++foreign) {
-    status.faults.push_back(folder.shard(*foreign).string() + ": the plan has no such shard; " +
-                            kShardSeal.remedy);
+    status.faults.push_back(fmt::format("{}: the plan has no such shard; {}",
+                                        folder.shard(*foreign).string(), kShardSeal.remedy));
   }
   shards.erase(end, shards.end());
   for (const std::int64_t shard : shards) {

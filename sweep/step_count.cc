@@ -1,5 +1,7 @@
 #include "sweep/step_count.h"
 
+#include <fmt/format.h>
+
 #include "base/text/format_number.h"
 
 namespace strut {
@@ -7,10 +9,11 @@ namespace strut {
 std::string find_step_count_fault(double duration, double step) {
   constexpr double kMaxSteps = 1e7;
   if (duration <= kMaxSteps * step) return "";
-  return "a run of " + format_number(duration) + " s would take " +
-         format_rounded(duration / step) + " steps; must be at least " +
-         format_rounded(duration / kMaxSteps) + " s, for at most " + format_rounded(kMaxSteps) +
-         " steps, or the run shorter";
+  return fmt::format(
+      "a run of {} s would take {} steps; must be at least {} s, for at most {} steps, or the run "
+      "shorter",
+      format_number(duration), format_rounded(duration / step),
+      format_rounded(duration / kMaxSteps), format_rounded(kMaxSteps));
 }
 
 }  // namespace strut

@@ -1,11 +1,11 @@
-// Where the time goes.
+// Measures how much time each part of a run takes.
 #pragma once
 
 #include <chrono>
 
 namespace strut {
 
-/// Adds the time from its making to its end to a sum [s].
+/// Adds its lifetime to a sum [s].
 class Timer {
  public:
   explicit Timer(double& sum) : sum_(sum), start_(Clock::now()) {}

@@ -9,6 +9,13 @@ constexpr char kNames[] = "/name", kTexts[] = "/value";
 
 }  // namespace
 
+std::optional<std::string> find_text(const NamedTexts& list, const std::string& name) {
+  for (const auto& [key, text] : list) {
+    if (key == name) return text;
+  }
+  return std::nullopt;
+}
+
 void write_named_texts(Hdf5Writer& file, const std::string& group, const NamedTexts& list,
                        const NamedTextsLabel& label) {
   std::vector<std::string> names, texts;

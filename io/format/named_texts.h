@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,9 @@ namespace strut {
 
 /// (name, text) in the order of the file.
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// The text of the first entry with this name.
+std::optional<std::string> find_text(const NamedTexts& list, const std::string& name);
 
 /// Descriptions of the two datasets of a list.
 struct NamedTextsLabel {

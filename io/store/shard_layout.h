@@ -24,6 +24,7 @@ inline constexpr char kShardKey[] = "shard";
 inline constexpr char kChecksumKey[] = "checksum";
 inline constexpr char kStatusMeaningKey[] = "status_meaning";
 inline constexpr char kHistoryIntervalKey[] = "history_interval";
+inline constexpr char kInstructionSetKey[] = "instruction_set";
 
 inline constexpr char kCaseIdName[] = "/case_id";
 inline constexpr char kParametersName[] = "/parameters";

@@ -160,7 +160,7 @@ ReportTable make_layer_table(const Plan& plan) {
                     {},
                     {},
                     0};
-  for (const Layer& layer : plan.layers()) {
+  for (const Stratum& layer : plan.strata()) {
     table.rows.push_back({std::to_string(table.rows.size() + 1), round(layer.lower),
                           round(layer.upper), format_count(layer.population),
                           format_count(layer.drawn)});

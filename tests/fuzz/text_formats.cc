@@ -132,7 +132,7 @@ void read_sweep_file(const fs::path& path) {
   for (const std::int64_t position : {std::int64_t{0}, last / 2, last}) {
     const std::int64_t id = plan.calc_case_id(position);
     if (plan.find_position(id) != position) throw std::logic_error("a case at another position");
-    plan.calc_layer(id);
+    plan.calc_stratum(id);
     prepare(plan.make_case(id));
   }
 }

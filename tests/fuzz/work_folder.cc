@@ -42,7 +42,7 @@ ShardRows make_rows(const Plan& plan, const ShardSchema& schema, std::int64_t sh
   const std::size_t axes = schema.parameters.size();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows.case_id[i] = plan.calc_case_id(first + static_cast<std::int64_t>(i));
-    rows.layer[i] = plan.calc_layer(rows.case_id[i]);
+    rows.layer[i] = plan.calc_stratum(rows.case_id[i]);
     plan.calc_parameters(rows.case_id[i], std::span(rows.parameters).subspan(i * axes, axes));
     rows.event_time[i] = 0.5;
   }

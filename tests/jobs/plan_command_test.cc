@@ -229,7 +229,7 @@ TEST_CASE("Two inputs of one name are both kept", "[io]") {
 
 TEST_CASE("What cannot be planned is refused with what can", "[io]") {
   check_plan_refused(make_sweep_text({{"rear_damping ", "rear_dampning "}}),
-                     {":11: grid.rear_dampning", "no parameter", "'rear_damping'"});
+                     {":11: grid.rear_dampning", "unknown parameter", "'rear_damping'"});
   check_plan_refused(make_sweep_text({{"step = -500", "step = 500"}}),
                      {":8: grid.front_stiffness.step = 500", "must be < 0"});
   check_plan_refused(make_sweep_text({{"\"all\"", "20000"}}),

@@ -1,4 +1,5 @@
-// Channels as sensors read them, out of runs: closed forms, and what must keep every bit.
+// Channels of runs as sensors read them: against closed forms, and what sensors must leave
+// unchanged.
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -45,7 +46,7 @@ double get_strut(const LaneResults& run, int sample, int channel) {
   return run.history[static_cast<std::size_t>(at)];
 }
 
-TEST_CASE("A rig's channels are read as a filter's and a delay's closed form, at any rate",
+TEST_CASE("A rig's channels agree with the closed form of filter and delay at any sample rate",
           "[unit][reference][effects]") {
   const double interval = GENERATE(2e-2, 1e-3, 5e-4);
   const double late = 4.3e-3, slow = 6e-3, gain = 0.07, bias = -2e-3;
@@ -67,7 +68,7 @@ TEST_CASE("A rig's channels are read as a filter's and a delay's closed form, at
     const double exact = kSize * (1.0 + gain) * z + bias;
     const double margin = t < 0.01 ? 3e-3 * kSize : 2e-7 * kSize;
     CHECK(std::fabs(get_strut(run, i, StrutRigChannel::kDisplacement) - exact) < tolerance(margin));
-    // What derives from the displacement is read by other sensors.
+    // Channels derived from the displacement have sensors of their own.
     for (int c = 0; c < StrutRigChannel::kCount; ++c) {
       if (c == StrutRigChannel::kDisplacement) continue;
       CHECK(get_strut(run, i, c) == get_strut(plain, i, c));
@@ -100,7 +101,7 @@ LaneResults read_lanes(const std::vector<const PreparedCase*>& cases, const Samp
   });
 }
 
-TEST_CASE("Sensors change what is read in their lane and channel, and nothing that moves",
+TEST_CASE("Sensors change the readings of their own lane and channel, and no motion",
           "[unit][property][effects]") {
   const double late = 2e-3;
   const PreparedCase plain = test::prepare(make_case({}));
@@ -143,14 +144,14 @@ TEST_CASE("Sensors change what is read in their lane and channel, and nothing th
     if (!is_read(c)) CHECK(get(run, c, 0) == get(truth, c, 0));
   }
   CHECK(get(run, C::kImuRateY, 0) == 1.1 * get(truth, C::kImuRateY, 0));
-  // Taylor's series two milliseconds back; the next term has the jerk, some 1e3 m/s^3.
+  // Taylor series two milliseconds back; the next term has the jerk, about 1e3 m/s^3.
   const double before = get(truth, C::kBodyPositionZ, 0) - late * get(truth, C::kBodyVelocityZ, 0) +
                         0.5 * late * late * get(truth, C::kBodyAccelerationZ, 0);
   CHECK(std::fabs(get(run, C::kBodyPositionZ, 0) - before) < tolerance(2e-6));
   CHECK(std::fabs(get(run, C::kBodyPositionZ, 0) - get(truth, C::kBodyPositionZ, 0)) > 2e-5);
 }
 
-TEST_CASE("The reference integrator's runs are read as well", "[unit][effects]") {
+TEST_CASE("Runs of the reference integrator are read through sensors too", "[unit][effects]") {
   const PreparedCase plain = test::prepare(make_case({}));
   const PreparedCase late = test::prepare(make_case({{"sensor_delay", "pitch_rate", {3e-3}}}));
   const auto read = [](const PreparedCase& c, double interval) {
@@ -177,7 +178,8 @@ ShardRows simulate(const Plan& plan, const std::vector<std::int64_t>& ids) {
   return rows;
 }
 
-TEST_CASE("A shard holds what sensors read, whatever ran beside", "[unit][property][effects]") {
+TEST_CASE("A shard holds the sensors' readings, independent of the other cases in its lanes",
+          "[unit][property][effects]") {
   test::SweepText text;
   text.grid = "front_stiffness = { from = 40000, to = 36000, count = 2 }\n";
   const std::string history = "history = { rate = 50, channels = [\"pitch_rate\"] }";

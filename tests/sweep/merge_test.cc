@@ -40,7 +40,7 @@ void write_shard(const fs::path& path, std::int64_t shard, const ShardRows& rows
                                     test::make_example_provenance(shard)));
 }
 
-/// Rows 4, 5 and 8 of a shard, mended, neighbors in the other order.
+/// Rows 4, 5 and 8 of a shard, mended, the first two in swapped order.
 ShardRows make_overlay(std::int64_t shard) {
   const ShardRows rows = make_rows(shard);
   ShardRows overlay = ShardRows::make(make_example_schema(), 3);
@@ -56,7 +56,7 @@ ShardRows make_overlay(std::int64_t shard) {
   return overlay;
 }
 
-/// Three shards, of which the second has a retry.
+/// Three shards; the second has a retry.
 SweepFolder make_sweep(const TemporaryFolder& folder) {
   SweepFolder sweep{folder / "sweep"};
   for (std::int64_t shard = 0; shard < 3; ++shard) {
@@ -70,7 +70,7 @@ MergeInput make_input() {
   return {{std::string(64, 'a'), 2000, 3 * kCases, kCases, {}}, make_example_schema()};
 }
 
-/// All rows in the order of the plan, as the retry left them.
+/// All rows in the order of the plan, with the mended ones replaced.
 ShardRows list_rows() {
   ShardRows all = ShardRows::make(make_example_schema(), 3 * kCases);
   for (std::size_t i = 0; i < 3 * kCases; ++i) {
@@ -108,7 +108,8 @@ void check_content(const fs::path& path, const ShardRows& rows) {
   CHECK(file.read_attribute("/", "strut_version") == "0.1.0");
 }
 
-TEST_CASE("A merged file has every case in the plan's order, mended", "[io][property]") {
+TEST_CASE("A merged file has every case in the plan's order, with retries applied",
+          "[io][property]") {
   const TemporaryFolder folder;
   const SweepFolder sweep = make_sweep(folder);
   const MergeReport report = merge(sweep, folder / "merged.h5");
@@ -123,7 +124,8 @@ TEST_CASE("A merged file has every case in the plan's order, mended", "[io][prop
   CHECK(file.read_integers("/shards/retries") == std::vector<std::int64_t>{0, 1, 0});
 }
 
-TEST_CASE("A missing shard refuses a merge, or is left out and told", "[io]") {
+TEST_CASE("A merge refuses a missing shard, or with --partial leaves it out and reports it",
+          "[io]") {
   const TemporaryFolder folder;
   const SweepFolder sweep = make_sweep(folder);
   fs::remove(sweep.shard(0));
@@ -140,7 +142,7 @@ TEST_CASE("A missing shard refuses a merge, or is left out and told", "[io]") {
   CHECK(file.read_integers("/case_id").size() == 2 * kCases);
 }
 
-TEST_CASE("A damaged or foreign shard stops a merge and is named", "[io]") {
+TEST_CASE("A merge stops at a damaged or foreign shard and names it", "[io]") {
   const TemporaryFolder folder;
   const SweepFolder sweep = make_sweep(folder);
   auto image = read_bytes(sweep.shard(2));
@@ -168,7 +170,7 @@ TEST_CASE("A damaged or foreign shard stops a merge and is named", "[io]") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("A merge that is stopped, or meets a full disk, leaves nothing", "[io]") {
+TEST_CASE("A merge that is stopped or meets a full disk leaves no file", "[io]") {
   const TemporaryFolder folder;
   const SweepFolder sweep = make_sweep(folder);
   const auto stop = [](std::int64_t) { return false; };
@@ -186,7 +188,7 @@ void append(std::string& text, const std::vector<T>& values) {
   text.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-/// All that a reader can learn from a merged file, byte by byte.
+/// Everything that a reader can learn from a merged file.
 std::string read_everything(const Hdf5Reader& file) {
   std::string all;
   for (const char* name : {"/case_id", "/layer", "/status", "/attempt", "/shards/first_row"}) {
@@ -208,10 +210,9 @@ std::string read_everything(const Hdf5Reader& file) {
   return all;
 }
 
-// Behind the seal's back, as readers of other tools see it: what finds damage then are HDF5's own
-// checksums over its structures and zlib's over the chunks.
-TEST_CASE("A flipped bit in a merged file is an error to HDF5, or changes nothing",
-          "[io][property]") {
+// Bypasses the seal, as other tools do: damage is found by HDF5's own checksums over its structures
+// and zlib's over the chunks.
+TEST_CASE("A flipped bit in a merged file is an HDF5 error or changes nothing", "[io][property]") {
   const TemporaryFolder folder;
   merge(make_sweep(folder), folder / "merged.h5");
   const std::vector<std::byte> good = read_bytes(folder / "merged.h5");
@@ -240,7 +241,7 @@ void write_values(const fs::path& path, const std::vector<T>& values) {
              static_cast<std::streamsize>(values.size() * sizeof(T)));
 }
 
-// For read_with_h5py.py: the files, and what they hold.
+// Writes files and their content for read_with_h5py.py.
 TEST_CASE("Example files for other tools", "[.][example_files]") {
   const char* const name = std::getenv("STRUT_EXAMPLE_FOLDER");
   REQUIRE(name != nullptr);
@@ -266,7 +267,7 @@ TEST_CASE("Example files for other tools", "[.][example_files]") {
   for (const std::string& reason : rows.reason) reasons << reason << "\n";
 }
 
-TEST_CASE("Rows appended piece by piece are the dataset", "[io][property]") {
+TEST_CASE("Rows appended piece by piece form the dataset", "[io][property]") {
   const TemporaryFolder folder;
   std::vector<double> values(200000);  // two chunks of 1 MiB
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sqrt(static_cast<double>(i));

@@ -1,4 +1,4 @@
-// The plan of a sweep: every case once, in the layers and the order that it says, by index.
+// Plans of sweeps: every case exactly once, its stratum and its position by index.
 #include "sweep/plan.h"
 
 #include <algorithm>
@@ -25,11 +25,11 @@ std::vector<std::int64_t> list_cases(const Plan& plan) {
   return cases;
 }
 
-/// How many cases of the plan each layer has, by asking for every one.
-std::vector<std::int64_t> count_layers(const Plan& plan) {
-  std::vector<std::int64_t> counts(plan.layers().size(), 0);
+/// Number of the plan's cases in each stratum, counted case by case.
+std::vector<std::int64_t> count_strata(const Plan& plan) {
+  std::vector<std::int64_t> counts(plan.strata().size(), 0);
   for (const std::int64_t id : list_cases(plan)) {
-    ++counts[static_cast<std::size_t>(plan.calc_layer(id))];
+    ++counts[static_cast<std::size_t>(plan.calc_stratum(id))];
   }
   return counts;
 }
@@ -40,7 +40,7 @@ std::vector<double> calc_parameters(const Plan& plan, std::int64_t id) {
   return values;
 }
 
-/// Mean relative loss, as the manual defines it.
+/// Mean relative loss, as docs/sweeps.md defines it.
 double calc_degradation(const Plan& plan, std::int64_t id) {
   const std::vector<double> values = calc_parameters(plan, id);
   double sum = 0.0;
@@ -50,7 +50,7 @@ double calc_degradation(const Plan& plan, std::int64_t id) {
   return sum / static_cast<double>(values.size());
 }
 
-void check_places(const Plan& plan) {
+void check_positions(const Plan& plan) {
   const std::vector<std::int64_t> cases = list_cases(plan);
   CHECK(std::set<std::int64_t>(cases.begin(), cases.end()).size() == cases.size());
   for (std::int64_t i = 0; i < plan.case_count(); ++i) {
@@ -60,23 +60,23 @@ void check_places(const Plan& plan) {
   CHECK(plan.find_position(plan.point_count()) == -1);
 }
 
-TEST_CASE("The paper's sweep has each point of its grid once, in ten layers of a thousand",
+TEST_CASE("The paper's sweep has each point of its grid once, in ten strata of a thousand",
           "[unit]") {
   const Plan plan = make_plan_of(make_sweep_text());
   CHECK(plan.case_count() == 10000);
   CHECK(plan.shard_count() == 20);
   CHECK(plan.shard_range(0) == std::pair<std::int64_t, std::int64_t>{0, 512});
   CHECK(plan.shard_range(19) == std::pair<std::int64_t, std::int64_t>{9728, 10000});
-  check_places(plan);
-  REQUIRE(plan.layers().size() == 10);
-  CHECK(count_layers(plan) == std::vector<std::int64_t>(10, 1000));
-  for (const Layer& layer : plan.layers()) {
-    CHECK(layer.population == 1000);
-    CHECK(layer.drawn == 1000);
-    CHECK(layer.lower == layer.upper);
+  check_positions(plan);
+  REQUIRE(plan.strata().size() == 10);
+  CHECK(count_strata(plan) == std::vector<std::int64_t>(10, 1000));
+  for (const Stratum& stratum : plan.strata()) {
+    CHECK(stratum.population == 1000);
+    CHECK(stratum.drawn == 1000);
+    CHECK(stratum.lower == stratum.upper);
   }
-  CHECK(plan.layers()[3].lower == 38500.0);
-  CHECK(plan.calc_layer(3999) == 3);
+  CHECK(plan.strata()[3].lower == 38500.0);
+  CHECK(plan.calc_stratum(3999) == 3);
   CHECK(calc_parameters(plan, 1234) == std::vector<double>{39500.0, 1940.0, 33500.0, 1900.0});
   const Case c = plan.make_case(1234);
   CHECK(c.vehicle.suspension[kFront].strut[0].stiffness == 39500.0);
@@ -84,7 +84,8 @@ TEST_CASE("The paper's sweep has each point of its grid once, in ten layers of a
   CHECK(plan.list_drawn().empty());
 }
 
-TEST_CASE("The first shard of a shuffled grid is a sample of all of it", "[unit][statistical]") {
+TEST_CASE("The first shard of a shuffled grid is an unbiased sample of the whole grid",
+          "[unit][statistical]") {
   const Plan plan = make_plan_of(make_sweep_text());
   for (std::size_t a = 0; a < 4; ++a) {
     std::vector<int> counts(10, 0);
@@ -92,17 +93,17 @@ TEST_CASE("The first shard of a shuffled grid is a sample of all of it", "[unit]
       const std::int64_t id = plan.calc_case_id(i);
       ++counts[static_cast<std::size_t>(id / static_cast<std::int64_t>(std::pow(10, 3 - a)) % 10)];
     }
-    // 51.2 +- 6.6 by the hypergeometric distribution; five of these.
+    // 51.2 ± 6.6 by the hypergeometric distribution; five standard deviations.
     for (const int n : counts) CHECK(std::abs(n - 51.2) < 5.0 * 6.6);
   }
 }
 
-TEST_CASE("A drawn sample takes from each layer its share", "[unit]") {
+TEST_CASE("A drawn sample takes from each stratum in proportion to its size", "[unit]") {
   const Plan plan = make_plan_of(make_sweep_text({{"\"all\"", "2000"}}));
   CHECK(plan.case_count() == 2000);
   CHECK(plan.point_count() == 10000);
-  CHECK(count_layers(plan) == std::vector<std::int64_t>(10, 200));
-  check_places(plan);
+  CHECK(count_strata(plan) == std::vector<std::int64_t>(10, 200));
+  check_positions(plan);
   const auto drawn = plan.list_drawn();
   CHECK(drawn.size() == 2000);
   CHECK(std::is_sorted(drawn.begin(), drawn.end()));
@@ -111,22 +112,22 @@ TEST_CASE("A drawn sample takes from each layer its share", "[unit]") {
   CHECK(plan.find_position(outside) == -1);
 }
 
-TEST_CASE("Layers that share levels unevenly give the largest remainders", "[unit]") {
-  // Ten levels in three layers: 4, 3, 3; of 100: 40, 30, 30. Of 25: 10, 7.5, 7.5.
+TEST_CASE("Strata of unequal size get whole numbers of cases by the largest remainder", "[unit]") {
+  // Ten levels in three strata: 4, 3, 3; of 25 cases: 10, 7.5, 7.5.
   const Plan plan =
       make_plan_of(make_sweep_text({{"\"all\"", "25"}, {"strata = 10", "strata = 3"}}));
-  CHECK(plan.layers()[0].population == 4000);
-  CHECK(plan.layers()[0].lower == 40000.0);
-  CHECK(plan.layers()[0].upper == 38500.0);
-  CHECK(plan.layers()[1].lower == 38000.0);
-  CHECK(plan.layers()[2].population == 3000);
-  CHECK(count_layers(plan) == std::vector<std::int64_t>{10, 8, 7});
+  CHECK(plan.strata()[0].population == 4000);
+  CHECK(plan.strata()[0].lower == 40000.0);
+  CHECK(plan.strata()[0].upper == 38500.0);
+  CHECK(plan.strata()[1].lower == 38000.0);
+  CHECK(plan.strata()[2].population == 3000);
+  CHECK(count_strata(plan) == std::vector<std::int64_t>{10, 8, 7});
 }
 
-TEST_CASE("Ten layers are the default where there are ten levels", "[unit]") {
+TEST_CASE("Ten strata are the default if there are at least ten levels and cases", "[unit]") {
   const auto count = [](const std::string& axis, const std::string& sample) {
     return make_plan_of(make_grid_text(axis, {{"strata = 10", ""}, {"\"all\"", sample}}))
-        .layers()
+        .strata()
         .size();
   };
   CHECK(count("front_stiffness = { from = 40000, to = 35000, count = 51 }", "\"all\"") == 10);
@@ -134,7 +135,8 @@ TEST_CASE("Ten layers are the default where there are ten levels", "[unit]") {
   CHECK(count("front_stiffness = { from = 40000, to = 35000, count = 51 }", "7") == 7);
 }
 
-TEST_CASE("The same seed draws the same cases in the same order, another seed others", "[unit]") {
+TEST_CASE("The same seed draws the same cases in the same order, another seed draws others",
+          "[unit]") {
   const Replacements two_hundred = {{"\"all\"", "200"}};
   const auto first = list_cases(make_plan_of(make_sweep_text(two_hundred)));
   CHECK(list_cases(make_plan_of(make_sweep_text(two_hundred))) == first);
@@ -144,39 +146,39 @@ TEST_CASE("The same seed draws the same cases in the same order, another seed ot
   CHECK(other.list_drawn() != make_plan_of(make_sweep_text(two_hundred)).list_drawn());
 }
 
-TEST_CASE("All cases of a grid run in another order with another seed", "[unit]") {
+TEST_CASE("Another seed runs all cases of a grid in another order", "[unit]") {
   const auto first = list_cases(make_plan_of(make_sweep_text()));
   const auto other = list_cases(make_plan_of(make_sweep_text({{"seed   = 1", "seed = 2"}})));
   std::size_t alike = 0;
   for (std::size_t i = 0; i < first.size(); ++i) alike += first[i] == other[i];
-  // Two random orders have one case in common on the average.
+  // Two random orders agree in one position on average.
   CHECK(alike < 10);
   CHECK(std::set<std::int64_t>(other.begin(), other.end()).size() == first.size());
 }
 
-TEST_CASE("Layers by degradation are the sorted grid cut into equal parts", "[unit][reference]") {
+TEST_CASE("Strata by degradation are the sorted grid cut into equal parts", "[unit][reference]") {
   const Plan plan =
       make_plan_of(make_sweep_text({{"by     = \"front_stiffness\"", "by = \"degradation\""}}));
-  CHECK(count_layers(plan) == std::vector<std::int64_t>(10, 1000));
+  CHECK(count_strata(plan) == std::vector<std::int64_t>(10, 1000));
   std::vector<std::pair<double, std::int64_t>> sorted;
   for (std::int64_t id = 0; id < 10000; ++id) {
-    // Losses that tie exactly differ by rounding here: 1e-12 of a step.
+    // Losses that tie exactly differ by rounding here: about 1e-12 of a step.
     sorted.emplace_back(std::round(1e12 * calc_degradation(plan, id)), id);
   }
   std::sort(sorted.begin(), sorted.end());
   int wrong = 0;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (plan.calc_layer(sorted[i].second) != static_cast<int>(i / 1000)) ++wrong;
+    if (plan.calc_stratum(sorted[i].second) != static_cast<int>(i / 1000)) ++wrong;
   }
   CHECK(wrong == 0);
-  CHECK(plan.layers().front().lower == 0.0);
-  CHECK(plan.layers().back().upper == Approx(calc_degradation(plan, 9999)).epsilon(1e-12));
+  CHECK(plan.strata().front().lower == 0.0);
+  CHECK(plan.strata().back().upper == Approx(calc_degradation(plan, 9999)).epsilon(1e-12));
   for (std::size_t i = 1; i < 10; ++i) {
-    CHECK(plan.layers()[i].lower == Approx(1e-12 * sorted[1000 * i].first).epsilon(1e-9));
+    CHECK(plan.strata()[i].lower == Approx(1e-12 * sorted[1000 * i].first).epsilon(1e-9));
   }
 }
 
-TEST_CASE("A thousand million points plan like ten thousand", "[unit]") {
+TEST_CASE("A billion points are planned like ten thousand", "[unit]") {
   const std::string axes =
       "front_stiffness = { from = 40000, to = 30010, step = -10 }\n"
       "front_damping = { from = 1980, to = 981, step = -1 }\n"
@@ -187,21 +189,21 @@ TEST_CASE("A thousand million points plan like ten thousand", "[unit]") {
   for (const std::int64_t position : {0LL, 1LL, 123456789LL, 999999999LL}) {
     CHECK(all.find_position(all.calc_case_id(position)) == position);
   }
-  for (const Layer& layer : all.layers()) CHECK(layer.population == 100000000);
+  for (const Stratum& stratum : all.strata()) CHECK(stratum.population == 100000000);
   const Plan drawn = make_plan_of(make_grid_text(
       axes, {{"\"all\"", "2000"}, {"by     = \"front_stiffness\"", "by = \"degradation\""}}));
-  CHECK(count_layers(drawn) == std::vector<std::int64_t>(10, 200));
-  for (const Layer& layer : drawn.layers()) CHECK(layer.population == 100000000);
+  CHECK(count_strata(drawn) == std::vector<std::int64_t>(10, 200));
+  for (const Stratum& stratum : drawn.strata()) CHECK(stratum.population == 100000000);
 }
 
-TEST_CASE("Axes that make another mechanism run slowest", "[unit]") {
+TEST_CASE("Axes that change the mechanism vary slowest", "[unit]") {
   const Plan plan =
       make_plan_of(make_grid_text("front_stiffness = { from = 40000, to = 38000, step = -1000 }\n"
                                   "mass = { from = 1155, to = 1145, step = -5 }\n"
                                   "rear_damping = { from = 1980, to = 1960, step = -20 }",
                                   {{"strata = 10", "strata = 3"}}));
   CHECK_FALSE(plan.request().shuffle);
-  check_places(plan);
+  check_positions(plan);
   int changes = 0;
   for (std::int64_t i = 1; i < plan.case_count(); ++i) {
     const double before = calc_parameters(plan, plan.calc_case_id(i - 1))[1];
@@ -218,40 +220,41 @@ Plan make_samples(const std::string& method, int count, const std::string& by,
                                        {"seed   = 1", "seed = " + seed}}));
 }
 
-/// Place of a case along an axis, in [0, 1).
-double calc_share(const Plan& plan, std::int64_t id, std::size_t axis) {
+/// Position of a case along an axis, in [0, 1).
+double calc_fraction(const Plan& plan, std::int64_t id, std::size_t axis) {
   const Axis& a = plan.request().grid.axes()[axis];
   return (calc_parameters(plan, id)[axis] - a.from) / (a.last() - a.from);
 }
 
-/// How many of [first, end) lie in each of `parts` equal parts of an axis.
-std::vector<int> count_shares(const Plan& plan, std::int64_t first, std::int64_t end,
-                              std::size_t axis, std::size_t parts) {
+/// Number of cases in [first, end) that lie in each of `parts` equal parts of an axis.
+std::vector<int> count_fractions(const Plan& plan, std::int64_t first, std::int64_t end,
+                                 std::size_t axis, std::size_t parts) {
   std::vector<int> counts(parts, 0);
   for (std::int64_t id = first; id < end; ++id) {
-    const double share = calc_share(plan, id, axis);
-    REQUIRE(share >= 0.0);
-    REQUIRE(share < 1.0);
-    ++counts[static_cast<std::size_t>(share * static_cast<double>(parts))];
+    const double fraction = calc_fraction(plan, id, axis);
+    REQUIRE(fraction >= 0.0);
+    REQUIRE(fraction < 1.0);
+    ++counts[static_cast<std::size_t>(fraction * static_cast<double>(parts))];
   }
   return counts;
 }
 
-TEST_CASE("A Latin hypercube has one sample in every row of every axis", "[unit][property]") {
+TEST_CASE("A Latin hypercube has one sample in every cell of every axis", "[unit][property]") {
   const Plan plan = make_samples("latin_hypercube", 500, "rear_damping");
   CHECK(plan.case_count() == 500);
-  check_places(plan);
+  check_positions(plan);
   for (std::size_t a = 0; a < 4; ++a) {
-    CHECK(count_shares(plan, 0, 500, a, 500) == std::vector<int>(500, 1));
+    CHECK(count_fractions(plan, 0, 500, a, 500) == std::vector<int>(500, 1));
   }
-  CHECK(count_layers(plan) == std::vector<std::int64_t>(10, 50));
+  CHECK(count_strata(plan) == std::vector<std::int64_t>(10, 50));
   for (std::int64_t id = 0; id < 500; ++id) {
-    REQUIRE(plan.calc_layer(id) == static_cast<int>(10.0 * calc_share(plan, id, 3)));
+    REQUIRE(plan.calc_stratum(id) == static_cast<int>(10.0 * calc_fraction(plan, id, 3)));
   }
   // The axes are independent: five standard deviations of a correlation.
   double correlation = 0.0;
   for (std::int64_t id = 0; id < 500; ++id) {
-    correlation += 12.0 * (calc_share(plan, id, 0) - 0.5) * (calc_share(plan, id, 1) - 0.5) / 500;
+    correlation +=
+        12.0 * (calc_fraction(plan, id, 0) - 0.5) * (calc_fraction(plan, id, 1) - 0.5) / 500;
   }
   CHECK(std::fabs(correlation) < 5.0 / std::sqrt(500.0));
 }
@@ -263,12 +266,13 @@ TEST_CASE("Every block of 2^k Sobol samples has one in each of 2^k parts of an a
     for (const std::int64_t block : {8, 64, 256}) {
       for (std::int64_t first = 0; first < 1024; first += block) {
         const auto parts = static_cast<std::size_t>(block);
-        REQUIRE(count_shares(plan, first, first + block, a, parts) == std::vector<int>(parts, 1));
+        REQUIRE(count_fractions(plan, first, first + block, a, parts) ==
+                std::vector<int>(parts, 1));
       }
     }
   }
-  const auto layers = count_layers(plan);
-  for (std::size_t i = 0; i < layers.size(); ++i) CHECK(layers[i] == plan.layers()[i].drawn);
+  const auto counts = count_strata(plan);
+  for (std::size_t i = 0; i < counts.size(); ++i) CHECK(counts[i] == plan.strata()[i].drawn);
   CHECK(calc_parameters(plan, 5) !=
         calc_parameters(make_samples("sobol", 1024, "front_damping", "2"), 5));
 }
@@ -277,34 +281,34 @@ TEST_CASE("Two axes of a Sobol sequence fill every square of an even net", "[uni
   const Plan plan = make_samples("sobol", 1024, "front_damping");
   std::vector<int> squares(256, 0);
   for (std::int64_t id = 0; id < 256; ++id) {
-    const auto x = static_cast<std::size_t>(16.0 * calc_share(plan, id, 0));
-    const auto y = static_cast<std::size_t>(16.0 * calc_share(plan, id, 1));
+    const auto x = static_cast<std::size_t>(16.0 * calc_fraction(plan, id, 0));
+    const auto y = static_cast<std::size_t>(16.0 * calc_fraction(plan, id, 1));
     ++squares[16 * x + y];
   }
   CHECK(squares == std::vector<int>(256, 1));
 }
 
-TEST_CASE("Samples have layers of equal count by degradation", "[unit]") {
+TEST_CASE("Samples are stratified by degradation into strata of equal size", "[unit]") {
   for (const char* method : {"latin_hypercube", "sobol"}) {
     const Plan plan = make_samples(method, 1000, "degradation");
-    CHECK(count_layers(plan) == std::vector<std::int64_t>(10, 100));
+    CHECK(count_strata(plan) == std::vector<std::int64_t>(10, 100));
     for (std::int64_t id = 0; id < 1000; ++id) {
-      const Layer& layer = plan.layers()[static_cast<std::size_t>(plan.calc_layer(id))];
+      const Stratum& stratum = plan.strata()[static_cast<std::size_t>(plan.calc_stratum(id))];
       const double degradation = calc_degradation(plan, id);
-      REQUIRE(degradation >= layer.lower - 1e-12);
-      REQUIRE(degradation <= layer.upper + 1e-12);
+      REQUIRE(degradation >= stratum.lower - 1e-12);
+      REQUIRE(degradation <= stratum.upper + 1e-12);
     }
   }
 }
 
-TEST_CASE("A plan that cannot be is told with what can", "[unit]") {
+TEST_CASE("An impossible plan is refused with what is allowed", "[unit]") {
   const auto refuses = [](const Replacements& replacements, const std::string& what,
                           const std::string& allowed) {
     CHECK_THROWS_WITH(make_plan_of(make_sweep_text(replacements)),
                       Contains("sweep.toml") && Contains(what) && Contains(allowed));
   };
   refuses({{"\"all\"", "10001"}}, "sample.count = 10001", "[1, 10000]");
-  refuses({{"\"all\"", "9"}}, "layer 10 of 10 empty", "at least 10");
+  refuses({{"\"all\"", "9"}}, "stratum 10 of 10 empty", "at least 10");
   refuses({{"strata = 10", "strata = 11"}}, "sample.strata = 11", "1 to 10");
   refuses(
       {{"strata = 10", "strata = 10001"}, {"by     = \"front_stiffness\"", "by = \"degradation\""}},
@@ -313,7 +317,7 @@ TEST_CASE("A plan that cannot be is told with what can", "[unit]") {
   refuses({{"\"grid\"", "\"latin_hypercube\""}, {"\"all\"", "9"}}, "sample.strata = 10", "1 to 9");
 }
 
-TEST_CASE("The schema names what a row holds", "[unit]") {
+TEST_CASE("The schema names the columns of a row", "[unit]") {
   const Plan plan = make_plan_of(make_sweep_text(
       {{"[shards]", "history = { rate = 100, channels = [\"pitch_rate\"] }\n[shards]"}}));
   const ShardSchema schema = plan.make_schema();
@@ -329,7 +333,7 @@ TEST_CASE("The schema names what a row holds", "[unit]") {
   CHECK_THAT(schema.status_meaning, Contains("0 done"));
 }
 
-TEST_CASE("The hash is that of what changes a result, and of nothing else", "[unit]") {
+TEST_CASE("The hash covers everything that changes a result, and nothing else", "[unit]") {
   const std::string text = make_sweep_text();
   const std::string hash = make_plan_of(text).hash();
   CHECK(hash.size() == 64);
@@ -356,7 +360,7 @@ TEST_CASE("The hash is that of what changes a result, and of nothing else", "[un
     CAPTURE(change.second);
     CHECK(make_plan_of(make_sweep_text({change})).hash() != hash);
   }
-  // The same axes in another order number the cases otherwise.
+  // The order of the axes decides the numbers of the cases.
   const auto axis = [](const std::string& name) {
     return name + " = { from = 40000, to = 35500, step = -500 }\n";
   };
@@ -364,7 +368,7 @@ TEST_CASE("The hash is that of what changes a result, and of nothing else", "[un
         make_plan_of(make_grid_text(axis("rear_stiffness") + axis("front_stiffness"))).hash());
 }
 
-TEST_CASE("Two requests are compared line by line", "[unit]") {
+TEST_CASE("The differences of two requests are listed line by line", "[unit]") {
   const Facts was = {{"a", "1"}, {"b", "2"}, {"c", "3"}}, is = {{"b", "2"}, {"a", "4"}, {"d", "5"}};
   CHECK(compare_facts(was, is) ==
         std::vector<std::string>{"a: was 1, is 4", "c: was 3, is absent", "d: was absent, is 5"});

@@ -1,4 +1,4 @@
-// What a sweep file says is what is asked for; what it must not say is told with what it may.
+// Sweep files are read as written; invalid ones are refused with what is allowed.
 #include "sweep/request.h"
 
 #include <catch2/catch.hpp>
@@ -47,7 +47,7 @@ TEST_CASE("The paper's sweep file reads as the paper's sweep", "[unit][io]") {
   CHECK(count_samples(samples) == 0);
 }
 
-TEST_CASE("What a sweep file leaves out has its default", "[unit][io]") {
+TEST_CASE("Keys that a sweep file leaves out have their defaults", "[unit][io]") {
   const std::string text = make_sweep_text();
   const std::size_t begin = text.find("[sample]"), end = text.find("[record]");
   std::string shorter = text.substr(0, begin) + text.substr(end);
@@ -76,7 +76,7 @@ TEST_CASE("Every way to integrate is read", "[unit][io]") {
   CHECK(cvode.reference.closure == Closure::kTable);
 }
 
-TEST_CASE("A history is sampled over the whole run, and may stand alone", "[unit][io]") {
+TEST_CASE("A history is sampled over the whole run, with or without a snapshot", "[unit][io]") {
   const Replacements history = {
       {"[shards]", "history = { rate = 200, channels = [\"pitch_rate\", \"time\"] }\n[shards]"}};
   SweepRequest request = read_sweep_text(make_sweep_text(history));
@@ -90,7 +90,7 @@ TEST_CASE("A history is sampled over the whole run, and may stand alone", "[unit
   CHECK_FALSE(make_sample_plan(request).snapshot);
 }
 
-TEST_CASE("An axis by its number of levels is the one by its step", "[unit][io]") {
+TEST_CASE("An axis given by its number of levels equals the one given by its step", "[unit][io]") {
   const SweepRequest request =
       read_sweep_text(make_grid_text("front_stiffness = { from = 40000, to = 35500, count = 10 }\n"
                                      "speed = { from = 20, to = 20, count = 1 }",
@@ -110,7 +110,7 @@ TEST_CASE("Samples between the bounds need no levels", "[unit][io]") {
   CHECK_FALSE(request.shuffle);
 }
 
-TEST_CASE("A grid runs shuffled unless an axis makes another mechanism", "[unit]") {
+TEST_CASE("A grid runs shuffled unless an axis changes the mechanism", "[unit]") {
   const auto read = [](const std::string& axis) {
     return read_sweep_text(make_grid_text(axis, {{"by     = \"front_stiffness\"", ""}})).shuffle;
   };
@@ -122,19 +122,19 @@ TEST_CASE("A grid runs shuffled unless an axis makes another mechanism", "[unit]
   CHECK_FALSE(read("duration = { from = 2.0, to = 3.0, count = 10 }"));
 }
 
-/// Replaced in the paper's file, and what the message must say.
+/// A replacement in the paper's file, and what the message must contain.
 struct BadInput {
   std::string from, to;
-  std::vector<std::string> says;
+  std::vector<std::string> message;
 };
 
-TEST_CASE("Every bad value is named with file, line, key and what is allowed", "[unit][io]") {
+TEST_CASE("An invalid value is reported with file, line, key and what is allowed", "[unit][io]") {
   const std::string axis = "front_stiffness = { from = 40000, to = 35500, step = -500 }";
   const std::string snapshot = "offset = 0.0, channels = [\"body_position_z\", ";
   const BadInput inputs[] = {
       {"front_stiffness = {",
        "front_stifness = {",
-       {"grid.front_stifness", "no parameter", "did you mean 'front_stiffness'?",
+       {"grid.front_stifness", "unknown parameter", "did you mean 'front_stiffness'?",
         "parameters: mass"}},
       {axis,
        "front_stiffness = { from = 40000, to = 35500, step = 500 }",
@@ -216,11 +216,11 @@ TEST_CASE("Every bad value is named with file, line, key and what is allowed", "
     }
     CAPTURE(input.to);
     CHECK_THAT(message, Contains("sweep.toml:"));
-    for (const std::string& text : input.says) CHECK_THAT(message, Contains(text));
+    for (const std::string& text : input.message) CHECK_THAT(message, Contains(text));
   }
 }
 
-TEST_CASE("A request needs an axis, something to record, and losses relative to something",
+TEST_CASE("A request needs an axis, something to record, and nonzero references for losses",
           "[unit][io]") {
   CHECK_THROWS_WITH(read_sweep_text(make_grid_text("", {{"by     = \"front_stiffness\"", ""}})),
                     Contains("[grid]") && Contains("no axis"));
@@ -239,7 +239,7 @@ TEST_CASE("A request needs an axis, something to record, and losses relative to 
       Contains("[grid]") && Contains("points"));
 }
 
-TEST_CASE("A history asks that all cases last equally long", "[unit][io]") {
+TEST_CASE("A history requires that all cases have the same duration", "[unit][io]") {
   CHECK_THROWS_WITH(
       read_sweep_text(make_grid_text(
           "duration = { from = 2, to = 3, step = 0.1 }",

@@ -1,4 +1,4 @@
-// Running a sweep: same data however it is run, and nothing done twice.
+// Runs of sweeps: the same data however they are run, and no work done twice.
 #include <omp.h>
 
 #include <catch2/catch.hpp>
@@ -53,7 +53,7 @@ TEST_CASE("The data digest is the same for any number of threads and shards",
   }
 }
 
-TEST_CASE("Another plan's data have another digest", "[unit]") {
+TEST_CASE("The data of another plan have another digest", "[unit]") {
   SweepText text;
   const PlannedSweep sweep(text);
   text.integrate = "method = \"rk4\"\nstep = 1e-3\nclosure = \"table\"\n";
@@ -63,7 +63,7 @@ TEST_CASE("Another plan's data have another digest", "[unit]") {
   CHECK(get_digest(sweep) != get_digest(other));
 }
 
-TEST_CASE("A stopped sweep goes on where it was, and ends with the same data",
+TEST_CASE("A stopped sweep continues where it stopped and ends with the same data",
           "[unit][property][threads]") {
   const PlannedSweep whole, stopped;
   whole.run();
@@ -91,7 +91,7 @@ TEST_CASE("A stopped sweep goes on where it was, and ends with the same data",
   CHECK(read_journal(stopped.folder().journal()).entries.size() == 6);
 }
 
-TEST_CASE("Running a finished sweep again does nothing", "[unit]") {
+TEST_CASE("Running a complete sweep again does nothing", "[unit]") {
   const PlannedSweep sweep;
   CHECK(sweep.run().shards_written == 6);
   const auto time = fs::last_write_time(sweep.folder().shard(3));
@@ -118,7 +118,7 @@ TEST_CASE("Two runners on one folder share the work", "[unit][threads]") {
   CHECK(get_digest(shared) == get_digest(alone));
 }
 
-TEST_CASE("A range of shards is done and no other", "[unit]") {
+TEST_CASE("Only the requested range of shards is simulated", "[unit]") {
   const PlannedSweep sweep;
   RunOptions options = make_options(2);
   options.first_shard = 2;
@@ -131,7 +131,7 @@ TEST_CASE("A range of shards is done and no other", "[unit]") {
   CHECK(progress.written == 10);
 }
 
-TEST_CASE("A shard cut short is moved aside and made again", "[unit][io]") {
+TEST_CASE("A truncated shard is moved to quarantine and simulated again", "[unit][io]") {
   const PlannedSweep sweep;
   sweep.run();
   const std::string before = get_digest(sweep);
@@ -144,7 +144,8 @@ TEST_CASE("A shard cut short is moved aside and made again", "[unit][io]") {
   CHECK(get_digest(sweep) == before);
 }
 
-TEST_CASE("Status counts no shard whose seal, size, place or data are wrong", "[unit][io]") {
+TEST_CASE("Status does not count a shard whose seal, size, number or data are wrong",
+          "[unit][io]") {
   const PlannedSweep sweep;
   sweep.run();
   const SweepFolder& folder = sweep.folder();
@@ -163,7 +164,7 @@ TEST_CASE("Status counts no shard whose seal, size, place or data are wrong", "[
     fs::resize_file(file, 0);
     check_fault("damaged");
   }
-  SECTION("cut short") {
+  SECTION("truncated") {
     fs::resize_file(file, 700);
     check_fault("damaged: has 700 bytes");
   }
@@ -171,7 +172,7 @@ TEST_CASE("Status counts no shard whose seal, size, place or data are wrong", "[
     std::ofstream(file) << std::string(9000, 'x');
     check_fault("damaged, or not a shard");
   }
-  SECTION("another's") {
+  SECTION("the copy of another shard") {
     fs::copy_file(folder.shard(2), file, fs::copy_options::overwrite_existing);
     check_fault("is shard 2");
   }
@@ -180,7 +181,7 @@ TEST_CASE("Status counts no shard whose seal, size, place or data are wrong", "[
   CHECK(get_digest(sweep) == digest);
 }
 
-TEST_CASE("Status tells sound shards whose data the journal does not know", "[unit][io]") {
+TEST_CASE("Status reports valid shards whose data differ from the journal", "[unit][io]") {
   const PlannedSweep sweep;
   sweep.run();
   const SweepFolder& folder = sweep.folder();
@@ -189,7 +190,7 @@ TEST_CASE("Status tells sound shards whose data the journal does not know", "[un
     test::write_bytes(folder.shard(1), make_shard_image(compress_shard(shard.schema, rows),
                                                         {sweep.plan().hash(), 1, {}}));
   };
-  replace(shard.rows);  // made again, before the journal said so
+  replace(shard.rows);  // simulated again, before the journal was written
   CHECK(read_status(folder, sweep.plan()).faults.empty());
   ShardRows other = shard.rows;
   other.snapshot[4] += 1.0;
@@ -202,7 +203,7 @@ TEST_CASE("Status tells sound shards whose data the journal does not know", "[un
   CHECK(read_status(folder, sweep.plan()).faults.size() == 2);
 }
 
-TEST_CASE("Leftovers of a dead runner are removed, a living one's are not", "[unit][io]") {
+TEST_CASE("Files of a dead runner are removed, those of a living one are not", "[unit][io]") {
   const PlannedSweep sweep;
   std::ofstream(sweep.folder().temporary() / "nowhere.1.0123456789abcdef.7") << "half a shard";
   const Claims living(Folder(sweep.folder().claims()), {});
@@ -213,7 +214,7 @@ TEST_CASE("Leftovers of a dead runner are removed, a living one's are not", "[un
   CHECK(fs::exists(theirs));
 }
 
-TEST_CASE("Claims on finished work that a killed runner left are removed", "[unit][io]") {
+TEST_CASE("Claims of a killed runner on finished work are removed", "[unit][io]") {
   const PlannedSweep sweep;
   sweep.run();
   for (const char* unit : {"000001", "retry-000002"}) {
@@ -223,7 +224,7 @@ TEST_CASE("Claims on finished work that a killed runner left are removed", "[uni
   CHECK(count_files(sweep.folder().claims()) == 0);
 }
 
-TEST_CASE("A folder that lost its empty subfolders runs", "[unit][io]") {
+TEST_CASE("A folder without its empty subfolders can be run", "[unit][io]") {
   const PlannedSweep sweep;
   const SweepFolder& folder = sweep.folder();
   for (const fs::path& path : {folder.claims(), folder.temporary(), folder.shards()}) {
@@ -243,7 +244,7 @@ SweepText make_unstable() {
   return text;
 }
 
-TEST_CASE("What failed is mended by a later resume, in overlays", "[unit][threads]") {
+TEST_CASE("A later resume mends failed cases in overlays", "[unit][threads]") {
   const PlannedSweep sweep(make_unstable());
   const RunSummary first = sweep.run();
   CHECK(first.failed > 0);
@@ -267,7 +268,7 @@ TEST_CASE("What failed is mended by a later resume, in overlays", "[unit][thread
   CHECK(third.retries_written == 0);
 }
 
-TEST_CASE("A resume tries a case once, however many runners help", "[unit][threads]") {
+TEST_CASE("A resume retries a case once, however many runners help", "[unit][threads]") {
   SweepText text = make_unstable();
   text.integrate = "method = \"rk4\"\nstep = 2e-2\nclosure = \"table\"\n";
   const PlannedSweep sweep(text);
@@ -277,7 +278,7 @@ TEST_CASE("A resume tries a case once, however many runners help", "[unit][threa
   options.retry_failed = true;
   std::atomic<bool> halt{false};
   {
-    // The first waits for a shard in other hands; the second meanwhile retries all others.
+    // The first runner waits for a shard that another one holds; the second retries all others.
     Claims holder(Folder(folder.claims()), {});
     const std::string unit = SweepFolder::shard_name(2);
     REQUIRE(holder.claim(unit) == Claims::Answer::kMine);
@@ -302,7 +303,7 @@ TEST_CASE("A resume tries a case once, however many runners help", "[unit][threa
   CHECK(still_failing > 0);
 }
 
-TEST_CASE("Status counts what is done from the files alone", "[unit]") {
+TEST_CASE("Status counts finished cases from the files alone", "[unit]") {
   const PlannedSweep sweep;
   SweepStatus status = read_status(sweep.folder(), sweep.plan());
   CHECK(status.cases == 27);

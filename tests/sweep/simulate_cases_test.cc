@@ -1,4 +1,4 @@
-// Cases into rows: grouping, failures, retries.
+// Simulating cases into rows: grouping, failures, retries.
 #include "sweep/simulate_cases.h"
 
 #include <algorithm>
@@ -35,8 +35,8 @@ std::vector<std::int64_t> list_ids(std::int64_t count) {
   return ids;
 }
 
-/// The last value of each axis brings trouble: a damper too stiff for the step, a spring that
-/// cannot carry the car.
+/// The last value of two axes fails: a damper too stiff for the step, a spring that cannot carry
+/// the car.
 SweepText make_troubled() {
   SweepText text;
   text.grid =
@@ -70,7 +70,7 @@ TEST_CASE("A row holds the snapshot of its own case", "[unit][reference]") {
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const LaneResults truth = run_cvode(test::prepare(sweep.plan().make_case(ids[i])), {}, {});
     CHECK(rows.status[i] == 0);
-    // Steps of 2 ms: some 1e-4 of the motion.
+    // Steps of 2 ms: about 1e-4 of the motion.
     CHECK(rows.event_time[i] == Approx(truth.event_time[0]).epsilon(tolerance(1e-5)));
     for (std::size_t s = 0; s < channels.size(); ++s) {
       const double expected = truth.snapshot[static_cast<std::size_t>(channels[s])];
@@ -80,7 +80,7 @@ TEST_CASE("A row holds the snapshot of its own case", "[unit][reference]") {
   CHECK(rows.snapshot[0] != rows.snapshot[channels.size()]);
 }
 
-TEST_CASE("What fails is told with reason and time, and harms no neighbor", "[unit]") {
+TEST_CASE("A failed case has a reason and a time, and disturbs no neighbor", "[unit]") {
   const PlannedSweep sweep(make_troubled());
   const Plan& plan = sweep.plan();
   const std::vector<std::int64_t> ids = list_ids(plan.case_count());
@@ -107,7 +107,7 @@ TEST_CASE("What fails is told with reason and time, and harms no neighbor", "[un
   CHECK(seen[0] > 2);
 }
 
-TEST_CASE("A retry is as exact as its quarter of the step", "[unit][reference]") {
+TEST_CASE("A retry is as accurate as its quarter of the step", "[unit][reference]") {
   SweepText text = make_troubled();
   text.integrate = "method = \"rk4\"\nstep = 2e-3\nclosure = \"newton\"\n";
   const PlannedSweep sweep(text);
@@ -120,7 +120,7 @@ TEST_CASE("A retry is as exact as its quarter of the step", "[unit][reference]")
   CHECK(rows.snapshot[0] == Approx(expected).epsilon(tolerance(1e-6)));
 }
 
-TEST_CASE("A car that never meets the bump has no event, and says so", "[unit]") {
+TEST_CASE("A car that never meets the bump has the status no_event", "[unit]") {
   SweepText text;
   text.grid = "speed = { from = 20, to = 2, step = -18 }\n";
   text.sample = "strata = 2\n";
@@ -150,10 +150,10 @@ TEST_CASE("Histories hold every sample of their channel", "[unit]") {
     const double expected = truth.history[i * CarChannel::kCount + CarChannel::kPitchRate];
     worst = std::max(worst, std::abs(rows.history[1][301 + i] - expected));
   }
-  CHECK(worst < tolerance(1e-3));  // rad/s, of some 0.4: steps of 2 ms
+  CHECK(worst < tolerance(1e-3));  // rad/s, of about 0.4: steps of 2 ms
 }
 
-TEST_CASE("CVODE as a sweep's solver gives the reference itself", "[unit][reference]") {
+TEST_CASE("CVODE as a sweep's solver gives the reference solution itself", "[unit][reference]") {
   SweepText text;
   text.integrate = "method = \"cvode\"\n";
   const PlannedSweep sweep(text);

@@ -1,7 +1,8 @@
-// Verify finds what is wrong with a sweep folder, and names it.
+// Verification finds and names every fault of a sweep folder.
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "io/store/shard_layout.h"
 #include "sweep/shard_store.h"
 #include "tests/support/test_sweep.h"
 
@@ -21,7 +22,7 @@ void flip_byte(const fs::path& file, std::uintmax_t at) {
   stream.put(static_cast<char>(byte ^ 0x10));
 }
 
-TEST_CASE("A sound sweep is verified, cases simulated again bit for bit", "[unit]") {
+TEST_CASE("A valid sweep passes, and resimulated cases agree bit for bit", "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   const VerifyReport report = sweep.verify(27);
@@ -33,12 +34,12 @@ TEST_CASE("A sound sweep is verified, cases simulated again bit for bit", "[unit
   CHECK(report.data_digest.size() == 64);
 }
 
-TEST_CASE("One flipped byte is found and its file named", "[unit][io]") {
+TEST_CASE("A flipped byte is found and its file named", "[unit][io]") {
   const PlannedSweep sweep;
   sweep.run();
   const fs::path file = sweep.folder().shard(2);
   const std::uintmax_t size = fs::file_size(file);
-  // Places from the seal to the last byte.
+  // From the seal to the last byte.
   for (const std::uintmax_t at : {std::uintmax_t{3}, std::uintmax_t{500}, std::uintmax_t{512},
                                   size / 3, size / 2, 2 * size / 3, size - 1}) {
     flip_byte(file, at);
@@ -53,7 +54,7 @@ TEST_CASE("One flipped byte is found and its file named", "[unit][io]") {
   CHECK(sweep.verify().ok());
 }
 
-TEST_CASE("A missing shard's cases are counted", "[unit]") {
+TEST_CASE("The cases of a missing shard are counted", "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   fs::remove(sweep.folder().shard(5));
@@ -63,7 +64,7 @@ TEST_CASE("A missing shard's cases are counted", "[unit]") {
   CHECK(report.damaged.empty());
 }
 
-TEST_CASE("A shard under another's name is found", "[unit]") {
+TEST_CASE("A shard under the name of another one is found", "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   fs::copy_file(sweep.folder().shard(1), sweep.folder().shard(3),
@@ -91,7 +92,7 @@ TEST_CASE("A shard of another plan is found", "[unit]") {
   CHECK_THAT(report.damaged[0], Contains("another plan"));
 }
 
-TEST_CASE("A shard beyond the plan and files of no sweep are found", "[unit]") {
+TEST_CASE("A shard beyond the plan and foreign files are found", "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   fs::copy_file(sweep.folder().shard(0), sweep.folder().shard(77));
@@ -102,21 +103,21 @@ TEST_CASE("A shard beyond the plan and files of no sweep are found", "[unit]") {
   CHECK(report.damaged.size() == 2);
 }
 
-/// Publishes `rows` as shard `number`, with everything about the file right.
+/// Writes `rows` as shard `number`, in a valid file.
 void replace_shard(const PlannedSweep& sweep, std::int64_t number, const ShardRows& rows,
                    const std::string& isa = list_kernels().front().isa) {
   const CompressedShard data = compress_shard(sweep.plan().make_schema(), rows);
   ShardProvenance provenance;
   provenance.plan_hash = sweep.plan().hash();
   provenance.shard = number;
-  provenance.texts = {{"instruction_set", isa}};
+  provenance.texts = {{kInstructionSetKey, isa}};
   const std::vector<std::byte> image = make_shard_image(data, provenance);
   std::ofstream stream(sweep.folder().shard(number), std::ios::binary);
   stream.write(reinterpret_cast<const char*>(image.data()),
                static_cast<std::streamsize>(image.size()));
 }
 
-TEST_CASE("A shard that was replaced by a sound one with other data is found", "[unit]") {
+TEST_CASE("A shard that was replaced by a valid one with other data is found", "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   ShardRows rows = read_shard(sweep.folder().shard(1)).rows;
@@ -151,7 +152,8 @@ TEST_CASE("A shard of another instruction set is compared to 1e-9", "[unit]") {
   }
 }
 
-TEST_CASE("A shard made again before the journal knew is as sound as the first", "[unit]") {
+TEST_CASE("A shard simulated again but not recorded in the journal is as valid as the first",
+          "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   const std::string digest = sweep.verify().data_digest;
@@ -161,7 +163,7 @@ TEST_CASE("A shard made again before the journal knew is as sound as the first",
   CHECK(report.data_digest == digest);
 }
 
-TEST_CASE("Cases that are double, foreign or changed are counted", "[unit]") {
+TEST_CASE("Duplicate, foreign and changed cases are counted", "[unit]") {
   const PlannedSweep sweep;
   sweep.run();
   fs::remove(sweep.folder().journal());

@@ -1,4 +1,4 @@
-#include "sweep/leftovers.h"
+#include "sweep/clean_up.h"
 
 #include <string>
 
@@ -7,7 +7,7 @@
 namespace strut {
 namespace {
 
-/// The runner of a file OWNER.NUMBER in tmp/; empty for a name that no runner gives.
+/// The runner that owns a file OWNER.NUMBER in tmp/; empty if no runner uses such a name.
 std::string parse_owner(const std::string& file) {
   const auto dot = file.rfind('.');
   const bool is_numbered = dot != std::string::npos && dot + 1 < file.size() &&
@@ -16,7 +16,8 @@ std::string parse_owner(const std::string& file) {
   return Claims::is_runner_name(owner) ? owner : "";
 }
 
-bool is_over(const SweepFolder& folder, const std::string& unit) {
+/// True if no runner would request a claim on `unit` again.
+bool is_finished(const SweepFolder& folder, const std::string& unit) {
   const std::int64_t shard = SweepFolder::parse_shard_name(unit);
   return shard >= 0 ? std::filesystem::exists(folder.shard(shard))
                     : SweepFolder::is_retry_unit(unit);
@@ -24,7 +25,7 @@ bool is_over(const SweepFolder& folder, const std::string& unit) {
 
 }  // namespace
 
-void remove_leftovers(const SweepFolder& folder, Claims& claims) {
+void clean_up(const SweepFolder& folder, Claims& claims) {
   const Folder temporary = folder.open(folder.temporary());
   for (const std::string& file : temporary.list()) {
     const std::string owner = parse_owner(file);
@@ -32,7 +33,7 @@ void remove_leftovers(const SweepFolder& folder, Claims& claims) {
     if (is_dead) temporary.try_remove(file);
   }
   for (const std::string& unit : folder.open(folder.claims()).list()) {
-    if (!is_over(folder, unit)) continue;
+    if (!is_finished(folder, unit)) continue;
     if (claims.claim(unit) == Claims::Answer::kMine) claims.release(unit);
   }
   remove_abandoned_files(Folder(folder.root));
