@@ -1,23 +1,24 @@
-// Training the network 4-27-19-11-4 (935 weights) on 1,400 rows: time of an iteration and of its
-// parts, time to the solution from seven starts, time of a prediction, memory; GSL and Ceres beside
-// it where they are installed. The figures: docs/design/0007-levenberg-marquardt.md.
+// Training of the network 4-27-19-11-4 (935 weights) on 1,400 rows: time of an iteration and of its
+// parts, time to the solution from seven starts, time of a prediction, memory; GSL and Ceres for
+// comparison if they are installed. Results: docs/design/0007-levenberg-marquardt.md.
 //
 //   lm_benchmark [REPETITIONS]
 //
-// Each time is the best of many. "spin" is how fast a fixed chain of operations ran beside them,
-// relative to this machine undisturbed: below 0.95 others were at work.
+// Each time is the minimum of many. "spin" is the simultaneous speed of a fixed chain of
+// operations, relative to the idle machine: below 0.95 other processes were running.
 #include <sys/resource.h>
-#include <time.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 
 #include "base/least_squares/damped_system.h"
+#include "benchmarks/cpu_time.h"
 #include "benchmarks/lm_peers.h"
 #include "jobs/cli/machine.h"
 #include "tests/train/lm_study_problem.h"
 #include "train/network/growing_sample.h"
+#include "train/network/network.h"
 
 namespace strut {
 namespace {
@@ -30,7 +31,7 @@ struct Timer {
   int repetitions;
   double full_spin = calibrate_spin();
 
-  /// Best wall time of `run` [ms]; prints it with the spin of the best moment.
+  /// Returns and prints the minimum wall time of `run` [ms], with the maximum spin.
   double measure(const char* name, const std::function<void()>& run) const {
     double best = 1e9, spin = 0.0;
     for (int i = 0; i < repetitions; ++i) {
@@ -44,20 +45,14 @@ struct Timer {
   }
 };
 
-double calc_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// MB
+/// Peak memory of this process [MB].
 double read_peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// The parts that the kernel offers one by one, on one thread.
+/// Measures the functions of the kernel one by one, on one thread.
 void measure_kernel(const Timer& timer, const NetworkShape& shape, const Numbers& weights) {
   const TrainKernel& kernel = get_train_kernel();
   constexpr std::size_t kRows = NetworkProblem::kChunkRows, kAll = 1408;
@@ -127,13 +122,13 @@ void measure_iteration(const Timer& timer, const StudyProblem& study, int thread
 
 template <class Solver>
 void measure_solution(const char* name, Solver& solver, const Numbers& start) {
-  const double begin = calc_cpu_seconds();
+  const double begin = read_cpu_time();
   solver.start(start);
   while (solver.state().validation > 1e-6 && solver.step()) {
   }
   const LevenbergMarquardtState& state = solver.state();
   std::printf("  %-24s %5d epochs %5ld factorizations %7.3f CPU s%s\n", name, state.epoch,
-              state.trials, calc_cpu_seconds() - begin,
+              state.trials, read_cpu_time() - begin,
               state.validation > 1e-6 ? "   not reached" : "");
 }
 
@@ -162,7 +157,7 @@ void measure_solutions(const StudyProblem& study, DampingRule rule, std::size_t 
 void measure_prediction(const Timer& timer, const StudyProblem& study) {
   const Predictor predictor(StudyProblem::make_shape(), study.read_start("0"));
   Numbers inputs(4, 0.1), outputs(4);
-  timer.measure("1,000 predictions, one after the other", [&] {
+  timer.measure("1,000 predictions, in sequence", [&] {
     for (int i = 0; i < 1000; ++i) {
       predictor.predict(inputs.data(), outputs.data());
       inputs[0] = 0.1 * outputs[0];
@@ -184,7 +179,7 @@ int main(int argc, char** argv) {
   strut::measure_prediction(timer, study);
   std::printf("growing sample\n");
   strut::measure_solutions(study, strut::DampingRule::kGainRatio, 0, true);
-  std::printf("H of 700 rows in turn\n");
+  std::printf("H from windows of 700 rows\n");
   strut::measure_solutions(study, strut::DampingRule::kGainRatio, 700, false);
   std::printf("trainlm rule, six failures, 500 epochs\n");
   strut::measure_solutions(study, strut::DampingRule::kTrainlm, 0, false);

@@ -1,9 +1,9 @@
 #include "benchmarks/lm_peers.h"
 
-#include <time.h>
-
 #include <cstdio>
 #include <cstdlib>
+
+#include "benchmarks/cpu_time.h"
 
 #ifdef STRUT_HAS_GSL
 #include <gsl/gsl_blas.h>
@@ -19,12 +19,6 @@ namespace strut {
 namespace {
 
 using Numbers = std::vector<double>;
-
-[[maybe_unused]] double calc_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Residuals, explicit Jacobian and second derivative of the training rows, block by block.
 class ExplicitProblem {
@@ -49,7 +43,7 @@ class ExplicitProblem {
     return validation_.calc_loss(w) / validation_.residual_count();
   }
 
-  /// e, and where `jacobian` is not null J by rows.
+  /// Writes e and, if `jacobian` is not null, J by rows.
   void evaluate(const double* w, double* e, double* jacobian) {
     for_each_block(
         w,
@@ -157,7 +151,7 @@ void run_gsl(ExplicitProblem& problem, const char* start, const Numbers& weights
   gsl_multifit_nlinear_workspace* workspace =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &options, functions.n, functions.p);
   const gsl_vector_const_view w = gsl_vector_const_view_array(weights.data(), weights.size());
-  const double begin = calc_cpu_seconds();
+  const double begin = read_cpu_time();
   gsl_multifit_nlinear_init(&w.vector, &functions, workspace);
   int iterations = 0;
   bool reached = false;
@@ -165,7 +159,7 @@ void run_gsl(ExplicitProblem& problem, const char* start, const Numbers& weights
     ++iterations;
     reached = problem.calc_validation(gsl_multifit_nlinear_position(workspace)->data) <= 1e-6;
   }
-  print_row(start, iterations, calc_cpu_seconds() - begin, reached);
+  print_row(start, iterations, read_cpu_time() - begin, reached);
   gsl_multifit_nlinear_free(workspace);
 }
 #endif
@@ -213,9 +207,9 @@ void run_ceres(ExplicitProblem& problem, const char* start, Numbers weights) {
   options.callbacks.push_back(&stop);
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  const double begin = calc_cpu_seconds();
+  const double begin = read_cpu_time();
   ceres::Solve(options, &model, &summary);
-  print_row(start, static_cast<int>(summary.iterations.size()) - 1, calc_cpu_seconds() - begin,
+  print_row(start, static_cast<int>(summary.iterations.size()) - 1, read_cpu_time() - begin,
             stop.reached);
 }
 #endif

@@ -1,9 +1,9 @@
-// Which lane type? The car's right-hand side with each candidate, and the largest difference of
-// each from `double`. One program per instruction set; the results: docs/design/0002-lanes.md.
+// Compares lane types: the car's right-hand side with each candidate, and its maximum difference
+// from `double`. One program per instruction set. Results: docs/design/0002-lanes.md.
 //
 //   rhs_benchmark_avx512 --benchmark_enable_random_interleaving=true --benchmark_repetitions=15
 //
-// "spin" is a fixed chain of dependent operations: on a noisy machine judge by ratios to it.
+// "spin" is a fixed chain of dependent operations: on a noisy machine compare ratios to it.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -32,14 +32,14 @@ const PreparedCase& get_case() {
   return prepared;
 }
 
-/// A state off the trimmed start, another one in each lane.
+/// A state near the trimmed start, different in each lane.
 double calc_entry(std::size_t entry, int lane) {
   return get_case().start[entry] + 0.01 * std::sin(7.0 * static_cast<double>(entry) + 3.0 * lane);
 }
 
-/// The right-hand side of W cars with `Closure`, ready to be called.
+/// The right-hand side of W cars with `Closure`, prepared for calls.
 template <class T, template <class> class Closure>
-struct alignas(4096) RightHandSide {  // the same place in a page for all: offsets cost up to 20 %
+struct alignas(4096) RightHandSide {  // the same offset in a page for all: offsets cost up to 20 %
   Vehicle<T> vehicle;
   Workspace<T> workspace{};
   State<T> x{}, dx{};  // rates of states that the car does not have stay zero
@@ -96,7 +96,7 @@ void run_functions(benchmark::State& state) {
   }
 }
 
-/// 1000 times a dependent multiplication and addition.
+/// 1000 dependent multiplications and additions.
 void spin(benchmark::State& state) {
   for (auto _ : state) {
     double x = 1.0;
@@ -107,22 +107,22 @@ void spin(benchmark::State& state) {
   }
 }
 
-/// Largest difference between lanes and double over all rates, relative to the rate, or to 1 where
-/// it is smaller.
+/// Maximum difference between lanes and double over all rates, relative to the larger of the rate
+/// and 1.
 template <class T, template <class> class Closure>
 double find_difference() {
   const auto rhs = std::make_unique<RightHandSide<T, Closure>>();
   rhs->calc();
-  double largest = 0.0;
+  double max = 0.0;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     const auto one = std::make_unique<RightHandSide<double, Closure>>(lane);
     one->calc();
     for (std::size_t i = 0; i < one->dx.size(); ++i) {
       const double difference = std::abs(get_lane(rhs->dx[i], lane) - one->dx[i]);
-      largest = std::max(largest, difference / std::max(1.0, std::abs(one->dx[i])));
+      max = std::max(max, difference / std::max(1.0, std::abs(one->dx[i])));
     }
   }
-  return largest;
+  return max;
 }
 
 template <class T>

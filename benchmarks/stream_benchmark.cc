@@ -1,10 +1,10 @@
-// Does training's memory depend on the number of cases? Writes shards of synthetic cases, trains on
-// them with `strut train` as a user does, and prints times and the largest memory.
+// Measures whether the memory of training depends on the number of cases: writes shards of
+// synthetic cases, trains on them with `strut train`, and prints times and peak memory.
 //
 //   stream_benchmark STRUT FOLDER [CASES [THREADS]]
 //
-// FOLDER needs about 200 bytes a case: the shards, and training's own copy of the rows. Exit code 1
-// where training takes 500 MB or more.
+// FOLDER needs about 200 bytes per case, for the shards and the trainer's copy of the rows. Exit
+// code 1 if training needs 500 MB or more.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -33,7 +33,8 @@ constexpr std::size_t kParameters = 4;
 
 using Row = std::array<double, kParameters>;
 
-/// A smooth map of [-1, 1]^4, well conditioned and bent by a tenth, as states over parameters are.
+/// A smooth, well-conditioned map of [-1, 1]^4 with a curvature of a tenth, like states over
+/// parameters.
 Row calc_states(const Row& p) {
   const double bend = p[0] * p[1] + 0.5 * p[2] * p[2] - 0.3 * p[3] * p[0];
   return {p[0] + 0.3 * p[1] - 0.2 * p[2] + 0.1 * bend, p[1] - 0.4 * p[3] + 0.1 * p[0] * p[2],
@@ -79,9 +80,9 @@ void write_shards(const fs::path& folder, std::int64_t cases, int threads) {
   const std::string plan_hash(64, '0');
   const std::int64_t shards = (cases + kShardCases - 1) / kShardCases;
   fs::create_directories(folder);
-  // Those of a longer run before this one.
+  // Remove shards of an earlier, longer run.
   for (std::int64_t old = shards; fs::remove(make_path(folder, old)); ++old) continue;
-  std::mutex library;  // the HDF5 library is not for many threads
+  std::mutex library;  // the HDF5 library is not thread-safe
   share_items(threads, static_cast<std::size_t>(shards), [&](std::size_t item, int) {
     const auto shard = static_cast<std::int64_t>(item);
     const std::int64_t first = shard * kShardCases;
@@ -101,7 +102,7 @@ double now() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
-/// Trains, and prints how long that took and how much memory; true where it stayed in the limit.
+/// Trains and prints time and peak memory; returns true if the memory stayed below the limit.
 bool train(const std::string& program, const fs::path& folder, const std::string& options) {
   const double begin = now();
   const std::string command = program + " train " + (folder / "*.h5").string() + " -o " +
@@ -110,7 +111,7 @@ bool train(const std::string& program, const fs::path& folder, const std::string
   std::fflush(stdout);
   if (std::system(command.c_str()) != 0) return false;
   rusage usage{};
-  getrusage(RUSAGE_CHILDREN, &usage);  // the largest of all so far
+  getrusage(RUSAGE_CHILDREN, &usage);  // the maximum of all children so far
   const double memory = 1024.0 * static_cast<double>(usage.ru_maxrss);
   std::printf("%.1f s, at most %.0f MB\n", now() - begin, memory / 1e6);
   return memory < kMemoryLimit;

@@ -1,21 +1,17 @@
 #include "train/train_network.h"
 
+#include <fmt/format.h>
+
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "io/store/shard_layout.h"
 #include "train/model/interval.h"
+#include "train/network/network.h"
 #include "train/window/rows.h"
 
 namespace strut {
 namespace {
-
-std::string list_sizes(const std::vector<int>& values) {
-  std::vector<std::string> texts;
-  texts.reserve(values.size());
-  for (const int value : values) texts.push_back(std::to_string(value));
-  return join_names(texts);
-}
 
 NetworkShape make_shape(const TrainingRows& data, const std::vector<int>& hidden) {
   std::vector<int> sizes = {static_cast<int>(data.inputs.size())};
@@ -27,11 +23,11 @@ NetworkShape make_shape(const TrainingRows& data, const std::vector<int>& hidden
 void require_equations(const TrainingRows& data, const NetworkShape& shape) {
   const std::size_t rows = data.train.row_count(), outputs = data.targets.size();
   if (rows * outputs >= shape.weight_count) return;
-  throw InputError(std::to_string(rows) + " training cases x " + std::to_string(outputs) +
-                   " parameters are " + std::to_string(rows * outputs) +
-                   " equations for the network's " + std::to_string(shape.weight_count) +
-                   " weights: it would learn them by heart; take more cases or a smaller network, "
-                   "or insist with `strut train --allow-few`");
+  throw InputError(fmt::format(
+      "{} training cases x {} parameters give {} equations for the network's {} weights: it would "
+      "memorize the cases; use more cases or a smaller network, or insist with `strut train "
+      "--allow-few`",
+      rows, outputs, rows * outputs, shape.weight_count));
 }
 
 TrainingRows read_parts(Dataset& dataset, const TrainingRequest& request) {
@@ -44,7 +40,7 @@ TrainingRows read_parts(Dataset& dataset, const TrainingRequest& request) {
                     request.store, request.noise);
 }
 
-/// What a window was cut and projected by; all else of it follows from the data.
+/// Lists the options of a window; the rest of its transform follows from the data.
 NamedTexts describe_window(const WindowTransform& window) {
   const WindowGrid& grid = window.grid;
   return {{"window_channels", join_names(list_names(window.channels))},
@@ -54,7 +50,7 @@ NamedTexts describe_window(const WindowTransform& window) {
           {"window_lags", std::to_string(grid.lags)}};
 }
 
-/// Exact training is that on a sample which begins with all rows.
+/// Exact training is training on a sample that starts with all rows.
 GrowingSampleOptions choose_sample(const TrainingRequest& request, const TrainingRows& data) {
   if (request.growing) return *request.growing;
   GrowingSampleOptions all;
@@ -65,8 +61,8 @@ GrowingSampleOptions choose_sample(const TrainingRequest& request, const Trainin
 std::string describe_sample(const std::optional<GrowingSampleOptions>& growing) {
   if (!growing) return "all rows";
   const std::string first =
-      growing->first_rows > 0 ? std::to_string(growing->first_rows) : std::string("2 a weight");
-  return "first " + first + ", grows by " + format_number(growing->growth);
+      growing->first_rows > 0 ? std::to_string(growing->first_rows) : "2 a weight";
+  return fmt::format("first {}, grows by {}", first, format_number(growing->growth));
 }
 
 void append(NamedTexts& texts, const NamedTexts& more) {
@@ -74,6 +70,14 @@ void append(NamedTexts& texts, const NamedTexts& more) {
 }
 
 }  // namespace
+
+NamedTexts describe_limits(const LevenbergMarquardtOptions& options) {
+  return {{"epochs", std::to_string(options.epochs)},
+          {"max_failures", std::to_string(options.max_failures)},
+          {"goal", format_number(options.goal)},
+          {"min_gradient", format_number(options.min_gradient)},
+          {"max_damping", format_number(options.max_damping)}};
+}
 
 Training::Training(Dataset& dataset, const TrainingRequest& request)
     : request_(request),
@@ -94,18 +98,18 @@ void Training::resume(const std::filesystem::path& path, const Checkpoint& check
   require_same_start(path, checkpoint, describe_start());
   GrowingSampleState state = checkpoint.state;
   record_ = checkpoint.record;
-  // What stopped it may be no limit any more.
+  // The limit that stopped it may have changed.
   state.training.stop = StopReason::kNone;
   training_->restore(state);
 }
 
 bool Training::step() {
-  const bool goes_on = training_->step();
+  const bool running = training_->step();
   const EpochRecord& last = training_->last_record();
-  // An epoch at which training stopped runs again: after resuming, and on a larger sample.
+  // An epoch at which the training stopped runs again after resuming and on a larger sample.
   if (!record_.empty() && record_.back().epoch == last.epoch) record_.pop_back();
   record_.push_back(last);
-  return goes_on;
+  return running;
 }
 
 TrainingSummary Training::summarize() const {
@@ -121,17 +125,17 @@ NamedTexts Training::describe_start() const {
                       {"inputs", join_names(list_names(data_.inputs))},
                       {"parameters", join_names(list_names(data_.targets))},
                       {"usable_cases", std::to_string(data_.usable)},
-                      {"layers", list_sizes(shape_.sizes)},
+                      {"layers", fmt::format("{}", fmt::join(shape_.sizes, ", "))},
                       {"seed", std::to_string(request_.seed)},
                       {"split_seed", std::to_string(request_.split.seed)},
                       {"split_train", format_number(request_.split.train)},
                       {"split_validate", format_number(request_.split.validate)},
-                      {"rule", options.rule == DampingRule::kTrainlm ? "trainlm" : "gain-ratio"},
+                      {"rule", kDampingRules[static_cast<std::size_t>(options.rule)]},
                       {"accelerate", options.accelerate ? "yes" : "no"},
                       {"first_damping", format_number(options.first_damping)},
                       {"sample", describe_sample(request_.growing)},
                       {"gram_rows", std::to_string(request_.problem.gram_rows)},
-                      {"instruction_set", problem_->kernel().isa}};
+                      {kInstructionSetKey, problem_->kernel().isa}};
   if (data_.noise) append(texts, describe_noise(*data_.noise, data_.inputs));
   if (data_.window) {
     append(texts, describe_window(*data_.window));
@@ -146,7 +150,6 @@ Checkpoint Training::make_checkpoint() const {
 
 TrainedModel Training::make_model() const {
   const LevenbergMarquardtState& s = state();
-  const LevenbergMarquardtOptions& options = request_.options;
   TrainedModel model;
   model.sizes = shape_.sizes;
   model.weights = s.best_weights;
@@ -163,12 +166,7 @@ TrainedModel Training::make_model() const {
   model.skipped = data_.skipped;
   model.split = request_.split;
   model.options = describe_start();
-  const NamedTexts limits = {{"epochs", std::to_string(options.epochs)},
-                             {"max_failures", std::to_string(options.max_failures)},
-                             {"goal", format_number(options.goal)},
-                             {"min_gradient", format_number(options.min_gradient)},
-                             {"max_damping", format_number(options.max_damping)}};
-  append(model.options, limits);
+  append(model.options, describe_limits(request_.options));
   model.record = record_;
   model.stop = s.stop;
   model.best_epoch = s.best_epoch;

@@ -1,4 +1,4 @@
-// One training from a dataset to a model.
+// Trains a model on a dataset.
 #pragma once
 
 #include <cstdint>
@@ -17,49 +17,56 @@
 
 namespace strut {
 
+/// Names of the damping rules, in the order of DampingRule.
+inline const std::vector<std::string> kDampingRules = {"gain-ratio", "trainlm"};
+
 struct TrainingRequest {
   RowChoice rows;
-  /// A window of the histories in place of the snapshot; asks for `noise`.
+  /// A window of the histories instead of the snapshot; needs `noise`.
   std::optional<WindowChoice> window;
   std::optional<NoiseModel> noise;  // of rows.inputs
   std::vector<int> hidden = {27, 19, 11};
   SplitChoice split;
   std::uint64_t seed = 1;  // of the start weights (Nguyen-Widrow)
-  bool allow_few = false;  // train with fewer equations than weights
+  bool allow_few = false;  // allow fewer equations than weights
   LevenbergMarquardtOptions options;
-  /// First epochs on a sample of the rows; without, every epoch takes all.
+  /// Start on a growing sample of the rows; otherwise every epoch uses all rows.
   std::optional<GrowingSampleOptions> growing;
   NetworkProblemOptions problem;
   RowStoreOptions store;
 };
 
+/// Lists the limits that decide at which epoch a training ends.
+NamedTexts describe_limits(const LevenbergMarquardtOptions& options);
+
 class Training {
  public:
-  /// Reads the dataset, which must have been opened for histories where a window is asked for.
-  /// Throws InputError, see read_usable_rows, split_rows and make_window_rows, and where the
-  /// training rows give fewer equations (rows x outputs) than the network has weights.
+  /// Reads the dataset, which must have been opened with histories if a window is requested. Throws
+  /// InputError as read_usable_rows, split_rows and make_window_rows do, and unless `allow_few` is
+  /// set, if the training rows give fewer equations (rows x outputs) than the network has weights.
   Training(Dataset& dataset, const TrainingRequest& request);
 
-  /// Goes on from a checkpoint; limits (epochs, goal, failures, ...) are those of the request.
-  /// `path` stands in messages. Throws InputError where it is one of another training.
+  /// Resumes from a checkpoint, with the limits (epochs, goal, failures, ...) of the request.
+  /// `path` is used in messages. Throws InputError if it is the checkpoint of a different training.
   void resume(const std::filesystem::path& path, const Checkpoint& checkpoint);
 
-  /// Runs one epoch; false once it has stopped.
+  /// Runs one epoch; returns false once the training has stopped.
   bool step();
 
   const TrainingRows& data() const { return data_; }
   const NetworkShape& shape() const { return shape_; }
   const LevenbergMarquardtState& state() const { return training_->state(); }
   const std::vector<EpochRecord>& record() const { return record_; }
-  /// Rows of the sample at hand.
+  /// Number of rows of the current sample.
   std::size_t rows() const { return training_->rows(); }
   TrainingSummary summarize() const;
 
   Checkpoint make_checkpoint() const;
-  /// At the validation minimum; without provenance.
+  /// The model at the validation minimum; without provenance.
   TrainedModel make_model() const;
 
  private:
+  /// Everything that determines how the training proceeds, limits excluded.
   NamedTexts describe_start() const;
 
   TrainingRequest request_;

@@ -1,10 +1,10 @@
-// Lane operations by Highway, statically dispatched: the target follows the compiler flags.
-// Elementary functions of hwy/contrib/math.
+// Lane operations by Highway with static dispatch: the compiler flags decide the target. Elementary
+// functions are those of hwy/contrib/math.
 #pragma once
 
 #include <hwy/highway.h>
 
-// Without a guard of its own against being read before highway.h; not to be sorted above it.
+// Must come after highway.h, so it stands apart from the sorted includes.
 #include <hwy/contrib/math/math-inl.h>
 
 #include "base/math/lanes.h"

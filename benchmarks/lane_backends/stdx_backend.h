@@ -1,5 +1,5 @@
-// Lane operations by std::experimental::simd of libstdc++ (Parallelism TS 2). Vectorized there:
-// sine and cosine; arctangent and exponential go element by element to the C library.
+// Lane operations by std::experimental::simd of libstdc++ (Parallelism TS 2). It vectorizes sine
+// and cosine; arctangent and exponential call the C library element by element.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,7 @@ struct StdxBackend {
   }
   static Vector abs(Vector a) { return std::experimental::abs(a); }
   static Vector sqrt(Vector a) { return std::experimental::sqrt(a); }
-  // Not std::experimental::min and max, whose NaN lanes differ from those of `double`.
+  // Not std::experimental::min and max, which treat NaN differently from `double`.
   static Vector min(Vector a, Vector b) { return select(b < a, b, a); }
   static Vector max(Vector a, Vector b) { return select(a < b, b, a); }
   static Vector floor(Vector a) { return std::experimental::floor(a); }

@@ -1,5 +1,5 @@
-// Lane operations by GCC's vector extensions; elementary functions of libmvec, which comes with
-// glibc 2.35 and later on x86-64. As small as a lane type can be.
+// Lane operations by GCC's vector extensions, the smallest possible lane type. Elementary functions
+// are those of libmvec, part of glibc 2.35 and later on x86-64.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ struct VectorBackend {
   using MaskVector = decltype(Vector{} < Vector{});
   static constexpr int kWidth = STRUT_VECTOR_BYTES / 8;
 
-  /// The same scalar function for every element; the compiler makes one instruction of it.
+  /// Applies a scalar function to every element; the compiler vectorizes it.
   template <class Function>
   static Vector map(Vector a, Function function) {
     Vector out{};

@@ -141,13 +141,13 @@ std::vector<OutsideChannel> list_outside(const TrainedModel& model, const Measur
     if (value >= low - margin && value <= high + margin) return;
     outside.push_back({name, unit, value, low, high, calc_excess(value, low, high)});
   };
-  if (!reading.place.found) {
-    const double begin = record.begin + reading.place.begin * window.grid.interval;
+  if (!reading.alignment.found) {
+    const double begin = record.begin + reading.alignment.begin * window.grid.interval;
     outside.push_back({"alignment", "s", begin, std::nan(""), std::nan(""), 0.0});
     return outside;  // the numbers of a window elsewhere tell nothing more
   }
-  const double limit = window.leftover_mean + kLeftoverDeviations * window.leftover_deviation;
-  judge("leftover", "1", reading.leftover, 0.0, limit, 0.0);
+  const double limit = window.residual_mean + kLeftoverDeviations * window.residual_deviation;
+  judge("leftover", "1", reading.residual, 0.0, limit, 0.0);
   for (std::size_t k = 0; k < components.size(); ++k) {
     judge(model.inputs[k].name, model.inputs[k].unit, components[k], model.input_map.low()[k],
           model.input_map.high()[k], kNormal95);

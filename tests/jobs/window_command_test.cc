@@ -106,7 +106,8 @@ TEST_CASE("A resumed noisy training is the uninterrupted one bit for bit", "[io]
       sweep, folder / "c.h5",
       options + "--bias " + (inputs.empty() ? "imu_rate_y" : "pitch_angle") + "=0.25 " + resume);
   CHECK(other.code == 2);
-  CHECK_THAT(other.messages, Contains("a checkpoint of another training") && Contains("bias: was"));
+  CHECK_THAT(other.messages,
+             Contains("a checkpoint of a different training") && Contains("bias: was"));
 }
 
 TEST_CASE("A network with noisy snapshots knows its noise", "[io][slow]") {

@@ -51,7 +51,7 @@ void check_same(const ShardRows& a, const ShardRows& b) {
   CHECK(test::same_bits(a.event_time, b.event_time));
 }
 
-TEST_CASE("A folder, its shards in any order and a merged file are the same rows", "[io]") {
+TEST_CASE("A folder, its shards in any order and a merged file give the same rows", "[io]") {
   const test::PlannedSweep sweep;
   sweep.run();
   const SweepFolder& folder = sweep.folder();
@@ -77,7 +77,7 @@ TEST_CASE("A folder, its shards in any order and a merged file are the same rows
   CHECK_THROWS_WITH(whole.read(20, 8), Contains("has 27 rows"));
 }
 
-TEST_CASE("A sweep folder that lacks shards is refused unless told otherwise", "[io]") {
+TEST_CASE("A sweep folder that lacks shards is refused unless partial data are allowed", "[io]") {
   const test::PlannedSweep sweep;
   sweep.run();
   fs::remove(sweep.folder().shard(1));
@@ -106,13 +106,13 @@ TEST_CASE("Files of another plan, of other columns, or given twice are refused b
   CHECK_THROWS_AS(Dataset({folder.write("text.h5", "no data")}), InputError);
 }
 
-/// A shard of a sweep with its seal in order and other content.
+/// Writes a shard of a sweep with a valid seal and other content.
 void replace_shard(const fs::path& file, const test::PlannedSweep& sweep, std::int64_t number,
                    const ShardRows& rows) {
   write_shard(file, number, sweep.plan().make_schema(), rows, sweep.plan().hash());
 }
 
-TEST_CASE("A folder's shard under another's name or of another sweep is refused with a remedy",
+TEST_CASE("A folder's shard under a wrong name or of another sweep is refused with a remedy",
           "[io]") {
   const test::PlannedSweep sweep;
   sweep.run();
@@ -201,7 +201,7 @@ TEST_CASE("A retry of another shard or sweep is refused", "[io]") {
   CHECK(Dataset({folder.root}).read(0, 27).case_id[5] == rows.case_id[0]);
 }
 
-TEST_CASE("Shards given alone bear their own number, and no case is there twice", "[io]") {
+TEST_CASE("Single shards must have their own number, and no case may occur twice", "[io]") {
   const TemporaryFolder folder;
   const fs::path one = write_example(folder, 1), other = folder / "000002.h5";
   fs::copy_file(one, other);
@@ -213,7 +213,7 @@ TEST_CASE("Shards given alone bear their own number, and no case is there twice"
   CHECK(Dataset({other}).row_count() == 20);
 }
 
-TEST_CASE("Every flipped bit of a plan, a shard and a merged file is found by who reads them",
+TEST_CASE("Every flipped bit of a plan, a shard and a merged file is found by its reader",
           "[io][property]") {
   const test::PlannedSweep sweep;
   sweep.run();
@@ -231,7 +231,8 @@ TEST_CASE("Every flipped bit of a plan, a shard and a merged file is found by wh
             merged, [&] { Dataset dataset({merged}); }, "") == 0);
 }
 
-TEST_CASE("Rows of a store are the same in memory and in a scratch file", "[unit][property]") {
+TEST_CASE("A row store returns the same rows from memory and from a scratch file",
+          "[unit][property]") {
   const TemporaryFolder folder;
   RowStore memory(3), file(3, {.memory = 100, .scratch = folder / "."});
   std::vector<double> all;
@@ -257,7 +258,8 @@ TEST_CASE("Rows of a store are the same in memory and in a scratch file", "[unit
   CHECK_THROWS_AS(nowhere.append(std::vector<double>{1.0}), EnvironmentError);
 }
 
-TEST_CASE("Failed cases and NaN are left out and counted, samples are the first", "[unit]") {
+TEST_CASE("Failed cases and NaN are skipped and counted, and samples are the first usable rows",
+          "[unit]") {
   const TemporaryFolder folder;
   const ShardSchema schema = test::make_example_schema();
   ShardRows rows = test::make_example_rows(schema, 20);
@@ -285,7 +287,7 @@ TEST_CASE("Failed cases and NaN are left out and counted, samples are the first"
                     Contains("named twice"));
 }
 
-TEST_CASE("Parts partition the rows and bounds are those of the training part", "[property]") {
+TEST_CASE("Parts partition the rows, and bounds are those of the training part", "[property]") {
   UsableRows usable{{{"x", "m", ""}}, {{"p", "N", ""}}, RowStore(2)};
   std::vector<double> truth;
   for (int i = 0; i < 100; ++i) {
@@ -324,8 +326,8 @@ TEST_CASE("Parts partition the rows and bounds are those of the training part", 
   }
 }
 
-TEST_CASE("Rows of the other parts do not widen the bounds, whatever the seed", "[unit]") {
-  int narrower = 0;  // seeds that leave the lowest or the highest row to another part
+TEST_CASE("Rows of the other parts do not extend the bounds, for any seed", "[unit]") {
+  int narrower = 0;  // seeds that put the lowest or the highest row in another part
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     UsableRows usable{{{"x", "m", ""}}, {{"p", "N", ""}}, RowStore(2)};
     for (int i = 0; i < 40; ++i) {
@@ -348,7 +350,7 @@ TEST_CASE("Rows of the other parts do not widen the bounds, whatever the seed", 
   CHECK(narrower > 0);
 }
 
-TEST_CASE("A constant column and too few cases for three parts are told", "[unit]") {
+TEST_CASE("A constant column and too few cases for three parts are refused", "[unit]") {
   UsableRows usable{{{"x", "m", ""}, {"y", "m", ""}}, {{"p", "N", ""}}, RowStore(3)};
   for (int i = 0; i < 20; ++i) {
     usable.rows.append(std::vector<double>{static_cast<double>(i), 0.25, 1.0 * i});

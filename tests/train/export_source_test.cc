@@ -1,4 +1,4 @@
-// C source of a model: what compilers make of it, against the library.
+// Exported C source: compiled programs against the library.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
@@ -19,7 +19,7 @@ using test::TemporaryFolder;
 
 constexpr char kWarnings[] = " -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror ";
 
-/// Reads rows of inputs, writes the mask and the outputs of each with 17 digits.
+/// A program that reads rows of inputs and writes the mask and the outputs of each with 17 digits.
 std::string make_driver(const std::string& include, int inputs, int outputs) {
   std::ostringstream text;
   text << include << "#include <stdio.h>\nint main(void) {\n  double in[" << inputs << "], out["
@@ -39,7 +39,7 @@ std::string to_lines(const std::vector<double>& rows, std::size_t columns) {
   return text;
 }
 
-/// The mask that the model asks for.
+/// The expected mask of out-of-range values.
 int find_mask(const TrainedModel& model, const double* in, const double* out) {
   int mask = 0;
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
@@ -51,7 +51,7 @@ int find_mask(const TrainedModel& model, const double* in, const double* out) {
   return mask;
 }
 
-/// Answers of a compiled program against the library's.
+/// Compares the results of a compiled program with those of the library.
 void check_program(const TrainedModel& model, const std::string& program,
                    const TemporaryFolder& folder) {
   const std::size_t n = model.inputs.size(), m = model.targets.size(), count = 2000;
@@ -79,17 +79,17 @@ void check_program(const TrainedModel& model, const std::string& program,
   }
   REQUIRE(answers);
   CHECK(wrong == 0);
-  CHECK((masks & 3) == 3);  // both within and outside were tried
-  // Sums of some ten terms of order one, tanh good to an ulp or two.
+  CHECK((masks & 3) == 3);  // rows both inside and outside of the range were tested
+  // Sums of about ten terms of order one, tanh accurate to an ulp or two.
   CHECK(worst < 1e-13);
 }
 
-TEST_CASE("An exported header gives the network's answers in C and in C++", "[reference]") {
+TEST_CASE("An exported header gives the network's predictions in C and in C++", "[reference]") {
   const TemporaryFolder folder;
   const TrainedModel model =
       test::make_random_model(GENERATE(std::vector<int>{4, 9, 7, 2}, std::vector<int>{2, 1}));
   folder.write("car.h", make_c_source(model, "car", SourceKind::kHeader));
-  // Twice: the guard is tested too.
+  // Included twice, to test the guard.
   const std::string driver = make_driver("#include \"car.h\"\n#include \"car.h\"\n",
                                          model.sizes.front(), model.sizes.back());
   const auto compiler =
@@ -102,7 +102,7 @@ TEST_CASE("An exported header gives the network's answers in C and in C++", "[re
   check_program(model, program, folder);
 }
 
-TEST_CASE("An exported C source links to a program that declares its function", "[reference]") {
+TEST_CASE("An exported C source links with a program that declares its function", "[reference]") {
   const TemporaryFolder folder;
   const TrainedModel model = test::make_random_model();
   const std::string unit = folder.write("car.c", make_c_source(model, "car", SourceKind::kSource));
@@ -146,9 +146,10 @@ int main(void) {
 
 constexpr int kBlocks = 50, kPredictions = 1000;
 
-/// Prints the least time of a prediction over some blocks, each answer a part of the next question.
+/// Prints the minimum time of a prediction [us] over several blocks; each prediction depends on the
+/// one before.
 constexpr char kTimer[] = R"(int main(void) {
-  double in[4], out[2], least = 1e9;
+  double in[4], out[2], best = 1e9;
   int i, block;
   for (i = 0; i < 4; ++i) in[i] = strut_car_input_low()[i];
   for (block = 0; block < BLOCKS; ++block) {
@@ -161,19 +162,19 @@ constexpr char kTimer[] = R"(int main(void) {
     }
     clock_gettime(CLOCK_MONOTONIC, &b);
     time = 1e6 * (double)(b.tv_sec - a.tv_sec) + 1e-3 * (double)(b.tv_nsec - a.tv_nsec);
-    least = time < least ? time : least;
+    best = time < best ? time : best;
   }
-  printf("%g", least / PREDICTIONS);
-  fprintf(stderr, "%g", in[3]);  // else the compiler leaves out what no one reads
+  printf("%g", best / PREDICTIONS);
+  fprintf(stderr, "%g", in[3]);  // or else the compiler removes the unused predictions
   return 0;
 }
 )";
 
-/// us, in this program.
+/// Minimum time of a prediction in this program [us].
 double measure_identifier(const TrainedModel& model) {
   const Identifier identifier(model);
   std::vector<double> in = model.input_map.low(), out(model.targets.size());
-  double least = 1e9;
+  double best = 1e9;
   for (int block = 0; block < kBlocks; ++block) {
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < kPredictions; ++i) {
@@ -181,9 +182,9 @@ double measure_identifier(const TrainedModel& model) {
       in[3] += 1e-12 * out[0];
     }
     const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
-    least = std::min(least, time.count() / kPredictions);
+    best = std::min(best, time.count() / kPredictions);
   }
-  return least;
+  return best;
 }
 
 TEST_CASE("A prediction of the default network takes less than 5 us", "[slow]") {

@@ -1,4 +1,5 @@
-// J'J, J'e and J'e" without J, against J itself; and the same bits whoever adds them up.
+// J'J, J'e and J'e" without J, against the explicit J; and their bits, independent of threads and
+// storage.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -43,7 +44,7 @@ struct Rows {
   Numbers x, t;
 };
 
-/// The same from explicit Jacobians.
+/// The Gram from explicit Jacobians.
 Gram calc_explicit(const NetworkShape& shape, const Numbers& weights, const Rows& rows) {
   const std::size_t n = weights.size();
   const auto in = static_cast<std::size_t>(shape.inputs());
@@ -65,17 +66,17 @@ Gram calc_explicit(const NetworkShape& shape, const Numbers& weights, const Rows
   return gram;
 }
 
-double calc_largest(const Numbers& values) {
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::fabs(value));
-  return largest;
+double calc_max(const Numbers& values) {
+  double max = 0.0;
+  for (const double value : values) max = std::max(max, std::fabs(value));
+  return max;
 }
 
-double calc_largest_difference(const Numbers& a, const Numbers& b) {
+double calc_max_difference(const Numbers& a, const Numbers& b) {
   REQUIRE(a.size() == b.size());
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::fabs(a[i] - b[i]));
-  return largest;
+  double max = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) max = std::max(max, std::fabs(a[i] - b[i]));
+  return max;
 }
 
 TEST_CASE("The reference Jacobian agrees with differences", "[unit]") {
@@ -113,10 +114,10 @@ TEST_CASE("The structured Gram equals that of the explicit Jacobian", "[unit]") 
         const Gram gram = calc_gram(problem, weights);
         const Gram truth = calc_explicit(shape, weights, Rows(source));
         INFO(kernel.isa << " layers " << sizes.size() - 1 << " rows " << count);
-        // Rounding of sums of `count` terms: 1e-12 leaves a factor of ten and more.
-        CHECK(calc_largest_difference(gram.h, truth.h) <= tolerance(1e-12) * calc_largest(truth.h));
-        CHECK(calc_largest_difference(gram.gradient, truth.gradient) <=
-              tolerance(1e-12) * calc_largest(truth.gradient));
+        // Rounding of sums of `count` terms, below 1e-13, with a margin of ten.
+        CHECK(calc_max_difference(gram.h, truth.h) <= tolerance(1e-12) * calc_max(truth.h));
+        CHECK(calc_max_difference(gram.gradient, truth.gradient) <=
+              tolerance(1e-12) * calc_max(truth.gradient));
         CHECK(std::fabs(gram.loss - truth.loss) <= tolerance(1e-12) * truth.loss);
         CHECK(problem.calc_loss(weights.data()) == gram.loss);
       }
@@ -138,7 +139,7 @@ TEST_CASE("The gradient agrees with differences of the loss", "[unit]") {
     const double slope =
         (problem.calc_loss(up.data()) - problem.calc_loss(down.data())) / (4.0 * kStep);
     // d(e'e)/dw = 2 J'e; 1e-10 relative of curvature and rounding each.
-    CHECK(std::fabs(slope - gram.gradient[i]) <= tolerance(1e-8) * calc_largest(gram.gradient));
+    CHECK(std::fabs(slope - gram.gradient[i]) <= tolerance(1e-8) * calc_max(gram.gradient));
   }
 }
 
@@ -170,15 +171,15 @@ TEST_CASE("The second derivative along a direction agrees with differences", "[u
         }
       }
       INFO(kernel.isa << " layers " << sizes.size() - 1);
-      // eps / h^2 = 2e-8 of rounding and h^2 = 1e-8 of curvature, with a factor of some fifty for
-      // the wide layers' fourth derivatives.
-      CHECK(calc_largest_difference(gradient, truth) <=
-            tolerance(2e-6) * std::max(1.0, calc_largest(truth)));
+      // eps / h^2 = 2e-8 of rounding and h^2 = 1e-8 of curvature, with a factor of about fifty for
+      // the fourth derivatives of wide layers.
+      CHECK(calc_max_difference(gradient, truth) <=
+            tolerance(2e-6) * std::max(1.0, calc_max(truth)));
     }
   }
 }
 
-/// Reads its rows from pieces of given size, as shards would give them.
+/// Reads its rows in pieces of a given size, as from shards.
 class PiecedSource : public RowSource {
  public:
   PiecedSource(RowSource& source, std::size_t piece) : source_(&source), piece_(piece) {}
@@ -201,7 +202,8 @@ class PiecedSource : public RowSource {
   std::size_t piece_;
 };
 
-TEST_CASE("Threads, batches and pieces change no bit of the sums", "[unit][property][threads]") {
+TEST_CASE("Threads, batches and pieces do not change a bit of the sums",
+          "[unit][property][threads]") {
   const NetworkShape shape({4, 27, 19, 11, 4});
   const Numbers weights = make_random_weights(shape, 13), v = make_random_weights(shape, 14);
   MemorySource source = make_random_rows(shape, 1400, 15);
@@ -237,11 +239,11 @@ TEST_CASE("Instruction sets agree", "[unit]") {
     NetworkProblem problem(shape, source, {}, kernel);
     const Gram gram = calc_gram(problem, weights);
     INFO(kernel.isa);
-    CHECK(calc_largest_difference(gram.h, truth.h) <= tolerance(1e-12) * calc_largest(truth.h));
+    CHECK(calc_max_difference(gram.h, truth.h) <= tolerance(1e-12) * calc_max(truth.h));
   }
 }
 
-TEST_CASE("A sampled H is a window's, scaled, the gradient stays that of all rows", "[unit]") {
+TEST_CASE("A sampled H is that of a window, scaled; the gradient is that of all rows", "[unit]") {
   const NetworkShape shape({2, 5, 3});
   const Numbers weights = make_random_weights(shape, 18);
   MemorySource source = make_random_rows(shape, 250, 19);
@@ -252,7 +254,7 @@ TEST_CASE("A sampled H is a window's, scaled, the gradient stays that of all row
   NetworkProblem sampled(shape, source, options);
   const Rows rows(source);
   for (const int epoch : {0, 1, 2}) {
-    const std::size_t first = epoch == 1 ? 100 : 0;  // two windows, in turn
+    const std::size_t first = epoch == 1 ? 100 : 0;  // two windows, alternating
     MemorySource window(2,
                         Numbers(rows.x.begin() + 2 * static_cast<std::ptrdiff_t>(first),
                                 rows.x.begin() + 2 * static_cast<std::ptrdiff_t>(first + 100)),
@@ -261,13 +263,13 @@ TEST_CASE("A sampled H is a window's, scaled, the gradient stays that of all row
     Gram truth = calc_gram(part, weights);
     for (double& h : truth.h) h *= 2.5;
     const Gram gram = calc_gram(sampled, weights, epoch);
-    CHECK(calc_largest_difference(gram.h, truth.h) <= tolerance(1e-14) * calc_largest(truth.h));
+    CHECK(calc_max_difference(gram.h, truth.h) <= tolerance(1e-14) * calc_max(truth.h));
     CHECK(gram.gradient == all.gradient);
     CHECK(gram.loss == all.loss);
   }
 }
 
-TEST_CASE("A problem takes only data of its shape", "[unit]") {
+TEST_CASE("A problem refuses data that do not fit its shape", "[unit]") {
   const NetworkShape shape({2, 5, 3});
   MemorySource source = make_random_rows(NetworkShape({3, 3}), 10, 1);
   CHECK_THROWS_AS(NetworkProblem(shape, source), InputError);
@@ -309,7 +311,7 @@ TEST_CASE("A damped system is solved, with the same bits on any number of thread
         for (std::size_t r = 0; r < n; ++r) {
           double sum = x[r];  // damping * scale
           for (std::size_t c = 0; c < n; ++c) sum += h[std::min(r, c) * n + std::max(r, c)] * x[c];
-          // eps times the norm of H, which is some n.
+          // eps times the norm of H, which is about n.
           CHECK(std::fabs(sum - b[r]) <= tolerance(1e-14) * static_cast<double>(n));
         }
       }

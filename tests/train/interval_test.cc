@@ -8,7 +8,7 @@
 namespace strut {
 namespace {
 
-TEST_CASE("A conformal width is the ceil of 0.95 (n + 1) smallest error", "[unit]") {
+TEST_CASE("A conformal width is the ceil(0.95 (n + 1))-th smallest error", "[unit]") {
   const auto get_width = [](std::size_t n) {
     ConformalWidth width(n);
     // 1 to n, each once, in a scattered order (7919 is prime), with either sign.
@@ -28,13 +28,13 @@ TEST_CASE("A conformal width is the ceil of 0.95 (n + 1) smallest error", "[unit
   CHECK(std::isinf(ConformalWidth(0).get()));
 }
 
-/// Errors of heavy tails: the distribution must not matter.
+/// Heavy-tailed errors: the distribution must not matter.
 double draw_error(std::uint64_t stream, std::uint64_t i) {
   const double u = calc_uniform(11, stream, i);
   return std::tan(1.5 * (u - 0.5)) * std::exp(2.0 * u);
 }
 
-TEST_CASE("A conformal interval holds 95 of 100 new errors on average", "[statistical]") {
+TEST_CASE("A conformal interval contains 95 % of new errors on average", "[statistical]") {
   constexpr int kTrials = 2000, kErrors = 99, kNew = 20;
   int held = 0;
   for (std::uint64_t trial = 0; trial < kTrials; ++trial) {

@@ -1,4 +1,4 @@
-// Levenberg-Marquardt: its damping, its stops, its checkpoints; and the study problem.
+// Levenberg-Marquardt: damping, stops, checkpoints, and the study problem.
 #include "base/least_squares/levenberg_marquardt.h"
 
 #include <catch2/catch.hpp>
@@ -9,6 +9,7 @@
 #include "tests/train/lm_study_problem.h"
 #include "tests/train/network_reference.h"
 #include "train/network/growing_sample.h"
+#include "train/network/network.h"
 
 namespace strut {
 namespace {
@@ -18,7 +19,7 @@ using test::StudyProblem;
 using test::tolerance;
 using Numbers = std::vector<double>;
 
-/// One weight, H = 4, J'e = 2, e'e = 100 at first; the losses of the trials are a script.
+/// One weight, H = 4, J'e = 2, e'e = 100 initially; the losses of the trials follow a script.
 class ScriptedProblem : public LeastSquaresProblem {
  public:
   explicit ScriptedProblem(Numbers losses) : losses_(std::move(losses)) {}
@@ -41,7 +42,7 @@ class ScriptedProblem : public LeastSquaresProblem {
   double loss_ = 100.0;
 };
 
-/// mu with which each epoch begins, until the script ends.
+/// mu at the start of each epoch, until the script ends.
 Numbers run_script(const Numbers& losses, const LevenbergMarquardtOptions& options) {
   ScriptedProblem problem(losses);
   LevenbergMarquardt solver(problem, nullptr, options);
@@ -98,7 +99,7 @@ TEST_CASE("Nielsen's rule follows the gain ratio", "[unit]") {
   }
 }
 
-TEST_CASE("Training stops for each of its reasons", "[unit]") {
+TEST_CASE("Each stop reason ends a training", "[unit]") {
   const auto find_reason = [](LevenbergMarquardtOptions options, double first_loss = 90.0) {
     ScriptedProblem problem({first_loss, 80.0, 70.0, 60.0});
     LevenbergMarquardt solver(problem, nullptr, options);
@@ -119,7 +120,7 @@ TEST_CASE("Training stops for each of its reasons", "[unit]") {
   CHECK(find_reason(options) == StopReason::kTime);
 }
 
-TEST_CASE("A start whose loss is not finite is told, not trained", "[unit]") {
+TEST_CASE("A start with a loss that is not finite is reported, not trained", "[unit]") {
   const NetworkShape shape({1, 1});
   MemorySource source(1, {1.0, 2.0}, 1, {1.0, 2.0});
   NetworkProblem problem(shape, source);
@@ -129,7 +130,7 @@ TEST_CASE("A start whose loss is not finite is told, not trained", "[unit]") {
   CHECK_THROWS_AS(solver.start({1.0}), InputError);
 }
 
-TEST_CASE("Options out of range are named", "[unit]") {
+TEST_CASE("An option out of range is reported by name", "[unit]") {
   const auto check = [](auto change, const std::string& field) {
     LevenbergMarquardtOptions options;
     change(options);
@@ -147,7 +148,7 @@ TEST_CASE("Options out of range are named", "[unit]") {
   CHECK_THROWS_AS((GrowingSampleOptions{0, 1.0}.validate()), InputError);
 }
 
-/// A small noisy regression: 90 rows to train, 40 to validate, soon overfitted.
+/// A small noisy regression that overfits soon: 90 training rows, 40 validation rows.
 struct SmallTraining {
   SmallTraining()
       : shape({2, 8, 5, 2}),
@@ -170,7 +171,8 @@ struct SmallTraining {
   NetworkProblem problem, validation;
 };
 
-TEST_CASE("Validation failures end the training with the weights of the minimum", "[unit]") {
+TEST_CASE("Validation failures end a training with the weights of the validation minimum",
+          "[unit]") {
   SmallTraining small;
   LevenbergMarquardtOptions options;
   options.max_failures = 4;
@@ -196,7 +198,7 @@ TEST_CASE("Validation failures end the training with the weights of the minimum"
 
 bool is_same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-/// Whether two states agree in every bit but those of time.
+/// True if two states agree in every bit except for times.
 bool is_same(const LevenbergMarquardtState& a, const LevenbergMarquardtState& b) {
   return a.weights == b.weights && a.epoch == b.epoch && a.damping == b.damping &&
          a.growth == b.growth && a.scale == b.scale && is_same(a.validation, b.validation) &&
@@ -255,7 +257,7 @@ TEST_CASE("A growing sample resumed at any epoch ends with the same bits", "[uni
   CHECK_THROWS_AS(training.restore({states.front().training, 91}), InputError);
 }
 
-TEST_CASE("A sample on which no step helps any more is grown and trained on", "[unit]") {
+TEST_CASE("A sample on which no step succeeds any more is grown and trained further", "[unit]") {
   LevenbergMarquardtOptions options;
   options.epochs = 5;
   GrowingSampleOptions growing;
@@ -270,7 +272,8 @@ TEST_CASE("A sample on which no step helps any more is grown and trained on", "[
   CHECK(training.rows() > 10);
 }
 
-TEST_CASE("Threads change no bit of a training", "[unit][property][threads]") {
+TEST_CASE("The number of threads does not change a bit of a training",
+          "[unit][property][threads]") {
   const StudyProblem study(std::string(STRUT_SOURCE_DIR) + "/tests/data/lm_problem");
   LevenbergMarquardtState first;
   for (const int threads : {1, 2, 3}) {
@@ -289,19 +292,18 @@ TEST_CASE("Threads change no bit of a training", "[unit][property][threads]") {
   }
 }
 
-/// The study problem from one start, until the validation loss is at most `goal`; the epoch at
-/// which it is, or -1.
+/// Trains the study problem.
 class Study {
  public:
   Study()
       : data_(std::string(STRUT_SOURCE_DIR) + "/tests/data/lm_problem"),
         rows_(data_.make_training()),
         validation_rows_(data_.make_validation()) {
-    // Near the goal the validation loss falters for a while from some starts.
+    // From some starts the validation loss stagnates for a while near the goal.
     options.max_failures = 20;
   }
 
-  /// Epochs until the validation loss is at most `goal`; -1: it never is.
+  /// Number of epochs until the validation loss is at most `goal`; -1 if it is never reached.
   template <class Solver = LevenbergMarquardt>
   int train(const std::string& start, double goal) {
     NetworkProblem problem(StudyProblem::make_shape(), rows_, problem_options);
@@ -315,12 +317,12 @@ class Study {
   }
 
   template <class Solver>
-  void check_all_starts(int most_epochs) {
+  void check_all_starts(int max_epochs) {
     for (const char* start : kStudyStarts) {
       const int epochs = train<Solver>(start, 1e-6);
       INFO("start " << start << " epochs " << epochs);
       CHECK(epochs > 0);
-      CHECK(epochs <= most_epochs * tolerance(1.0));
+      CHECK(epochs <= max_epochs * tolerance(1.0));
     }
   }
 
@@ -333,7 +335,7 @@ class Study {
 };
 
 TEST_CASE("The study problem is solved to 1e-6 from all seven starts", "[reference]") {
-  // 28 to 39 here; other instruction sets round otherwise.
+  // Measured 28 to 39; other instruction sets round differently.
   Study().check_all_starts<LevenbergMarquardt>(60);
 }
 
@@ -341,7 +343,7 @@ TEST_CASE("A growing sample reaches the same solution of the study problem", "[r
   Study().check_all_starts<GrowingSample>(80);
 }
 
-TEST_CASE("A sampled H comes near the solution of the study problem", "[reference]") {
+TEST_CASE("A sampled H comes close to the solution of the study problem", "[reference]") {
   Study study;
   study.problem_options.gram_rows = 700;
   for (const char* start : {"1", "x0"}) {
@@ -354,7 +356,7 @@ TEST_CASE("A sampled H comes near the solution of the study problem", "[referenc
 
 // Three other implementations of trainlm's documented rule (explicit Jacobian in NumPy and in C++,
 // structured in C++) took 80 epochs from this start to 1e-5, and 233 to 1e-6.
-TEST_CASE("The trainlm rule goes the way of other implementations of it", "[reference]") {
+TEST_CASE("The trainlm rule takes as many epochs as other implementations of it", "[reference]") {
   Study study;
   study.options.rule = DampingRule::kTrainlm;
   CHECK(std::abs(study.train("x0", 1e-5) - 80) <= 2 * tolerance(1.0));

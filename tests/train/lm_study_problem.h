@@ -1,4 +1,4 @@
-// The study problem of the trainer: data/lm_problem, described in data/README.md.
+// The study problem of the trainer: tests/data/lm_problem, described in tests/data/README.md.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline constexpr std::array<const char*, 7> kStudyStarts{"0", "1", "2", "3", "4"
 
 class StudyProblem {
  public:
-  /// `folder`: where the .bin files are.
+  /// `folder`: holds the .bin files.
   explicit StudyProblem(const std::string& folder)
       : folder_(folder),
         inputs_(read<double>("X.bin", 8000)),

@@ -99,7 +99,7 @@ void check_same(const TrainedModel& a, const TrainedModel& b) {
   }
 }
 
-TEST_CASE("A model comes back from its file as it was", "[io]") {
+TEST_CASE("A model is read from its file as it was written", "[io]") {
   const TemporaryFolder folder;
   write_trained_model(folder / "model.h5", make_model());
   check_same(read_trained_model(folder / "model.h5"), make_model());
@@ -109,7 +109,7 @@ TEST_CASE("A model comes back from its file as it was", "[io]") {
   CHECK(file.read_label("/inputs").units == std::vector<std::string>{"rad", "m"});
 }
 
-TEST_CASE("A checkpoint comes back bit for bit", "[io]") {
+TEST_CASE("A checkpoint is read bit for bit as it was written", "[io]") {
   const TemporaryFolder folder;
   const Checkpoint before = make_checkpoint();
   write_checkpoint(folder / "c.h5", before);
@@ -131,17 +131,17 @@ TEST_CASE("A checkpoint comes back bit for bit", "[io]") {
   CHECK_NOTHROW(require_same_start("c.h5", after, before.started_with));
   CHECK_THROWS_WITH(
       require_same_start("c.h5", after, {{"seed", "2"}, {"layers", "4, 27, 4"}, {"rule", "x"}}),
-      Contains("c.h5: a checkpoint of another training:\n  seed: was 1, is 2\n  rule: was not "
-               "there, is x"));
+      Contains("c.h5: a checkpoint of a different training:\n  seed: was 1, is 2\n  rule: was "
+               "absent, is x"));
 }
 
-TEST_CASE("What is no model, or one that does not fit itself, is refused", "[io]") {
+TEST_CASE("Other files and inconsistent models are refused", "[io]") {
   const TemporaryFolder folder;
   const fs::path file = folder / "m.h5";
   write_checkpoint(file, make_checkpoint());
-  CHECK_THROWS_WITH(read_trained_model(file), Contains("m.h5: no model file of strut"));
+  CHECK_THROWS_WITH(read_trained_model(file), Contains("m.h5: not a model file of strut"));
   write_trained_model(file, make_model());
-  CHECK_THROWS_WITH(read_checkpoint(file), Contains("m.h5: no checkpoint file of strut"));
+  CHECK_THROWS_WITH(read_checkpoint(file), Contains("m.h5: not a checkpoint file of strut"));
   CHECK_THROWS_WITH(read_trained_model(folder.write("text.h5", "text")),
                     Contains("text.h5: damaged, or not a model file"));
   TrainedModel model = make_model();
@@ -181,7 +181,7 @@ TEST_CASE("Every flipped bit of a model or a checkpoint is found", "[io][propert
             checkpoint, [&] { read_checkpoint(checkpoint); }, "without --resume") == 0);
 }
 
-/// The HDF5 content of a sealed file alone, as earlier versions wrote it.
+/// Reduces a sealed file to its HDF5 content, as earlier versions wrote it.
 void strip_seal(const fs::path& file) {
   const std::vector<std::byte> bytes = read_bytes(file);
   std::ofstream(file, std::ios::binary)
@@ -189,7 +189,7 @@ void strip_seal(const fs::path& file) {
              static_cast<std::streamsize>(bytes.size() - kSealBytes));
 }
 
-TEST_CASE("A flipped bit in a model without a seal is an error, or changes nothing",
+TEST_CASE("A flipped bit in a model without a seal is an error or changes nothing",
           "[io][property]") {
   const TemporaryFolder folder;
   const TrainedModel truth = make_model();
@@ -218,7 +218,7 @@ TEST_CASE("A flipped bit in a model without a seal is an error, or changes nothi
   CHECK(found > 100);
 }
 
-TEST_CASE("The intervals of a model are under its checksum", "[io]") {
+TEST_CASE("The checksum of a model covers its intervals", "[io]") {
   const TemporaryFolder folder;
   const TrainedModel model = make_model();
   write_trained_model(folder / "m.h5", model);
@@ -229,12 +229,12 @@ TEST_CASE("The intervals of a model are under its checksum", "[io]") {
   std::vector<std::byte> image = good;
   const auto at = std::search(image.begin(), image.end(), begin, begin + sizeof number);
   REQUIRE(at != image.end());
-  *at ^= std::byte{1};  // an ulp
+  *at ^= std::byte{1};  // one ulp
   test::write_bytes(folder / "m.h5", image);
   CHECK_THROWS_WITH(read_trained_model(folder / "m.h5"), Contains("checksum"));
 }
 
-TEST_CASE("A model meets a full disk and leaves what was there", "[io]") {
+TEST_CASE("Writing a model to a full disk keeps the existing file", "[io]") {
   const TemporaryFolder folder;
   write_trained_model(folder / "m.h5", make_model());
   const auto before = read_bytes(folder / "m.h5");

@@ -1,4 +1,4 @@
-// Networks by plain loops: nothing of the trainer's but the layout of the weights.
+// Reference networks by plain loops, which share only the layout of the weights with the trainer.
 #pragma once
 
 #include <cmath>
@@ -6,12 +6,12 @@
 
 #include "base/math/random.h"
 #include "train/data/row_source.h"
-#include "train/network/network.h"
+#include "train/network/shape.h"
 
 namespace strut::test {
 
-/// None to five hidden layers, one to five inputs, one to four outputs, widths off and on the
-/// widths of vectors.
+/// Zero to five hidden layers, one to five inputs, one to four outputs; sizes that are multiples of
+/// the vector width and others.
 inline const std::vector<std::vector<int>> kShapes{
     {2, 3},          {1, 1, 1},          {4, 27, 19, 11, 4},    {3, 8, 2},
     {5, 9, 7, 5, 2}, {2, 6, 5, 4, 3, 3}, {4, 7, 6, 5, 4, 3, 1}, {1, 17, 16, 4}};

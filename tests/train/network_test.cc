@@ -1,4 +1,4 @@
-// Networks: layout of the weights, answers against plain loops, start weights.
+// Networks: layout of the weights, predictions against plain loops, start weights.
 #include "train/network/network.h"
 
 #include <catch2/catch.hpp>
@@ -17,7 +17,7 @@ using test::make_random_weights;
 using test::tolerance;
 using Numbers = std::vector<double>;
 
-TEST_CASE("Weights stand layer by layer, W by rows, then b", "[unit]") {
+TEST_CASE("Weights are stored layer by layer, W by rows, then b", "[unit]") {
   const NetworkShape shape({4, 27, 19, 11, 4});
   CHECK(shape.weight_count == 935);
   CHECK(shape.layers[1].weights == 5 * 27);
@@ -46,7 +46,7 @@ TEST_CASE("Predictions agree with plain loops on every instruction set", "[unit]
         predictor.predict(inputs.data() + row * in, single.data());
         for (std::size_t o = 0; o < out; ++o) {
           INFO(kernel.isa << " row " << row << " output " << o);
-          // Sums of some ten terms of order one, and tanh to 2 ulp.
+          // Sums of about ten terms of order one, tanh accurate to 2 ulp.
           CHECK(std::fabs(single[o] - truth[o]) <= tolerance(1e-13));
           CHECK(std::fabs(outputs[row * out + o] - truth[o]) <= tolerance(1e-13));
         }
@@ -55,7 +55,7 @@ TEST_CASE("Predictions agree with plain loops on every instruction set", "[unit]
   }
 }
 
-TEST_CASE("Tansig is exact to two units in the last place, and saturates", "[unit]") {
+TEST_CASE("Tansig is accurate to two units in the last place and saturates", "[unit]") {
   const NetworkShape shape({1, 1, 1});
   for (const TrainKernel& kernel : list_train_kernels()) {
     const Predictor predictor(shape, {1.0, 0.0, 1.0, 0.0}, kernel);
@@ -93,9 +93,9 @@ TEST_CASE("Nguyen-Widrow rows have the documented length and spread", "[unit]") 
       double squares = 0.0;
       for (int i = 0; i < layer.inputs; ++i) squares += std::pow(w[layer.at(o, i)], 2);
       CHECK(std::sqrt(squares) == Approx(length).epsilon(tolerance(1e-14)));
-      const double place = -1.0 + 2.0 * o / (layer.outputs - 1);
+      const double position = -1.0 + 2.0 * o / (layer.outputs - 1);
       const double sign = w[layer.at(o, 0)] < 0.0 ? -1.0 : 1.0;
-      CHECK(w[layer.at(o, layer.inputs)] == Approx(sign * place * length).margin(1e-14));
+      CHECK(w[layer.at(o, layer.inputs)] == Approx(sign * position * length).margin(1e-14));
     }
   }
   double low = 1.0, high = -1.0;
@@ -110,7 +110,7 @@ TEST_CASE("Nguyen-Widrow rows have the documented length and spread", "[unit]") 
   CHECK_THROWS_AS(make_nguyen_widrow_weights(shape, {1.0, 1.0}, 7), InputError);
 }
 
-TEST_CASE("Another input range is the same network on mapped inputs", "[unit][property]") {
+TEST_CASE("Another input range gives the same network on mapped inputs", "[unit][property]") {
   const NetworkShape shape({3, 6, 5, 2});
   const Numbers symmetric = make_nguyen_widrow_weights(shape, {-1.0, 1.0}, 11);
   const Numbers positive = make_nguyen_widrow_weights(shape, {0.0, 1.0}, 11);
@@ -124,7 +124,7 @@ TEST_CASE("Another input range is the same network on mapped inputs", "[unit][pr
   }
 }
 
-TEST_CASE("A seed gives its start weights, another seed others", "[unit]") {
+TEST_CASE("The same seed gives the same start weights, another seed gives others", "[unit]") {
   const NetworkShape shape({4, 8, 4});
   CHECK(make_nguyen_widrow_weights(shape, {}, 1) == make_nguyen_widrow_weights(shape, {}, 1));
   CHECK(make_nguyen_widrow_weights(shape, {}, 1) != make_nguyen_widrow_weights(shape, {}, 2));
@@ -138,7 +138,7 @@ TEST_CASE("A seed gives its start weights, another seed others", "[unit]") {
   }
 }
 
-TEST_CASE("A predictor takes only finite weights of its shape", "[unit]") {
+TEST_CASE("A predictor refuses weights that are not finite or do not fit its shape", "[unit]") {
   const NetworkShape shape({2, 3, 1});
   CHECK_THROWS_AS(Predictor(shape, Numbers(12)), InputError);
   Numbers weights(13);

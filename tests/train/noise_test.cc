@@ -1,4 +1,4 @@
-// What sensors add to a record, drawn by place.
+// Sensor noise and its counter-based draws.
 #include "train/data/noise.h"
 
 #include <catch2/catch.hpp>
@@ -29,7 +29,7 @@ TEST_CASE("Normal numbers have the moments of the normal distribution", "[statis
     neighbors += x * before;
     before = x;
   }
-  // Standard errors of the means: 1, sqrt(2), sqrt(96), 1 over sqrt(n); five of them.
+  // Five standard errors of the means: 1, sqrt(2), sqrt(96), 1 over sqrt(n).
   const double error = 5.0 / std::sqrt(n);
   CHECK(std::abs(sum / n) < error);
   CHECK(std::abs(squares / n - 1.0) < std::sqrt(2.0) * error);
@@ -53,7 +53,7 @@ TEST_CASE("A draw adds the bias of its record and the noise of its samples", "[s
     for (const double x : b) other += x * x / samples / records;
     hit += draw.calc_hit_time() * draw.calc_hit_time() / records;
   }
-  // Relative standard error of a variance of n numbers: sqrt(2 / n); five of them.
+  // Five relative standard errors of a variance of n numbers, sqrt(2 / n).
   const double of_samples = 5.0 * std::sqrt(2.0 / (records * (samples - 1)));
   const double of_records = 5.0 * std::sqrt(2.0 / records);
   CHECK(variance == Approx(0.25).epsilon(of_samples));
@@ -62,7 +62,7 @@ TEST_CASE("A draw adds the bias of its record and the noise of its samples", "[s
   CHECK(hit == Approx(1e-4).epsilon(of_records));
 }
 
-TEST_CASE("A draw depends on seed, case and copy and on nothing else", "[property]") {
+TEST_CASE("A draw depends only on seed, case, copy and channel", "[property]") {
   const auto draw = [](std::uint64_t seed, std::int64_t row, int copy, std::size_t channel) {
     const NoiseModel noise{{1.0, 1.0}, {0.0, 0.0}, 0.0, 4, seed};
     std::vector<double> samples(5, 0.0);
@@ -79,7 +79,7 @@ TEST_CASE("A draw depends on seed, case and copy and on nothing else", "[propert
   CHECK(others.size() == 6);
 }
 
-TEST_CASE("Noise that is none is refused by channel and value", "[unit]") {
+TEST_CASE("Invalid noise is refused with channel and value", "[unit]") {
   const auto check = [](const NoiseModel& noise, const char* text) {
     CHECK_THROWS_WITH(noise.validate(kChannels), Contains(text));
   };
@@ -93,7 +93,7 @@ TEST_CASE("Noise that is none is refused by channel and value", "[unit]") {
   check({{1.0, 1.0}, {0.0, 0.0}, 0.0, 0}, "copies = 0");
 }
 
-TEST_CASE("What has a bias by default has noise, and a bias larger than it", "[unit]") {
+TEST_CASE("Channels with a default bias have noise, and a bias larger than it", "[unit]") {
   const SensorNoise noise = make_default_noise(), bias = make_default_bias();
   int biased = 0;
   for (std::size_t c = 0; c < bias.size(); ++c) {

@@ -1,5 +1,5 @@
-// Synthetic records of two channels: a pulse and a decaying sine whose size and frequency are the
-// parameters.
+// Synthetic records of two channels, a pulse and a decaying sine; their parameters are size and
+// frequency.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace strut::test {
 inline constexpr double kPulseInterval = 0.01;  // s
 inline constexpr std::size_t kPulseSamples = 201;
 
-/// Channel `c` at time t of the pulse that begins at `start`.
+/// Channel `c` at time t [s] of the pulse that starts at `start` [s].
 inline double calc_pulse(std::size_t c, double t, double start, double size, double frequency) {
   const double s = t - start;
   const double bump = std::exp(-0.5 * (s - 0.1) * (s - 0.1) / (0.04 * 0.04));

@@ -16,7 +16,7 @@ namespace {
 
 using test::tolerance;
 
-TEST_CASE("The five figures of an identification are those of a worked example", "[unit]") {
+TEST_CASE("The five metrics of an identification agree with a worked example", "[unit]") {
   // By hand: errors 1, -2, 0, 1; mean of the references 25.
   const std::vector<double> reference = {10.0, 20.0, 30.0, 40.0};
   const std::vector<double> predicted = {9.0, 22.0, 30.0, 39.0};
@@ -28,12 +28,12 @@ TEST_CASE("The five figures of an identification are those of a worked example",
   CHECK(m.r2 == Approx(1.0 - 6.0 / 500.0).epsilon(tolerance(1e-15)));
 }
 
-TEST_CASE("Percentages of negative references are those of positive ones", "[unit]") {
+TEST_CASE("Percentages do not depend on the sign of the references", "[unit]") {
   const Metrics m = calc_metrics(std::vector{-10.0, 20.0}, std::vector{-9.0, 22.0});
   CHECK(m.mean_absolute_percentage == Approx(10.0).epsilon(tolerance(1e-14)));
 }
 
-TEST_CASE("A prediction that is no number shows in every figure", "[unit]") {
+TEST_CASE("A NaN prediction makes every metric NaN", "[unit]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Metrics m = calc_metrics(std::vector{1.0, 2.0, 3.0}, std::vector{1.0, nan, 3.0});
   CHECK(std::isnan(m.largest_error));
@@ -57,7 +57,8 @@ TEST_CASE("Normalization maps the bounds of each column to -1 and 1 and back", "
   CHECK(normalizer.find_constant() == 2);
 }
 
-TEST_CASE("A constant column is found, a point outside is told by how much", "[unit]") {
+TEST_CASE("Constant columns are found, and distances outside of the bounds are measured",
+          "[unit]") {
   Normalizer normalizer(2);
   normalizer.include(std::vector{1.0, 4.0, 3.0, 4.0});
   CHECK(normalizer.find_constant() == 1);
@@ -68,7 +69,7 @@ TEST_CASE("A constant column is found, a point outside is told by how much", "[u
   CHECK(std::isnan(unit.calc_excess(std::vector{std::nan(""), 1.0})));
 }
 
-TEST_CASE("A split gives each part its share, at random, the same for the same seed", "[unit]") {
+TEST_CASE("A split gives each part its fraction, at random, the same for the same seed", "[unit]") {
   const std::int64_t rows = GENERATE(10, 333, 2000);
   const Split split(rows, 0.7, 0.15, 5), again(rows, 0.7, 0.15, 5), other(rows, 0.7, 0.15, 6);
   std::vector<std::int64_t> counts(3, 0);
@@ -86,7 +87,7 @@ TEST_CASE("A split gives each part its share, at random, the same for the same s
   CHECK(counts[0] == 7 * rows / 10);
   CHECK(differing > 0);
   if (rows > 1000) {
-    // Hypergeometric: 700 +- 10 of the 1400 in the first half; six sigma.
+    // Hypergeometric: 700 ± 10 of the 1400 in the first half; six sigma.
     CHECK(std::abs(static_cast<double>(first_half) - 700.0) < 60.0);
   }
   CHECK_THROWS_AS(Split(3, 0.7, 0.15, 1), std::invalid_argument);

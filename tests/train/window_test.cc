@@ -1,4 +1,4 @@
-// From records to the components that a network takes.
+// Windows of records and their components, the inputs of a network.
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -21,7 +21,7 @@ using test::tolerance;
 
 const std::vector<ColumnInfo> kChannels = {{"a", "m", ""}, {"b", "m", ""}};
 
-/// Largest error of sin(w t), sampled every h, read between its samples.
+/// Maximum error of sin(w t), sampled every h, interpolated between its samples.
 double calc_sine_error(double h) {
   const double w = 3.0;
   std::vector<double> signal, between(20);
@@ -37,18 +37,18 @@ double calc_sine_error(double h) {
   return worst;
 }
 
-TEST_CASE("A shifted sine is that of the shifted time to sixth order", "[property]") {
+TEST_CASE("A shifted sine equals the sine at the shifted time to sixth order", "[property]") {
   for (const double h : {0.1, 0.05}) {
-    // The remainder at u = 1/2, where it is largest: w^6 h^6 / 6! times (5/2 3/2 1/2)^2.
+    // The remainder at u = 1/2, its maximum: w^6 h^6 / 6! times (5/2 3/2 1/2)^2.
     const double bound = 225.0 / 64.0 / 720.0 * std::pow(3.0 * h, 6);
     CHECK(calc_sine_error(h) <= bound * (1.0 + 1e-6));
     CHECK(calc_sine_error(h) >= 0.5 * bound);
   }
-  // Up to the next order's share.
+  // Up to terms of the next order.
   CHECK(calc_sine_error(0.1) / calc_sine_error(0.05) == Approx(64.0).epsilon(0.1));
 }
 
-TEST_CASE("White noise read between samples has the variance of the weights", "[statistical]") {
+TEST_CASE("Interpolated white noise has the variance of the weights", "[statistical]") {
   CHECK(calc_shift_gain(0.0) == 1.0);
   CHECK(calc_shift_gain(0.3) == Approx(calc_shift_gain(0.7)));
   const double u = GENERATE(0.2, 0.5);
@@ -58,11 +58,11 @@ TEST_CASE("White noise read between samples has the variance of the weights", "[
   read_shifted(signal, 3.0 + u, between);
   double squares = 0.0;
   for (const double y : between) squares += y * y / static_cast<double>(between.size());
-  // Standard error of a variance sqrt(2 / n), less than doubled by the correlation; five of them.
+  // Five standard errors of a variance, sqrt(2 / n), at most doubled by the correlation.
   CHECK(calc_shift_gain(u) == Approx(squares).epsilon(10.0 * std::sqrt(2.0 / 60000.0)));
 }
 
-TEST_CASE("A shift by whole samples copies and one beyond the signal is refused", "[unit]") {
+TEST_CASE("A shift by whole samples copies, and one beyond the signal is refused", "[unit]") {
   const std::vector<double> signal = {0, 1, 4, 9, 16, 25, 36, 49};
   std::vector<double> window(3);
   read_shifted(signal, 2.0, window);
@@ -95,16 +95,16 @@ TEST_CASE("Components of noise and bias have unit variance and no correlation", 
   const std::size_t n = transform.grid.samples;
   const int records = 20000;
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(5, 5);
-  double leftover = 0.0;
+  double residual = 0.0;
   for (int r = 0; r < records; ++r) {
     std::vector<double> record(2 * n, 0.0), components(5);
     const NoiseDraw draw(transform.noise, r, 0);
     for (std::size_t c = 0; c < 2; ++c) draw.add(c, std::span(record).subspan(c * n, n));
-    leftover += read_components(transform, {record, n}, components).leftover / records;
+    residual += read_components(transform, {record, n}, components).residual / records;
     const Eigen::Map<const Eigen::VectorXd> x(components.data(), 5);
     covariance += x * x.transpose() / records;
   }
-  // Standard error of a variance sqrt(2 / n), of a covariance sqrt(1 / n); five of them.
+  // Five standard errors of a variance, sqrt(2 / n), and of a covariance, sqrt(1 / n).
   const double error = 5.0 / std::sqrt(records);
   for (Index i = 0; i < 5; ++i) {
     for (Index j = 0; j < 5; ++j) {
@@ -112,7 +112,7 @@ TEST_CASE("Components of noise and bias have unit variance and no correlation", 
             (i == j ? std::sqrt(2.0) : 1.0) * error);
     }
   }
-  CHECK(leftover == Approx(1.0).epsilon(error));
+  CHECK(residual == Approx(1.0).epsilon(error));
 }
 
 /// Records of pulses in memory, as read from a dataset.
@@ -132,7 +132,7 @@ struct Pulses {
   WindowRecords records;
 };
 
-TEST_CASE("A record is found wherever it lies, to a hundredth of a sample", "[unit]") {
+TEST_CASE("A window is found anywhere in a record, to a hundredth of a sample", "[unit]") {
   const Pulses pulses(40);
   const WindowTransform transform = make_window_transform(
       pulses.records, Split(40, 0.7, 0.15, 1), test::make_pulse_noise(), {0.3, 1.5, 0.1, 10}, {});
@@ -141,11 +141,11 @@ TEST_CASE("A record is found wherever it lies, to a hundredth of a sample", "[un
   for (std::size_t c = 0; c < 2; ++c) {
     for (int i = 0; i < 300; ++i) record.push_back(test::calc_pulse(c, 0.01 * i, start, 4.5, 20.5));
   }
-  const WindowPlace place = find_place(transform, {record, 300});
-  CHECK(place.found);
-  // The window begins 0.2 s before the pulse. The reference is another record, one whose sine is
-  // faster or slower: that moves the agreement a little.
-  CHECK(place.begin == Approx((start - 0.2) / 0.01).margin(0.2));
+  const WindowAlignment alignment = find_alignment(transform, {record, 300});
+  CHECK(alignment.found);
+  // The window begins 0.2 s before the pulse. The reference is another record, whose faster or
+  // slower sine shifts the best agreement slightly.
+  CHECK(alignment.begin == Approx((start - 0.2) / 0.01).margin(0.2));
   std::vector<double> later(record.size());
   for (std::size_t c = 0; c < 2; ++c) {
     for (int i = 0; i < 300; ++i) {
@@ -153,13 +153,14 @@ TEST_CASE("A record is found wherever it lies, to a hundredth of a sample", "[un
           test::calc_pulse(c, 0.01 * i, start + 0.0537, 4.5, 20.5);
     }
   }
-  CHECK(find_place(transform, {later, 300}).begin - place.begin == Approx(5.37).margin(0.01));
-  CHECK(!find_place(transform, {std::span(record).first(2 * 130), 130}).found);
-  CHECK_THROWS_WITH(find_place(transform, {std::span(record).first(2 * 128), 128}),
-                    Contains("128 samples; the window takes 129"));
+  CHECK(find_alignment(transform, {later, 300}).begin - alignment.begin ==
+        Approx(5.37).margin(0.01));
+  CHECK(!find_alignment(transform, {std::span(record).first(2 * 130), 130}).found);
+  CHECK_THROWS_WITH(find_alignment(transform, {std::span(record).first(2 * 128), 128}),
+                    Contains("128 samples; the window needs at least 129"));
 }
 
-TEST_CASE("The basis is that of the largest eigenvalues of the records' covariance",
+TEST_CASE("The basis spans the eigenvectors of the largest eigenvalues of the records' covariance",
           "[reference]") {
   NoiseModel noise = test::make_pulse_noise();
   noise.hit_time = 0.0;
@@ -168,7 +169,7 @@ TEST_CASE("The basis is that of the largest eigenvalues of the records' covarian
   const Split split(60, 0.7, 0.15, 1);
   const WindowTransform transform = make_window_transform(pulses.records, split, noise, choice, {});
   CHECK(transform.reference.empty());
-  // Dense, by the definition: C^(-1/2) y of each channel.
+  // Dense, by definition: C^(-1/2) y of each channel.
   const Index n = static_cast<Index>(transform.grid.samples);
   Eigen::MatrixXd windows(2 * n, 42);
   Index column = 0;
@@ -197,7 +198,7 @@ TEST_CASE("The basis is that of the largest eigenvalues of the records' covarian
   const Eigen::Map<const Eigen::MatrixXd> basis(transform.basis.data(), 2 * n, count);
   CHECK((basis.transpose() * basis - Eigen::MatrixXd::Identity(count, count)).norm() <
         tolerance(1e-12));
-  // Five steps of the iteration shrink what is off by the eigenvalues' ratio to the fifth power.
+  // Five iterations reduce the error by the fifth power of the eigenvalues' ratio.
   CHECK((basis * basis.transpose() - truth * truth.transpose()).norm() < tolerance(1e-6));
 }
 
@@ -212,14 +213,14 @@ std::vector<double> read_all(const RowStore& rows) {
   return values;
 }
 
-TEST_CASE("Rows of a window do not depend on threads and stores", "[property]") {
+TEST_CASE("The rows of a window do not depend on threads and stores", "[property]") {
   Pulses pulses(60);
   const TrainingRows rows = make_rows(pulses, 1), shared = make_rows(pulses, 2),
                      filed = make_rows(pulses, 2, {.memory = 1000, .scratch = pulses.folder / "."});
   REQUIRE(rows.window);
   for (const TrainingRows* other : {&shared, &filed}) {
     CHECK(other->window->basis == rows.window->basis);
-    CHECK(other->window->leftover_mean == rows.window->leftover_mean);
+    CHECK(other->window->residual_mean == rows.window->residual_mean);
     CHECK(read_all(other->train) == read_all(rows.train));
     CHECK(read_all(other->validate) == read_all(rows.validate));
     CHECK(read_all(other->test) == read_all(rows.test));
@@ -250,15 +251,15 @@ TEST_CASE("Copies of a record stay in the part of their case and differ", "[prop
   CHECK(seen.size() == 60);
 }
 
-TEST_CASE("What a noisy record leaves over is noise alone, wherever samples lie", "[statistical]") {
+TEST_CASE("The residual of a noisy record is noise alone, for any alignment", "[statistical]") {
   Pulses pulses(60);
   const TrainingRows rows = make_rows(pulses, 1);
-  // 232 degrees of freedom: 0.093, more where reading between samples correlates them; 126 records.
-  CHECK(rows.window->leftover_mean == Approx(1.0).margin(0.04));
-  CHECK(rows.window->leftover_deviation < 0.13);
+  // 232 degrees of freedom: 0.093, more where interpolation correlates them; 126 records.
+  CHECK(rows.window->residual_mean == Approx(1.0).margin(0.04));
+  CHECK(rows.window->residual_deviation < 0.13);
 }
 
-TEST_CASE("A window that does not fit its data is refused", "[unit]") {
+TEST_CASE("A window that does not fit the data is refused", "[unit]") {
   const TemporaryFolder folder;
   const std::filesystem::path file = test::write_pulses(folder, 30);
   Dataset data({file}, {.histories = true});
@@ -278,7 +279,7 @@ TEST_CASE("A window that does not fit its data is refused", "[unit]") {
   check(both, {0.8, 1.0, 0.01}, "--align");
 }
 
-TEST_CASE("Histories are read when they are asked for", "[io]") {
+TEST_CASE("Histories are read only on request", "[io]") {
   const TemporaryFolder folder;
   const std::filesystem::path file = test::write_pulses(folder, 12);
   Dataset without({file}), with({file}, {.histories = true});

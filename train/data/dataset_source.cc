@@ -1,12 +1,14 @@
 #include "train/data/dataset_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "base/error/check.h"
 #include "base/error/input_error.h"
+#include "base/math/all_finite.h"
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "io/store/shard_layout.h"
@@ -14,18 +16,16 @@
 namespace strut {
 namespace {
 
-/// Appends the usable rows of a piece, at most `most` of them; returns how many are none.
-std::int64_t append_usable(const ShardRows& piece, const FillRow& fill, std::size_t most,
+/// Appends the usable rows of a piece, at most `max` of them; returns the number of unusable ones.
+std::int64_t append_usable(const ShardRows& piece, const FillRow& fill, std::size_t max,
                            RowStore& rows) {
   std::vector<double> kept, row;
   std::int64_t skipped = 0;
   std::size_t count = 0;
-  for (std::size_t i = 0; i < piece.size() && count < most; ++i) {
+  for (std::size_t i = 0; i < piece.size() && count < max; ++i) {
     row.clear();
     if (piece.status[i] == 0) fill(piece, i, row);
-    const bool finite =
-        std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); });
-    if (row.empty() || !finite) {
+    if (row.empty() || !all_finite(row)) {
       ++skipped;
       continue;
     }
@@ -40,10 +40,11 @@ void require_spread(const Normalizer& map, const std::vector<ColumnInfo>& column
                     std::int64_t rows) {
   const std::size_t at = map.find_constant();
   if (at == columns.size()) return;
-  throw InputError(std::string(kind) + " '" + columns[at].name + "' is constant, " +
-                   format_number(map.low()[at]) + " " + columns[at].unit + ", in all " +
-                   std::to_string(rows) + " training rows: nothing can be learned from it; " +
-                   "leave it out");
+  throw InputError(
+      fmt::format("{} '{}' is constant, {} {}, in all {} training rows: nothing can be learned "
+                  "from it; leave it "
+                  "out",
+                  kind, columns[at].name, format_number(map.low()[at]), columns[at].unit, rows));
 }
 
 }  // namespace
@@ -56,16 +57,16 @@ std::vector<std::size_t> find_columns(const std::vector<ColumnInfo>& columns,
   for (const std::string& name : names) {
     const auto at = std::find(known.begin(), known.end(), name);
     if (at == known.end()) {
-      throw InputError("the data has no " + std::string(kind) + " '" + name + "'" +
-                       suggest_name(name, known) + "; it has: " + join_names(known));
+      throw InputError(fmt::format("the data have no {} '{}'{}; they have: {}", kind, name,
+                                   suggest_name(name, known), join_names(known)));
     }
     const auto column = static_cast<std::size_t>(at - known.begin());
     if (std::find(found.begin(), found.end(), column) != found.end()) {
-      throw InputError(std::string(kind) + " '" + name + "' is named twice");
+      throw InputError(fmt::format("{} '{}' is named twice", kind, name));
     }
     found.push_back(column);
   }
-  if (found.empty()) throw InputError("no " + std::string(kind) + " chosen");
+  if (found.empty()) throw InputError(fmt::format("no {} chosen", kind));
   return found;
 }
 
@@ -85,16 +86,16 @@ std::vector<std::size_t> find_targets(const ShardSchema& schema, const RowChoice
 std::int64_t collect_usable(Dataset& dataset, std::int64_t samples, const FillRow& fill,
                             RowStore& rows) {
   const std::size_t all = dataset.row_count();
-  const std::size_t most = samples > 0 ? static_cast<std::size_t>(samples) : all;
+  const std::size_t max = samples > 0 ? static_cast<std::size_t>(samples) : all;
   std::int64_t skipped = 0;
-  for (std::size_t piece = 0; piece < dataset.piece_count() && rows.row_count() < most; ++piece) {
-    skipped += append_usable(dataset.read_piece(piece), fill, most - rows.row_count(), rows);
+  for (std::size_t piece = 0; piece < dataset.piece_count() && rows.row_count() < max; ++piece) {
+    skipped += append_usable(dataset.read_piece(piece), fill, max - rows.row_count(), rows);
   }
   const std::size_t count = rows.row_count();
   if (count == 0 || static_cast<std::int64_t>(count) < samples) {
-    throw InputError("the data has " + std::to_string(count) + " usable cases of " +
-                     std::to_string(all) + " (the others failed or hold NaN)" +
-                     (samples > 0 ? "; asked for " + std::to_string(samples) : ""));
+    throw InputError(
+        fmt::format("the data have {} usable cases of {} (the others failed or have NaN){}", count,
+                    all, samples > 0 ? fmt::format("; asked for {}", samples) : ""));
   }
   return skipped;
 }
@@ -107,8 +108,9 @@ UsableRows read_usable_rows(Dataset& dataset, const RowChoice& choice,
   UsableRows usable{take_columns(schema.snapshot, inputs), take_columns(schema.parameters, targets),
                     RowStore(inputs.size() + targets.size(), store)};
   const auto fill = [&](const ShardRows& piece, std::size_t i, std::vector<double>& row) {
-    for (const std::size_t c : inputs)
+    for (const std::size_t c : inputs) {
       row.push_back(piece.snapshot[i * schema.snapshot.size() + c]);
+    }
     for (const std::size_t c : targets) {
       row.push_back(piece.parameters[i * schema.parameters.size() + c]);
     }
@@ -121,8 +123,7 @@ Split make_split(std::int64_t rows, const SplitChoice& choice) {
   try {
     return {rows, choice.train, choice.validate, choice.seed};
   } catch (const std::invalid_argument&) {
-    throw InputError(std::to_string(rows) +
-                     " usable cases: too few to train, validate and test with");
+    throw InputError(fmt::format("{} usable cases: too few to train, validate and test", rows));
   }
 }
 
@@ -205,7 +206,7 @@ TrainingRows split_rows(UsableRows usable, const SplitChoice& choice, const RowS
 StoreSource::StoreSource(const RowStore& rows, Normalizer input_map, Normalizer target_map)
     : rows_(&rows), input_map_(std::move(input_map)), target_map_(std::move(target_map)) {
   STRUT_CHECK(rows.columns() == input_map_.columns() + target_map_.columns(),
-              "a store's columns are not those of its maps");
+              "the columns of a store are not those of its maps");
 }
 
 void StoreSource::read(std::size_t first, std::size_t count, double* inputs, double* targets) {

@@ -18,7 +18,7 @@ Metrics calc_metrics(std::span<const double> reference, std::span<const double> 
   double squares = 0.0, spread = 0.0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const double error = std::abs(reference[i] - predicted[i]);
-    // A NaN comes in, and stays, since no comparison with it is true.
+    // A NaN enters and stays, since every comparison with it is false.
     if (std::isnan(error) || error > metrics.largest_error) metrics.largest_error = error;
     metrics.mean_absolute_error += error / count;
     metrics.mean_absolute_percentage += 100.0 * error / std::abs(reference[i]) / count;

@@ -1,23 +1,21 @@
-// How good an identification is: the paper's five figures.
+// Accuracy of an identification: the five metrics of the paper.
 #pragma once
 
 #include <span>
 
 namespace strut {
 
-/// Of one parameter, in its own unit where it has one. Equations 14 to 18 of Pan, Sun, Min, Li,
-/// Gardoni.
+/// Metrics of one parameter, errors in its unit. Equations 14 to 18 of Pan, Sun, Min, Li, Gardoni.
 struct Metrics {
   double largest_error = 0.0;             // ME = max |y - p|
   double mean_absolute_error = 0.0;       // MAE
-  double mean_absolute_percentage = 0.0;  // MAPE = mean |(y - p) / y|, in per cent
+  double mean_absolute_percentage = 0.0;  // MAPE = mean |(y - p) / y|, in percent
   double rms_error = 0.0;                 // RMSE
   double r2 = 0.0;                        // 1 - sum (y - p)^2 / sum (y - mean y)^2
 };
 
-/// Of `predicted` against `reference`, equally many. R2 is NaN where all references are equal, MAPE
-/// not finite where one is zero. Throws std::invalid_argument where there are none or they differ
-/// in number.
+/// Compares `predicted` with `reference`. R2 is NaN if all references are equal, MAPE is not finite
+/// if one is zero. Throws std::invalid_argument if there are none or their numbers differ.
 Metrics calc_metrics(std::span<const double> reference, std::span<const double> predicted);
 
 }  // namespace strut

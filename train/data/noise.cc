@@ -1,9 +1,8 @@
 #include "train/data/noise.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <utility>
 
 #include "base/error/input_error.h"
 #include "base/math/normal.h"
@@ -18,16 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Streams of a draw's key: two a channel, behind that of the hit time.
-constexpr std::uint64_t kHitTime = 0;
-std::uint64_t find_bias_stream(std::size_t channel) { return 1 + 2 * channel; }
-std::uint64_t find_noise_stream(std::size_t channel) { return 2 + 2 * channel; }
+/// Streams of a draw's key: the hit time, then two per channel.
+constexpr std::uint64_t kHitTimeStream = 0;
+std::uint64_t get_bias_stream(std::size_t channel) { return 1 + 2 * channel; }
+std::uint64_t get_noise_stream(std::size_t channel) { return 2 + 2 * channel; }
 
+/// "NAME=VALUE,..."
 std::string list_values(const std::vector<double>& values,
                         const std::vector<ColumnInfo>& channels) {
   std::string text;
   for (std::size_t c = 0; c < values.size(); ++c) {
-    text += (c > 0 ? "," : "") + channels[c].name + "=" + format_number(values[c]);
+    text += fmt::format("{}{}={}", c > 0 ? "," : "", channels[c].name, format_number(values[c]));
   }
   return text;
 }
@@ -36,25 +36,26 @@ std::string list_values(const std::vector<double>& values,
 
 void NoiseModel::validate(const std::vector<ColumnInfo>& channels) const {
   if (sigma.size() != channels.size() || bias.size() != channels.size()) {
-    throw InputError("noise: must be given for each of the " + std::to_string(channels.size()) +
-                     " channels");
+    throw InputError(
+        fmt::format("noise: must be given for each of the {} channels", channels.size()));
   }
   for (std::size_t c = 0; c < channels.size(); ++c) {
     const Range white = above(0.0, channels[c].unit), constant = at_least(0.0, channels[c].unit);
     if (!white.contains(sigma[c])) {
-      throw InputError("noise of " + channels[c].name + " = " + format_number(sigma[c]) + ": " +
-                       white.describe());
+      throw InputError(fmt::format("noise of {} = {}: {}", channels[c].name,
+                                   format_number(sigma[c]), white.describe()));
     }
     if (!constant.contains(bias[c])) {
-      throw InputError("bias of " + channels[c].name + " = " + format_number(bias[c]) + ": " +
-                       constant.describe());
+      throw InputError(fmt::format("bias of {} = {}: {}", channels[c].name, format_number(bias[c]),
+                                   constant.describe()));
     }
   }
   const Range shift = at_least(0.0, "s");
   if (!shift.contains(hit_time)) {
-    throw InputError("hit time's sigma = " + format_number(hit_time) + ": " + shift.describe());
+    throw InputError(fmt::format("standard deviation of the hit time = {}: {}",
+                                 format_number(hit_time), shift.describe()));
   }
-  if (copies < 1) throw InputError("copies = " + std::to_string(copies) + ": must be at least 1");
+  if (copies < 1) throw InputError(fmt::format("copies = {}: must be at least 1", copies));
 }
 
 NoiseDraw::NoiseDraw(const NoiseModel& model, std::int64_t row, int copy)
@@ -63,14 +64,14 @@ NoiseDraw::NoiseDraw(const NoiseModel& model, std::int64_t row, int copy)
                             static_cast<std::uint64_t>(row))) {}
 
 double NoiseDraw::calc_hit_time() const {
-  const double most = NoiseModel::kMostDeviations;
-  return model_->hit_time * std::clamp(calc_normal(key_, kHitTime, 0), -most, most);
+  const double max = NoiseModel::kMaxDeviations;
+  return model_->hit_time * std::clamp(calc_normal(key_, kHitTimeStream, 0), -max, max);
 }
 
 void NoiseDraw::add(std::size_t channel, std::span<double> samples) const {
   const double sigma = model_->sigma[channel];
-  const double bias = model_->bias[channel] * calc_normal(key_, find_bias_stream(channel), 0);
-  const std::uint64_t stream = find_noise_stream(channel);
+  const double bias = model_->bias[channel] * calc_normal(key_, get_bias_stream(channel), 0);
+  const std::uint64_t stream = get_noise_stream(channel);
   for (std::size_t i = 0; i < samples.size(); i += 2) {
     const auto [first, second] = calc_normal_pair(key_, stream, i / 2);
     samples[i] += bias + sigma * first;
@@ -100,21 +101,9 @@ void write_noise(Hdf5Writer& file, const std::string& name, const NoiseModel& no
 
 NoiseModel read_noise(const fs::path& path, const Hdf5Reader& file, const std::string& name,
                       std::vector<ColumnInfo>& channels) {
-  const Hdf5Dataset data = file.read(name);
-  const Hdf5Label& label = data.label;
-  const std::size_t count = label.names.size();
-  if (count == 0 || data.shape != std::vector<std::size_t>{2, count} ||
-      label.units.size() != count || label.descriptions.size() != count) {
-    fail_file(path,
-              name + ": must have two rows, and a name, unit and description for each column");
-  }
-  channels.clear();
-  channels.reserve(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    channels.push_back({label.names[c], label.units[c], label.descriptions[c]});
-  }
-  const auto cut = data.values.begin() + static_cast<std::ptrdiff_t>(count);
-  NoiseModel noise{{data.values.begin(), cut}, {cut, data.values.end()}};
+  TwoRowTable table = read_two_rows(path, file, name);
+  channels = std::move(table.columns);
+  NoiseModel noise{std::move(table.first), std::move(table.second)};
   noise.hit_time = file.read_number_attribute(name, "hit_time_sigma");
   noise.copies =
       to_int(path, name, static_cast<double>(file.read_integer_attribute(name, "copies")));

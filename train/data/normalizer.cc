@@ -47,7 +47,7 @@ double Normalizer::calc_excess(std::span<const double> x) const {
   for (std::size_t column = 0; column < columns(); ++column) {
     const double width = high_[column] - low_[column];
     const double beyond = std::max(low_[column] - x[column], x[column] - high_[column]) / width;
-    // A NaN lies outside, and stays, since no comparison with it is true.
+    // A NaN enters and stays, since every comparison with it is false.
     if (std::isnan(beyond) || beyond > excess) excess = beyond;
   }
   return excess;

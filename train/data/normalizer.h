@@ -7,8 +7,8 @@
 
 namespace strut {
 
-/// z = -1 + 2 (x - low) / (high - low) per column. The paper maps onto [0, 1], and the toolbox it
-/// names then onto [-1, 1], where tansig is at home; one map does both.
+/// z = -1 + 2 (x - low) / (high - low) per column. The paper maps onto [0, 1], and the toolbox that
+/// it uses then onto [-1, 1], the range of tansig; this map does both in one.
 class Normalizer {
  public:
   explicit Normalizer(std::size_t columns = 0);
@@ -18,16 +18,17 @@ class Normalizer {
   const std::vector<double>& low() const { return low_; }
   const std::vector<double>& high() const { return high_; }
 
-  /// Widens the bounds by rows of columns() values.
+  /// Extends the bounds to include rows of columns() values.
   void include(std::span<const double> rows);
-  /// First column whose values are all equal (or that has none), columns() where there is none.
+  /// First column without a range (all values equal, or none yet); columns() if there is none.
   std::size_t find_constant() const;
 
-  /// In place, rows of columns() values.
+  /// Normalizes rows of columns() values in place.
   void normalize(std::span<double> rows) const;
+  /// Inverse of normalize.
   void restore(std::span<double> rows) const;
-  /// How far row `x` lies outside of the bounds, largest over columns, as a share of the column's
-  /// width; 0 inside.
+  /// Distance of row `x` from the bounds, as a fraction of the column's width, maximum over
+  /// columns; 0 inside the bounds, NaN for NaN.
   double calc_excess(std::span<const double> x) const;
 
  private:

@@ -1,8 +1,9 @@
 #include "train/data/row_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/error/input_error.h"
 
@@ -11,17 +12,16 @@ namespace {
 
 std::size_t count_rows(const std::vector<double>& values, int columns, const char* what) {
   if (columns < 1 || values.empty() || values.size() % static_cast<std::size_t>(columns) != 0) {
-    throw InputError(std::string("training rows: ") + std::to_string(values.size()) +
-                     " numbers of " + what + " in " + std::to_string(columns) +
-                     " columns are no whole rows");
+    throw InputError(fmt::format("training rows: {} values of {} do not fill rows of {} columns",
+                                 values.size(), what, columns));
   }
   const auto bad =
       std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
   const std::size_t rows = values.size() / static_cast<std::size_t>(columns);
   if (bad != values.end()) {
     const auto at = static_cast<std::size_t>(bad - values.begin());
-    throw InputError(std::string("training rows: ") + what + " of row " +
-                     std::to_string(at / static_cast<std::size_t>(columns)) + " are not finite");
+    throw InputError(fmt::format("training rows: {} of row {} are not finite", what,
+                                 at / static_cast<std::size_t>(columns)));
   }
   return rows;
 }
@@ -37,8 +37,8 @@ MemorySource::MemorySource(int input_count, std::vector<double> inputs, int targ
   row_count_ = count_rows(inputs_, input_count, "inputs");
   const std::size_t target_rows = count_rows(targets_, target_count, "targets");
   if (target_rows != row_count_) {
-    throw InputError("training rows: " + std::to_string(row_count_) + " rows of inputs, " +
-                     std::to_string(target_rows) + " of targets");
+    throw InputError(fmt::format("training rows: {} rows of inputs, but {} of targets", row_count_,
+                                 target_rows));
   }
 }
 

@@ -1,4 +1,4 @@
-// Where training rows come from: in order, in pieces, from memory or from files.
+// Sources of training rows, read in order and in pieces, from memory or from files.
 #pragma once
 
 #include <cstddef>
@@ -6,23 +6,23 @@
 
 namespace strut {
 
-/// Rows of inputs and targets, already normalized. Training reads them in ascending order, again
-/// from the start in each pass, always whole pieces in a row; an implementation may read ahead.
+/// Rows of normalized inputs and targets. Each pass of the training reads them in ascending order,
+/// in contiguous pieces; an implementation may read ahead.
 class RowSource {
  public:
   virtual ~RowSource() = default;
   virtual int input_count() const = 0;
   virtual int target_count() const = 0;
   virtual std::size_t row_count() const = 0;
-  /// Writes rows first to first + count, by rows. Called by one thread at a time.
+  /// Reads rows [first, first + count). Called by one thread at a time.
   virtual void read(std::size_t first, std::size_t count, double* inputs, double* targets) = 0;
 };
 
 /// Rows held in memory.
 class MemorySource : public RowSource {
  public:
-  /// `inputs` and `targets` by rows. Throws InputError unless they hold the same number of rows, at
-  /// least one, and are finite.
+  /// `inputs` and `targets`: by rows. Throws InputError unless both are finite and have the same
+  /// number of rows, at least one.
   MemorySource(int input_count, std::vector<double> inputs, int target_count,
                std::vector<double> targets);
 

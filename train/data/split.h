@@ -1,4 +1,4 @@
-// Which cases train, which validate, which test.
+// Splits cases into training, validation and test parts.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace strut {
 
 enum class Part { kTrain, kValidate, kTest };
 
-/// A random split of n rows in parts of fixed size, by index: nothing is stored.
+/// A random split of n rows into parts of fixed size, computed by index: nothing is stored.
 class Split {
  public:
-  /// Shares of training and validation; the rest tests. The parts have floor(n share) rows, the
-  /// test part what is left. Throws std::invalid_argument where a part would be empty.
+  /// `train`, `validate`: fractions; these parts have floor(n fraction) rows, the test part has the
+  /// others. Throws std::invalid_argument if a part would be empty.
   Split(std::int64_t rows, double train, double validate, std::uint64_t seed);
 
   Part find_part(std::int64_t row) const;

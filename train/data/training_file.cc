@@ -1,5 +1,7 @@
 #include "train/data/training_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -38,18 +40,18 @@ void write_kind(Hdf5Writer& file, const TrainingFileKind& kind) {
 
 void check_kind(const fs::path& path, const Hdf5Reader& file, const TrainingFileKind& kind) {
   if (!file.has_attribute("/", kKindKey) || file.read_attribute("/", kKindKey) != kind.name()) {
-    fail_file(path, std::string("no ") + kind.seal.name + " file of strut");
+    fail_file(path, fmt::format("not a {} file of strut", kind.seal.name));
   }
   const std::int64_t version = file.read_integer_attribute("/", kSchemaVersionKey);
   if (version != kind.schema_version) {
-    fail_file(path, "schema_version = " + std::to_string(version) + ": this program reads " +
-                        std::to_string(kind.schema_version));
+    fail_file(path, fmt::format("schema_version = {}: this program reads {}", version,
+                                kind.schema_version));
   }
 }
 
 void check_sum(const fs::path& path, const Hdf5Reader& file, const std::string& checksum) {
   if (file.read_attribute("/", kChecksumKey) != checksum) {
-    fail_file(path, "checksum: the content has another one; the file is damaged");
+    fail_file(path, "checksum: does not match the content; the file is damaged");
   }
 }
 
@@ -63,7 +65,7 @@ void write_record(Hdf5Writer& file, const std::vector<EpochRecord>& record) {
 std::vector<EpochRecord> read_record(const fs::path& path, const Hdf5Reader& file) {
   const Hdf5Dataset data = file.read("/record");
   if (data.shape.size() != 2 || data.shape[1] != kRecordColumns) {
-    fail_file(path, "/record: must have " + std::to_string(kRecordColumns) + " columns");
+    fail_file(path, fmt::format("/record: must have {} columns", kRecordColumns));
   }
   std::vector<EpochRecord> record;
   record.reserve(data.shape[0]);
@@ -91,6 +93,26 @@ int to_int(const fs::path& path, const std::string& object, double value) {
     fail_file(path, object + ": damaged: must be a whole number of at least 0");
   }
   return static_cast<int>(value);
+}
+
+TwoRowTable read_two_rows(const fs::path& path, const Hdf5Reader& file, const std::string& name) {
+  const Hdf5Dataset data = file.read(name);
+  const Hdf5Label& label = data.label;
+  const std::size_t count = label.names.size();
+  if (count == 0 || data.shape != std::vector<std::size_t>{2, count} ||
+      label.units.size() != count || label.descriptions.size() != count) {
+    fail_file(path,
+              name + ": must have two rows, and a name, unit and description for each column");
+  }
+  TwoRowTable table;
+  table.columns.reserve(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    table.columns.push_back({label.names[c], label.units[c], label.descriptions[c]});
+  }
+  const auto cut = data.values.begin() + static_cast<std::ptrdiff_t>(count);
+  table.first.assign(data.values.begin(), cut);
+  table.second.assign(cut, data.values.end());
+  return table;
 }
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// What the files of models and of checkpoints have in common.
+// Common parts of model and checkpoint files.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace strut {
 
-/// What a file is and which of its kind's layouts it has.
+/// Kind of a file and version of its layout.
 struct TrainingFileKind {
   SealKind seal;
   std::int64_t schema_version;
@@ -23,7 +23,7 @@ struct TrainingFileKind {
   std::string name() const { return std::string("strut ") + seal.name; }  // "strut model"
 };
 
-/// Hash over the numbers of a file, in the order in which they are added.
+/// Hash over the content of a file, in the order of the calls of add.
 class Checksum {
  public:
   template <class T>
@@ -44,15 +44,14 @@ class Checksum {
   Sha256 hash_;
 };
 
-/// InputError that names the file.
+/// Throws InputError with the file's path.
 [[noreturn]] void fail_file(const std::filesystem::path& path, const std::string& what);
 
 void write_kind(Hdf5Writer& file, const TrainingFileKind& kind);
-/// Throws InputError where the file is of another kind or version.
+/// Throws InputError if the file is of another kind or version.
 void check_kind(const std::filesystem::path& path, const Hdf5Reader& file,
                 const TrainingFileKind& kind);
-/// Throws InputError where the file names another checksum: the only one that a file without a seal
-/// has.
+/// Throws InputError unless the file states this checksum, the only one in a file without a seal.
 void check_sum(const std::filesystem::path& path, const Hdf5Reader& file,
                const std::string& checksum);
 
@@ -60,9 +59,19 @@ void write_record(Hdf5Writer& file, const std::vector<EpochRecord>& record);
 std::vector<EpochRecord> read_record(const std::filesystem::path& path, const Hdf5Reader& file);
 
 StopReason read_stop(const std::filesystem::path& path, const Hdf5Reader& file);
-/// An integer attribute of the file, at least 0. Throws InputError.
+/// Reads an integer attribute of the file, at least 0. Throws InputError.
 int read_int(const std::filesystem::path& path, const Hdf5Reader& file, const char* key);
-/// `value` as an integer. Throws InputError where it is none, or below 0.
+/// Converts `value` to an integer. Throws InputError if it is not one, or below 0.
 int to_int(const std::filesystem::path& path, const std::string& object, double value);
+
+/// A dataset of two rows whose columns have a name, unit and description.
+struct TwoRowTable {
+  std::vector<ColumnInfo> columns;
+  std::vector<double> first, second;
+};
+
+/// Throws InputError, which names file and dataset, if the dataset is not such a table.
+TwoRowTable read_two_rows(const std::filesystem::path& path, const Hdf5Reader& file,
+                          const std::string& name);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "train/data/transform.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -17,8 +19,8 @@ ConstMap map_values(const double* first, std::size_t count) {
   return {first, static_cast<Eigen::Index>(count)};
 }
 
-/// Squared distance of a record's window at `begin` from the reference, without the reference's own
-/// square, which is the same everywhere.
+/// Squared distance of a record's window at `begin` from the reference, without the squared norm of
+/// the reference, a constant.
 double calc_distance(const WindowTransform& transform, const RecordView& record,
                      std::size_t begin) {
   const std::size_t n = transform.grid.samples;
@@ -26,7 +28,7 @@ double calc_distance(const WindowTransform& transform, const RecordView& record,
   for (std::size_t c = 0; c < transform.channels.size(); ++c) {
     const ConstMap y = map_values(record.channel(c).data() + begin, n);
     const ConstMap reference = map_values(transform.reference.data() + c * n, n);
-    // Of the differences from the first sample, which leaves more digits than y itself does.
+    // Relative to the first sample, which loses fewer digits to cancellation than y itself.
     const auto x = y - y(0);
     const double sum = x.sum(), squares = x.square().sum(), product = (x * reference).sum();
     const double sigma = transform.noise.sigma[c];
@@ -48,12 +50,12 @@ void whiten(double sigma, double bias, std::span<double> window) {
 
 std::size_t WindowGrid::margin() const { return lags > 0 ? lags + ShiftStencil::kBefore : 0; }
 
-WindowPlace find_place(const WindowTransform& transform, const RecordView& record) {
+WindowAlignment find_alignment(const WindowTransform& transform, const RecordView& record) {
   const WindowGrid& grid = transform.grid;
   const std::size_t needed = grid.samples + (grid.lags > 0 ? 2 * ShiftStencil::kBefore + 2 : 0);
   if (record.samples < needed) {
-    throw InputError("a record of " + std::to_string(record.samples) +
-                     " samples; the window takes " + std::to_string(needed));
+    throw InputError(fmt::format("a record of {} samples; the window needs at least {}",
+                                 record.samples, needed));
   }
   if (transform.reference.empty()) return {0.0, true};
   const std::size_t first = ShiftStencil::kBefore;
@@ -63,10 +65,10 @@ WindowPlace find_place(const WindowTransform& transform, const RecordView& recor
   for (std::size_t begin = first; begin <= last; ++begin) {
     distances.push_back(calc_distance(transform, record, begin));
   }
-  const auto least = std::min_element(distances.begin(), distances.end());
-  const auto begin = static_cast<double>(first) + static_cast<double>(least - distances.begin());
-  if (least == distances.begin() || least + 1 == distances.end()) return {begin, false};
-  const double before = *(least - 1), here = *least, after = *(least + 1);
+  const auto min = std::min_element(distances.begin(), distances.end());
+  const auto begin = static_cast<double>(first) + static_cast<double>(min - distances.begin());
+  if (min == distances.begin() || min + 1 == distances.end()) return {begin, false};
+  const double before = *(min - 1), here = *min, after = *(min + 1);
   const double curvature = before - 2.0 * here + after;
   return {begin + (curvature > 0.0 ? 0.5 * (before - after) / curvature : 0.0), true};
 }
@@ -90,24 +92,24 @@ WindowReading project_window(const WindowTransform& transform, std::span<double>
   const std::size_t size = transform.window_size();
   MutableMap x(window.data(), static_cast<Eigen::Index>(size));
   x -= map_values(transform.mean.data(), size);
-  double left = x.square().sum();
+  double residual = x.square().sum();
   for (std::size_t k = 0; k < transform.components(); ++k) {
     components[k] = (map_values(transform.basis.data() + k * size, size) * x).sum();
-    left -= components[k] * components[k];
+    residual -= components[k] * components[k];
   }
   const auto free = static_cast<double>(size - transform.components());
-  return {{}, std::max(left, 0.0) / std::max(free, 1.0)};
+  return {{}, std::max(residual, 0.0) / std::max(free, 1.0)};
 }
 
 WindowReading read_components(const WindowTransform& transform, const RecordView& record,
                               std::span<double> components) {
-  const WindowPlace place = find_place(transform, record);
+  const WindowAlignment alignment = find_alignment(transform, record);
   std::vector<double> window(transform.window_size());
-  read_white_window(transform, record, place.begin, window);
+  read_white_window(transform, record, alignment.begin, window);
   WindowReading reading = project_window(transform, window, components);
-  reading.place = place;
+  reading.alignment = alignment;
   if (transform.grid.lags > 0) {
-    reading.leftover /= calc_shift_gain(place.begin - std::floor(place.begin));
+    reading.residual /= calc_shift_gain(alignment.begin - std::floor(alignment.begin));
   }
   return reading;
 }
@@ -116,7 +118,7 @@ std::vector<ColumnInfo> list_components(std::size_t count) {
   std::vector<ColumnInfo> columns;
   columns.reserve(count);
   for (std::size_t k = 1; k <= count; ++k) {
-    columns.push_back({"component_" + std::to_string(k), "1",
+    columns.push_back({fmt::format("component_{}", k), "1",
                        "coordinate of the window along a direction; unit of the noise"});
   }
   return columns;

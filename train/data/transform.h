@@ -1,13 +1,13 @@
-// From a window of a measured time history to the few numbers that a network takes.
+// Reduces a window of a measured time history to the few components that a network takes.
 //
-//   align     the record is shifted until it agrees best with a reference record, so that neither
-//             the hit time nor a trigger has to be known
-//   whiten    every channel by the inverse root of its noise covariance s^2 I + b^2 1 1': the noise
-//             of white samples and of an unknown bias has unit variance in every direction then
-//   project   on the directions in which noise-free records of the training differ most
+//   align     shift the record until it agrees best with a reference record, so that neither the
+//             hit time nor a trigger has to be known
+//   whiten    multiply every channel by the inverse root of its noise covariance s^2 I + b^2 1 1':
+//             white noise and an unknown bias then have unit variance in every direction
+//   project   onto the directions in which noise-free records of the training differ most
 //
-// so that the noise of each number has variance 1 and is independent of the others' (exactly where
-// nothing is aligned; interpolating between samples smooths white noise a little).
+// The noise of the components then has unit variance and is uncorrelated (exactly without aligning;
+// interpolation between samples smooths white noise slightly).
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,14 @@
 
 namespace strut {
 
-/// Where a window lies on the time axis of the records.
+/// Location of a window on the time axis of the records.
 struct WindowGrid {
   double interval = 0.0;    // s, between samples
-  std::int64_t first = 0;   // the window's first sample is that of time first * interval
+  std::int64_t first = 0;   // the window's first sample is at time first * interval
   std::size_t samples = 0;  // of the window
-  std::size_t lags = 0;     // samples by which a record may be shifted, either way; 0: not aligned
+  std::size_t lags = 0;     // maximum shift of a record, either way, in samples; 0: not aligned
 
-  /// Samples beyond the window, on both sides, that aligning takes.
+  /// Samples beyond the window, on each side, that aligning needs.
   std::size_t margin() const;
   /// Samples of a record: margin, window, margin.
   std::size_t record_samples() const { return samples + 2 * margin(); }
@@ -39,32 +39,32 @@ struct WindowTransform {
   NoiseModel noise;  // of the channels
   WindowGrid grid;
   // Whitened windows, channel by channel.
-  std::vector<double> reference;  // what records are aligned to; empty: nothing
+  std::vector<double> reference;  // records are aligned to it; empty: not aligned
   std::vector<double> mean;
   std::vector<double> basis;  // orthonormal directions, one after the other
-  /// What the directions leave over of a record, per degree of freedom and over what reading
-  /// between samples leaves of white noise (1: noise alone): mean and standard deviation over noisy
+  /// Residual of a record: its squared norm outside of the directions, per degree of freedom and
+  /// relative to interpolated white noise (1: noise alone). Mean and standard deviation over noisy
   /// training records.
-  double leftover_mean = 1.0, leftover_deviation = 0.0;
+  double residual_mean = 1.0, residual_deviation = 0.0;
 
   std::size_t window_size() const { return channels.size() * grid.samples; }
   std::size_t record_size() const { return channels.size() * grid.record_samples(); }
   std::size_t components() const { return basis.size() / window_size(); }
 };
 
-/// Where a window begins in a record.
-struct WindowPlace {
-  double begin = 0.0;  // in samples from the record's begin
-  bool found = true;   // false: the agreement is best at an end of what was searched
+/// Start of the window in a record.
+struct WindowAlignment {
+  double begin = 0.0;  // in samples from the start of the record
+  bool found = true;   // false: the best agreement is at an end of the searched range
 };
 
-/// How a record was read.
+/// Result of reading a record.
 struct WindowReading {
-  WindowPlace place;
-  double leftover = 0.0;  // see WindowTransform
+  WindowAlignment alignment;
+  double residual = 0.0;  // see WindowTransform
 };
 
-/// A record channel by channel, each of equally many samples.
+/// A record, channel by channel, all with the same number of samples.
 struct RecordView {
   std::span<const double> values;
   std::size_t samples = 0;  // of each channel
@@ -74,34 +74,34 @@ struct RecordView {
   }
 };
 
-/// The place where the record's distance from the reference, in whitened numbers and apart from
-/// biases, is least: whole samples first, then the vertex of the parabola through the three
-/// distances around the least one. Searches the whole record, of whatever length; without aligning
-/// it is the record's begin. Throws InputError where the record is shorter than the window and what
-/// interpolation takes.
-WindowPlace find_place(const WindowTransform& transform, const RecordView& record);
+/// Finds the shift at which the whitened, bias-free distance between record and reference is
+/// minimal: first over whole samples, then at the vertex of the parabola through the minimum and
+/// its neighbors. Searches the whole record; without aligning the window begins with the record.
+/// Throws InputError if the record is shorter than the window and the samples that interpolation
+/// needs.
+WindowAlignment find_alignment(const WindowTransform& transform, const RecordView& record);
 
-/// The window there, whitened: a channel's y becomes (y - q mean(y)) / s with
+/// Reads and whitens the window at `begin`: a channel's y becomes (y - q mean(y)) / s with
 /// q = 1 - 1 / sqrt(1 + n (b / s)^2), which is (s^2 I + b^2 1 1')^(-1/2) y.
 void read_white_window(const WindowTransform& transform, const RecordView& record, double begin,
                        std::span<double> window);
 
-/// Projects a whitened window, whose content changes.
+/// Projects a whitened window, whose content it overwrites; `alignment` is not set.
 WindowReading project_window(const WindowTransform& transform, std::span<double> window,
                              std::span<double> components);
 
-/// All of it: find the place, read the window, project it.
+/// Aligns, reads and projects the window of a record.
 WindowReading read_components(const WindowTransform& transform, const RecordView& record,
                               std::span<double> components);
 
-/// Names of the numbers: component_1, ...
+/// Describes the components: component_1, ...
 std::vector<ColumnInfo> list_components(std::size_t count);
 
-/// Where a model's file holds it.
+/// Group of a window in a model's file.
 inline constexpr char kWindowGroup[] = "/window";
 
 void write_window(Hdf5Writer& file, const WindowTransform& transform);
-/// Throws InputError that names file and dataset.
+/// Throws InputError, which names file and dataset.
 WindowTransform read_window(const std::filesystem::path& path, const Hdf5Reader& file);
 void add_window(Checksum& sum, const WindowTransform& transform);
 

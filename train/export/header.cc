@@ -1,19 +1,19 @@
 #include "train/export/header.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <sstream>
 #include <vector>
 
 #include "base/text/format_number.h"
+#include "train/export/layer_values.h"
 #include "train/model/identifier.h"
-#include "train/network/network.h"
 
 namespace strut {
 namespace {
 
-/// A literal that reads back as the same double.
+/// A C literal that reads back as the same double.
 std::string to_literal(double value) {
   if (std::isinf(value)) return "HUGE_VAL";
   std::string text = format_number(value);
@@ -21,7 +21,7 @@ std::string to_literal(double value) {
   return text;
 }
 
-/// A string literal; `?` too is escaped, for C reads trigraphs.
+/// A C string literal; `?` is escaped as well, since C reads trigraphs.
 std::string quote(const std::string& text) {
   static constexpr char kDigits[] = "01234567";
   std::string quoted = "\"";
@@ -36,7 +36,7 @@ std::string quote(const std::string& text) {
   return quoted + "\"";
 }
 
-/// "{a, b, c}" in lines of at most 96 characters, which begin with `indent`.
+/// "{a, b, c}" in lines of at most 96 characters, each indented by `indent`.
 template <class T, class ToText>
 std::string list_values(const std::vector<T>& values, const std::string& indent,
                         const ToText& to_text) {
@@ -52,135 +52,144 @@ std::string list_values(const std::vector<T>& values, const std::string& indent,
   return list + "\n" + indent + line;
 }
 
-/// Writes the source of one model.
-class CSource {
- public:
-  CSource(const TrainedModel& model, const std::string& name, SourceKind kind)
-      : model_(model),
-        shape_(model.sizes),
-        name_(name),
-        storage_(kind == SourceKind::kHeader ? "static inline " : "") {}
-
-  std::string write() {
-    const bool guarded = !storage_.empty();
-    write_introduction();
-    if (guarded) text_ << "#ifndef " << guard() << "\n#define " << guard() << "\n\n";
-    text_ << "#include <math.h>\n\n";
-    write_columns("input", model_.inputs, model_.input_map);
-    write_columns("output", model_.targets, model_.target_map);
-    write_numbers("output_ci95", "half widths of the intervals of 95 % in range", model_.ci95);
-    write_function();
-    if (guarded) text_ << "\n#endif\n";
-    return text_.str();
-  }
-
- private:
-  std::string prefix() const { return "strut_" + name_ + "_"; }
-  std::string guard() const { return "STRUT_IDENTIFY_" + name_ + "_H"; }
-
-  void write_introduction() {
-    text_
-        << "/* Written by strut export: parameters from measured channels, by a network of layers";
-    for (const int size : model_.sizes) text_ << " " << size;
-    text_
-        << ".\n   Trained on plan " << make_c_name(model_.plan_hash) << ".\n\n   "
-        << (storage_.empty() ? "" : storage_) << declaration()
-        << ";\n\n   Returns 0 where all is in range, else the sum of 1 (an input lies outside of "
-           "the range\n   trained on, or is NaN) and 2 (an output lies outside of it by more than "
-           "its interval): the\n   values are extrapolated then. */\n";
-  }
-
-  std::string declaration() const {
-    return "int strut_identify_" + name_ + "(const double in[" + std::to_string(shape_.inputs()) +
-           "], double out[" + std::to_string(shape_.outputs()) + "])";
-  }
-
-  void write_numbers(const std::string& what, const char* comment,
-                     const std::vector<double>& values) {
-    text_ << "/* " << comment << " */\n"
-          << storage_ << "const double *" << prefix() << what << "(void) {\n"
-          << "  static const double values[] = " << list_values(values, "      ", to_literal)
-          << ";\n  return values;\n}\n\n";
-  }
-
-  void write_texts(const std::string& what, const std::vector<std::string>& texts) {
-    text_ << storage_ << "const char *const *" << prefix() << what << "(void) {\n"
-          << "  static const char *const texts[] = " << list_values(texts, "      ", quote)
-          << ";\n  return texts;\n}\n\n";
-  }
-
-  void write_columns(const std::string& what, const std::vector<ColumnInfo>& columns,
-                     const Normalizer& map) {
-    std::vector<std::string> names, units;
-    names.reserve(columns.size());
-    units.reserve(columns.size());
-    for (const ColumnInfo& column : columns) {
-      names.push_back(column.name);
-      units.push_back(column.unit);
-    }
-    write_texts(what + "_names", names);
-    write_texts(what + "_units", units);
-    write_numbers(what + "_low", "lowest values trained on", map.low());
-    write_numbers(what + "_high", "highest values trained on", map.high());
-  }
-
-  void write_weights(const NetworkLayer& layer, std::size_t number) {
-    const auto part = [&](std::size_t begin, std::size_t end) {
-      const auto from = model_.weights.begin();
-      return list_values(std::vector<double>(from + static_cast<std::ptrdiff_t>(begin),
-                                             from + static_cast<std::ptrdiff_t>(end)),
-                         "      ", to_literal);
-    };
-    const auto outputs = static_cast<std::size_t>(layer.outputs);
-    text_ << "  static const double w" << number << "[] = " << part(layer.weights, layer.biases)
-          << ";\n  static const double b" << number
-          << "[] = " << part(layer.biases, layer.biases + outputs) << ";\n";
-  }
-
-  void write_layer(const NetworkLayer& layer, std::size_t number, bool hidden) {
-    const std::string x = "a" + std::to_string(number - 1), a = "a" + std::to_string(number);
-    const std::string n = std::to_string(layer.inputs);
-    text_ << "  for (o = 0; o < " << layer.outputs << "; ++o) {\n"
-          << "    double sum = b" << number << "[o];\n"
-          << "    for (i = 0; i < " << n << "; ++i) sum += w" << number << "[o * " << n
-          << " + i] * " << x << "[i];\n"
-          << "    " << a << "[o] = " << (hidden ? "tanh(sum)" : "sum") << ";\n  }\n";
-  }
-
-  void write_function() {
-    const std::size_t last = shape_.layers.size();
-    text_ << storage_ << declaration() << " {\n";
-    for (std::size_t l = 0; l < last; ++l) write_weights(shape_.layers[l], l + 1);
-    text_ << "  const double *low = " << prefix() << "input_low();\n"
-          << "  const double *high = " << prefix() << "input_high();\n"
-          << "  const double *ci95 = " << prefix() << "output_ci95();\n";
-    for (std::size_t l = 0; l <= last; ++l) {
-      text_ << "  double a" << l << "[" << shape_.sizes[l] << "];\n";
-    }
-    text_ << "  double margin;\n  int i, o, outside = 0;\n"
-          << "  for (i = 0; i < " << shape_.inputs() << "; ++i) {\n"
-          << "    if (!(in[i] >= low[i] && in[i] <= high[i])) outside |= 1;\n"
-          << "    a0[i] = 2.0 * (in[i] - low[i]) / (high[i] - low[i]) - 1.0;\n  }\n";
-    for (std::size_t l = 0; l < last; ++l) write_layer(shape_.layers[l], l + 1, l + 1 < last);
-    text_ << "  low = " << prefix() << "output_low();\n  high = " << prefix() << "output_high();\n"
-          << "  for (o = 0; o < " << shape_.outputs() << "; ++o) {\n"
-          << "    out[o] = low[o] + 0.5 * (a" << last << "[o] + 1.0) * (high[o] - low[o]);\n"
-          << "    margin = ci95[o] + " << to_literal(kParameterMargin) << " * (high[o] - low[o]);\n"
-          << "    if (!(out[o] + margin >= low[o] && out[o] - margin <= high[o])) outside |= 2;\n  "
-             "}\n"
-          << "  return outside;\n}\n";
-  }
-
-  const TrainedModel& model_;
-  const NetworkShape shape_;
-  const std::string name_, storage_;
-  std::ostringstream text_;
+/// The names that all parts of a source share.
+struct SourceNames {
+  std::string guard;        // "STRUT_IDENTIFY_NAME_H"
+  std::string prefix;       // "strut_NAME_"
+  std::string storage;      // "static inline " or ""
+  std::string declaration;  // of the function, without storage
 };
+
+SourceNames make_names(const NetworkShape& shape, const std::string& name, SourceKind kind) {
+  return {fmt::format("STRUT_IDENTIFY_{}_H", name), fmt::format("strut_{}_", name),
+          kind == SourceKind::kHeader ? "static inline " : "",
+          fmt::format("int strut_identify_{}(const double in[{}], double out[{}])", name,
+                      shape.inputs(), shape.outputs())};
+}
+
+std::string make_introduction(const TrainedModel& model, const SourceNames& names) {
+  return fmt::format(
+      "/* Written by strut export: parameters from measured channels, by a network of layers {}.\n"
+      "   Trained on plan {}.\n\n   {}{};\n\n"
+      "   Returns 0 where all is in range, else the sum of 1 (an input lies outside of the range\n"
+      "   trained on, or is NaN) and 2 (an output lies outside of it by more than its interval): "
+      "the\n   values are extrapolated then. */\n",
+      fmt::join(model.sizes, " "), make_c_name(model.plan_hash), names.storage, names.declaration);
+}
+
+/// A function that returns an array; `type` is that of its elements.
+std::string make_list_function(const SourceNames& names, const std::string& what, const char* type,
+                               const char* array, const std::string& values) {
+  return fmt::format(
+      "{}const {} *{}{}(void) {{\n"
+      "  static const {} {}[] = {};\n  return {};\n}}\n\n",
+      names.storage, type, names.prefix, what, type, array, values, array);
+}
+
+std::string make_numbers(const SourceNames& names, const std::string& what, const char* comment,
+                         const std::vector<double>& values) {
+  return fmt::format("/* {} */\n", comment) +
+         make_list_function(names, what, "double", "values",
+                            list_values(values, "      ", to_literal));
+}
+
+std::string make_texts(const SourceNames& names, const std::string& what,
+                       const std::vector<std::string>& texts) {
+  return make_list_function(names, what, "char *const", "texts",
+                            list_values(texts, "      ", quote));
+}
+
+/// Functions for names, units and bounds of the inputs or outputs.
+std::string make_columns(const SourceNames& names, const std::string& what,
+                         const std::vector<ColumnInfo>& columns, const Normalizer& map) {
+  std::vector<std::string> column_names, units;
+  column_names.reserve(columns.size());
+  units.reserve(columns.size());
+  for (const ColumnInfo& column : columns) {
+    column_names.push_back(column.name);
+    units.push_back(column.unit);
+  }
+  return make_texts(names, what + "_names", column_names) +
+         make_texts(names, what + "_units", units) +
+         make_numbers(names, what + "_low", "lowest values trained on", map.low()) +
+         make_numbers(names, what + "_high", "highest values trained on", map.high());
+}
+
+std::string make_weights(const TrainedModel& model, const NetworkLayer& layer, std::size_t number) {
+  const LayerValues values = get_layer_values(model, layer);
+  return fmt::format("  static const double w{0}[] = {1};\n  static const double b{0}[] = {2};\n",
+                     number, list_values(values.weights, "      ", to_literal),
+                     list_values(values.biases, "      ", to_literal));
+}
+
+/// The loop from a layer's inputs, a{number - 1}, to its outputs, a{number}.
+std::string make_layer(const NetworkLayer& layer, std::size_t number, bool hidden) {
+  return fmt::format(
+      "  for (o = 0; o < {outputs}; ++o) {{\n"
+      "    double sum = b{number}[o];\n"
+      "    for (i = 0; i < {inputs}; ++i) sum += w{number}[o * {inputs} + i] * a{before}[i];\n"
+      "    a{number}[o] = {value};\n  }}\n",
+      fmt::arg("outputs", layer.outputs), fmt::arg("inputs", layer.inputs),
+      fmt::arg("number", number), fmt::arg("before", number - 1),
+      fmt::arg("value", hidden ? "tanh(sum)" : "sum"));
+}
+
+/// Checks and normalizes the inputs.
+std::string make_input_part(const NetworkShape& shape) {
+  return fmt::format(
+      "  double margin;\n  int i, o, outside = 0;\n"
+      "  for (i = 0; i < {}; ++i) {{\n"
+      "    if (!(in[i] >= low[i] && in[i] <= high[i])) outside |= 1;\n"
+      "    a0[i] = 2.0 * (in[i] - low[i]) / (high[i] - low[i]) - 1.0;\n  }}\n",
+      shape.inputs());
+}
+
+/// Restores and checks the outputs.
+std::string make_output_part(const NetworkShape& shape, const SourceNames& names) {
+  return fmt::format(
+      "  low = {prefix}output_low();\n  high = {prefix}output_high();\n"
+      "  for (o = 0; o < {outputs}; ++o) {{\n"
+      "    out[o] = low[o] + 0.5 * (a{last}[o] + 1.0) * (high[o] - low[o]);\n"
+      "    margin = ci95[o] + {margin} * (high[o] - low[o]);\n"
+      "    if (!(out[o] + margin >= low[o] && out[o] - margin <= high[o])) outside |= 2;\n  }}\n"
+      "  return outside;\n",
+      fmt::arg("prefix", names.prefix), fmt::arg("outputs", shape.outputs()),
+      fmt::arg("last", shape.layers.size()), fmt::arg("margin", to_literal(kParameterMargin)));
+}
+
+std::string make_function(const TrainedModel& model, const NetworkShape& shape,
+                          const SourceNames& names) {
+  const std::size_t last = shape.layers.size();
+  std::string text = names.storage + names.declaration + " {\n";
+  for (std::size_t l = 0; l < last; ++l) text += make_weights(model, shape.layers[l], l + 1);
+  text += fmt::format(
+      "  const double *low = {0}input_low();\n  const double *high = {0}input_high();\n"
+      "  const double *ci95 = {0}output_ci95();\n",
+      names.prefix);
+  for (std::size_t l = 0; l <= last; ++l) {
+    text += fmt::format("  double a{}[{}];\n", l, shape.sizes[l]);
+  }
+  text += make_input_part(shape);
+  for (std::size_t l = 0; l < last; ++l) text += make_layer(shape.layers[l], l + 1, l + 1 < last);
+  return text + make_output_part(shape, names) + "}\n";
+}
 
 }  // namespace
 
 std::string make_c_source(const TrainedModel& model, const std::string& name, SourceKind kind) {
-  return CSource(model, name, kind).write();
+  const NetworkShape shape(model.sizes);
+  const SourceNames names = make_names(shape, name, kind);
+  const bool guarded = kind == SourceKind::kHeader;
+  std::string text = make_introduction(model, names);
+  if (guarded) text += fmt::format("#ifndef {0}\n#define {0}\n\n", names.guard);
+  text += "#include <math.h>\n\n";
+  text += make_columns(names, "input", model.inputs, model.input_map);
+  text += make_columns(names, "output", model.targets, model.target_map);
+  text += make_numbers(names, "output_ci95", "half widths of the intervals of 95 % in range",
+                       model.ci95);
+  text += make_function(model, shape, names);
+  if (guarded) text += "\n#endif\n";
+  return text;
 }
 
 std::string make_c_name(const std::string& text) {

@@ -1,4 +1,4 @@
-// A trained network as C source, for users who link nothing.
+// Exports a trained network as C source, for programs that link no library.
 #pragma once
 
 #include <string>
@@ -9,20 +9,21 @@ namespace strut {
 
 enum class SourceKind {
   kHeader,  // static inline functions
-  kSource,  // functions to be declared elsewhere
+  kSource,  // functions that the user declares
 };
 
-/// Source in C99, which C++ takes too:
+/// Returns source that is valid C99 and C++:
 ///
 ///   int strut_identify_NAME(const double in[N], double out[M]);
 ///
-/// fills `out`, allocates nothing, calls nothing but tanh of math.h, and returns a bit mask: 1
-/// where a value of `in` lies outside of the range trained on or is NaN, 2 where one of `out` is
-/// outside as is_parameter_in_range says; 0: all is in range. Beside it functions that return
-/// names, units, ranges and intervals. `name`: the end of a C identifier.
+/// writes `out`, allocates nothing, calls only tanh of math.h, and returns the sum of 1 if a value
+/// of `in` is outside of the training range or NaN, and 2 if a value of `out` is out of range
+/// (is_parameter_in_range); 0: all values are in range. Further functions return names, units,
+/// ranges and intervals. `name`: the last part of a C identifier.
 std::string make_c_source(const TrainedModel& model, const std::string& name, SourceKind kind);
 
-/// `text` as the end of a C identifier: ASCII letters, digits and `_` stay, else `_`.
+/// Converts `text` to the last part of a C identifier: replaces all but ASCII letters, digits and
+/// `_` by `_`.
 std::string make_c_name(const std::string& text);
 
 }  // namespace strut

@@ -1,18 +1,20 @@
 #include "train/export/onnx.h"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstring>
 
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "io/store/shard_layout.h"
+#include "train/export/layer_values.h"
 #include "train/export/protobuf_message.h"
-#include "train/network/network.h"
 
 namespace strut {
 namespace {
 
-// Numbers of fields and enumerations: onnx/onnx.proto, version 1.12.
+// Numbers of fields and enumerations, from onnx/onnx.proto, version 1.12.
 constexpr std::int64_t kIrVersion = 7, kOperatorSet = 13;
 constexpr std::int64_t kFloat = 1, kDouble = 11;  // TensorProto.DataType
 constexpr std::int64_t kIntAttribute = 2;         // AttributeProto.AttributeType
@@ -30,6 +32,7 @@ struct TensorField {
 };
 
 constexpr char kInputName[] = "inputs", kOutputName[] = "parameters";
+constexpr char kGemm[] = "Gemm";
 
 static_assert(std::endian::native == std::endian::little, "numbers of the file are little-endian");
 
@@ -54,118 +57,107 @@ std::string list_numbers(const std::vector<double>& values) {
   return join_names(texts);
 }
 
-/// Writes the graph of one model node by node, each feeding the next.
-class OnnxGraph {
- public:
-  OnnxGraph(const TrainedModel& model, OnnxNumber number) : model_(model), number_(number) {}
-
-  ProtobufMessage write() {
-    const NetworkShape shape(model_.sizes);
-    graph_.add(GraphField::kName, std::string("strut_identify"));
-    write_normalization();
-    for (const NetworkLayer& layer : shape.layers) {
-      write_layer(layer);
-      if (&layer != &shape.layers.back()) add_node("Tanh", {});
-    }
-    write_restoration();
-    graph_.add(GraphField::kInput, make_table(kInputName, shape.inputs()));
-    graph_.add(GraphField::kOutput, make_table(kOutputName, shape.outputs()));
-    return graph_;
-  }
-
- private:
-  std::int64_t data_type() const { return number_ == OnnxNumber::kDouble ? kDouble : kFloat; }
-
-  /// A constant of the graph; returns its name.
-  std::string add_constant(const std::string& name, const std::vector<std::int64_t>& shape,
-                           const std::vector<double>& values) {
-    ProtobufMessage tensor;
-    for (const std::int64_t size : shape) tensor.add(TensorField::kDimension, size);
-    tensor.add(TensorField::kDataType, data_type()).add(TensorField::kName, name);
-    // OpenCV takes doubles from here only; packed, they are the same bytes.
-    if (number_ == OnnxNumber::kDouble)
-      tensor.add(TensorField::kDoubleData, to_bytes<double>(values));
-    if (number_ == OnnxNumber::kFloat) tensor.add(TensorField::kRaw, to_bytes<float>(values));
-    graph_.add(GraphField::kInitializer, tensor);
-    return name;
-  }
-
-  std::string add_row(const std::string& name, const std::vector<double>& values) {
-    return add_constant(name, {1, static_cast<std::int64_t>(values.size())}, values);
-  }
-
-  /// A node that takes what the last one gave, and `constants`.
-  void add_node(const std::string& type, const std::vector<std::string>& constants,
-                const std::string& output = "") {
-    ++count_;
-    const std::string name = type + "_" + std::to_string(count_);
-    ProtobufMessage node;
-    node.add(NodeField::kInput, last_);
-    for (const std::string& constant : constants) node.add(NodeField::kInput, constant);
-    last_ = output.empty() ? "value_" + std::to_string(count_) : output;
-    node.add(NodeField::kOutput, last_).add(NodeField::kName, name).add(NodeField::kType, type);
-    if (type == "Gemm") {  // x W' + b: rows of W are neurons
-      node.add(NodeField::kAttribute, ProtobufMessage()
-                                          .add(1, std::string("transB"))
-                                          .add(3, std::int64_t{1})
-                                          .add(20, kIntAttribute));
-    }
-    graph_.add(GraphField::kNode, node);
-  }
-
-  /// 2 (x - low) / (high - low) - 1
-  void write_normalization() {
-    const Normalizer& map = model_.input_map;
-    std::vector<double> scale(map.columns());
-    for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = 2.0 / (map.high()[i] - map.low()[i]);
-    add_node("Sub", {add_row("input_low", map.low())});
-    add_node("Mul", {add_row("input_scale", scale)});
-    add_node("Sub", {add_row("one", std::vector<double>(map.columns(), 1.0))});
-  }
-
-  void write_layer(const NetworkLayer& layer) {
-    const auto part = [&](std::size_t begin, std::size_t end) {
-      const auto from = model_.weights.begin();
-      return std::vector<double>(from + static_cast<std::ptrdiff_t>(begin),
-                                 from + static_cast<std::ptrdiff_t>(end));
-    };
-    const std::int64_t outputs = layer.outputs;
-    const std::string number = std::to_string(++layer_);
-    const std::string weights = add_constant("weights_" + number, {outputs, layer.inputs},
-                                             part(layer.weights, layer.biases));
-    const std::string biases =
-        add_constant("biases_" + number, {outputs},
-                     part(layer.biases, layer.biases + static_cast<std::size_t>(layer.outputs)));
-    add_node("Gemm", {weights, biases});
-  }
-
-  /// low + (y + 1) (high - low) / 2 = middle + y (high - low) / 2
-  void write_restoration() {
-    const Normalizer& map = model_.target_map;
-    std::vector<double> half(map.columns()), middle(map.columns());
-    for (std::size_t i = 0; i < half.size(); ++i) {
-      half[i] = 0.5 * (map.high()[i] - map.low()[i]);
-      middle[i] = map.low()[i] + half[i];
-    }
-    add_node("Mul", {add_row("output_half_width", half)});
-    add_node("Add", {add_row("output_middle", middle)}, kOutputName);
-  }
-
-  ProtobufMessage make_table(const char* name, int columns) const {
-    // TensorShapeProto.Dimension: dim_value = 1, dim_param = 2.
-    const ProtobufMessage shape = ProtobufMessage()
-                                      .add(1, ProtobufMessage().add(2, std::string("N")))
-                                      .add(1, ProtobufMessage().add(1, std::int64_t{columns}));
-    const ProtobufMessage tensor = ProtobufMessage().add(1, data_type()).add(2, shape);
-    return ProtobufMessage().add(1, std::string(name)).add(2, ProtobufMessage().add(1, tensor));
-  }
-
-  const TrainedModel& model_;
-  const OnnxNumber number_;
-  ProtobufMessage graph_;
-  std::string last_ = kInputName;
-  int count_ = 0, layer_ = 0;
+/// A graph under construction, in which each node takes the output of the one before.
+struct OnnxGraph {
+  std::int64_t data_type = kDouble;
+  ProtobufMessage message;
+  std::string last = kInputName;  // output of the last node
+  int nodes = 0;
 };
+
+/// Adds a constant to the graph; returns its name.
+std::string add_constant(OnnxGraph& graph, const std::string& name,
+                         const std::vector<std::int64_t>& shape,
+                         const std::vector<double>& values) {
+  ProtobufMessage tensor;
+  for (const std::int64_t size : shape) tensor.add(TensorField::kDimension, size);
+  tensor.add(TensorField::kDataType, graph.data_type).add(TensorField::kName, name);
+  // OpenCV accepts doubles only in this field; packed, they are the same bytes.
+  if (graph.data_type == kDouble) tensor.add(TensorField::kDoubleData, to_bytes<double>(values));
+  if (graph.data_type == kFloat) tensor.add(TensorField::kRaw, to_bytes<float>(values));
+  graph.message.add(GraphField::kInitializer, tensor);
+  return name;
+}
+
+std::string add_row(OnnxGraph& graph, const std::string& name, const std::vector<double>& values) {
+  return add_constant(graph, name, {1, static_cast<std::int64_t>(values.size())}, values);
+}
+
+/// Adds a node that takes the output of the last one and `constants`.
+void add_node(OnnxGraph& graph, const std::string& type, const std::vector<std::string>& constants,
+              const std::string& output = "") {
+  ++graph.nodes;
+  ProtobufMessage node;
+  node.add(NodeField::kInput, graph.last);
+  for (const std::string& constant : constants) node.add(NodeField::kInput, constant);
+  graph.last = output.empty() ? fmt::format("value_{}", graph.nodes) : output;
+  node.add(NodeField::kOutput, graph.last)
+      .add(NodeField::kName, fmt::format("{}_{}", type, graph.nodes))
+      .add(NodeField::kType, type);
+  if (type == kGemm) {  // x W' + b: rows of W are neurons
+    node.add(NodeField::kAttribute, ProtobufMessage()
+                                        .add(1, std::string("transB"))
+                                        .add(3, std::int64_t{1})
+                                        .add(20, kIntAttribute));
+  }
+  graph.message.add(GraphField::kNode, node);
+}
+
+/// 2 (x - low) / (high - low) - 1
+void add_normalization(OnnxGraph& graph, const Normalizer& map) {
+  std::vector<double> scale(map.columns());
+  for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = 2.0 / (map.high()[i] - map.low()[i]);
+  add_node(graph, "Sub", {add_row(graph, "input_low", map.low())});
+  add_node(graph, "Mul", {add_row(graph, "input_scale", scale)});
+  add_node(graph, "Sub", {add_row(graph, "one", std::vector<double>(map.columns(), 1.0))});
+}
+
+void add_layer(OnnxGraph& graph, const TrainedModel& model, const NetworkLayer& layer,
+               std::size_t number) {
+  const LayerValues values = get_layer_values(model, layer);
+  const std::int64_t outputs = layer.outputs;
+  const std::string weights = add_constant(graph, fmt::format("weights_{}", number),
+                                           {outputs, layer.inputs}, values.weights);
+  const std::string biases =
+      add_constant(graph, fmt::format("biases_{}", number), {outputs}, values.biases);
+  add_node(graph, kGemm, {weights, biases});
+}
+
+/// low + (y + 1) (high - low) / 2 = middle + y (high - low) / 2
+void add_restoration(OnnxGraph& graph, const Normalizer& map) {
+  std::vector<double> half(map.columns()), middle(map.columns());
+  for (std::size_t i = 0; i < half.size(); ++i) {
+    half[i] = 0.5 * (map.high()[i] - map.low()[i]);
+    middle[i] = map.low()[i] + half[i];
+  }
+  add_node(graph, "Mul", {add_row(graph, "output_half_width", half)});
+  add_node(graph, "Add", {add_row(graph, "output_middle", middle)}, kOutputName);
+}
+
+ProtobufMessage make_table(const char* name, int columns, std::int64_t data_type) {
+  // TensorShapeProto.Dimension: dim_value = 1, dim_param = 2.
+  const ProtobufMessage shape = ProtobufMessage()
+                                    .add(1, ProtobufMessage().add(2, std::string("N")))
+                                    .add(1, ProtobufMessage().add(1, std::int64_t{columns}));
+  const ProtobufMessage tensor = ProtobufMessage().add(1, data_type).add(2, shape);
+  return ProtobufMessage().add(1, std::string(name)).add(2, ProtobufMessage().add(1, tensor));
+}
+
+ProtobufMessage make_graph(const TrainedModel& model, OnnxNumber number) {
+  const NetworkShape shape(model.sizes);
+  OnnxGraph graph;
+  graph.data_type = number == OnnxNumber::kDouble ? kDouble : kFloat;
+  graph.message.add(GraphField::kName, std::string("strut_identify"));
+  add_normalization(graph, model.input_map);
+  for (std::size_t l = 0; l < shape.layers.size(); ++l) {
+    add_layer(graph, model, shape.layers[l], l + 1);
+    if (l + 1 < shape.layers.size()) add_node(graph, "Tanh", {});
+  }
+  add_restoration(graph, model.target_map);
+  graph.message.add(GraphField::kInput, make_table(kInputName, shape.inputs(), graph.data_type))
+      .add(GraphField::kOutput, make_table(kOutputName, shape.outputs(), graph.data_type));
+  return graph.message;
+}
 
 void add_columns(ProtobufMessage& proto, const std::string& what,
                  const std::vector<ColumnInfo>& columns, const Normalizer& map) {
@@ -190,7 +182,7 @@ std::string make_onnx(const TrainedModel& model, OnnxNumber number, const NamedT
       .add(ModelField::kDocument,
            std::string("Parameters of a car from measured channels. Outside of input_low to "
                        "input_high the values are extrapolated."))
-      .add(ModelField::kGraph, OnnxGraph(model, number).write())
+      .add(ModelField::kGraph, make_graph(model, number))
       .add(ModelField::kOperators, ProtobufMessage().add(1, std::string()).add(2, kOperatorSet));
   add_columns(proto, "input", model.inputs, model.input_map);
   add_columns(proto, "output", model.targets, model.target_map);

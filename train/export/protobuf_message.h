@@ -1,5 +1,5 @@
-// Writes messages of Protocol Buffers (https://protobuf.dev/programming-guides/encoding): all of
-// the format that an ONNX model needs.
+// Writes messages of Protocol Buffers (https://protobuf.dev/programming-guides/encoding): the part
+// of the format that an ONNX model needs.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class ProtobufMessage {
     add_varint(static_cast<std::uint64_t>(value));
     return *this;
   }
-  /// A text, bytes or a message.
+  /// Adds a text, bytes or a message.
   ProtobufMessage& add(int field, const std::string& bytes) {
     add_tag(field, kLengthDelimited);
     add_varint(bytes.size());

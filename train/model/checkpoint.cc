@@ -1,6 +1,6 @@
 #include "train/model/checkpoint.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 #include "io/format/hdf5.h"
 #include "io/store/shard_layout.h"
@@ -84,13 +84,10 @@ Checkpoint read_checkpoint(const fs::path& path) {
 void require_same_start(const fs::path& path, const Checkpoint& checkpoint, const NamedTexts& now) {
   std::string differences;
   for (const auto& [name, value] : now) {
-    const auto before =
-        std::find_if(checkpoint.started_with.begin(), checkpoint.started_with.end(),
-                     [&name = name](const auto& fact) { return fact.first == name; });
-    const std::string was = before == checkpoint.started_with.end() ? "not there" : before->second;
-    if (was != value) differences += "\n  " + name + ": was " + was + ", is " + value;
+    const std::string was = find_text(checkpoint.started_with, name).value_or("absent");
+    if (was != value) differences += fmt::format("\n  {}: was {}, is {}", name, was, value);
   }
-  if (!differences.empty()) fail_file(path, "a checkpoint of another training:" + differences);
+  if (!differences.empty()) fail_file(path, "a checkpoint of a different training:" + differences);
 }
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// A training halfway as a file, to go on from.
+// Checkpoint files, from which a training resumes.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,22 @@
 
 namespace strut {
 
-/// A training between two epochs.
+/// State of a training between two epochs.
 struct Checkpoint {
-  /// Everything that decides how it goes on.
+  /// Everything that determines how the training continues.
   NamedTexts started_with;
   GrowingSampleState state;
   std::vector<EpochRecord> record;
 };
 
-/// Appears whole or not at all; replaces a file of that name. Throws EnvironmentError.
+/// Writes atomically; replaces an existing file. Throws EnvironmentError.
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
 
-/// Throws InputError that names the file and what is wrong.
+/// Throws InputError, which names the file and the fault.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
-/// Throws InputError with a line for each fact that is another in `now`.
+/// Throws InputError, with one line for each fact that differs, unless `now` equals the start of
+/// the checkpoint.
 void require_same_start(const std::filesystem::path& path, const Checkpoint& checkpoint,
                         const NamedTexts& now);
 

@@ -1,6 +1,7 @@
 #include "train/model/evaluate.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <optional>
 #include <utility>
 
@@ -24,24 +25,26 @@ std::vector<double> read_column(const RowStore& rows, std::size_t column) {
 void require_trained_on(const TrainedModel& model, const Dataset& dataset, const RowStore& usable) {
   if (dataset.plan_hash() != model.plan_hash) {
     throw InputError(
-        "the data is of another plan than the model was trained on, so it has no "
-        "test part of it; --part all takes all cases");
+        "the model was trained on data of another plan, so these data have no test part; --part "
+        "all "
+        "takes all cases");
   }
   const auto rows = static_cast<std::int64_t>(usable.row_count());
   if (rows != model.usable) {
-    throw InputError("the model was trained on data with " + std::to_string(model.usable) +
-                     " usable cases, this has " + std::to_string(rows) +
-                     "; its test part cannot be told; --part all takes all cases");
+    throw InputError(fmt::format(
+        "the model was trained on data with {} usable cases, these have {}, so the test part is "
+        "unknown; --part all takes all cases",
+        model.usable, rows));
   }
 }
 
-/// The noise of the training, drawn anew for other cases: draws belong to row numbers.
+/// The noise of the training, with another seed for other data: draws depend on row numbers.
 NoiseModel choose_noise(NoiseModel noise, const TrainedModel& model, const Dataset& dataset) {
   if (dataset.plan_hash() != model.plan_hash) ++noise.seed;
   return noise;
 }
 
-/// The model's inputs and targets, as noisy as those it was trained on.
+/// Reads the model's inputs and targets, as noisy as the training data.
 RowStore read_rows(const TrainedModel& model, Dataset& dataset, EvaluatedPart part,
                    const RowStoreOptions& store) {
   const bool test = part == EvaluatedPart::kTest;

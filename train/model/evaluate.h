@@ -1,4 +1,4 @@
-// How well a model identifies the parameters of given cases.
+// Evaluates how accurately a model identifies the parameters of given cases.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,29 @@
 namespace strut {
 
 enum class EvaluatedPart {
-  kTest,  // of the very data it was trained on: what training never saw
+  kTest,  // the test part of the training data, which training never saw
   kAll,
 };
 
 struct ModelEvaluation {
   std::vector<Metrics> metrics;  // per parameter
   std::int64_t samples = 0;
-  std::int64_t out_of_range = 0;  // samples with an input outside of those trained on
+  std::int64_t out_of_range = 0;  // samples with an input outside of the training range
 };
 
-/// Predicted parameters of rows as recorded, the model's inputs before its targets; adds to
-/// `out_of_range` those with an input outside of those trained on.
+/// Predicts the parameters of recorded rows, the model's inputs, then its targets; adds the number
+/// of rows with an input outside of the training range to `out_of_range`.
 RowStore predict_rows(const TrainedModel& model, const RowStore& rows, std::int64_t* out_of_range);
 
-/// The rows that the model's training left aside to test it. Throws InputError as evaluate_model.
+/// Reads the test part of the model's training data. Throws InputError as evaluate_model does.
 RowStore read_test_rows(const TrainedModel& model, Dataset& dataset,
                         const RowStoreOptions& store = {});
 
-/// Rows as recorded, the model's inputs before its targets.
+/// Evaluates recorded rows, the model's inputs, then its targets.
 ModelEvaluation evaluate_rows(const TrainedModel& model, const RowStore& rows);
 
-/// Throws InputError where the data lacks a column of the model, or is not what the model was
-/// trained on and its test part is asked for.
+/// Throws InputError if the dataset lacks a column of the model, or if `part` is the test part and
+/// the model was not trained on this dataset.
 ModelEvaluation evaluate_model(const TrainedModel& model, Dataset& dataset, EvaluatedPart part,
                                const RowStoreOptions& store = {});
 

@@ -8,7 +8,7 @@
 namespace strut {
 namespace {
 
-/// Values of a layer and their derivatives by each of the network's inputs, rows: neurons.
+/// Values of a layer, and their derivatives by the network's inputs, a row per neuron.
 struct Derivatives {
   std::vector<double> values, by_input;
 };

@@ -1,4 +1,4 @@
-// Parameters from one snapshot, by a trained network.
+// Identifies parameters from one snapshot by a trained network.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +9,17 @@
 
 namespace strut {
 
-/// A model laid out for answers at once, in the units of the model's columns. Safe to use from many
-/// threads.
+/// A model arranged for fast predictions, in the units of the model's columns. Thread-safe.
 class Identifier {
  public:
   explicit Identifier(const TrainedModel& model);
 
   /// `inputs`: a value for each of model.inputs; `values`: room for each of model.targets.
-  /// Allocates nothing. What lies outside of the range trained on is extrapolated: see calc_excess.
+  /// Allocates nothing. Extrapolates outside of the training range (see calc_excess).
   void identify(const double* inputs, double* values) const;
 
-  /// d values / d inputs there, targets x inputs by rows: exact, by forward differentiation through
-  /// the layers.
+  /// d values / d inputs at `inputs`, targets x inputs by rows: exact, by forward differentiation
+  /// through the layers.
   std::vector<double> calc_jacobian(const double* inputs) const;
 
  private:
@@ -29,17 +28,17 @@ class Identifier {
   Normalizer input_map_, target_map_;
 };
 
-/// How far x lies beyond [low, high], as a signed share of high - low: negative below, positive
+/// Signed distance of x from [low, high], as a fraction of high - low: negative below, positive
 /// above, 0 inside.
 double calc_excess(double x, double low, double high);
 
-/// Share of the width of its range by which a parameter may lie beyond it, apart from its interval:
-/// cars in new condition stand at the end of a range, and simulations differ by more than a
-/// network.
+/// Distance by which a parameter may lie beyond its training range, in addition to its interval, as
+/// a fraction of the range: cars in new condition are at the end of a range, and the discrepancy of
+/// simulations exceeds that of a network.
 inline constexpr double kParameterMargin = 0.01;
 
-/// False where the whole interval value +- half_width lies beyond the range of target `t` and that
-/// margin, or where the value is NaN.
+/// False if the whole interval value ± half_width lies outside of the range of target `t`, extended
+/// by kParameterMargin, or if the value is NaN.
 bool is_parameter_in_range(const TrainedModel& model, std::size_t t, double value,
                            double half_width);
 

@@ -1,9 +1,11 @@
 #include "train/model/model_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cmath>
 #include <span>
 
+#include "base/math/all_finite.h"
 #include "io/format/hdf5.h"
 #include "io/store/shard_layout.h"
 #include "train/data/training_file.h"
@@ -14,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 2: with /ci95.
+// Version 2 added /ci95.
 constexpr TrainingFileKind kKind = {kModelSeal, 2};
 constexpr char kSplitSeedKey[] = "split_seed";
 constexpr char kIntervalName[] = "/ci95", kNoiseName[] = "/noise";
@@ -34,24 +36,12 @@ void write_columns(Hdf5Writer& file, const char* name, const std::vector<ColumnI
 
 void read_columns(const fs::path& path, const Hdf5Reader& file, const std::string& name,
                   std::vector<ColumnInfo>& columns, Normalizer& map) {
-  const Hdf5Dataset data = file.read(name);
-  const Hdf5Label& label = data.label;
-  const std::size_t count = label.names.size();
-  if (data.shape != std::vector<std::size_t>{2, count} || label.units.size() != count ||
-      label.descriptions.size() != count) {
-    fail_file(path,
-              name + ": must have two rows, and a name, unit and description for each column");
-  }
-  const auto cut = data.values.begin() + static_cast<std::ptrdiff_t>(count);
-  map = Normalizer({data.values.begin(), cut}, {cut, data.values.end()});
-  const bool finite = std::all_of(data.values.begin(), data.values.end(),
-                                  [](double x) { return std::isfinite(x); });
-  if (!finite || map.find_constant() < count)
+  TwoRowTable table = read_two_rows(path, file, name);
+  const bool finite = all_finite(table.first) && all_finite(table.second);
+  columns = std::move(table.columns);
+  map = Normalizer(std::move(table.first), std::move(table.second));
+  if (!finite || map.find_constant() < columns.size()) {
     fail_file(path, name + ": bounds must be finite and differ");
-  columns.clear();
-  columns.reserve(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    columns.push_back({label.names[c], label.units[c], label.descriptions[c]});
   }
 }
 
@@ -79,20 +69,22 @@ std::string calc_checksum(const TrainedModel& model) {
   return sum.finish();
 }
 
-/// Noise of these inputs.
-NoiseModel read_noise_of(const fs::path& path, const Hdf5Reader& file,
-                         const std::vector<ColumnInfo>& inputs) {
+/// Reads the noise of `inputs`.
+NoiseModel read_input_noise(const fs::path& path, const Hdf5Reader& file,
+                            const std::vector<ColumnInfo>& inputs) {
   std::vector<ColumnInfo> columns;
   NoiseModel noise = read_noise(path, file, kNoiseName, columns);
-  if (columns != inputs) fail_file(path, std::string(kNoiseName) + ": must be of the inputs");
+  if (columns != inputs) {
+    fail_file(path, fmt::format("{}: its columns must be those of the inputs", kNoiseName));
+  }
   return noise;
 }
 
 void check_model(const fs::path& path, const TrainedModel& model) {
   const NetworkShape shape(model.sizes);
   if (model.weights.size() != shape.weight_count) {
-    fail_file(path, "/weights: " + std::to_string(model.weights.size()) + "; the layers have " +
-                        std::to_string(shape.weight_count));
+    fail_file(path, fmt::format("/weights: {}; the layers have {}", model.weights.size(),
+                                shape.weight_count));
   }
   if (model.inputs.size() != static_cast<std::size_t>(shape.inputs()) ||
       model.targets.size() != static_cast<std::size_t>(shape.outputs())) {
@@ -100,16 +92,15 @@ void check_model(const fs::path& path, const TrainedModel& model) {
               "/inputs, /targets: must have a column for each input and output of the network");
   }
   if (model.window && model.window->components() != model.inputs.size()) {
-    fail_file(path, std::string(kWindowGroup) + ": must have a direction for each input");
+    fail_file(path, fmt::format("{}: must have a direction for each input", kWindowGroup));
   }
   const bool widths =
       std::all_of(model.ci95.begin(), model.ci95.end(), [](double width) { return width >= 0.0; });
   if (model.ci95.size() != model.targets.size() || !widths) {
-    fail_file(path, "/ci95: must have a width for each target, none below 0");
+    fail_file(path,
+              fmt::format("{}: must have a width for each target, none below 0", kIntervalName));
   }
-  const bool finite = std::all_of(model.weights.begin(), model.weights.end(),
-                                  [](double x) { return std::isfinite(x); });
-  if (!finite) fail_file(path, "/weights: must be finite");
+  if (!all_finite(model.weights)) fail_file(path, "/weights: must be finite");
 }
 
 }  // namespace
@@ -173,7 +164,7 @@ TrainedModel read_trained_model(const fs::path& path) {
   model.best_epoch = read_int(path, file, "best_epoch");
   model.best_validation = file.read_number_attribute("/", "best_validation");
   model.seconds = file.read_number_attribute("/", "seconds");
-  if (file.has(kNoiseName)) model.noise = read_noise_of(path, file, model.inputs);
+  if (file.has(kNoiseName)) model.noise = read_input_noise(path, file, model.inputs);
   if (file.has(kWindowGroup)) model.window = read_window(path, file);
   check_sum(path, file, calc_checksum(model));
   check_model(path, model);

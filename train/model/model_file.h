@@ -1,4 +1,4 @@
-// A trained network as a file, with everything needed to use it, judge it and repeat it.
+// Files of trained networks, with everything needed to use, evaluate and reproduce them.
 #pragma once
 
 #include <cstdint>
@@ -22,35 +22,35 @@ struct TrainedModel {
   std::vector<double> weights;
   std::vector<ColumnInfo> inputs, targets;
   Normalizer input_map{0}, target_map{0};
-  /// Per target half the width of the 95 % interval, in the target's unit, as calc_ci95 finds it
-  /// (train/model/interval.h); infinite where too few cases were left to tell.
+  /// Half width of the 95 % interval of each target, in the target's unit (calc_ci95,
+  /// train/model/interval.h); infinite if there were too few validation cases.
   std::vector<double> ci95;
 
-  std::optional<NoiseModel> noise;        // that the inputs, channels of a snapshot, carried
+  std::optional<NoiseModel> noise;        // added to the inputs, channels of a snapshot
   std::optional<WindowTransform> window;  // from a record to the inputs
 
-  // The data.
+  // Data.
   std::string plan_hash;
-  std::int64_t samples = 0;  // asked for; 0: all
+  std::int64_t samples = 0;  // requested number of rows; 0: all
   std::int64_t usable = 0, skipped = 0;
   SplitChoice split;
 
-  // The training.
+  // Training.
   NamedTexts options;
   std::vector<EpochRecord> record;
   StopReason stop = StopReason::kNone;
-  int best_epoch = 0;  // of the weights
+  int best_epoch = 0;  // epoch of the weights
   double best_validation = 0.0;
   double seconds = 0.0;
 
   NamedTexts provenance;  // attributes of the file
 };
 
-/// Appears whole or not at all; replaces a file of that name. Throws EnvironmentError.
+/// Writes atomically; replaces an existing file. Throws EnvironmentError.
 void write_trained_model(const std::filesystem::path& path, const TrainedModel& model);
 
-/// Throws InputError that names the file and what is wrong: no model, an unknown version, a
-/// checksum or shapes that do not fit. Provenance is not read.
+/// Throws InputError, which names the file and the fault: not a model, an unknown version, a wrong
+/// checksum or inconsistent shapes. Does not read provenance.
 TrainedModel read_trained_model(const std::filesystem::path& path);
 
 }  // namespace strut

@@ -1,5 +1,5 @@
-// A block through the layers, forward and back. Included by the kernels of every instruction set
-// (kernel_isa.cc), by nobody else.
+// Forward and backward passes of a block through the layers. Included only by kernel_isa.cc, which
+// is compiled for every instruction set.
 #pragma once
 
 #include <xsimd/xsimd.hpp>
@@ -17,8 +17,8 @@ struct WeightView {
   std::size_t row, column;
 };
 
-/// `kRows` x `kVectors` vectors of out = start + W in: enough sums at once to hide the latency of a
-/// multiply-add, few enough for sixteen registers.
+/// Computes `kRows` x `kVectors` vectors of out = start + W in: enough sums at once to hide the
+/// latency of a multiply-add, few enough for sixteen registers.
 template <std::size_t kRows, std::size_t kVectors, bool kAdd>
 void multiply_patch(const WeightView& w, std::size_t count, const double* bias, const double* in,
                     std::size_t stride, double* out, std::size_t out_stride) {
@@ -96,7 +96,7 @@ inline void run_forward(const NetworkShape& shape, const double* weights, const 
   }
 }
 
-/// delta of a hidden layer from that of the next: (W' delta) (1 - a^2).
+/// Computes delta of a hidden layer from that of the next: (W' delta) (1 - a^2).
 inline void run_layer_backward(const NetworkLayer& layer, const NetworkLayer& next,
                                const double* weights, const Block& block, const double* next_delta,
                                std::size_t next_stride, double* delta, std::size_t stride) {
@@ -113,7 +113,7 @@ inline void run_layer_backward(const NetworkLayer& layer, const NetworkLayer& ne
   }
 }
 
-/// The last hidden layer's delta of one output: its weights times (1 - a^2), 0 where mask is.
+/// Computes the last hidden layer's delta of one output: its weights times (1 - a^2), times `mask`.
 inline void start_backward(const NetworkLayer& layer, const double* output_weights,
                            const Block& block, const double* mask, double* delta) {
   const double* a = block.activations + layer.output_row * block.stride;
@@ -147,12 +147,12 @@ inline void run_backward(const NetworkShape& shape, const double* weights, const
   }
 }
 
-/// First and second derivative of a layer's values along a direction: rows of kBlockRows.
+/// First and second derivatives of a layer's values along a direction, in rows of kBlockRows.
 struct Tangent {
   double *first, *second;
 };
 
-/// a' and a" of tanh, in place of z' and z".
+/// Replaces z' and z" by a' and a" of a = tanh z.
 inline void bend_tangent(const double* a, std::size_t stride, std::size_t rows, const Tangent& t) {
   for (std::size_t r = 0; r < rows; ++r) {
     for (std::size_t s = 0; s < kBlockRows; s += kWidth) {
@@ -173,7 +173,7 @@ inline void calc_second_derivative(const NetworkShape& shape, const double* weig
   for (const int size : shape.sizes) widest = std::max(widest, static_cast<std::size_t>(size));
   Tangent in{scratch, scratch + widest * kBlockRows};
   Tangent out{in.second + widest * kBlockRows, in.second + 2 * widest * kBlockRows};
-  std::fill(in.first, out.first, 0.0);  // inputs do not move
+  std::fill(in.first, out.first, 0.0);  // the inputs are constant
   for (const NetworkLayer& layer : shape.layers) {
     const std::size_t n = count_outputs(layer), m = count_inputs(layer);
     const double* x = block.activations + layer.input_row * block.stride;

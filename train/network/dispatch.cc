@@ -6,6 +6,7 @@
 STRUT_DECLARE_KERNELS(strut::TrainKernel, strut_train_kernel_)
 
 namespace strut {
+
 void load_inputs(const NetworkShape& shape, const double* inputs, std::size_t rows,
                  const Block& block) {
   const auto count = static_cast<std::size_t>(shape.inputs());

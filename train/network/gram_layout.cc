@@ -5,9 +5,9 @@
 namespace strut {
 namespace {
 
-/// Rows of U' that a tile may have: many, since each tile builds its own V, but few enough for a
-/// dozen tiles and more, which threads share. Measured: docs/design/0007-levenberg-marquardt.md.
-constexpr std::size_t kLargestTile = 192;
+/// Maximum rows of U' in a tile: many, since each tile builds its own V, but few enough for at
+/// least a dozen tiles, which threads share. Measured: docs/design/0007-levenberg-marquardt.md.
+constexpr std::size_t kMaxTileRows = 192;
 
 std::size_t calc_triangle(std::size_t n) { return n * (n + 1) / 2; }
 
@@ -22,7 +22,7 @@ bool is_output(const NetworkShape& shape, std::size_t layer) {
   return layer + 1 == shape.layers.size();
 }
 
-/// Stores into the lower triangle, whichever of the two comes first.
+/// The lower triangle of H; takes row and column in either order.
 class LowerTriangle {
  public:
   LowerTriangle(double* h, std::size_t n) : h_(h), n_(n) {}
@@ -35,7 +35,7 @@ class LowerTriangle {
   std::size_t n_;
 };
 
-/// One row of a tile of different layers: neuron i of `a`, neuron j of `b`.
+/// Stores one row of a tile of different layers: neuron i of `a`, neuron j of `b`.
 void store_row(const NetworkLayer& a, int i, const NetworkLayer& b, int j, const double* sums,
                std::size_t lead, LowerTriangle h) {
   for (int p = 0; p <= a.inputs; ++p) {
@@ -43,7 +43,7 @@ void store_row(const NetworkLayer& a, int i, const NetworkLayer& b, int j, const
   }
 }
 
-/// One row of a tile of a layer with itself.
+/// Stores one row of a tile of a layer with itself.
 void store_symmetric_row(const NetworkLayer& a, int i, int j, const double* sums, std::size_t lead,
                          LowerTriangle h) {
   for (int p = 0; p <= a.inputs; ++p) {
@@ -54,7 +54,7 @@ void store_symmetric_row(const NetworkLayer& a, int i, int j, const double* sums
   }
 }
 
-/// The output layer with itself: the same numbers for each output, none between two.
+/// Stores the output layer with itself: the same block for each output, zeros between outputs.
 void store_output_rows(const NetworkLayer& a, const double* sums, std::size_t lead,
                        LowerTriangle h) {
   for (int i = 0; i < a.outputs; ++i) {
@@ -81,14 +81,14 @@ GramLayout::GramLayout(const NetworkShape& shape) {
   for (std::size_t first = 0; first < shape.layers.size(); ++first) {
     for (std::size_t second = first; second < shape.layers.size(); ++second) {
       const std::size_t all = count_neuron_pairs(shape, first, second);
-      const std::size_t parts = (all + kLargestTile - 1) / kLargestTile;
+      const std::size_t parts = (all + kMaxTileRows - 1) / kMaxTileRows;
       for (std::size_t part = 0; part < parts; ++part) {
         GramTile tile{first, second, all * part / parts, 0, 0, sum_count};
         tile.rows = all * (part + 1) / parts - tile.first_row;
         tile.columns = count_input_pairs(shape, first, second);
         sum_count += tile.rows * tile.columns;
         largest_factors = std::max(largest_factors, tile.rows + tile.columns);
-        tiles.push_back(tile);  // NOLINT(performance-inefficient-vector-operation): some dozen
+        tiles.push_back(tile);  // NOLINT(performance-inefficient-vector-operation): a few dozen
       }
     }
   }

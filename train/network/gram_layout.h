@@ -1,4 +1,4 @@
-// J'J of a network without J: which numbers are summed, and where they belong.
+// J'J of a network without J: the sums, and their places in H.
 //
 // The row of J for sample n and output k is, in layer l, delta_l^k (x) [a_(l-1); 1]. So
 //   H(l, l') = sum_n (sum_k delta_l^k delta_l'^k') (x) (a a')
@@ -12,27 +12,27 @@
 #include <cstddef>
 #include <vector>
 
-#include "train/network/network.h"
+#include "train/network/shape.h"
 
 namespace strut {
 
-/// Some rows of the product of a pair of layers, `first` <= `second`.
+/// Rows of the product of a pair of layers, `first` <= `second`.
 struct GramTile {
   std::size_t first = 0, second = 0;  // layers
-  std::size_t first_row = 0;          // rows of U' (pairs of neurons) from here on
+  std::size_t first_row = 0;          // first row of U' (pair of neurons)
   std::size_t rows = 0;
-  std::size_t columns = 0;  // pairs of inputs, biases among them
-  std::size_t offset = 0;   // of the tile in the sums, by columns, `rows` apart
+  std::size_t columns = 0;  // pairs of inputs, including biases
+  std::size_t offset = 0;   // of the tile in the sums; stored by columns, `rows` apart
 };
 
-/// The product of all pairs of layers, cut into tiles of like effort. The cut depends on the shape
-/// alone, so results do not depend on who computes which tile.
+/// The products of all pairs of layers, cut into tiles of similar cost. The cut depends on the
+/// shape alone, so that results do not depend on which thread computes which tile.
 struct GramLayout {
   explicit GramLayout(const NetworkShape& shape);
 
-  std::vector<GramTile> tiles;  // dearest first
+  std::vector<GramTile> tiles;  // most expensive first
   std::size_t sum_count = 0;
-  std::size_t largest_factors = 0;  // max of rows + columns over the tiles
+  std::size_t largest_factors = 0;  // maximum of rows + columns over the tiles
 };
 
 /// Number of pairs of neurons of a pair of layers: rows of U'.

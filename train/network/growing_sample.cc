@@ -1,8 +1,9 @@
 #include "train/network/growing_sample.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/error/input_error.h"
 
@@ -10,7 +11,7 @@ namespace strut {
 
 void GrowingSampleOptions::validate() const {
   if (!(growth > 1.0) || !std::isfinite(growth)) {
-    throw InputError("growth: " + std::to_string(growth) + "; allowed: above 1");
+    throw InputError(fmt::format("growth: {:f}; allowed: above 1", growth));
   }
 }
 
@@ -32,8 +33,8 @@ void GrowingSample::start(const std::vector<double>& weights) {
 
 void GrowingSample::restore(const GrowingSampleState& state) {
   if (state.rows < 1 || state.rows > problem_->source_rows()) {
-    throw InputError("training: a sample of " + std::to_string(state.rows) + " rows of " +
-                     std::to_string(problem_->source_rows()));
+    throw InputError(fmt::format("training: a sample of {} rows; allowed: 1 to {}", state.rows,
+                                 problem_->source_rows()));
   }
   rows_ = state.rows;
   training_.restore(state.training);
@@ -56,7 +57,7 @@ bool GrowingSample::step() {
   return true;
 }
 
-/// Grows the sample if the last step says so, and undoes the step if it did harm.
+/// Tests the last step on unseen rows; grows the sample and undoes the step where necessary.
 void GrowingSample::judge(const LevenbergMarquardtState& before) {
   const std::size_t unseen = std::min(rows_, problem_->source_rows() - rows_);
   LevenbergMarquardtState after = training_.state();
@@ -73,14 +74,14 @@ void GrowingSample::judge(const LevenbergMarquardtState& before) {
   }
 }
 
-/// Goes on from `state` with more rows.
+/// Continues from `state` with more rows.
 void GrowingSample::grow(LevenbergMarquardtState state) {
   const double wanted = std::ceil(static_cast<double>(rows_) * options_.growth);
   const std::size_t all = problem_->source_rows();
-  // What remains for a last sample of nearly all rows is not worth a stage.
+  // A sample of nearly all rows is not worth a stage of its own.
   rows_ = wanted < 0.75 * static_cast<double>(all) ? static_cast<std::size_t>(wanted) : all;
   if (state.stop == StopReason::kDamping) {
-    // The bound was reached on the old rows; with it the new ones would be given up at once.
+    // The damping bound was reached on the old rows; on the new ones training would stop at once.
     state.damping = 0.0;
     state.growth = 2.0;
   }

@@ -1,9 +1,9 @@
-// Levenberg-Marquardt on a sample of the rows that grows until it is all of them.
+// Levenberg-Marquardt on a sample of the rows that grows until it includes all of them.
 //
-// Far from the solution a few rows tell the step as well as all do. So training starts on the first
-// rows of the source (which must stand in random order) and takes more as soon as what a step
-// gains is no longer told from chance; the end is exact training on all rows. After R. H. Byrd,
-// G. M. Chin, J. Nocedal, Y. Wu, Math. Programming 134 (2012) 127.
+// Far from the solution a few rows determine a step as well as all rows do. Training therefore
+// starts on the first rows of the source (which must be in random order) and adds rows as soon as
+// the decrease of a step is no longer statistically significant; it ends with exact training on all
+// rows. After R. H. Byrd, G. M. Chin, J. Nocedal, Y. Wu, Math. Programming 134 (2012) 127.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 namespace strut {
 
 struct GrowingSampleOptions {
-  /// Rows of the first sample, all of them at most: then this is exact training from the start. 0:
-  /// as many as give two residuals a weight, fewer of which a network fits by heart.
+  /// Rows of the first sample; with all rows this is exact training from the start. 0: two
+  /// residuals per weight, since a network memorizes fewer.
   std::size_t first_rows = 0;
   /// Factor by which a sample grows.
   double growth = 3.0;
@@ -24,7 +24,7 @@ struct GrowingSampleOptions {
   void validate() const;
 };
 
-/// Everything that such a training is between two epochs.
+/// Complete state of the training between two epochs.
 struct GrowingSampleState {
   LevenbergMarquardtState training;
   std::size_t rows = 0;
@@ -32,17 +32,18 @@ struct GrowingSampleState {
 
 class GrowingSample {
  public:
-  /// `problem` and `validation` (may be null) must outlive this; `problem`'s rows are set by it.
-  /// Throws InputError for bad options.
+  /// `problem`, whose rows this sets, and `validation`, which may be null, must outlive this.
+  /// Throws InputError for invalid options.
   GrowingSample(NetworkProblem& problem, LeastSquaresProblem* validation,
                 const LevenbergMarquardtOptions& options, const GrowingSampleOptions& growing = {});
 
   void start(const std::vector<double>& weights);
   void restore(const GrowingSampleState& state);
 
-  /// Runs one epoch. A step that raises the loss of as many rows again, which it has not seen, is
-  /// undone, and the sample grows; it also grows when a step's predicted decrease is below the
-  /// standard error of the decrease on those rows, and when training on the sample stops by itself.
+  /// Runs one epoch; returns false once training has stopped. Each step is tested on an equal
+  /// number of unseen rows: if it raises their loss, it is undone and the sample grows. The sample
+  /// also grows if the predicted decrease is below the standard error of the decrease on those
+  /// rows, and if training on the sample stops by itself.
   bool step();
   TrainingSummary run(const EpochCallback& callback = {});
 

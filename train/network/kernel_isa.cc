@@ -1,4 +1,4 @@
-// The kernel for one instruction set: compiled once for each, with STRUT_ISA naming it.
+// The training kernels, compiled once per instruction set, with STRUT_ISA as its name.
 
 #include <Eigen/Core>
 
@@ -28,7 +28,7 @@ using strut::to_index;
 
 // --- one sample ------------------------------------------------------------------------------
 
-/// out = b + W in over the padded columns of one layer, `kVectors` vectors of outputs at a time.
+/// out = b + W in, for `kVectors` vectors of a layer's padded outputs.
 template <std::size_t kVectors>
 void predict_patch(const double* packed, std::size_t width, int inputs, const double* in,
                    double* out) {
@@ -46,7 +46,7 @@ void predict_patch(const double* packed, std::size_t width, int inputs, const do
 
 void predict(const NetworkShape& shape, const double* packed, const double* inputs,
              double* outputs) {
-  // Padded outputs of two layers, in turn.
+  // Padded outputs of two successive layers, used alternately.
   alignas(64) double buffer[2][NetworkShape::kLargestSize];
   const double* in = inputs;
   double* out = buffer[0];
@@ -77,7 +77,7 @@ void predict(const NetworkShape& shape, const double* packed, const double* inpu
 
 // --- gradient --------------------------------------------------------------------------------
 
-/// Gradient of one layer: sums over the block of delta a', written as W by rows and b.
+/// Writes the gradient of one layer, the sum of delta a' over the block, as W by rows, then b.
 void store_gradient(const NetworkLayer& layer, const double* delta, const Block& block,
                     double* product, double* gradient) {
   const std::size_t n = strut::count_outputs(layer), m = strut::count_inputs(layer) + 1;
@@ -120,7 +120,7 @@ void sum_products(const double* a, const double* b, std::size_t outputs, std::si
   }
 }
 
-/// Rows of U' of a tile: for each pair of neurons sum_k delta_i^k delta_j^k, over the chunk.
+/// Fills the rows of U' of a tile: sum_k delta_i^k delta_j^k for each pair of neurons.
 void fill_neuron_pairs(const NetworkShape& shape, const GramTile& tile, const double* deltas,
                        std::size_t stride, std::size_t depth, double* u) {
   const auto outputs = static_cast<std::size_t>(shape.outputs());
@@ -150,7 +150,7 @@ void fill_neuron_pairs(const NetworkShape& shape, const GramTile& tile, const do
   }
 }
 
-/// Columns of V of a tile: a_p a_q for each pair of inputs, over the chunk.
+/// Fills the columns of V of a tile: a_p a_q for each pair of inputs.
 void fill_input_pairs(const NetworkShape& shape, const GramTile& tile, const Block& chunk,
                       std::size_t depth, double* v) {
   const NetworkLayer &a = shape.layers[tile.first], &b = shape.layers[tile.second];
@@ -185,8 +185,8 @@ void add_tile(const NetworkShape& shape, const GramTile& tile, const Block& chun
 extern "C" strut::TrainKernel STRUT_ISA_NAME(strut_train_kernel_)();
 
 extern "C" strut::TrainKernel STRUT_ISA_NAME(strut_train_kernel_)() {
-  // Eigen cuts its sums by the size of the caches. Asked of the processor, results would differ
-  // between machines of one instruction set.
+  // Eigen splits its sums by the cache sizes. Fixed here: as the processor reports them, results
+  // would differ between machines of one instruction set.
   Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
   return {STRUT_ISA_STRING,
           &predict,

@@ -1,20 +1,22 @@
 #include "train/network/network.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/error/input_error.h"
+#include "base/math/all_finite.h"
 #include "base/math/random.h"
 #include "train/network/kernel.h"
 
 namespace strut {
 namespace {
 
-/// Streams of calc_uniform, one a layer.
+/// First of the streams of calc_uniform, one per layer.
 constexpr std::uint64_t kStartStream = std::uint64_t{1} << 40;
 
-/// The random numbers of one layer's start, in the order in which they are asked for.
+/// Random numbers for the start weights of one layer, in sequence.
 class LayerRandom {
  public:
   LayerRandom(std::uint64_t seed, std::size_t layer) : seed_(seed), stream_(kStartStream + layer) {}
@@ -25,7 +27,7 @@ class LayerRandom {
   std::uint64_t seed_, stream_, counter_ = 0;
 };
 
-/// Directions at random: uniform on the cube, scaled to length one.
+/// Fills rows with random directions: uniform on the cube, scaled to unit length.
 void fill_unit_rows(LayerRandom& random, int rows, int columns, double* w) {
   for (int row = 0; row < rows; ++row) {
     double sum = 0.0;
@@ -45,14 +47,14 @@ void fill_nguyen_widrow(const NetworkLayer& layer, LayerRandom random, double* w
   const double length = kHalfActiveRange * 0.7 * std::pow(layer.outputs, 1.0 / layer.inputs);
   fill_unit_rows(random, layer.outputs, layer.inputs, w);
   for (int o = 0; o < layer.outputs; ++o) {
-    const double place = layer.outputs > 1 ? -1.0 + 2.0 * o / (layer.outputs - 1) : 0.0;
+    const double position = layer.outputs > 1 ? -1.0 + 2.0 * o / (layer.outputs - 1) : 0.0;
     double* row = w + static_cast<std::ptrdiff_t>(o) * layer.inputs;
-    b[o] = length * place * (row[0] < 0.0 ? -1.0 : 1.0);
+    b[o] = length * position * (row[0] < 0.0 ? -1.0 : 1.0);
     for (int i = 0; i < layer.inputs; ++i) row[i] *= length;
   }
 }
 
-/// Makes weights for inputs on [-1, 1] fit inputs on `range`.
+/// Transforms weights for inputs on [-1, 1] to weights for inputs on `range`.
 void map_inputs(const NetworkLayer& layer, const InputRange& range, double* weights) {
   const double scale = 2.0 / (range.high - range.low);
   const double shift = -(range.high + range.low) / (range.high - range.low);
@@ -88,38 +90,11 @@ std::vector<double> pack_weights(const NetworkShape& shape, const std::vector<do
 
 }  // namespace
 
-NetworkShape::NetworkShape(std::vector<int> layer_sizes) : sizes(std::move(layer_sizes)) {
-  if (sizes.size() < 2) throw InputError("network: needs at least inputs and outputs");
-  for (const int size : sizes) {
-    if (size < 1 || size > kLargestSize) {
-      throw InputError("network: a layer of " + std::to_string(size) + " neurons; allowed: 1 to " +
-                       std::to_string(kLargestSize));
-    }
-  }
-  for (std::size_t l = 0; l + 1 < sizes.size(); ++l) {
-    NetworkLayer layer;
-    layer.inputs = sizes[l];
-    layer.outputs = sizes[l + 1];
-    const auto in = static_cast<std::size_t>(layer.inputs);
-    const auto out = static_cast<std::size_t>(layer.outputs);
-    layer.weights = weight_count;
-    layer.biases = weight_count + in * out;
-    weight_count += (in + 1) * out;
-    layer.input_row = activation_rows;
-    activation_rows += in + 1;
-    layer.output_row = activation_rows;
-    layer.delta_row = delta_rows;
-    if (l + 2 < sizes.size()) delta_rows += out;
-    layers.push_back(layer);  // NOLINT(performance-inefficient-vector-operation): a handful
-  }
-  activation_rows += static_cast<std::size_t>(sizes.back()) + 1;
-}
-
 std::vector<double> make_nguyen_widrow_weights(const NetworkShape& shape, const InputRange& range,
                                                std::uint64_t seed) {
   if (!(range.low < range.high)) {
-    throw InputError("network: input range [" + std::to_string(range.low) + ", " +
-                     std::to_string(range.high) + "]: the first must be below the second");
+    throw InputError(fmt::format("network: input range [{:f}, {:f}]: low must be below high",
+                                 range.low, range.high));
   }
   std::vector<double> weights(shape.weight_count);
   const std::size_t last = shape.layers.size() - 1;
@@ -152,12 +127,10 @@ Predictor::Predictor(const NetworkShape& shape, const std::vector<double>& weigh
                      const TrainKernel& kernel)
     : shape_(shape), kernel_(&kernel), weights_(weights) {
   if (weights.size() != shape.weight_count) {
-    throw InputError("network: " + std::to_string(weights.size()) + " weights; this shape has " +
-                     std::to_string(shape.weight_count));
+    throw InputError(
+        fmt::format("network: {} weights; this shape has {}", weights.size(), shape.weight_count));
   }
-  if (!std::all_of(weights.begin(), weights.end(), [](double w) { return std::isfinite(w); })) {
-    throw InputError("network: a weight is not finite");
-  }
+  if (!all_finite(weights)) throw InputError("network: a weight is not finite");
   packed_ = pack_weights(shape_, weights_);
 }
 

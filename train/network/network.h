@@ -1,52 +1,18 @@
-// A feedforward network: tansig in the hidden layers, linear at the output.
-//
-// All weights stand in one vector: per layer W (outputs x inputs, by rows), then b.
+// A feedforward network, tansig in the hidden layers and linear at the output: start weights and
+// predictions.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "train/network/shape.h"
+
 namespace strut {
 
 struct TrainKernel;
 
-/// One layer: a = f(W x + b). Offsets of the weights are into the weight vector; rows are those of
-/// a block's working arrays, which hold samples side by side (train/network/kernel.h).
-struct NetworkLayer {
-  int inputs = 0, outputs = 0;
-  std::size_t weights = 0;     // offset of W
-  std::size_t biases = 0;      // offset of b
-  std::size_t input_row = 0;   // rows of x; after them a row of ones, for the bias
-  std::size_t output_row = 0;  // rows of a
-  std::size_t delta_row = 0;   // hidden layers: rows of the derivatives of one output
-
-  /// Offset of the weight from `input` to `output`; input == inputs is the bias.
-  std::size_t at(int output, int input) const {
-    const auto o = static_cast<std::size_t>(output), i = static_cast<std::size_t>(input);
-    return input == inputs ? biases + o : weights + o * static_cast<std::size_t>(inputs) + i;
-  }
-};
-
-struct NetworkShape {
-  /// Widest layer.
-  static constexpr int kLargestSize = 512;
-
-  /// `layer_sizes`: inputs, hidden layers (any number, none too), outputs. Throws InputError unless
-  /// there are two or more, each from 1 to kLargestSize.
-  explicit NetworkShape(std::vector<int> layer_sizes);
-
-  int inputs() const { return sizes.front(); }
-  int outputs() const { return sizes.back(); }
-
-  std::vector<int> sizes;
-  std::vector<NetworkLayer> layers;
-  std::size_t weight_count = 0;
-  std::size_t activation_rows = 0;  // all layers, each with its row of ones
-  std::size_t delta_rows = 0;       // hidden neurons
-};
-
-/// Range [low, high] of the values that the inputs take, the same for all of them.
+/// Range [low, high] of the inputs' values, common to all inputs.
 struct InputRange {
   double low = -1.0, high = 1.0;
 };
@@ -64,19 +30,20 @@ std::vector<double> make_nguyen_widrow_weights(const NetworkShape& shape, const 
 /// sqrt(6 / (inputs + outputs)), b = 0.
 std::vector<double> make_xavier_weights(const NetworkShape& shape, std::uint64_t seed);
 
-/// A trained network, laid out for answers at once. Safe to use from many threads.
+/// A trained network with its weights arranged for fast predictions. Thread-safe.
 class Predictor {
  public:
-  /// Throws InputError unless there is one finite weight for each of the shape's.
+  /// Throws InputError unless `weights` are finite and shape.weight_count in number.
   Predictor(const NetworkShape& shape, const std::vector<double>& weights);
   Predictor(const NetworkShape& shape, const std::vector<double>& weights,
             const TrainKernel& kernel);
 
   const NetworkShape& shape() const { return shape_; }
 
-  /// One sample; allocates nothing.
+  /// Predicts one sample; allocates nothing.
   void predict(const double* inputs, double* outputs) const;
-  /// Many: inputs count x shape.inputs() by rows, outputs count x shape.outputs().
+  /// Predicts `count` samples: inputs count x shape.inputs(), outputs count x shape.outputs(), by
+  /// rows.
   void predict_rows(const double* inputs, std::size_t count, double* outputs) const;
 
  private:

@@ -1,8 +1,9 @@
 #include "train/network/network_problem.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
@@ -14,16 +15,16 @@ std::size_t round_up(std::size_t value, std::size_t unit) {
   return (value + unit - 1) / unit * unit;
 }
 
-/// Rows whose gradients are held block by block at a time.
-constexpr std::size_t kLargestGradientBatch = 4096;
+/// Maximum rows whose gradients, one per block, are held in memory at a time.
+constexpr std::size_t kMaxGradientBatch = 4096;
 
 }  // namespace
 
 void NetworkProblemOptions::validate() const {
   if (threads < 1 || threads > 1024) {
-    throw InputError("threads: " + std::to_string(threads) + "; allowed: 1 to 1024");
+    throw InputError(fmt::format("threads: {}; allowed: 1 to 1024", threads));
   }
-  if (batch_rows < 1) throw InputError("batch_rows: 0; allowed: 1 and more");
+  if (batch_rows < 1) throw InputError("batch_rows: 0; allowed: at least 1");
 }
 
 NetworkProblem::NetworkProblem(const NetworkShape& shape, RowSource& source,
@@ -37,10 +38,9 @@ NetworkProblem::NetworkProblem(const NetworkShape& shape, RowSource& source,
       layout_(shape) {
   options_.validate();
   if (source.input_count() != shape.inputs() || source.target_count() != shape.outputs()) {
-    throw InputError("network: " + std::to_string(shape.inputs()) + " inputs and " +
-                     std::to_string(shape.outputs()) + " outputs; the data have " +
-                     std::to_string(source.input_count()) + " and " +
-                     std::to_string(source.target_count()));
+    throw InputError(fmt::format("network: {} inputs and {} outputs; the data have {} and {}",
+                                 shape.inputs(), shape.outputs(), source.input_count(),
+                                 source.target_count()));
   }
   if (source_rows_ == 0) throw InputError("network: the data have no rows");
   const std::size_t batch =
@@ -75,7 +75,7 @@ void NetworkProblem::for_each_batch(std::size_t first, std::size_t count, const 
   }
 }
 
-/// Calls use(number of the block, its first row in the batch, workspace of the thread).
+/// Calls use(index of the block, its first row in the batch, workspace of the thread).
 template <class F>
 void NetworkProblem::for_each_block(const Batch& batch, const F& use) {
   const std::size_t blocks = (batch.rows + kBlockRows - 1) / kBlockRows;
@@ -125,7 +125,8 @@ double NetworkProblem::calc_loss(const double* weights) {
   return loss;
 }
 
-/// gradient = J'e, or J'e" along a direction; returns e'e. Calls also(batch) of each batch read.
+/// gradient = J'e, or J'e" along `direction` if given; returns e'e. Calls also(batch) for each
+/// batch.
 template <class F>
 double NetworkProblem::calc_gradients(const double* weights, const double* direction,
                                       double* gradient, const F& also) {
@@ -160,8 +161,8 @@ double NetworkProblem::calc_gradients(const double* weights, const double* direc
   };
   for_each_batch(0, rows_, [&](const Batch& batch) {
     also(batch);
-    for (std::size_t done = 0; done < batch.rows; done += kLargestGradientBatch) {
-      add_part({batch.first + done, std::min(kLargestGradientBatch, batch.rows - done),
+    for (std::size_t done = 0; done < batch.rows; done += kMaxGradientBatch) {
+      add_part({batch.first + done, std::min(kMaxGradientBatch, batch.rows - done),
                 batch.inputs + done * static_cast<std::size_t>(shape_.inputs()),
                 batch.targets + done * static_cast<std::size_t>(shape_.outputs())});
     }
@@ -206,7 +207,7 @@ double NetworkProblem::calc_gram(const double* weights, int epoch, double* h, do
   double loss = 0.0;
   const std::size_t wanted = options_.gram_rows;
   if (wanted > 0 && wanted < rows_) {
-    const std::size_t windows = rows_ / wanted;  // the remainder is left out
+    const std::size_t windows = rows_ / wanted;  // remaining rows are not used
     for_each_batch(static_cast<std::size_t>(epoch) % windows * wanted, wanted, add_gram);
     const double factor = static_cast<double>(rows_) / static_cast<double>(wanted);
     for (double& sum : sums_) sum *= factor;

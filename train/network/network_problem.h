@@ -1,4 +1,4 @@
-// Training a network as a least-squares problem: sums over rows, in blocks, on some threads.
+// Training a network as a least-squares problem: sums over rows, in blocks, on a team of threads.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 namespace strut {
 
 struct NetworkProblemOptions {
-  /// Threads. No result depends on it.
+  /// Number of threads. No result depends on it.
   int threads = 1;
-  /// Rows read from the source at a time, rounded up to whole chunks of kChunkRows: memory against
-  /// the cost of asking. No result depends on it.
+  /// Rows read from the source at a time, rounded up to whole chunks of kChunkRows: a compromise
+  /// between memory and the cost of reading. No result depends on it.
   std::size_t batch_rows = 4096;
-  /// Rows that H is made of, 0: all. The gradient and the loss are those of all rows. Each epoch
-  /// takes the next so many rows, so rows should stand in random order. After Y. Ren, D. Goldfarb,
-  /// arXiv 1906.02353: worth it beyond some 10^5 rows, where H costs 16 times the gradient.
+  /// Number of rows that H is computed from, 0: all; gradient and loss always use all rows. Each
+  /// epoch takes the next window of rows, so rows should be in random order. After Y. Ren, D.
+  /// Goldfarb, arXiv 1906.02353: useful beyond about 10^5 rows, where H costs 16 times the
+  /// gradient.
   std::size_t gram_rows = 0;
 
   /// Throws InputError naming the field, its value and what is allowed.
@@ -32,12 +33,12 @@ struct RowStatistics {
 
 /// e = network(inputs; w) - targets over all rows and outputs.
 ///
-/// Sums run over a grid of rows that is fixed (chunks of kChunkRows, in them blocks of kBlockRows),
-/// one after the other: H, gradient and loss have the same bits for any number of threads, batch
-/// size, and way in which the rows are stored. Memory does not depend on the number of rows.
+/// Sums run in order over a fixed grid of rows (chunks of kChunkRows, divided into blocks of
+/// kBlockRows): H, gradient and loss have the same bits for any number of threads, batch size and
+/// storage of the rows. Memory does not depend on the number of rows.
 class NetworkProblem : public LeastSquaresProblem {
  public:
-  /// Samples whose derivatives are held at a time.
+  /// Rows whose derivatives are held in memory at a time.
   static constexpr std::size_t kChunkRows = 512;
 
   /// The source must outlive this. Throws InputError unless it fits the shape.
@@ -50,7 +51,7 @@ class NetworkProblem : public LeastSquaresProblem {
   const NetworkProblemOptions& options() const { return options_; }
   std::size_t source_rows() const { return source_rows_; }
 
-  /// Takes only the first `count` rows of the source from now on, 1 to source_rows().
+  /// Restricts the sums to the first `count` rows of the source, 1 to source_rows().
   void set_rows(std::size_t count);
   std::size_t rows() const { return rows_; }
 
@@ -62,16 +63,16 @@ class NetworkProblem : public LeastSquaresProblem {
   void calc_second_gradient(const double* weights, const double* direction,
                             double* gradient) override;
 
-  /// How e'e of a row changes from `before` to `after`, over `count` rows from `first` on, which
-  /// may lie beyond rows(). Needs memory for `count` numbers.
+  /// Change of a row's e'e from weights `before` to `after`, over `count` rows from `first` on,
+  /// which may lie beyond rows(). Needs memory for 2 `count` numbers.
   RowStatistics calc_loss_change(const double* before, const double* after, std::size_t first,
                                  std::size_t count);
 
  private:
-  struct Workspace {  // one a thread
+  struct Workspace {  // one per thread
     std::vector<double> activations, errors, scratch;
   };
-  /// Rows of the source from `first` on, as read.
+  /// Rows of the source from `first` on.
   struct Batch {
     std::size_t first = 0, rows = 0;
     const double *inputs = nullptr, *targets = nullptr;
@@ -99,12 +100,12 @@ class NetworkProblem : public LeastSquaresProblem {
   std::size_t source_rows_, rows_;
 
   std::vector<Workspace> workspaces_;
-  std::vector<double> inputs_, targets_;                // a batch
-  std::vector<double> block_losses_, block_gradients_;  // of its blocks
+  std::vector<double> inputs_, targets_;                // of a batch
+  std::vector<double> block_losses_, block_gradients_;  // of the batch's blocks
   GramLayout layout_;
-  // Allocated by the first calc_gram: a problem that only validates does without.
+  // Allocated by the first calc_gram: a problem that only validates needs none of them.
   std::vector<double> chunk_activations_, chunk_deltas_, sums_;
-  std::vector<std::vector<double>> factors_;  // one a thread
+  std::vector<std::vector<double>> factors_;  // one per thread
 };
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "train/window/basis.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -19,14 +21,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using ConstMap = Eigen::Map<const VectorXd>;
 
-/// Records held at a time: one of 1000 samples and two channels takes 16 kB.
+/// Records held in memory at a time; one of 1000 samples and two channels takes 16 kB.
 constexpr std::size_t kPieceRows = 64;
-/// Draws of the hit time of each record.
+/// Draws of the hit time per record.
 constexpr int kDraws = 2;
-/// Directions beyond those asked for, which make the iteration converge by the ratio of variances
-/// so much further down; and its steps.
+/// Directions beyond those requested: the iteration converges with the ratio of the variances of
+/// the last requested and the last of all directions.
 constexpr int kSpareDirections = 8, kIterations = 5;
-/// Stream of the iteration's start.
+/// Stream of the iteration's random start.
 constexpr std::uint64_t kStartStream = 0x62617369;
 
 Index to_index(std::size_t i) { return static_cast<Index>(i); }
@@ -35,7 +37,7 @@ ConstMap map_row(std::span<const double> rows, std::size_t row, std::size_t colu
   return {rows.data() + row * columns, to_index(columns)};
 }
 
-/// Calls use(row number, record) for the training part's records, as they lie.
+/// Calls use(row number, record) for the records of the training part, as recorded.
 template <class F>
 void for_each_training(const WindowRecords& records, const Split& split, const F& use) {
   const auto piece = [&](std::span<const double> rows, std::size_t first, std::size_t count) {
@@ -48,9 +50,9 @@ void for_each_training(const WindowRecords& records, const Split& split, const F
   for_each_piece(records.rows, piece, kPieceRows);
 }
 
-/// A channel's window of a record that lies as simulated, over sigma and without its mean.
-void add_centered(const WindowRecords& records, std::span<const double> row, std::size_t channel,
-                  double sigma, VectorXd& window) {
+/// Writes a channel's unshifted window, without its mean and divided by sigma.
+void fill_centered(const WindowRecords& records, std::span<const double> row, std::size_t channel,
+                   double sigma, VectorXd& window) {
   const Index n = to_index(records.grid.samples);
   const std::size_t begin = records.spare + records.grid.margin();
   const ConstMap y(row.data() + channel * records.samples() + begin, n);
@@ -61,7 +63,7 @@ VectorXd calc_centered(const WindowRecords& records, std::span<const double> row
                        const NoiseModel& noise) {
   VectorXd window(to_index(records.channels.size() * records.grid.samples));
   for (std::size_t c = 0; c < records.channels.size(); ++c) {
-    add_centered(records, row, c, noise.sigma[c], window);
+    fill_centered(records, row, c, noise.sigma[c], window);
   }
   return window;
 }
@@ -73,13 +75,13 @@ std::vector<double> find_reference(const WindowRecords& records, const Split& sp
     mean += calc_centered(records, row, noise);
   });
   mean /= static_cast<double>(split.count(Part::kTrain));
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   VectorXd nearest = mean;
   for_each_training(records, split, [&](std::int64_t, std::span<const double> row) {
     VectorXd window = calc_centered(records, row, noise);
     const double distance = (window - mean).squaredNorm();
-    if (distance >= least) return;
-    least = distance;
+    if (distance >= min) return;
+    min = distance;
     nearest.swap(window);
   });
   return {nearest.begin(), nearest.end()};
@@ -97,18 +99,18 @@ RowStore make_windows(const WindowRecords& records, const Split& split,
       draw_record(records, row, transform.noise, NoiseDraw(transform.noise, number, copy), true,
                   record);
       const RecordView view{record, transform.grid.record_samples()};
-      const WindowPlace place = find_place(transform, view);
-      if (!place.found) ++lost;
-      read_white_window(transform, view, place.begin, window);
+      const WindowAlignment alignment = find_alignment(transform, view);
+      if (!alignment.found) ++lost;
+      read_white_window(transform, view, alignment.begin, window);
       windows.append(window);
     });
   }
   if (lost == 0) return windows;
-  throw InputError(
-      "--align: " + std::to_string(lost) + " of " + std::to_string(windows.row_count()) +
-      " records agree best with the reference at the end of +-" +
-      format_number(static_cast<double>(transform.grid.lags) * transform.grid.interval) +
-      " s; must reach further, or the window must hold the bump");
+  throw InputError(fmt::format(
+      "--align: {} of {} records agree best with the reference at the end of +/-{} s; must reach "
+      "further, or the window must contain the bump",
+      lost, windows.row_count(),
+      format_number(static_cast<double>(transform.grid.lags) * transform.grid.interval)));
 }
 
 VectorXd calc_mean(const RowStore& windows) {
@@ -155,12 +157,12 @@ Products multiply(const RowStore& windows, const VectorXd& mean, const MatrixXd&
   return {sums.covariance / n, sums.image / n};
 }
 
-/// Principal directions with a standard deviation above 1, largest first, at most `most`.
-std::vector<double> find_directions(const RowStore& windows, const VectorXd& mean, int most,
+/// Principal directions with a standard deviation above 1, largest first, at most `max`.
+std::vector<double> find_directions(const RowStore& windows, const VectorXd& mean, int max,
                                     std::uint64_t seed) {
   const std::size_t size = windows.columns();
   const Index count = to_index(
-      std::min({static_cast<std::size_t>(most + kSpareDirections), size - 1, windows.row_count()}));
+      std::min({static_cast<std::size_t>(max + kSpareDirections), size - 1, windows.row_count()}));
   MatrixXd directions = orthonormalize(make_start(size, count, seed));
   for (int step = 0; step < kIterations; ++step) {
     directions = orthonormalize(multiply(windows, mean, directions).image);
@@ -168,7 +170,7 @@ std::vector<double> find_directions(const RowStore& windows, const VectorXd& mea
   const Eigen::SelfAdjointEigenSolver<MatrixXd> ritz(
       multiply(windows, mean, directions).covariance);
   std::vector<double> basis;
-  for (Index k = 0; k < std::min<Index>(most, count); ++k) {
+  for (Index k = 0; k < std::min<Index>(max, count); ++k) {
     const Index at = count - 1 - k;  // eigenvalues ascend
     if (!(ritz.eigenvalues()(at) > 1.0)) break;
     const VectorXd direction = directions * ritz.eigenvectors().col(at);
@@ -193,7 +195,8 @@ WindowTransform make_window_transform(const WindowRecords& records, const Split&
   transform.basis = find_directions(windows, mean, choice.components, noise.seed);
   if (transform.basis.empty()) {
     throw InputError(
-        "the records of the training part differ by less than the noise: the window tells nothing");
+        "the records of the training part differ by less than the noise: the window contains no "
+        "information; choose another window, other channels, or less noise");
   }
   return transform;
 }

@@ -1,7 +1,7 @@
-// A window's transform in a model's file.
-#include <algorithm>
-#include <cmath>
+// Writes and reads a window's transform in a model's file.
+#include <fmt/format.h>
 
+#include "base/math/all_finite.h"
 #include "io/store/shard_layout.h"
 #include "train/data/training_file.h"
 #include "train/data/transform.h"
@@ -16,15 +16,13 @@ constexpr char kNoise[] = "/window/noise", kMean[] = "/window/mean", kBasis[] = 
 
 std::size_t read_count(const fs::path& path, const Hdf5Reader& file, const char* key) {
   const std::int64_t value = file.read_integer_attribute(kWindowGroup, key);
-  if (value < 0) fail_file(path, std::string(kWindowGroup) + ": " + key + ": must be at least 0");
+  if (value < 0) fail_file(path, fmt::format("{}: {}: must be at least 0", kWindowGroup, key));
   return static_cast<std::size_t>(value);
 }
 
 std::vector<double> read_finite(const fs::path& path, const Hdf5Reader& file, const char* name) {
   std::vector<double> values = file.read(name).values;
-  const bool finite =
-      std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-  if (!finite) fail_file(path, std::string(name) + ": must be finite");
+  if (!all_finite(values)) fail_file(path, fmt::format("{}: must be finite", name));
   return values;
 }
 
@@ -34,9 +32,9 @@ void check_shapes(const fs::path& path, const WindowTransform& transform) {
   if (size == 0 || !(transform.grid.interval > 0.0) || transform.mean.size() != size ||
       transform.basis.empty() || transform.basis.size() % size != 0 ||
       transform.components() >= size || transform.reference.size() != (aligned ? size : 0)) {
-    fail_file(path, std::string(kWindowGroup) +
-                        ": mean, basis and reference do not fit the channels and " +
-                        "samples of the window");
+    fail_file(path, fmt::format("{}: mean, basis and reference do not fit the channels and samples "
+                                "of the window",
+                                kWindowGroup));
   }
 }
 
@@ -57,8 +55,8 @@ void write_window(Hdf5Writer& file, const WindowTransform& transform) {
   file.write_attribute(kWindowGroup, "first_sample", grid.first);
   file.write_attribute(kWindowGroup, "samples", static_cast<std::int64_t>(grid.samples));
   file.write_attribute(kWindowGroup, "lags", static_cast<std::int64_t>(grid.lags));
-  file.write_attribute(kWindowGroup, "leftover_mean", transform.leftover_mean);
-  file.write_attribute(kWindowGroup, "leftover_deviation", transform.leftover_deviation);
+  file.write_attribute(kWindowGroup, "leftover_mean", transform.residual_mean);
+  file.write_attribute(kWindowGroup, "leftover_deviation", transform.residual_deviation);
 }
 
 WindowTransform read_window(const fs::path& path, const Hdf5Reader& file) {
@@ -70,8 +68,8 @@ WindowTransform read_window(const fs::path& path, const Hdf5Reader& file) {
   transform.mean = read_finite(path, file, kMean);
   transform.basis = read_finite(path, file, kBasis);
   if (transform.grid.lags > 0) transform.reference = read_finite(path, file, kReference);
-  transform.leftover_mean = file.read_number_attribute(kWindowGroup, "leftover_mean");
-  transform.leftover_deviation = file.read_number_attribute(kWindowGroup, "leftover_deviation");
+  transform.residual_mean = file.read_number_attribute(kWindowGroup, "leftover_mean");
+  transform.residual_deviation = file.read_number_attribute(kWindowGroup, "leftover_deviation");
   check_shapes(path, transform);
   return transform;
 }
@@ -81,7 +79,7 @@ void add_window(Checksum& sum, const WindowTransform& transform) {
   sum.add(transform.channels);
   add_noise(sum, transform.noise);
   sum.add(
-      std::vector<double>{grid.interval, transform.leftover_mean, transform.leftover_deviation});
+      std::vector<double>{grid.interval, transform.residual_mean, transform.residual_deviation});
   sum.add(std::vector<std::int64_t>{grid.first, static_cast<std::int64_t>(grid.samples),
                                     static_cast<std::int64_t>(grid.lags)});
   sum.add(transform.reference);

@@ -1,5 +1,7 @@
 #include "train/window/records.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,7 +15,7 @@
 namespace strut {
 namespace {
 
-/// Room for rounding of times that are whole numbers of samples, in samples.
+/// Tolerance, in samples, for times that are whole numbers of samples.
 constexpr double kRounding = 1e-6;
 
 double calc_last_time(const ShardSchema& schema) {
@@ -23,7 +25,7 @@ double calc_last_time(const ShardSchema& schema) {
 void require_histories(const ShardSchema& schema) {
   if (!schema.history.empty()) return;
   throw InputError(
-      "the data has no histories, which a window is cut from; record them with "
+      "the data have no histories, which a window needs; record them with "
       "[record] history = { rate = 500, channels = [...] } in the sweep file");
 }
 
@@ -35,7 +37,8 @@ WindowGrid make_window_grid(const ShardSchema& schema, const WindowChoice& choic
   const double interval = schema.history_interval;
   const Range reach = at_least(0.0, "s");
   if (!reach.contains(choice.reach)) {
-    throw InputError("--align = " + format_number(choice.reach) + ": " + reach.describe());
+    throw InputError(
+        fmt::format("--align = {}: {}", format_number(choice.reach), reach.describe()));
   }
   WindowGrid grid;
   grid.interval = interval;
@@ -46,18 +49,19 @@ WindowGrid make_window_grid(const ShardSchema& schema, const WindowChoice& choic
   const auto low = static_cast<double>(beyond);
   const double high =
       static_cast<double>(schema.history_samples) - 1.0 - static_cast<double>(beyond);
-  const std::string sides =
-      format_rounded(low * interval) + " s that aligning and hit times take on both sides";
+  const std::string sides = fmt::format("{} s that aligning and hit times need on each side",
+                                        format_rounded(low * interval));
   if (high <= low) {
-    throw InputError("--window, --align, --hit-time-sigma: the histories, " +
-                     format_rounded(calc_last_time(schema)) + " s, have no room between the " +
-                     sides);
+    throw InputError(fmt::format(
+        "--window, --align, --hit-time-sigma: the histories, {} s, have no room between the {}",
+        format_rounded(calc_last_time(schema)), sides));
   }
   if (!(first >= low && last <= high && last > first)) {
-    throw InputError("--window = " + format_rounded(choice.from) + ":" + format_rounded(choice.to) +
-                     ": must begin before it ends and lie in [" + format_rounded(low * interval) +
-                     ", " + format_rounded(high * interval) + "] s, the histories but for the " +
-                     sides);
+    throw InputError(fmt::format(
+        "--window = {}:{}: must begin before it ends and lie in [{}, {}] s, the histories without "
+        "the {}",
+        format_rounded(choice.from), format_rounded(choice.to), format_rounded(low * interval),
+        format_rounded(high * interval), sides));
   }
   grid.first = static_cast<std::int64_t>(first);
   grid.samples = static_cast<std::size_t>(last - first) + 1;
@@ -67,8 +71,8 @@ WindowGrid make_window_grid(const ShardSchema& schema, const WindowChoice& choic
 std::size_t count_spare(const ShardSchema& schema, const NoiseModel& noise) {
   require_histories(schema);
   if (noise.hit_time == 0.0) return 0;
-  const double most = NoiseModel::kMostDeviations * noise.hit_time / schema.history_interval;
-  return static_cast<std::size_t>(std::ceil(most)) + ShiftStencil::kBefore;
+  const double max = NoiseModel::kMaxDeviations * noise.hit_time / schema.history_interval;
+  return static_cast<std::size_t>(std::ceil(max)) + ShiftStencil::kBefore;
 }
 
 WindowRecords read_window_records(Dataset& dataset, const RowChoice& choice, const WindowGrid& grid,
@@ -86,7 +90,7 @@ WindowRecords read_window_records(Dataset& dataset, const RowChoice& choice, con
   records.rows = RowStore(channels.size() * samples + targets.size(), store);
   const auto begin = static_cast<std::size_t>(grid.first) - grid.margin() - spare;
   const auto append = [&](const ShardRows& piece, std::size_t i, std::vector<double>& row) {
-    STRUT_CHECK(!piece.history.empty(), "a dataset opened without its histories");
+    STRUT_CHECK(!piece.history.empty(), "a dataset was opened without its histories");
     for (const std::size_t c : channels) {
       const auto from = piece.history.at(c).begin() + static_cast<std::ptrdiff_t>(i * all + begin);
       row.insert(row.end(), from, from + static_cast<std::ptrdiff_t>(samples));
