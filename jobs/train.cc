@@ -257,7 +257,7 @@ Arguments describe_train() {
                        "curvature from N rows, others in each epoch, the gradient from all: for\n"
                        "data beyond 100,000 cases");
   arguments.add_option("seed", "S", "of the split and the start weights; default 1");
-  arguments.add_option("rule", ArgumentValue::one_of({"gain-ratio", "trainlm"}),
+  arguments.add_option("rule", ArgumentValue::one_of(kDampingRules),
                        "of the damping: gain-ratio (default), or MATLAB's");
   arguments.add_option("epochs", "N", "most steps; default 1000");
   arguments.add_option("max-failures", "N",

@@ -10,6 +10,7 @@
 #include "io/format/toml_document.h"
 #include "sweep/plan.h"
 #include "train/network/network.h"
+#include "train/train_network.h"
 
 namespace strut {
 namespace {
@@ -20,7 +21,6 @@ constexpr int kMostSeeds = 1000;
 constexpr double kWholeLimit = 9e15;  // whole numbers that a double counts
 constexpr double kLeastR2 = -1e6;     // worse than any fit that somebody published
 const std::vector<std::string> kPreloadNames = {"free_length", "trimmed"};
-const std::vector<std::string> kRules = {"gain-ratio", "trainlm"};  // DampingRule
 
 template <class T>
 void check_different(const Table& table, const std::string& key, std::vector<T> values) {
@@ -135,7 +135,7 @@ void read_main(const Table& table, StudyRequest& request) {
 
 void read_training(const Table& table, StudyRequest& request) {
   LevenbergMarquardtOptions& o = request.options;
-  o.rule = static_cast<DampingRule>(table.choice_or("rule", 0, kRules));
+  o.rule = static_cast<DampingRule>(table.choice_or("rule", 0, kDampingRules));
   o.epochs = static_cast<int>(table.integer_or("epochs", o.epochs, 1, kMostInt));
   o.max_failures = static_cast<int>(table.integer_or("max_failures", o.max_failures, 1, kMostInt));
   o.goal = table.number_or("goal", o.goal, at_least(0.0));

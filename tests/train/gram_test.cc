@@ -243,7 +243,8 @@ TEST_CASE("Instruction sets agree", "[unit]") {
   }
 }
 
-TEST_CASE("A sampled H is that of a window, scaled; the gradient is that of all rows", "[unit]") {
+TEST_CASE("A sampled H is that of a window, scaled, and the gradient is that of all rows",
+          "[unit]") {
   const NetworkShape shape({2, 5, 3});
   const Numbers weights = make_random_weights(shape, 18);
   MemorySource source = make_random_rows(shape, 250, 19);
