@@ -281,7 +281,7 @@ TEST_CASE("A test part is told only of the data that trained", "[io]") {
   CHECK(run_program("evaluate " + model).code == 2);
   const Outcome model_twice = run_program("evaluate " + model + " " + model);
   CHECK(model_twice.code == 2);
-  CHECK_THAT(model_twice.messages, Contains("a model of strut; must be"));
+  CHECK_THAT(model_twice.messages, Contains("a model file of strut; must be"));
   const Outcome turned = run_program("evaluate " + get_sweep().string() + " " + model);
   CHECK(turned.code == 2);
   CHECK_THAT(turned.messages, Contains("a folder; must be a regular file"));
