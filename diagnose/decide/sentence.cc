@@ -22,15 +22,14 @@ std::string format_percent_of(double fraction) {
 }
 
 /// "Adding it removes 97 % of the excess error on the held-out runs."
-std::string describe_improvement(const Diagnosis& diagnosis) {
-  const char* them = diagnosis.causes.size() > 1 ? "them" : "it";
+std::string describe_improvement(const Diagnosis& diagnosis, const std::string& added) {
   const std::optional<double>& explained = diagnosis.improvement.explained;
   // The readings of all channels together show what no channel shows alone.
   if (!explained) {
-    return fmt::format("Adding {} makes the held-out runs exp({}) times as likely.", them,
+    return fmt::format("Adding {} makes the held-out runs exp({}) times as likely.", added,
                        format_rounded(std::round(diagnosis.improvement.log_odds)));
   }
-  return fmt::format("Adding {} removes {} of the excess error on the held-out runs.", them,
+  return fmt::format("Adding {} removes {} of the excess error on the held-out runs.", added,
                      format_percent_of(*explained));
 }
 
@@ -57,23 +56,25 @@ std::string name_strut(const std::string& place) { return place.empty() ? "strut
 
 std::string write_sentence(const Diagnosis& diagnosis) {
   const std::string causes = join_causes(diagnosis.causes, " and ");
-  const char* head = diagnosis.causes.size() > 1 ? "Causes" : "Cause";
+  const bool are_several = diagnosis.causes.size() > 1;
+  const char* head = are_several ? "Causes" : "Cause";
+  const char* them = are_several ? "them" : "it";
   switch (diagnosis.kind) {
     case VerdictKind::kAdequate:
       return "The calibrated model is adequate: neither an effect of the catalogue nor anything "
              "else "
              "exceeds the noise.";
     case VerdictKind::kNamed:
-      return fmt::format("{}: {}. {}", head, causes, describe_improvement(diagnosis));
+      return fmt::format("{}: {}. {}", head, causes, describe_improvement(diagnosis, them));
     case VerdictKind::kGroup:
-      return fmt::format("Cause: one of {}, which these runs cannot distinguish. With {}: {}",
-                         join_causes(diagnosis.group, ", "), causes,
-                         describe_improvement(diagnosis));
+      return fmt::format("Cause: one of {}, which these runs cannot distinguish. {}",
+                         join_causes(diagnosis.group, ", "),
+                         describe_improvement(diagnosis, causes));
     case VerdictKind::kFormIncomplete:
       return fmt::format(
           "{}: {}, but the remaining residual exceeds noise: {}. {}", head, causes,
           describe_residual(diagnosis),
-          diagnosis.force ? describe_map(*diagnosis.force) : describe_improvement(diagnosis));
+          diagnosis.force ? describe_map(*diagnosis.force) : describe_improvement(diagnosis, them));
     case VerdictKind::kUnknown:
       break;
   }
@@ -84,7 +85,7 @@ std::string write_sentence(const Diagnosis& diagnosis) {
   }
   return causes.empty()
              ? unknown + "."
-             : fmt::format("{}{}. {}", unknown, nearest, describe_improvement(diagnosis));
+             : fmt::format("{}{}. {}", unknown, nearest, describe_improvement(diagnosis, them));
 }
 
 }  // namespace strut
