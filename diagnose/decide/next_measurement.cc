@@ -99,8 +99,7 @@ std::string propose_confirmation(const Selection& selection) {
   }
   if (selection.is_left) {
     return "repeat a run at half and at twice its amplitude, and once unchanged: this shows "
-           "whether "
-           "the unknown cause grows with the motion, stays constant, or disappears";
+           "whether the unknown cause grows with the motion, stays constant, or disappears";
   }
   return "none is needed for these runs; larger bumps or amplitudes would show effects that are "
          "hidden here";

@@ -62,8 +62,7 @@ std::string write_sentence(const Diagnosis& diagnosis) {
   switch (diagnosis.kind) {
     case VerdictKind::kAdequate:
       return "The calibrated model is adequate: neither an effect of the catalogue nor anything "
-             "else "
-             "exceeds the noise.";
+             "else exceeds the noise.";
     case VerdictKind::kNamed:
       return fmt::format("{}: {}. {}", head, causes, describe_improvement(diagnosis, them));
     case VerdictKind::kGroup:

@@ -76,8 +76,7 @@ std::vector<Chart> make_run_charts(const CampaignData& data, const RunComparison
         make_balance_chart(make_run_name(data, run.run) + "_balance", {{"", 1, &*run.balance}}));
     charts.back().caption =
         "Body balance without the road: the force on the sprung mass that the calibrated strut "
-        "does "
-        "not explain.";
+        "does not explain.";
   }
   return charts;
 }
