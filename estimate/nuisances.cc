@@ -16,8 +16,8 @@ void add_crossing(const std::vector<MeasuredRun>& runs, std::size_t r, const Nui
   const SensorNoise bias = sigmas.bias.empty() ? make_default_bias() : sigmas.bias;
   const int run = static_cast<int>(r);
   if (sigmas.hit_time > 0.0) list.push_back(make_hit_time(run, {0.0, sigmas.hit_time}));
-  if (sigmas.speed > 0.0 && !is_among(chosen, "speed")) {
-    list.push_back(make_parameter(runs, "speed", run));
+  if (sigmas.speed > 0.0 && !is_among(chosen, kSpeedName)) {
+    list.push_back(make_parameter(runs, kSpeedName, run));
     list.back().prior = {list.back().start, sigmas.speed};
   }
   for (const MeasuredChannel& c : runs[r].channels) {

@@ -7,6 +7,9 @@
 
 namespace strut {
 
+/// The parameter that is a nuisance of each run on a road.
+inline constexpr char kSpeedName[] = "speed";
+
 /// Prior standard deviations of the nuisances of a crossing of a road; 0: known.
 struct NuisanceSigmas {
   double hit_time = 0.005;  // s, a trigger at one frame of a 100 Hz bus

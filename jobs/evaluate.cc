@@ -1,29 +1,28 @@
 #include "jobs/evaluate.h"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 
 #include "base/text/nearest_name.h"
+#include "identify/history.h"
 #include "io/store/shard_layout.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
-#include "jobs/cli/standard_output.h"
 #include "jobs/cli/unsealed.h"
 
 namespace strut {
+
 Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation) {
   Json parameters = Json::object();
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
-    const Metrics& m = evaluation.metrics[i];
     Json values = Json::object();
-    values["ME"] = m.largest_error;
-    values["MAE"] = m.mean_absolute_error;
-    values["MAPE"] = m.mean_absolute_percentage;
-    values["RMSE"] = m.rms_error;
-    values["R2"] = m.r2;
+    for (const MetricInfo& metric : kMetrics) {
+      values[metric.name] = evaluation.metrics[i].*metric.value;
+    }
     parameters[model.targets[i].name] = values;
   }
   Json json = Json::object();
@@ -34,17 +33,19 @@ Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation) {
 }
 
 void print_table(const TrainedModel& model, const ModelEvaluation& evaluation) {
-  print_format("%-24s%-8s%12s%12s%12s%12s%12s\n", "parameter", "unit", "ME", "MAE", "MAPE %",
-               "RMSE", "1 - R2");
+  std::cout << fmt::format("{:<24}{:<8}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "parameter", "unit", "ME",
+                           "MAE", "MAPE %", "RMSE", "1 - R2");
   for (std::size_t i = 0; i < evaluation.metrics.size(); ++i) {
     const Metrics& m = evaluation.metrics[i];
-    print_format("%-24s%-8s%12.4g%12.4g%12.4g%12.4g%12.4g\n", model.targets[i].name.c_str(),
-                 model.targets[i].unit.c_str(), m.largest_error, m.mean_absolute_error,
-                 m.mean_absolute_percentage, m.rms_error, 1.0 - m.r2);
+    std::cout << fmt::format("{:<24}{:<8}{:12.4g}{:12.4g}{:12.4g}{:12.4g}{:12.4g}\n",
+                             model.targets[i].name, model.targets[i].unit, m.largest_error,
+                             m.mean_absolute_error, m.mean_absolute_percentage, m.rms_error,
+                             1.0 - m.r2);
   }
   if (evaluation.out_of_range > 0) {
-    print_note(format_count(evaluation.out_of_range) + " of " + format_count(evaluation.samples) +
-               " cases have inputs outside of the range trained on");
+    print_note(fmt::format("{} of {} cases have inputs outside of the range trained on",
+                           format_count(evaluation.out_of_range),
+                           format_count(evaluation.samples)));
   }
 }
 
@@ -52,7 +53,7 @@ void suggest_next_identify(const std::string& file, const TrainedModel& model) {
   std::vector<std::string> columns = list_names(model.inputs);
   if (model.window) {
     columns = list_names(model.window->channels);
-    columns.insert(columns.begin(), "time");
+    columns.insert(columns.begin(), kTimeColumn);
   }
   suggest_next({"strut", "identify", file, "MEASURED.csv"},
                "a table with columns " + join_names(columns));
@@ -61,17 +62,17 @@ void suggest_next_identify(const std::string& file, const TrainedModel& model) {
 Arguments describe_evaluate() {
   Arguments arguments(
       "strut evaluate MODEL DATA... [OPTIONS]",
-      "Lets the network in MODEL identify the parameters of the cases in DATA (a sweep folder,\n"
-      "shards of one sweep, or a merged file) and compares them with the true ones: largest error\n"
+      "Identifies the parameters of the cases in DATA (a sweep folder, shards of one sweep, or a\n"
+      "merged file) by the network in MODEL and compares them with the true values: largest error\n"
       "ME, mean absolute error MAE, mean absolute percentage error MAPE, root mean square error\n"
       "RMSE, coefficient of determination R2.",
       "  strut evaluate model.h5 cars\n  strut evaluate model.h5 other_sweep --part all --json");
   arguments.add_operand(ArgumentValue::file("MODEL", {"h5"}));
   arguments.add_operands(ArgumentValue::path("DATA", {"h5", "hdf5"}));
   arguments.add_option("part", ArgumentValue::one_of({"test", "all"}),
-                       "test: the cases that training left aside, of the data it had; all: every\n"
-                       "case. By itself test where DATA is of the plan trained on, else all");
-  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
+                       "test: the test cases of the training data; all: every case. Default: test\n"
+                       "where DATA belongs to the plan trained on, else all");
+  arguments.add_switch("partial", "accept a sweep folder with missing shards");
   arguments.add_switch("json", "print JSON");
   return arguments;
 }
@@ -80,7 +81,7 @@ int run_evaluate(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() < 2)
     throw arguments.usage_error(
-        "expected MODEL, of strut train, and DATA, a sweep folder, shards or a merged file");
+        "expected MODEL, a file of strut train, and DATA, a sweep folder, shards or a merged file");
   const TrainedModel model = load_model(names.front());
   DatasetOptions options;
   options.partial = arguments.is_on("partial");

@@ -1,4 +1,4 @@
-// strut evaluate: how well a trained network identifies the parameters of a sweep's cases.
+// strut evaluate: errors of a trained network on the cases of a sweep.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ int run_evaluate(const Arguments& arguments);
 /// {"parameters": {"front_stiffness": {"ME":, "MAE":, "MAPE":, "RMSE":, "R2":}, ...}, "samples":}
 Json make_json(const TrainedModel& model, const ModelEvaluation& evaluation);
 
-/// The same as a table for people.
+/// Prints the same as a table, and a note about inputs out of range.
 void print_table(const TrainedModel& model, const ModelEvaluation& evaluation);
 
 /// Names `strut identify` as what comes after a model in `file`, and what it takes.

@@ -1,14 +1,16 @@
 #include "jobs/export.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 
-#include "base/text/build_info.h"
 #include "io/file/atomic_file.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
+#include "jobs/cli/provenance.h"
 #include "jobs/cli/unsealed.h"
 #include "train/export/header.h"
 #include "train/export/onnx.h"
@@ -26,14 +28,15 @@ ExportFormat find_format(const fs::path& output) {
   if (extension == ".onnx") return ExportFormat::kOnnx;
   if (extension == ".h") return ExportFormat::kHeader;
   if (extension == ".c") return ExportFormat::kSource;
-  throw InputError("--output = " + output.string() + ": the name must end in .onnx, .h or .c");
+  throw InputError(
+      fmt::format("--output = {}: the name must end in .onnx, .h or .c", output.string()));
 }
 
 std::string find_name(const Arguments& arguments, const fs::path& output) {
   if (!arguments.has("name")) return make_c_name(output.stem().string());
   std::string name = arguments.text("name");
   if (name.empty() || name != make_c_name(name)) {
-    throw InputError("--name = " + name + ": must be letters of ASCII, digits and _");
+    throw InputError(fmt::format("--name = {}: must be ASCII letters, digits and _", name));
   }
   return name;
 }
@@ -46,8 +49,7 @@ std::string make_text(const Arguments& arguments, const TrainedModel& model,
   if (!is_onnx && arguments.is_on("float")) throw arguments.usage_error("--float: only for .onnx");
   if (is_onnx) {
     const OnnxNumber number = arguments.is_on("float") ? OnnxNumber::kFloat : OnnxNumber::kDouble;
-    const BuildInfo& build = get_build_info();
-    return make_onnx(model, number, {{"strut_version", build.version}, {"commit", build.commit}});
+    return make_onnx(model, number, make_provenance());
   }
   const auto kind = format == ExportFormat::kHeader ? SourceKind::kHeader : SourceKind::kSource;
   return make_c_source(model, find_name(arguments, output), kind);
@@ -59,10 +61,11 @@ void suggest_next_step(const Arguments& arguments, const fs::path& output) {
   if (find_format(output) == ExportFormat::kOnnx) {
     suggest_next(
         {"python3", "-c", "import onnx, sys; print(onnx.load(sys.argv[1]).graph.input)", file},
-        "its input; onnxruntime and others run it");
+        "its inputs; onnxruntime and others run it");
     return;
   }
-  const std::string call = "then call strut_identify_" + find_name(arguments, output) + "(in, out)";
+  const std::string call =
+      fmt::format("then call strut_identify_{}(in, out)", find_name(arguments, output));
   if (find_format(output) == ExportFormat::kHeader) {
     suggest_next({"cc", "-x", "c", "-fsyntax-only", file}, "#include it, " + call);
   } else {
@@ -84,7 +87,7 @@ Arguments describe_export() {
                        "file to write; its name ends in .onnx, .h or .c");
   arguments.add_option("name", "NAME",
                        "C: of the function strut_identify_NAME; default: the file's name");
-  arguments.add_switch("float", "ONNX: single precision, for runtimes that know no other");
+  arguments.add_switch("float", "ONNX: single precision, for runtimes without double");
   arguments.add_switch("force", "replace FILE where it exists");
   return arguments;
 }
@@ -95,11 +98,10 @@ int run_export(const Arguments& arguments) {
   const fs::path output = find_output_file(arguments, names);
   const TrainedModel model = load_model(names.front());
   if (model.window) {
-    throw InputError(names.front() +
-                     ": a network over windows of time histories: its inputs are no channels but "
-                     "what is left of a window, so that it cannot be exported alone; `strut train` "
-                     "without --window "
-                     "makes one that can");
+    throw InputError(fmt::format(
+        "{}: a network over windows: its inputs are not channels but components of an aligned "
+        "window, so it cannot be exported; train one without --window",
+        names.front()));
   }
   write_text_file(output, make_text(arguments, model, output));
   std::cout << output.string() << "\n";

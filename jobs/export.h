@@ -1,4 +1,4 @@
-// strut export: a trained network for other programs.
+// strut export: a trained network as a file for other programs.
 #pragma once
 
 #include "jobs/cli/arguments.h"

@@ -12,17 +12,14 @@
 #include "train/model/model_file.h"
 
 namespace strut {
-namespace {
 
 namespace fs = std::filesystem;
-
-}  // namespace
 
 Arguments describe_identify() {
   Arguments arguments(
       "strut identify MODEL MEASURED... [OPTIONS]\n"
       "       strut identify VEHICLE.toml MEASURED... --maneuver MANEUVER.toml [OPTIONS]",
-      "Tells the parameters of a car from what was measured, each with its interval of 95 %.\n"
+      "Identifies the parameters of a car from measured data, each with its 95 % interval.\n"
       "  snapshot  MODEL is a network of `strut train`, MEASURED tables (CSV or HDF5) with a\n"
       "            column for each of its inputs, one snapshot a row.\n"
       "  window    MODEL is one of `strut train --window`, MEASURED histories with a column "
@@ -30,8 +27,9 @@ Arguments describe_identify() {
       "            and one for each of its channels.\n"
       "  fit       The simulation of VEHICLE is fitted to histories with a column `time` [s] from\n"
       "            the start of the maneuver, and the --channels.\n"
-      "Outside of the range that a network was trained on there is no value but `-`. The exit\n"
-      "code is 1 there, and where a fit has not converged, leaves a parameter open or at a bound.",
+      "Outside of the range that a network was trained on the value is `-`. The exit code is then\n"
+      "1, as it is where a fit has not converged, or leaves a parameter undetermined or at a "
+      "bound.",
       "  strut identify model.h5 measured.csv\n"
       "  strut identify model.h5 drive.csv --event-time 0.632 --noise pitch_angle=2e-4 --json\n"
       "  strut identify model.h5 --set body_position_z=0.55 --set body_velocity_z=0.02 \\\n"
@@ -49,7 +47,7 @@ int run_identify(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.empty())
     throw arguments.usage_error(
-        "MODEL: missing; `strut train` makes one, or name a VEHICLE.toml to be fitted");
+        "MODEL: missing; name a model of `strut train`, or a VEHICLE.toml to fit");
   const std::vector<fs::path> files(names.begin() + 1, names.end());
   if (fs::path(names.front()).extension() == ".toml") {
     return identify_by_fit(arguments, names.front(), files);

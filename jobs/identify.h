@@ -1,4 +1,4 @@
-// strut identify: parameters from measurements.
+// strut identify: parameters from measured data.
 #pragma once
 
 #include "jobs/cli/arguments.h"

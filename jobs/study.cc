@@ -1,8 +1,9 @@
 #include "jobs/study.h"
 
+#include <fmt/format.h>
+
 #include <iostream>
 
-#include "base/text/build_info.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/machine.h"
@@ -10,19 +11,21 @@
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
+#include "jobs/cli/provenance.h"
 #include "jobs/run.h"
-#include "jobs/study/noise_limits.h"
 #include "jobs/study/noise_report.h"
 #include "jobs/study/report.h"
 #include "jobs/study/tables.h"
-#include "jobs/study/trainings.h"
+#include "study/noise/limits.h"
+#include "study/result_files.h"
+#include "study/trainings.h"
 #include "sweep/run.h"
 #include "train/training_table.h"
 
 namespace strut {
 namespace {
 
-/// Simulates what a sweep lacks; false where a signal came.
+/// Simulates the missing cases of a sweep; false where a signal came.
 bool run_study_sweep(const SweepFolder& folder, const Plan& plan, int threads,
                      std::atomic<bool>& halt) {
   const std::string name = folder.root.filename().string();
@@ -44,33 +47,33 @@ bool run_study_sweep(const SweepFolder& folder, const Plan& plan, int threads,
   }
   print_notes(summary.notes);
   for (const auto& [shard, what] : summary.damaged) {
-    throw InputError(what + "; `strut verify " + folder.root.string() +
-                     " --quarantine` moves it aside, then run this again");
+    throw InputError(fmt::format(
+        "{}; move it aside by `strut verify {} --quarantine`, then run this command again", what,
+        folder.root.string()));
   }
   if (summary.failed > 0) {
-    print_note(name + ": " + format_count(summary.failed) + " cases failed and are left out");
+    print_note(
+        fmt::format("{}: {} cases failed and are left out", name, format_count(summary.failed)));
   }
   return !halt;
 }
 
 std::string describe_progress(const TrainingTableProgress& progress, double start) {
   const std::size_t done = progress.trained + progress.kept;
-  std::string line = format_count(static_cast<std::int64_t>(done)) + "/" +
-                     format_count(static_cast<std::int64_t>(progress.total)) + " trainings";
+  std::string line = fmt::format("{}/{} trainings", format_count(static_cast<std::int64_t>(done)),
+                                 format_count(static_cast<std::int64_t>(progress.total)));
   if (progress.work_done > 0.0) {
     const double left = progress.work / progress.work_done - 1.0;
-    line += ", about " + format_duration(left * (now() - start)) + " to go";
+    line += fmt::format(", about {} to go", format_duration(left * (now() - start)));
   }
   return line;
 }
 
-/// Trains what is missing; false where a signal came.
+/// Trains the missing networks; false where a signal came.
 bool train_all(const StudyFolder& folder, const StudyRequest& request, int threads,
                std::atomic<bool>& halt) {
   const std::vector<TableTraining> trainings = list_study_trainings(folder, request);
-  const BuildInfo& build = get_build_info();
-  const TrainingTableOptions options{
-      folder.models(), threads, {{"strut_version", build.version}, {"commit", build.commit}}};
+  const TrainingTableOptions options{folder.models(), threads, make_provenance()};
   TrainingTableProgress progress;
   TrainingTableSummary summary;
   const double start = now();
@@ -79,19 +82,17 @@ bool train_all(const StudyFolder& folder, const StudyRequest& request, int threa
     summary = run_training_table(trainings, options, progress, halt);
   }
   print_notes(summary.notes);
-  print_note(std::to_string(summary.trained) + " networks trained in " +
-             format_duration(now() - start) + ", " + std::to_string(summary.kept) +
-             " were there already");
+  print_note(fmt::format("{} networks trained in {}, {} were there already", summary.trained,
+                         format_duration(now() - start), summary.kept));
   return !summary.stopped;
 }
 
-/// Bounds and fits of the noise section; false where a signal came.
+/// Computes the missing bounds and fits of the noise section; false where a signal came.
 bool fit_all(const StudyFolder& folder, const StudyRequest& request, int threads,
              std::atomic<bool>& halt) {
   const NoiseStudyData data = open_noise_data(folder, request);
   NoiseLimitsProgress progress;
-  std::vector<std::string> notes;
-  bool whole = false;
+  NoiseLimitsSummary summary;
   {
     const Stage stage("noise");
     const ProgressLine line([&, start = now()] {
@@ -99,11 +100,10 @@ bool fit_all(const StudyFolder& folder, const StudyRequest& request, int threads
                                          static_cast<std::int64_t>(progress.total),
                                          "bounds and fits", now() - start);
     });
-    whole =
-        update_noise_limits(*request.noise, data, folder.noise(), threads, progress, notes, halt);
+    summary = update_noise_limits(*request.noise, data, {folder.noise(), threads}, progress, halt);
   }
-  print_notes(notes);
-  return whole;
+  print_notes(summary.notes);
+  return !summary.stopped;
 }
 
 bool simulate_all(const StudyFolder& folder, const StudyRequest& request, int threads,
@@ -117,8 +117,9 @@ bool simulate_all(const StudyFolder& folder, const StudyRequest& request, int th
   return run_study_sweep(get_window_sweep(folder, request), plan, threads, halt);
 }
 
-bool work(const StudyFolder& folder, const StudyRequest& request, int threads,
-          std::atomic<bool>& halt) {
+/// Does everything that the folder lacks; false where a signal came.
+bool complete(const StudyFolder& folder, const StudyRequest& request, int threads,
+              std::atomic<bool>& halt) {
   return simulate_all(folder, request, threads, halt) &&
          train_all(folder, request, threads, halt) &&
          (!request.noise || fit_all(folder, request, threads, halt));
@@ -136,8 +137,10 @@ void print_tables(const StudyRequest& request, const StudyResults& results) {
       std::cout << make_text(table) << "\n";
     }
   }
-  for (const StudySummary& s : summarize(request, results)) std::cout << make_line(s) << "\n";
-  if (results.noise) std::cout << make_noise_line(*results.noise) << "\n";
+  for (const StudySummary& s : summarize(request, results)) {
+    std::cout << describe_summary(s) << "\n";
+  }
+  if (results.noise) std::cout << describe_noise_result(*results.noise) << "\n";
 }
 
 }  // namespace
@@ -148,8 +151,8 @@ Arguments describe_study() {
       "Simulates, trains and evaluates a table of networks: cases with each preload, numbers of\n"
       "cases, networks, inputs and seeds (every key: docs/studies.md). Prints the errors beside\n"
       "published ones and writes DIR/report.html, results.json, tables.csv, figures, models and\n"
-      "sweeps; with a [noise] section also what sensor noise does to it. Running it again does\n"
-      "only what is missing; Ctrl-C stops it cleanly.",
+      "sweeps; a [noise] section adds the errors with sensor noise and their limits. Running it\n"
+      "again completes what is missing; Ctrl-C stops it cleanly.",
       "  strut study examples/studies/paper_quick.toml -o study\n"
       "  strut study examples/studies/paper.toml -o study --threads 2");
   arguments.add_operand(ArgumentValue::file("STUDY.toml", {"toml"}));
@@ -163,20 +166,20 @@ Arguments describe_study() {
 int run_study(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
-    throw arguments.usage_error(std::to_string(names.size()) + " files; expected STUDY.toml");
+    throw arguments.usage_error(fmt::format("{} files; expected one STUDY.toml", names.size()));
   }
   if (!arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
   check_output_folder("output", arguments.text("output"));
   const StudyRequest asked = read_study(names.front());
   const int threads = find_threads(arguments);
-  prepare_interrupt(arguments, "goes on");
+  prepare_interrupt(arguments, "continues");
   InterruptWatcher watcher;
   const StudyFolder folder = make_study_folder(arguments.text("output"), asked);
   const StudyRequest request = open_study_folder(folder);
-  if (!work(folder, request, threads, watcher.halt())) {
-    print_error("interrupted; what is simulated and trained is kept, the same command goes on");
-    suggest_again(arguments, "goes on");
+  if (!complete(folder, request, threads, watcher.halt())) {
+    print_error("interrupted; simulations and trainings are kept, the same command continues");
+    suggest_again(arguments, "continues");
     return 128 + watcher.signal();
   }
   const StudyResults results = [&] {

@@ -1,14 +1,14 @@
 #include "jobs/train.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <mutex>
 
-#include "base/text/build_info.h"
 #include "base/text/parse_number.h"
 #include "base/text/range.h"
 #include "jobs/cli/arguments.h"
@@ -20,6 +20,7 @@
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
+#include "jobs/cli/provenance.h"
 #include "jobs/cli/unsealed.h"
 #include "jobs/evaluate.h"
 #include "jobs/train/train_noise.h"
@@ -30,10 +31,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostInt = std::numeric_limits<int>::max();
-constexpr std::int64_t kMostInt64 = std::numeric_limits<std::int64_t>::max();
-/// Epochs between two checkpoints.
-constexpr int kCheckpointEpochs = 25;
+constexpr int kMaxInt = std::numeric_limits<int>::max();
+constexpr std::int64_t kMaxInt64 = std::numeric_limits<std::int64_t>::max();
+constexpr int kCheckpointEpochs = 25;  // between two checkpoints
 
 std::vector<int> read_hidden(const Arguments& arguments) {
   const std::string text = arguments.text("hidden");
@@ -41,8 +41,8 @@ std::vector<int> read_hidden(const Arguments& arguments) {
   for (const std::string& part : split_list(text)) {
     const auto size = parse_number<int>(part);
     if (!size || *size < 1 || *size > NetworkShape::kLargestSize) {
-      throw InputError("--hidden = " + text + ": must be whole numbers in [1, " +
-                       std::to_string(NetworkShape::kLargestSize) + "], as 27,19,11");
+      throw InputError(fmt::format("--hidden = {}: must be whole numbers in [1, {}], as 27,19,11",
+                                   text, int{NetworkShape::kLargestSize}));
     }
     sizes.push_back(*size);
   }
@@ -50,11 +50,10 @@ std::vector<int> read_hidden(const Arguments& arguments) {
 }
 
 void read_limits(const Arguments& arguments, LevenbergMarquardtOptions& options) {
-  options.rule =
-      arguments.choice_or("rule", 0) == 0 ? DampingRule::kGainRatio : DampingRule::kTrainlm;
-  options.epochs = static_cast<int>(arguments.integer_or("epochs", options.epochs, 0, kMostInt));
+  options.rule = static_cast<DampingRule>(arguments.choice_or("rule", 0));
+  options.epochs = static_cast<int>(arguments.integer_or("epochs", options.epochs, 0, kMaxInt));
   options.max_failures =
-      static_cast<int>(arguments.integer_or("max-failures", options.max_failures, 1, kMostInt));
+      static_cast<int>(arguments.integer_or("max-failures", options.max_failures, 1, kMaxInt));
   options.goal = arguments.number_or("goal", options.goal, at_least(0.0));
   options.min_gradient = arguments.number_or("min-gradient", options.min_gradient, at_least(0.0));
   options.first_damping = arguments.number_or("damping", options.first_damping, above(0.0));
@@ -70,8 +69,8 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
   if (arguments.has("inputs")) request.rows.inputs = split_list(arguments.text("inputs"));
   if (arguments.has("targets")) request.rows.targets = split_list(arguments.text("targets"));
   if (arguments.has("hidden")) request.hidden = read_hidden(arguments);
-  request.rows.samples = arguments.integer_or("samples", 0, 1, kMostInt64);
-  request.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMostInt64));
+  request.rows.samples = arguments.integer_or("samples", 0, 1, kMaxInt64);
+  request.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMaxInt64));
   request.split.seed = request.seed;
   request.allow_few = arguments.is_on("allow-few");
   read_limits(arguments, request.options);
@@ -80,14 +79,15 @@ TrainingRequest read_request(const Arguments& arguments, const fs::path& output)
   request.problem.batch_rows =
       static_cast<std::size_t>(arguments.integer_or("batch", 4096, 1, 10'000'000));
   request.problem.gram_rows =
-      static_cast<std::size_t>(arguments.integer_or("gram-rows", 0, 1, kMostInt64));
-  // Where the model goes there is room; the system's folder for such files may be memory.
+      static_cast<std::size_t>(arguments.integer_or("gram-rows", 0, 1, kMaxInt64));
+  // The folder of the model is on a disk; the system's folder for temporary files may be in memory.
   request.store.scratch = fs::absolute(output).parent_path();
   return request;
 }
 
-/// Where the training's state is kept; empty: nowhere. A file that is there is replaced only by the
-/// training that goes on from it, or with --force; never is it one of `data`, or the model.
+/// The file of the training's state; empty without --checkpoint. An existing file is replaced only
+/// with --resume, which continues from it, or with --force. Throws InputError where it is one of
+/// `data`, or the model.
 fs::path find_checkpoint(const Arguments& arguments, const std::vector<fs::path>& data,
                          const fs::path& output) {
   if (!arguments.has("checkpoint")) {
@@ -96,16 +96,16 @@ fs::path find_checkpoint(const Arguments& arguments, const std::vector<fs::path>
   }
   fs::path checkpoint = arguments.text("checkpoint");
   if (fs::weakly_canonical(checkpoint) == fs::weakly_canonical(output)) {
-    throw InputError("--checkpoint = " + checkpoint.string() +
-                     ": is the model of --output; must be another file");
+    throw InputError(fmt::format(
+        "--checkpoint = {}: is the model of --output; must be another file", checkpoint.string()));
   }
   check_output_file("checkpoint", checkpoint, data,
                     arguments.is_on("resume") || arguments.is_on("force"),
-                    "--resume goes on from it, --force replaces it");
+                    "--resume continues from it, --force replaces it");
   return checkpoint;
 }
 
-/// The line of progress, shared with the thread that prints it.
+/// The progress of a training, shared with the thread that prints it.
 class Progress {
  public:
   explicit Progress(const LevenbergMarquardtOptions& options) : options_(options) {}
@@ -117,17 +117,17 @@ class Progress {
   }
   std::string line() const {
     const std::scoped_lock lock(mutex_);
-    if (rows_ == 0) return "first epoch, " + format_duration(now() - start_);
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "epoch %d of at most %d, loss %.3g, validation %.3g, damping %.1g", record_.epoch,
-                  options_.epochs, record_.loss, record_.validation, record_.damping);
-    return text + (", " + format_count(static_cast<std::int64_t>(rows_))) + " rows, at most " +
-           format_duration(calc_seconds_left()) + " to go";
+    if (rows_ == 0) return fmt::format("first epoch, {}", format_duration(now() - start_));
+    return fmt::format(
+        "epoch {} of at most {}, loss {:.3g}, validation {:.3g}, damping {:.1g}, {} rows, at most "
+        "{} "
+        "to go",
+        record_.epoch, options_.epochs, record_.loss, record_.validation, record_.damping,
+        format_count(static_cast<std::int64_t>(rows_)), format_duration(calc_seconds_left()));
   }
 
  private:
-  /// To the last epoch, or to the limit of time.
+  /// Time to the last epoch or to the time limit, whichever comes first.
   double calc_seconds_left() const {
     const double spent = now() - start_;
     const double done = record_.epoch - first_ + 1, left = options_.epochs - record_.epoch;
@@ -137,30 +137,30 @@ class Progress {
   const LevenbergMarquardtOptions options_;
   const double start_ = now();
   mutable std::mutex mutex_;
-  int first_ = 0;  // epoch that was seen first: not 1 after a resume
+  int first_ = 0;  // first epoch of this run: not 1 after a resume
   EpochRecord record_;
   std::size_t rows_ = 0;
 };
 
-/// Steps until the training stops; false where a signal came first.
+/// Trains until the training stops; false where a signal came first.
 bool train(Training& training, const LevenbergMarquardtOptions& options, const fs::path& checkpoint,
            const std::atomic<bool>& halt) {
   const auto keep = [&] {
     if (!checkpoint.empty()) write_checkpoint(checkpoint, training.make_checkpoint());
   };
-  keep();  // a place where it cannot be is told before the work, not after it
+  keep();  // reports a file that cannot be written before the work, not after it
   Progress progress(options);
-  bool goes_on = true;
+  bool running = true;
   {
     const ProgressLine line([&] { return progress.line(); });
-    while (goes_on && !halt) {
-      goes_on = training.step();
+    while (running && !halt) {
+      running = training.step();
       progress.set(training.record().back(), training.rows());
       if (training.state().epoch % kCheckpointEpochs == 0) keep();
     }
   }
   keep();
-  return !goes_on;
+  return !running;
 }
 
 /// Noisy copies of each case; 1 where there is no noise.
@@ -193,36 +193,32 @@ void print(const Training& training, const TrainedModel& model, const fs::path& 
     std::cout << format_json(json) << "\n";
     return;
   }
-  std::cout << format_count(count_cases(data.train)) << " cases trained, "
-            << format_count(count_cases(data.validate)) << " validated, "
-            << format_count(count_cases(data.test)) << " tested"
-            << (copies > 1 ? ", each with " + std::to_string(copies) + " draws of noise" : "")
-            << "; " << format_count(data.skipped) << " failed ones left out; "
-            << model.weights.size() << " weights\n"
-            << summary.make_line() << "\n\nerrors of the test part\n";
+  std::cout << fmt::format(
+      "{} cases trained, {} validated, {} tested{}; {} failed ones left out; {} weights\n{}\n\n"
+      "errors of the test cases\n",
+      format_count(count_cases(data.train)), format_count(count_cases(data.validate)),
+      format_count(count_cases(data.test)),
+      copies > 1 ? fmt::format(", each with {} draws of noise", copies) : "",
+      format_count(data.skipped), model.weights.size(), summary.make_line());
   print_table(model, test);
   std::cout << "\n" << output.string() << "\n";
 }
 
 std::string describe(const TrainingRequest& request) {
-  std::string text = "layers";
-  for (const int size : request.hidden) text += " " + std::to_string(size);
-  text += ", inputs";
-  for (const std::string& input : request.rows.inputs) text += " " + input;
-  return text + ", seed " + std::to_string(request.seed) + ", " +
-         std::to_string(request.options.threads) + " threads";
+  return fmt::format("layers {}, inputs {}, seed {}, {} threads", fmt::join(request.hidden, " "),
+                     fmt::join(request.rows.inputs, " "), request.seed, request.options.threads);
 }
 
-void tell_interrupted(const Arguments& arguments, const fs::path& checkpoint) {
+void report_interruption(const Arguments& arguments, const fs::path& checkpoint) {
   if (checkpoint.empty()) {
     print_error("interrupted; no model is written");
-    suggest_again(arguments, "keeps what is trained from now on",
+    suggest_again(arguments, "keeps the state of the training",
                   {"--checkpoint", "training.checkpoint"});
     return;
   }
-  print_error("interrupted; no model is written, --resume goes on from the checkpoint");
+  print_error("interrupted; no model is written, --resume continues from the checkpoint");
   const bool resumes = arguments.is_on("resume");
-  suggest_again(arguments, "goes on",
+  suggest_again(arguments, "continues",
                 resumes ? std::vector<std::string>() : std::vector<std::string>{"--resume"});
 }
 
@@ -231,8 +227,8 @@ void tell_interrupted(const Arguments& arguments, const fs::path& checkpoint) {
 Arguments describe_train() {
   Arguments arguments(
       "strut train DATA... -o model.h5 [OPTIONS]",
-      "Trains a network that tells the parameters of a case from its snapshot, or from a window\n"
-      "of its histories, by Levenberg-Marquardt, and judges it by cases that training never saw.\n"
+      "Trains a network that identifies the parameters of a case from its snapshot, or from a\n"
+      "window of its histories, by Levenberg-Marquardt, and tests it on held-out cases.\n"
       "DATA is a sweep folder, shards of one sweep, or a merged file. 70 % of the cases train,\n"
       "15 % validate, 15 % test. The result does not depend on --threads or --batch, nor on how\n"
       "the cases are stored.",
@@ -250,29 +246,30 @@ Arguments describe_train() {
   add_noise_options(arguments);
   arguments.add_option("samples", "N", "use the first N cases; the run order is random");
   arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
-  arguments.add_switch("growing",
-                       "start on few cases and take more, at last all, as soon as a step's gain\n"
-                       "is no longer told from chance: for data beyond some 10,000 cases");
+  arguments.add_switch(
+      "growing",
+      "start on few cases and add more, finally all, whenever the decrease of the\n"
+      "loss is within chance: for more than about 10,000 cases");
   arguments.add_option("gram-rows", "N",
-                       "curvature from N rows, others in each epoch, the gradient from all: for\n"
-                       "data beyond 100,000 cases");
-  arguments.add_option("seed", "S", "of the split and the start weights; default 1");
+                       "curvature from N rows, different ones in each epoch, gradient from all:\n"
+                       "for more than 100,000 cases");
+  arguments.add_option("seed", "S", "seed of the split and of the start weights; default 1");
   arguments.add_option("rule", ArgumentValue::one_of(kDampingRules),
-                       "of the damping: gain-ratio (default), or MATLAB's");
-  arguments.add_option("epochs", "N", "most steps; default 1000");
+                       "damping rule: gain-ratio (default), or MATLAB's trainlm");
+  arguments.add_option("epochs", "N", "max epochs; default 1000");
   arguments.add_option("max-failures", "N",
                        "stop N epochs after the validation minimum; default 6");
   arguments.add_option("goal", "MSE", "stop at this loss of normalized values; default 0");
   arguments.add_option("min-gradient", "G", "stop at this length of its gradient; default 1e-7");
-  arguments.add_option("damping", "MU", "first damping; by itself the rule's, docs/training.md");
+  arguments.add_option("damping", "MU", "first damping; default: the rule's, docs/training.md");
   arguments.add_option("max-damping", "MU", "stop beyond this damping; default 1e10");
-  arguments.add_option("max-time", "S", "stop after so many seconds; by itself never");
-  arguments.add_option("threads", "N", "default: all processors");
+  arguments.add_option("max-time", "S", "stop after S seconds; default: never");
+  arguments.add_option("threads", "N", "number of threads; default: all processors");
   arguments.add_option("checkpoint", ArgumentValue::file("FILE"),
-                       "keep the training's state there");
-  arguments.add_switch("resume", "go on from that file, to the same bits");
+                       "file that keeps the state of the training");
+  arguments.add_switch("resume", "continue from that file; the result is the same bit for bit");
   arguments.add_switch("allow-few", "train with fewer equations than weights");
-  arguments.add_switch("partial", "take a sweep folder that lacks shards as it is");
+  arguments.add_switch("partial", "accept a sweep folder with missing shards");
   arguments.add_switch("force", "replace FILE where it exists");
   arguments.add_switch("json", "print JSON");
   return arguments;
@@ -303,12 +300,11 @@ int run_train(const Arguments& arguments) {
   }
   print_detail(describe(request));
   if (!train(training, request.options, checkpoint, watcher.halt())) {
-    tell_interrupted(arguments, checkpoint);
+    report_interruption(arguments, checkpoint);
     return 128 + watcher.signal();
   }
   TrainedModel model = training.make_model();
-  const BuildInfo& build = get_build_info();
-  model.provenance = {{"strut_version", build.version}, {"commit", build.commit}};
+  model.provenance = make_provenance();
   write_trained_model(output, model);
   print(training, model, output, arguments.is_on("json"));
   suggest_next_identify(output.string(), model);

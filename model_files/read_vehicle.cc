@@ -25,7 +25,6 @@ std::vector<std::string> list_types() {
 }
 const std::vector<std::string> kSuspensions = {"macpherson", "multilink"};  // SuspensionKind
 const std::vector<std::string> kContacts = {"envelope", "point"};           // ContactKind
-const std::vector<std::string> kPreloads = {"free_length", "trimmed"};      // PreloadKind
 constexpr std::size_t kMultilinkRods = 5;
 
 const Range kPlace = between(-5.0, 5.0, "m");
@@ -234,7 +233,7 @@ void read_tire_contact(const Table& table, VehicleSpec& vehicle) {
 
 void read_options(const Table& root, VehicleSpec& vehicle) {
   if (const auto spring = root.find_table("spring")) {
-    vehicle.preload = static_cast<PreloadKind>(spring->choice_or("preload", 0, kPreloads));
+    vehicle.preload = static_cast<PreloadKind>(spring->choice_or("preload", 0, list_preloads()));
   }
   if (const auto imu = root.find_table("imu")) vehicle.imu_position = read_point(*imu, "position");
   if (const auto steering = root.find_table("steering")) {
@@ -247,6 +246,11 @@ void read_options(const Table& root, VehicleSpec& vehicle) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& list_preloads() {
+  static const std::vector<std::string> names = {"free_length", "trimmed"};
+  return names;
+}
 
 VehicleSpec read_vehicle(const std::filesystem::path& path) {
   const Document document(path);

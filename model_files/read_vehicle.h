@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "model/car/spec.h"
 
@@ -14,5 +16,8 @@ namespace strut {
 /// Whether the loops close and the springs carry the car is the model's question, see
 /// assemble_vehicle.
 VehicleSpec read_vehicle(const std::filesystem::path& path);
+
+/// Values of the key `preload` of `[spring]`, in the order of PreloadKind.
+const std::vector<std::string>& list_preloads();
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// Identification by fitting the simulation to measured histories.
+// `strut identify` by fitting the simulation to measured histories: its options and its run.
 #pragma once
 
 #include <filesystem>
@@ -8,15 +8,16 @@
 
 namespace strut {
 
-/// --maneuver, --free, --channels, --window, --prior, --no-nuisances, --threads. It also reads
-/// --noise and --set, which it shares with the other ways to identify.
+/// --maneuver, --free, --channels, --window, --prior, --no-nuisances, --threads. A fit also reads
+/// --noise and --set, which add_snapshot_options adds.
 void add_fit_options(Arguments& arguments);
 
-/// Throws InputError where one of them, which would have no effect elsewhere, is given.
+/// Throws InputError where one of them is given; other methods would ignore it.
 void refuse_fit_options(const Arguments& arguments);
 
 /// Fits the car in `vehicle` to the histories in `files`, prints and writes. Returns an exit code:
-/// kExitNegative where the fit has not converged, leaves a parameter open, or anything at a bound.
+/// kExitNegative where the fit has not converged, leaves a parameter
+/// undetermined, or holds one at a bound.
 /// Throws InputError.
 int identify_by_fit(const Arguments& arguments, const std::filesystem::path& vehicle,
                     const std::vector<std::filesystem::path>& files);

@@ -1,34 +1,15 @@
 #include "jobs/identify/fit_report.h"
 
-#include <cmath>
-#include <cstdio>
-#include <limits>
+#include <fmt/format.h>
 
-#include "base/math/normal.h"
+#include <cmath>
+
 #include "base/text/format_number.h"
 #include "jobs/cli/messages.h"
+#include "jobs/identify/result.h"
 
 namespace strut {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-IdentifiedParameter make_estimate(const FitResult& fit, std::size_t i) {
-  IdentifiedParameter p;
-  p.name = fit.unknowns[i].name;
-  p.unit = fit.unknowns[i].unit;
-  p.value = fit.values[i];
-  const bool known = fit.uncertainty.identifiable[i];
-  p.half_width = known ? kNormal95 * fit.uncertainty.sigma[i] : kInfinity;
-  p.in_range = known && !fit.at_bound[i];
-  return p;
-}
-
-std::string format_short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 const std::string& get_run_name(const FitResult& fit, const std::vector<MeasuredRun>& runs,
                                 std::size_t i) {
@@ -43,8 +24,8 @@ Json make_nuisances_json(const FitResult& fit, const std::vector<MeasuredRun>& r
   for (std::size_t i = first; i < fit.unknowns.size(); ++i) {
     const IdentifiedParameter p = make_estimate(fit, i);
     Json bounds = Json::array();
-    bounds.push_back(p.value - p.half_width);
-    bounds.push_back(p.value + p.half_width);
+    bounds.push_back(p.low());
+    bounds.push_back(p.high());
     Json json = Json::object();
     json["file"] = get_run_name(fit, runs, i);
     json["name"] = p.name;
@@ -101,27 +82,32 @@ Json make_correlation_json(const FitResult& fit, std::size_t count) {
   return rows;
 }
 
-void tell_quality(const FitResult& fit) {
-  print_note("chi2 per degree of freedom " + format_short(fit.chi2_per_degree()) + " (" +
-             std::to_string(fit.degrees) + " degrees), " + std::to_string(fit.iterations) +
-             " iterations, " + std::to_string(fit.simulations) + " simulations");
+void report_quality(const FitResult& fit) {
+  print_note(
+      fmt::format("chi2 per degree of freedom {:.3g} ({} degrees), {} iterations, {} simulations",
+                  fit.chi2_per_degree(), fit.degrees, fit.iterations, fit.simulations));
   if (fit.outside > 0) {
-    print_note(std::to_string(fit.outside) +
-               " readings left aside: before the maneuver or after its duration for some possible "
-               "hit time");
+    print_note(
+        fmt::format("{} readings left aside: before the maneuver or after its duration for "
+                    "some possible hit time",
+                    fit.outside));
   }
   if (!fit.converged) {
-    print_error("not converged: the minimum is some " + format_short(fit.distance) +
-                " standard deviations away; either the model does not fit at all, or it needs a "
-                "nearer start (--set, --prior)");
+    print_error(fmt::format(
+        "not converged: the minimum is about {:.3g} standard deviations away; either the model "
+        "does "
+        "not fit at all, or it needs start values nearer to the solution (--set, --prior)",
+        fit.distance));
   } else if (fit.at_kink) {
-    print_note("ends at a kink of chi2, where a contact event passes a reading, some " +
-               format_short(fit.distance) + " standard deviations from the minimum");
+    print_note(
+        fmt::format("ends at a kink of chi2, where a contact event passes a reading, about "
+                    "{:.3g} standard deviations from the minimum",
+                    fit.distance));
   }
 }
 
-/// Whether the noise is what it is said to be.
-void tell_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
+/// Reports where the residuals contradict the assumed noise.
+void report_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
   if (fit.is_quiet()) {
     print_note(
         "the residuals are smaller than the noise, which seems to be smaller than assumed "
@@ -129,40 +115,35 @@ void tell_noise(const FitResult& fit, const std::vector<MeasuredRun>& runs) {
   }
   if (fit.is_adequate()) return;
   print_note(
-      "the residuals are larger than the noise: the model lacks something or the noise is "
-      "larger (--noise); the intervals are too narrow");
+      "the residuals are larger than the noise: the model lacks an effect, or the noise is larger "
+      "than assumed (--noise); the intervals are too narrow");
   for (const ChannelFit& c : fit.channels) {
-    print_note("  " + get_file_name(runs, c) + ": " + get_channel_name(c) + ": chi2 " +
-               format_short(calc_chi2_per_reading(c)) +
-               " per reading, neighboring residuals correlate by " +
-               format_short(c.neighbor_correlation));
+    print_note(
+        fmt::format("  {}: {}: chi2 {:.3g} per reading, neighboring residuals correlate by {:.3g}",
+                    get_file_name(runs, c), get_channel_name(c), calc_chi2_per_reading(c),
+                    c.neighbor_correlation));
   }
 }
 
-void tell_open(const FitResult& fit) {
+/// Reports unknowns at their bounds and combinations that the readings do not determine.
+void report_undetermined(const FitResult& fit) {
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
     if (!fit.at_bound[i]) continue;
-    const std::string beyond =
-        fit.unknowns[i].prior.informs() ? ", beyond what --prior says of it" : "";
-    print_error(fit.unknowns[i].name + " = " + format_number(fit.values[i]) + " " +
-                fit.unknowns[i].unit + ": held by its bound" + beyond);
+    const Unknown& unknown = fit.unknowns[i];
+    print_error(fmt::format("{} = {} {}: held by its bound{}", unknown.name,
+                            format_number(fit.values[i]), unknown.unit,
+                            unknown.prior.informs() ? ", outside of its --prior" : ""));
   }
   for (const NullDirection& d : fit.uncertainty.null_directions) {
-    print_error("not identifiable: " + describe_direction(d, fit.unknowns) +
-                (std::isfinite(d.sigma)
-                     ? ", known to " + format_short(100.0 * d.sigma) + " % (1 sigma) only"
-                     : ", which moves no reading"));
+    const std::string accuracy =
+        std::isfinite(d.sigma) ? fmt::format("known to {:.3g} % (1 sigma) only", 100.0 * d.sigma)
+                               : "which moves no reading";
+    print_error(
+        fmt::format("not identifiable: {}, {}", describe_direction(d, fit.unknowns), accuracy));
   }
 }
 
 }  // namespace
-
-IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count) {
-  IdentifiedRow row;
-  row.parameters.reserve(parameter_count);
-  for (std::size_t i = 0; i < parameter_count; ++i) row.parameters.push_back(make_estimate(fit, i));
-  return row;
-}
 
 Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
                    std::size_t parameter_count) {
@@ -189,14 +170,15 @@ void print_fit(const FitResult& fit, const std::vector<MeasuredRun>& runs,
   table.parameters.reserve(fit.unknowns.size());
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
     IdentifiedParameter p = make_estimate(fit, i);
-    p.in_range = true;  // a fit has no range trained on; what is amiss is told below
-    if (i >= parameter_count && runs.size() > 1) p.name += " of " + get_run_name(fit, runs, i);
+    p.in_range = true;  // reasons are reported below the table
+    if (i >= parameter_count && runs.size() > 1)
+      p.name += fmt::format(" of {}", get_run_name(fit, runs, i));
     table.parameters.push_back(std::move(p));
   }
   print_identified({table});
-  tell_quality(fit);
-  tell_noise(fit, runs);
-  tell_open(fit);
+  report_quality(fit);
+  report_noise(fit, runs);
+  report_undetermined(fit);
 }
 
 }  // namespace strut

@@ -1,14 +1,11 @@
-// What a fit found, printed and as JSON.
+// Output of an identification by fit: table and JSON.
 #pragma once
 
 #include "estimate/fit.h"
-#include "jobs/identify/result.h"
+#include "identify/fit.h"
+#include "io/format/json.h"
 
 namespace strut {
-
-/// The unknowns that were asked for, not the nuisances; the half width is 1.96 sigma, infinite
-/// where the parameter is not identifiable.
-IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count);
 
 /// The row's JSON and: converged, distance, at_kink, chi2_per_dof, dof, adequate, nuisances by run,
 /// channels, not_identifiable, correlation, iterations, simulations, left_aside. The first
@@ -16,8 +13,8 @@ IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count);
 Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
                    std::size_t parameter_count);
 
-/// Parameters and nuisances as a table to standard output; how good the fit is, and what it leaves
-/// open, to standard error.
+/// Prints parameters and nuisances as a table to standard output; the quality of the fit and what
+/// it leaves undetermined to standard error.
 void print_fit(const FitResult& fit, const std::vector<MeasuredRun>& runs,
                std::size_t parameter_count);
 

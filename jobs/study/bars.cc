@@ -1,26 +1,28 @@
 #include "jobs/study/bars.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace strut {
 namespace {
 
-/// One bar: a cell, its name below the axis, and the series whose color it has.
+/// One bar: a cell, its label below the axis, and its series with color.
 struct Bar {
   const CellResult* cell;
   std::string label, series;
   int color;
 };
 
-/// Bars of the mean absolute error, one panel a parameter.
+/// A chart of mean absolute errors, one panel per parameter.
 struct Bars {
   std::string name, caption;
   std::vector<Bar> bars;
 };
 
-/// The series of that name, made where it is not yet there.
-ChartSeries& get_series(std::vector<ChartSeries>& all, const Bar& bar) {
+/// The series of a bar, appended where there is none yet.
+ChartSeries& find_or_add_series(std::vector<ChartSeries>& all, const Bar& bar) {
   const auto found = std::find_if(all.begin(), all.end(),
                                   [&](const ChartSeries& s) { return s.name == bar.series; });
   if (found != all.end()) return *found;
@@ -29,7 +31,8 @@ ChartSeries& get_series(std::vector<ChartSeries>& all, const Bar& bar) {
   return all.back();
 }
 
-/// A bar of a logarithmic scale has no zero: it stands on the decade below the smallest.
+/// Range of a logarithmic axis of bars: it starts at the decade below the smallest value, as bars
+/// have no zero there.
 std::vector<double> calc_range(const std::vector<ChartSeries>& all) {
   double lowest = 1e300, highest = 0.0;
   for (const ChartSeries& s : all) {
@@ -51,7 +54,7 @@ ChartPanel make_panel(const StudyRequest& request, const Bars& bars, std::size_t
     const Spread& mae = bar.cell->spread[p][kMae];
     panel.x.categories.push_back(bar.label);
     const auto x = static_cast<double>(panel.x.categories.size());
-    ChartSeries& series = get_series(panel.series, bar);
+    ChartSeries& series = find_or_add_series(panel.series, bar);
     series.x.push_back(x);
     series.y.push_back(mae.median);
     series.low.push_back(mae.low);
@@ -79,17 +82,17 @@ Chart make_bar_chart(const StudyRequest& request, const Bars& bars) {
 }
 
 constexpr char kBarsNote[] =
-    " Bars: median over the seeds, with the smallest and the largest; triangles: the paper's. The "
+    " Bars: median over the seeds, with the smallest and the largest value; triangles: the paper. "
+    "The "
     "scale is logarithmic.";
 
 Bars make_network_bars(const StudyRequest& request, const StudyResults& results,
                        std::size_t preload) {
   Bars bars;
   bars.name = "networks_" + request.preloads[preload].name;
-  bars.caption = std::string(
-                     "As Figure 8 of the paper. Mean absolute errors of all networks and "
-                     "numbers of cases.") +
-                 kBarsNote;
+  bars.caption = fmt::format(
+      "As Figure 8 of the paper. Mean absolute errors of all networks and numbers of cases.{}",
+      kBarsNote);
   for (const CellResult& cell : results.cells) {
     const StudyCell& c = cell.cell;
     if (c.preload != preload || c.inputs != request.main_inputs || c.best_instant) continue;
@@ -104,10 +107,9 @@ Bars make_input_bars(const StudyRequest& request, const StudyResults& results,
                      std::size_t preload) {
   Bars bars;
   bars.name = "inputs_" + request.preloads[preload].name;
-  bars.caption = std::string(
-                     "As Figure 9 of the paper. Mean absolute errors with different inputs "
-                     "and instants.") +
-                 kBarsNote;
+  bars.caption = fmt::format(
+      "As Figure 9 of the paper. Mean absolute errors with different inputs and instants.{}",
+      kBarsNote);
   for (const CellResult& cell : results.cells) {
     const StudyCell& c = cell.cell;
     const bool here = c.preload == preload && c.samples == request.main_samples &&

@@ -7,8 +7,8 @@
 
 namespace strut {
 
-/// Of all networks and numbers of cases, as the paper's Figure 8, and of all inputs and instants,
-/// as its Figure 9; without those of only one bar, which compares nothing.
+/// All networks and numbers of cases (the paper's Figure 8), and all inputs and instants (its
+/// Figure 9). A chart with only one bar, which compares nothing, is left out.
 std::vector<Chart> make_bar_charts(const StudyRequest& request, const StudyResults& results,
                                    std::size_t preload);
 

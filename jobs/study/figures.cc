@@ -1,75 +1,24 @@
 #include "jobs/study/figures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "jobs/cli/unsealed.h"
 #include "jobs/study/bars.h"
-#include "train/model/evaluate.h"
+#include "study/predictions.h"
 
 namespace strut {
 namespace {
 
-using Rows = std::vector<std::vector<double>>;
-
-const CellResult& find_main(const StudyRequest& request, const StudyResults& results,
-                            std::size_t preload) {
-  return *std::find_if(results.cells.begin(), results.cells.end(), [&](const CellResult& cell) {
-    return cell.cell.preload == preload && is_main(request, cell.cell);
-  });
-}
-
-/// The training whose mean percentage error, summed over the parameters, is in the middle.
-const SeedResult& find_median_seed(const CellResult& cell) {
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t s = 0; s < cell.seeds.size(); ++s) {
-    double sum = 0.0;
-    for (const Metrics& m : cell.seeds[s].metrics) sum += m.mean_absolute_percentage;
-    order.emplace_back(sum, s);
-  }
-  std::sort(order.begin(), order.end());
-  return cell.seeds[order[(order.size() - 1) / 2].second];
-}
-
-/// The test cases of a model, and what it identifies from them; by rows.
-struct Identified {
-  TrainedModel model;
-  Rows inputs, reference, predicted;
-};
-
-Rows read_columns(const RowStore& store, std::size_t first, std::size_t count) {
-  Rows rows;
-  rows.reserve(store.row_count());
-  for_each_piece(store, [&](std::span<const double> values, std::size_t, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto row = values.subspan(i * store.columns() + first, count);
-      rows.emplace_back(row.begin(), row.end());
-    }
-  });
-  return rows;
-}
-
-Identified identify(const StudyFolder& folder, const CellResult& cell) {
-  Identified identified{load_model(folder.root / find_median_seed(cell).model), {}, {}, {}};
-  const TrainedModel& model = identified.model;
-  Dataset dataset({folder.sweep(cell.sweep).root});
-  const RowStore test = read_test_rows(model, dataset);
-  std::int64_t outside = 0;
-  const std::size_t inputs = model.inputs.size(), targets = model.targets.size();
-  identified.inputs = read_columns(test, 0, inputs);
-  identified.reference = read_columns(test, inputs, targets);
-  identified.predicted = read_columns(predict_rows(model, test, &outside), 0, targets);
-  return identified;
-}
-
 std::string make_title(const ColumnInfo& column) { return make_label(column.name, column.unit); }
 
-/// The two parameters that inputs are drawn over.
+/// Indices of the two parameters on the axes of a chart of states.
 struct Ground {
   std::size_t x = 0, y = 1;
 };
 
-/// The ground of the paper's Figure 6: the rear axle's parameters where there are any.
+/// The parameters of the rear axle, as in the paper's Figure 6, or the first two where it has none.
 Ground choose_ground(const std::vector<ColumnInfo>& parameters) {
   std::vector<std::size_t> rear;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -79,15 +28,16 @@ Ground choose_ground(const std::vector<ColumnInfo>& parameters) {
   return {0, std::min<std::size_t>(1, parameters.size() - 1)};
 }
 
-std::vector<double> list_column(const Rows& rows, std::size_t column) {
+std::vector<double> list_column(const std::vector<std::vector<double>>& rows, std::size_t column) {
   std::vector<double> values;
   values.reserve(rows.size());
   for (const auto& row : rows) values.push_back(row[column]);
   return values;
 }
 
-/// An input of the network over the ground: where the cases are, and where it takes them to be.
-ChartPanel make_state_panel(const Identified& data, const Ground& ground, std::size_t input) {
+/// An input of the network over two parameters: the cases at their true and at their predicted
+/// values.
+ChartPanel make_state_panel(const TestPredictions& data, const Ground& ground, std::size_t input) {
   const std::vector<ColumnInfo>& names = data.model.targets;
   ChartSeries network{"network", SeriesKind::kPoints, 2},
       truth{"simulation", SeriesKind::kPoints, 1};
@@ -105,25 +55,24 @@ ChartPanel make_state_panel(const Identified& data, const Ground& ground, std::s
           make_title(data.model.inputs[input])};
 }
 
-Chart make_state_chart(const Identified& data, const std::string& preload) {
+Chart make_state_chart(const TestPredictions& data, const std::string& preload) {
   const Ground ground = choose_ground(data.model.targets);
   Chart chart{"states_" + preload, {}, 2};
   chart.panel_height = 480;
   for (std::size_t c = 0; c < data.model.inputs.size(); ++c) {
     chart.panels.push_back(make_state_panel(data, ground, c));
   }
-  chart.caption = "As Figure 6 of the paper. The states of the " +
-                  std::to_string(data.inputs.size()) + " test cases over " +
-                  make_words(data.model.targets[ground.x].name) + " and " +
-                  make_words(data.model.targets[ground.y].name) +
-                  ", by color: circles at the true values, crosses at those that the network "
-                  "identifies from the "
-                  "states.";
+  chart.caption = fmt::format(
+      "As Figure 6 of the paper. States of the {} test cases over {} and {}, by color: circles at "
+      "the true parameters, crosses at those that the network identifies from the states.",
+      data.inputs.size(), make_words(data.model.targets[ground.x].name),
+      make_words(data.model.targets[ground.y].name));
   return chart;
 }
 
-/// Absolute percentage errors of a parameter; NaN for none, which a logarithmic scale cannot show.
-std::vector<double> list_percentage_errors(const Identified& data, std::size_t p) {
+/// Absolute percentage errors of a parameter; NaN for an error of 0, which a logarithmic scale
+/// cannot show.
+std::vector<double> list_percentage_errors(const TestPredictions& data, std::size_t p) {
   std::vector<double> errors;
   errors.reserve(data.reference.size());
   for (std::size_t i = 0; i < data.reference.size(); ++i) {
@@ -134,8 +83,8 @@ std::vector<double> list_percentage_errors(const Identified& data, std::size_t p
   return errors;
 }
 
-Chart make_box_chart(const StudyRequest& request, const CellResult& cell, const Identified& data,
-                     const std::string& preload) {
+Chart make_box_chart(const StudyRequest& request, const CellResult& cell,
+                     const TestPredictions& data, const std::string& preload) {
   ChartPanel panel{{""}, {"absolute percentage error [%]", true}, {}};
   ChartSeries published{"the paper: mean", SeriesKind::kPoints, 2};
   published.marker = Marker::kTriangle;
@@ -155,11 +104,11 @@ Chart make_box_chart(const StudyRequest& request, const CellResult& cell, const 
   panel.x.range = {0.5, static_cast<double>(data.model.targets.size()) + 0.5};
   Chart chart{"errors_" + preload, {std::move(panel)}};
   chart.panel_height = 500;
-  chart.caption =
-      "As Figure 7 of the paper. Absolute percentage errors of " + cell.key +
-      " on its test cases: median, quartiles, whiskers to 1.5 times their distance, outliers. The "
-      "scale is logarithmic" +
-      (any ? "; triangles: the paper's MAPE." : ".");
+  chart.caption = fmt::format(
+      "As Figure 7 of the paper. Absolute percentage errors of {} on its test cases: "
+      "median, quartiles, whiskers to 1.5 times their distance, outliers. The scale is "
+      "logarithmic{}.",
+      cell.key, any ? "; triangles: the paper's MAPE" : "");
   return chart;
 }
 
@@ -181,8 +130,8 @@ Chart make_training_chart(const CellResult& cell, const TrainedModel& model,
                 {"mean square error of normalized values [1]", true},
                 {training, validation, best}}}};
   chart.panel_height = 460;
-  chart.caption = "How a training of " + cell.key + " went; it stopped by " +
-                  std::string(get_name(model.stop)) + ".";
+  chart.caption =
+      fmt::format("Loss of a training of {}; stopped by: {}.", cell.key, get_name(model.stop));
   return chart;
 }
 
@@ -191,8 +140,8 @@ Chart make_training_chart(const CellResult& cell, const TrainedModel& model,
 std::vector<Chart> make_study_charts(const StudyFolder& folder, const StudyRequest& request,
                                      const StudyResults& results, std::size_t preload) {
   const std::string& name = request.preloads[preload].name;
-  const CellResult& main = find_main(request, results, preload);
-  const Identified data = identify(folder, main);
+  const CellResult& main = find_main_cell(request, results, preload);
+  const TestPredictions data = predict_test_cases(folder, main);
   std::vector<Chart> charts = {make_state_chart(data, name),
                                make_box_chart(request, main, data, name)};
   for (Chart& bars : make_bar_charts(request, results, preload)) charts.push_back(std::move(bars));

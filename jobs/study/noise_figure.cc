@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kWindowColor = 3;
 
-/// A series of one value a point.
+/// A series with one value per scale.
 template <class Get>
 ChartSeries make_series(const NoiseStudy& study, std::size_t p, const std::string& name,
                         SeriesKind kind, int color, const Get& get) {
@@ -46,13 +46,14 @@ std::vector<ChartSeries> list_series(const NoiseStudy& study, std::size_t p) {
 }  // namespace
 
 Chart make_noise_chart(const NoiseStudy& study) {
-  constexpr double kMargin = 1.3;  // beyond the first and the last scale
+  constexpr double kMargin = 1.3;  // factor beyond the first and the last scale
   Chart chart{"noise", {}, 2};
   chart.panel_height = 425;
   chart.caption =
-      "Root mean square errors over the noise, on cases that training never saw. Lines: "
-      "Cramer-Rao bounds; circles: networks; triangles: fits of the simulation; dashed: the error "
-      "of who says the middle of the grid always.";
+      "Root mean square errors over the noise, on test cases. Lines: Cramer-Rao bounds; circles: "
+      "networks; triangles: fits of the simulation; dashed: the error of an estimate that is "
+      "always "
+      "the middle of the grid.";
   const double low = study.points.front().scale, high = study.points.back().scale;
   for (std::size_t p = 0; p < study.parameters.size(); ++p) {
     const ColumnInfo& parameter = study.parameters[p];

@@ -1,8 +1,8 @@
-// A noise study's figure.
+// The figure of a noise study.
 #pragma once
 
 #include "jobs/study/figures.h"
-#include "jobs/study/noise_study.h"
+#include "study/noise/results.h"
 
 namespace strut {
 

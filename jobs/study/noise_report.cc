@@ -1,5 +1,7 @@
 #include "jobs/study/noise_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,7 @@
 namespace strut {
 namespace {
 
-/// Three digits, large numbers without an exponent.
+/// Three digits, without an exponent for large numbers.
 std::string round(double value) {
   std::string text = print_number("%.3g", value);
   if (text.find('e') == std::string::npos || std::abs(value) < 1.0) return text;
@@ -54,10 +56,10 @@ ReportTable make_sensor_table(const NoiseStudy& study) {
   }
   table.notes = {
       "Accelerometers and gyroscopes of the MEMS class: 75 to 160 ug/sqrt(Hz) and 0.003 to 0.014 "
-      "deg/s/sqrt(Hz) over some 250 Hz, zero offsets of 20 to 60 mg and 0.5 to 3 deg/s (data "
-      "sheets of ICM-42688, ICM-20602, BMI160, BMI270, BMI088). Height as of a laser sensor, "
-      "velocity integrated and corrected by it, pitch angle of a fused attitude: assumptions. "
-      "White noise is scaled; biases, hit time and speed are not."};
+      "deg/s/sqrt(Hz) over about 250 Hz, zero offsets of 20 to 60 mg and 0.5 to 3 deg/s (data "
+      "sheets of ICM-42688, ICM-20602, BMI160, BMI270, BMI088). Assumptions: height from a laser "
+      "sensor, velocity integrated and corrected by it, pitch angle from a fused attitude. White "
+      "noise is scaled; biases, hit time and speed are not."};
   return table;
 }
 
@@ -73,8 +75,9 @@ ReportTable make_fit_table(const NoiseStudy& study) {
          print_number("%.4f", point.chi2_per_degree), print_number("%.2g", point.fit_seconds)});
   }
   table.notes = {
-      "chi2 above 1 where noise is far below that of real sensors: there the steps of the "
-      "simulation, finer in the records than in the fit, are no longer small against it."};
+      "Where the noise is far below that of real sensors, chi2 is above 1: the step of the "
+      "simulation, finer in the records than in the fits, then causes errors that are no longer "
+      "small against the noise."};
   return table;
 }
 
@@ -82,32 +85,32 @@ double find_largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-/// "23 to 92 %": `get` of the errors of each parameter against the spread of the grid.
+/// "23 to 92 %": the range over the parameters of `get(errors)` as a fraction of the grid's spread.
 template <class Get>
-std::string describe_shares(const NoiseStudy& study, const Get& get) {
+std::string describe_fractions(const NoiseStudy& study, const Get& get) {
   const NoisePoint& point = find_real_point(study);
-  std::vector<double> shares;
-  shares.reserve(point.errors.size());
+  std::vector<double> percents;
+  percents.reserve(point.errors.size());
   for (std::size_t p = 0; p < point.errors.size(); ++p) {
-    shares.push_back(100.0 * get(point.errors[p]) / study.spread[p]);
+    percents.push_back(100.0 * get(point.errors[p]) / study.spread[p]);
   }
-  const auto [low, high] = std::minmax_element(shares.begin(), shares.end());
-  const auto describe = [](double share) {
-    return print_number(share < 9.95 ? "%.2g" : "%.0f", share);
+  const auto [low, high] = std::minmax_element(percents.begin(), percents.end());
+  const auto describe = [](double percent) {
+    return percent < 9.95 ? fmt::format("{:.2g}", percent) : fmt::format("{:.0f}", percent);
   };
-  return describe(*low) + " to " + describe(*high) + " %";
+  return fmt::format("{} to {} %", describe(*low), describe(*high));
 }
 
 std::string describe_measurements(const NoiseStudy& study) {
-  return "The tables above are without noise. Here every network is trained and tested with it: " +
-         std::to_string(study.copies) +
-         " noisy copies of each case. A snapshot is the main inputs at the sweep's own instant, "
-         "with each preload. A window is what the sensors on the body record at " +
-         format_number(study.rate) + " Hz from " + format_number(study.from) + " to " +
-         format_number(study.to) + " s (preload " + study.window_preload +
-         "); of it hit time (1 sigma " + format_number(1e3 * study.hit_time) +
-         " ms), speed and the sensors' biases are unknown, too. Noise 1 is that of real sensors; "
-         "other rows scale it.";
+  return fmt::format(
+      "The tables above are without noise. Here every network is trained and tested with it, on {} "
+      "noisy copies of each case. A snapshot holds the main inputs at the sweep's own instant, "
+      "with "
+      "each preload. A window holds what the sensors on the body record at {} Hz from {} to {} s "
+      "(preload {}); its hit time (1 sigma {} ms), the speed and the sensors' biases are unknown, "
+      "too. Noise 1 is that of real sensors; the other rows scale it.",
+      study.copies, format_number(study.rate), format_number(study.from), format_number(study.to),
+      study.window_preload, format_number(1e3 * study.hit_time));
 }
 
 std::string describe_bounds(const NoiseStudy& study) {
@@ -115,38 +118,39 @@ std::string describe_bounds(const NoiseStudy& study) {
   for (const auto& variation : study.snapshot_variation) {
     snapshot = std::max(snapshot, find_largest(variation));
   }
-  const std::string cases = std::to_string(study.fits);
-  return "Bound: the Cramer-Rao bound, 1 sigma of the best estimate without bias from the sensors "
-         "alone. Over the test cases it varies by a factor of up to " +
-         print_number("%.2f", snapshot) + " for snapshots and " +
-         print_number("%.2f", find_largest(study.window_variation)) +
-         " for windows, so the tables hold its root mean square over " + cases +
-         " test cases, as errors are root mean squares. A network knows more, the grid that its "
-         "cases come from: where the bound is beyond the grid's spread it says the middle, errs by "
-         "the spread and has learned nothing. Where the cases stand on levels of a grid and the "
-         "bound is below their distance, it rounds to the nearest level and errs less than the "
-         "bound.";
+  return fmt::format(
+      "Bound: the Cramer-Rao bound, 1 sigma of the best unbiased estimate from the sensors alone. "
+      "Over the test cases it varies by a factor of up to {:.2f} for snapshots and {:.2f} for "
+      "windows, so the tables hold its root mean square over {} test cases, as errors are root "
+      "mean "
+      "squares. A network also knows the grid that its cases come from: where the bound exceeds "
+      "the "
+      "grid's spread, it answers with the middle, errs by the spread and has learned nothing. "
+      "Where "
+      "the cases stand on levels of a grid and the bound is below their distance, it rounds to the "
+      "nearest level and errs less than the bound.",
+      snapshot, find_largest(study.window_variation), study.fits);
 }
 
 std::string describe_result(const NoiseStudy& study) {
   const NoisePoint& point = find_real_point(study);
   const WindowRatios ratios = calc_window_ratios(point);
-  std::string text = "At noise " + format_number(point.scale) +
-                     " a network that sees one snapshot errs, against the spread of the grid, by ";
+  std::string snapshots;
   for (std::size_t i = 0; i < study.preloads.size(); ++i) {
-    text += (i == 0 ? "" : " and by ") +
-            describe_shares(study, [i](const auto& e) { return e.snapshots[i].network; }) +
-            " with preload " + study.preloads[i];
+    snapshots += fmt::format(
+        "{}by {} with preload {}", i == 0 ? "" : " and ",
+        describe_fractions(study, [i](const auto& e) { return e.snapshots[i].network; }),
+        study.preloads[i]);
   }
-  return text +
-         ", depending on the parameter; 100 % is what is known without any sensor. From a window "
-         "it errs by " +
-         describe_shares(study, [](const auto& e) { return e.window.network; }) +
-         ". That is at most " + print_number("%.2f", ratios.network) +
-         " times the bound; the fitted simulation reaches " + print_number("%.2f", ratios.fit) +
-         " times at most (worst parameter; 1 sigma of a ratio of " + std::to_string(study.fits) +
-         " fits is " +
-         print_number("%.0f", 100.0 / std::sqrt(2.0 * static_cast<double>(study.fits))) + " %).";
+  return fmt::format(
+      "At noise {}, relative to the spread of the grid, a network that sees one snapshot errs {}, "
+      "depending on the parameter; 100 % is the error without any sensor. From a window it errs by "
+      "{}. That is at most {:.2f} times the bound; the fitted simulation reaches at most {:.2f} "
+      "times "
+      "the bound (worst parameter; 1 sigma of a ratio from {} fits is {:.0f} %).",
+      format_number(point.scale), snapshots,
+      describe_fractions(study, [](const auto& e) { return e.window.network; }), ratios.network,
+      ratios.fit, study.fits, 100.0 / std::sqrt(2.0 * static_cast<double>(study.fits)));
 }
 
 }  // namespace
@@ -157,8 +161,8 @@ std::vector<ReportTable> make_noise_tables(const NoiseStudy& study) {
   for (std::size_t p = 0; p < study.parameters.size(); ++p) {
     const ColumnInfo& parameter = study.parameters[p];
     ReportTable table;
-    table.caption = "Errors of " + parameter.name + " [" + parameter.unit +
-                    "] with sensor noise; spread of the grid " + round(study.spread[p]);
+    table.caption = fmt::format("Errors of {} [{}] with sensor noise; spread of the grid {}",
+                                parameter.name, parameter.unit, round(study.spread[p]));
     table.header = make_header(study);
     for (const NoisePoint& point : study.points) {
       table.rows.push_back(make_row(point, point.errors[p]));
@@ -168,20 +172,20 @@ std::vector<ReportTable> make_noise_tables(const NoiseStudy& study) {
   return tables;
 }
 
-std::string make_noise_line(const NoiseStudy& study) {
+std::string describe_noise_result(const NoiseStudy& study) {
   const NoisePoint& point = find_real_point(study);
   const WindowRatios ratios = calc_window_ratios(point);
-  double least = 1e300;
-  for (std::size_t p = 0; p < point.errors.size(); ++p) {
-    for (const SnapshotErrors& snapshot : point.errors[p].snapshots) {
-      least = std::min(least, snapshot.network / point.errors[p].window.network);
+  double smallest = 1e300;
+  for (const NoiseErrors& errors : point.errors) {
+    for (const SnapshotErrors& snapshot : errors.snapshots) {
+      smallest = std::min(smallest, snapshot.network / errors.window.network);
     }
   }
-  return "noise " + format_number(point.scale) + ": from a window the network errs by at most " +
-         print_number("%.2f", ratios.network) + ", the fit by at most " +
-         print_number("%.2f", ratios.fit) + " times the Cramer-Rao bound (" +
-         std::to_string(study.fits) + " fits); from one snapshot at least " +
-         print_number("%.2g", least) + " times as much as from the window";
+  return fmt::format(
+      "noise {}: from a window the network errs by at most {:.2f}, the fit by at most {:.2f} times "
+      "the Cramer-Rao bound ({} fits); from one snapshot at least {:.2g} times as much as from the "
+      "window",
+      format_number(point.scale), ratios.network, ratios.fit, study.fits, smallest);
 }
 
 ReportSection make_noise_section(const NoiseStudy& study, const FigureDrawer& drawer) {

@@ -1,19 +1,19 @@
-// A noise study as people read it, in the terminal and in the report.
+// Tables and text of a noise study, for the terminal and the report.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "jobs/study/noise_study.h"
 #include "report/figures.h"
+#include "study/noise/results.h"
 
 namespace strut {
 
-/// A table a parameter: errors beside bounds, scale by scale.
+/// One table per parameter: errors beside bounds, one row per scale.
 std::vector<ReportTable> make_noise_tables(const NoiseStudy& study);
 
-/// What comes out of it, in one line.
-std::string make_noise_line(const NoiseStudy& study);
+/// The result at the noise of real sensors, in one line.
+std::string describe_noise_result(const NoiseStudy& study);
 
 ReportSection make_noise_section(const NoiseStudy& study, const FigureDrawer& drawer);
 

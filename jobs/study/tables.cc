@@ -1,5 +1,7 @@
 #include "jobs/study/tables.h"
 
+#include <fmt/format.h>
+
 #include "io/format/toml_document.h"
 #include "jobs/cli/progress.h"
 
@@ -11,13 +13,13 @@ std::string round(double value) { return print_number("%.2g", value); }
 std::string round_spread(const Spread& s, TableDetail detail) {
   std::string median = round(s.median);
   if (detail == TableDetail::kMedian || s.low == s.high) return median;
-  return median + "\n" + round(s.low) + " .. " + round(s.high);
+  return fmt::format("{}\n{} .. {}", median, round(s.low), round(s.high));
 }
 
-/// 1 - R2, whose bounds change places.
+/// 1 - R2; its smallest value is that of the largest R2.
 Spread calc_gap(const Spread& r2) { return {1.0 - r2.median, 1.0 - r2.high, 1.0 - r2.low}; }
 
-/// Which metrics the tables show, in the paper's order.
+/// The metrics in the tables, in the paper's order.
 constexpr std::size_t kShown[] = {kMae, kMape, kRmse};
 
 std::vector<std::string> make_header(const std::string& first, bool published) {
@@ -53,21 +55,19 @@ void add_rows(const StudyRequest& request, const CellResult& cell, const std::st
 }
 
 std::string list_sizes(const StudyNetwork& network) {
-  std::string text;
-  for (const int size : network.hidden) text += (text.empty() ? "" : ", ") + std::to_string(size);
-  return network.name + " (" + text + ")";
+  return fmt::format("{} ({})", network.name, fmt::join(network.hidden, ", "));
 }
 
-/// "as Table 2 of the paper" where a cell of the table has a published number.
+/// ", beside Table 2 of the paper" where the cell has published numbers; else empty.
 std::string name_published(const StudyRequest& request, const std::string& key) {
   const auto found = request.published.cells.find(key);
   if (found == request.published.cells.end() || found->second.table.empty()) return "";
-  return ", beside " + found->second.table + " of the paper";
+  return fmt::format(", beside {} of the paper", found->second.table);
 }
 
 std::string describe_seeds(const StudyRequest& request) {
   return request.seeds == 1 ? "one training each"
-                            : "medians over " + std::to_string(request.seeds) + " trainings";
+                            : fmt::format("medians over {} trainings", request.seeds);
 }
 
 ReportTable make_network_table(const StudyRequest& request, const StudyResults& results,
@@ -81,9 +81,10 @@ ReportTable make_network_table(const StudyRequest& request, const StudyResults& 
                       c.inputs == request.main_inputs && !c.best_instant;
     if (!here) continue;
     if (table.caption.empty()) {
-      table.caption = format_count(request.samples[samples]) + " cases, preload " +
-                      request.preloads[preload].name + name_published(request, cell.key) + "; " +
-                      describe_seeds(request);
+      table.caption =
+          fmt::format("{} cases, preload {}{}; {}", format_count(request.samples[samples]),
+                      request.preloads[preload].name, name_published(request, cell.key),
+                      describe_seeds(request));
     }
     add_rows(request, cell, list_sizes(request.networks[c.network]), detail, table);
   }
@@ -104,10 +105,10 @@ ReportTable make_input_table(const StudyRequest& request, const StudyResults& re
     add_rows(request, cell, describe_inputs(request, cell), detail, table);
     if (c.inputs != request.main_inputs) published = name_published(request, cell.key);
   }
-  table.caption = "Inputs and instants, preload " + request.preloads[preload].name + ", " +
-                  list_sizes(request.networks[request.main_network]) + ", " +
-                  format_count(request.samples[request.main_samples]) + " cases" + published +
-                  "; " + describe_seeds(request);
+  table.caption = fmt::format(
+      "Inputs and instants, preload {}, {}, {} cases{}; {}", request.preloads[preload].name,
+      list_sizes(request.networks[request.main_network]),
+      format_count(request.samples[request.main_samples]), published, describe_seeds(request));
   return table;
 }
 
@@ -116,9 +117,23 @@ ReportTable make_input_table(const StudyRequest& request, const StudyResults& re
 std::string describe_inputs(const StudyRequest& request, const CellResult& cell) {
   std::string text = request.inputs[cell.cell.inputs].name + " inputs";
   if (cell.cell.best_instant) {
-    text += ", snapshot at " + print_number("%.4g", cell.offset) + " m";
+    text += fmt::format(", snapshot at {:.4g} m", cell.offset);
   }
   return text;
+}
+
+std::string describe_summary(const StudySummary& s) {
+  std::string line = s.preload + ": ";
+  if (s.errors > 0) {
+    line += fmt::format(
+        "{} of {} errors at most a tenth of the published ones (ratio {} at best, {} in the "
+        "median, "
+        "{} at worst: {}); ",
+        s.errors_held, s.errors, round(s.smallest_ratio), round(s.median_ratio),
+        round(s.largest_ratio), s.largest_at);
+  }
+  return line + fmt::format("{} of {} with 1 - R2 at most 1e-4 (worst {}: {})", s.gaps_held, s.gaps,
+                            round(s.largest_gap), s.largest_gap_at);
 }
 
 std::vector<ReportTable> make_study_tables(const StudyRequest& request, const StudyResults& results,

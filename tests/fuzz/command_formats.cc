@@ -1,8 +1,8 @@
 // Files of single commands: studies, reports, submissions.
 #include "cluster/submission.h"
 #include "cluster/task_record.h"
-#include "jobs/study/request.h"
 #include "report/page_file.h"
+#include "study/request.h"
 #include "tests/fuzz/format.h"
 
 namespace strut::fuzz {

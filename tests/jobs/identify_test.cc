@@ -1,18 +1,12 @@
-// strut identify as a user meets it, and the network's derivatives.
+// strut identify as a user meets it.
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <limits>
 
-#include "base/math/normal.h"
 #include "base/text/format_number.h"
-#include "base/text/range.h"
 #include "io/format/csv.h"
 #include "io/format/hdf5.h"
-#include "jobs/identify/snapshot.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"
 #include "tests/support/test_model.h"
-#include "train/model/interval.h"
 
 namespace strut {
 namespace {
@@ -22,81 +16,6 @@ using test::Outcome;
 using test::run_program;
 using test::TemporaryFolder;
 namespace fs = std::filesystem;
-
-TEST_CASE("An identifier's Jacobian is that of differences", "[property]") {
-  const TrainedModel model = test::make_random_model(
-      GENERATE(std::vector<int>{4, 9, 7, 2}, std::vector<int>{3, 2}, std::vector<int>{1, 5, 1}));
-  const Identifier identifier(model);
-  const std::size_t n = model.inputs.size(), m = model.targets.size();
-  const std::vector<double> inputs = test::draw_inputs(model, 20);
-  for (std::size_t row = 0; row < 20; ++row) {
-    const std::vector<double> jacobian = identifier.calc_jacobian(inputs.data() + row * n);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double width = model.input_map.high()[i] - model.input_map.low()[i];
-      const double step = 1e-4 * width;
-      std::vector<double> x(inputs.begin() + static_cast<std::ptrdiff_t>(row * n),
-                            inputs.begin() + static_cast<std::ptrdiff_t>(row * n + n));
-      std::vector<double> above(m), below(m);
-      x[i] += step;
-      identifier.identify(x.data(), above.data());
-      x[i] -= 2.0 * step;
-      identifier.identify(x.data(), below.data());
-      for (std::size_t t = 0; t < m; ++t) {
-        const double range = model.target_map.high()[t] - model.target_map.low()[t];
-        const double difference = (above[t] - below[t]) / (2.0 * step);
-        // Central differences: h^2 f'''/6, normalized step 2e-4, f''' of a few; rounding 1e-16/h.
-        CHECK(std::abs(jacobian[t * n + i] - difference) < 1e-6 * range / width);
-      }
-    }
-  }
-}
-
-TEST_CASE("Excess is a signed share of the range", "[unit]") {
-  CHECK(calc_excess(0.5, 0.0, 2.0) == 0.0);
-  CHECK(calc_excess(2.0, 0.0, 2.0) == 0.0);
-  CHECK(calc_excess(3.0, 0.0, 2.0) == 0.5);
-  CHECK(calc_excess(-1.0, 0.0, 2.0) == -0.5);
-}
-
-TEST_CASE("A parameter is out of range beyond its interval and a hundredth of the range",
-          "[unit]") {
-  const TrainedModel model = test::make_random_model();  // front_stiffness in [35500, 40000]
-  CHECK(is_parameter_in_range(model, 0, 40044.0, 0.0));
-  CHECK(!is_parameter_in_range(model, 0, 40046.0, 0.0));
-  CHECK(is_parameter_in_range(model, 0, 40046.0, 2.0));
-  CHECK(is_parameter_in_range(model, 0, 35456.0, 0.0));
-  CHECK(!is_parameter_in_range(model, 0, 35454.0, 0.0));
-  CHECK(!is_parameter_in_range(model, 0, std::nan(""), 1.0));
-  CHECK(is_parameter_in_range(model, 0, 1e9, std::numeric_limits<double>::infinity()));
-}
-
-TEST_CASE("Noise of the sensors widens an interval as repeated measurements scatter",
-          "[statistical]") {
-  const TrainedModel model = test::make_random_model();
-  const Identifier identifier(model);
-  const std::vector<double> x = test::draw_inputs(model, 1);
-  SnapshotOptions options{{1e-5, 0.0, 0.02, 5e-6}};
-  const IdentifiedRow row = identify_snapshot(model, identifier, options, x.data());
-  constexpr int kTrials = 20000;
-  double sum = 0.0, square = 0.0;
-  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
-    std::vector<double> noisy = x, values(2);
-    for (std::size_t i = 0; i < 4; ++i) {
-      // Uniform of the same deviation.
-      noisy[i] += options.noise[i] * std::sqrt(12.0) * (calc_uniform(5, i, trial) - 0.5);
-    }
-    identifier.identify(noisy.data(), values.data());
-    sum += values[0] - row.parameters[0].value;
-    square += (values[0] - row.parameters[0].value) * (values[0] - row.parameters[0].value);
-  }
-  const double scatter = std::sqrt(square / kTrials - sum * sum / (kTrials * double{kTrials}));
-  const double half = row.parameters[0].half_width, own = model.ci95[0];
-  REQUIRE(half > own);
-  // Deviation of a deviation: 1 / sqrt(2 kTrials) = 0.5 %; four of them.
-  CHECK(std::sqrt(half * half - own * own) / kNormal95 == Approx(scatter).epsilon(0.02));
-  options.noise.assign(4, 0.0);
-  CHECK(identify_snapshot(model, identifier, options, x.data()).parameters[0].half_width == own);
-}
 
 /// A model and measured tables in a folder of their own.
 struct Desk {
@@ -266,13 +185,14 @@ TEST_CASE("identify refuses what it cannot read, and says what is allowed", "[io
     for (const std::string& text : texts) CHECK_THAT(outcome.messages, Contains(text));
   };
   check_refused("", {"MEASURED: missing"});
-  check_refused("--set pitch_angel=1", {"no input 'pitch_angel'", "did you mean 'pitch_angle'?"});
+  check_refused("--set pitch_angel=1",
+                {"'pitch_angel' is not an input", "did you mean 'pitch_angle'?"});
   check_refused("--set pitch_angle=1", {"missing body_position_z, body_velocity_z"});
   check_refused("--set pitch_angle=nan", {"not finite"});
   check_refused("--set pitch_angle=x", {"must be a number"});
   check_refused("--set pitch_angle=1 --set pitch_angle=2", {"'pitch_angle' twice"});
   check_refused(desk.set(x) + " --noise pitch_angle=-1", {"--noise", "0 and above"});
-  check_refused(desk.set(x) + " --noise roll_rate=1", {"--noise: no input 'roll_rate'"});
+  check_refused(desk.set(x) + " --noise roll_rate=1", {"--noise: 'roll_rate' is not an input"});
   check_refused("/nowhere.csv", {"/nowhere.csv: file not found"});
   const auto write = [&](const std::string& text) {
     return desk.folder.write("a.csv", text).string();

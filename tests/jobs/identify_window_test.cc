@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "identify/window.h"
 #include "io/format/csv.h"
 #include "io/store/shard_layout.h"
-#include "jobs/identify/window.h"
 #include "tests/jobs/window_sweep.h"
 #include "train/model/model_file.h"
 #include "train/window/rows.h"

@@ -1,19 +1,17 @@
 // strut study and strut report as a user meets them.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
 
-#include "jobs/study/folder.h"
-#include "jobs/study/request.h"
-#include "jobs/study/results.h"
+#include "study/folder.h"
+#include "study/request.h"
 #include "tests/jobs/check_hint.h"
 #include "tests/jobs/check_page.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"
-#include "tests/jobs/study_files.h"
+#include "tests/jobs/study_program.h"
 #include "train/model/model_file.h"
 
 namespace strut {
@@ -28,12 +26,13 @@ using test::read_results;
 using test::run_program;
 using test::run_shell;
 using test::StudyFiles;
+using test::StudyProgram;
 namespace fs = std::filesystem;
 
 /// A study that has run, made once; tests that change it take a copy.
-const StudyFiles& get_study() {
-  static const StudyFiles files;
-  static const StudyFiles& made = test::require_run(files);
+const StudyProgram<StudyFiles>& get_study() {
+  static const StudyProgram<StudyFiles> files;
+  static const StudyProgram<StudyFiles>& made = test::require_run(files);
   return made;
 }
 
@@ -153,7 +152,7 @@ TEST_CASE("A study that is done does nothing twice and repeats its bytes", "[io]
 }
 
 TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow]") {
-  const StudyFiles& files = get_study();
+  const auto& files = get_study();
   // SIGTERM as soon as three models are there.
   const std::string folder = (files / "stopped").string();
   const Outcome stopped = run_shell(
@@ -161,7 +160,7 @@ TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow
       " --threads 1 & while [ $(ls " + folder +
       "/models 2>/dev/null | wc -l) -lt 3 ]; do sleep 0.002; done; kill -TERM $!; wait $!'");
   CHECK(stopped.code == 143);
-  CHECK_THAT(stopped.messages, Contains("the same command goes on"));
+  CHECK_THAT(stopped.messages, Contains("the same command continues"));
   CHECK(test::check_hint(stopped.messages)[1] == "study");
   CHECK_FALSE(fs::exists(files / "stopped/results.json"));
   const Outcome resumed = files.run("--threads 1", "stopped");
@@ -171,7 +170,7 @@ TEST_CASE("A study that was interrupted goes on to the same results", "[io][slow
 }
 
 TEST_CASE("A model of other options or a damaged one is trained anew", "[io][slow]") {
-  const StudyFiles& files = get_study();
+  const auto& files = get_study();
   const fs::path root = files.copy("copy"), models = root / "models";
   const fs::path other = models / "trimmed_small_70_four_seed1.h5",
                  damaged = models / "trimmed_small_70_four_seed2.h5";
@@ -189,12 +188,12 @@ TEST_CASE("A model of other options or a damaged one is trained anew", "[io][slo
 }
 
 TEST_CASE("A folder of another study or of none is refused", "[io][slow]") {
-  const StudyFiles& files = get_study();
+  const auto& files = get_study();
   const auto before = read_folder(files / "made");
   const Outcome other = files.run_file(files.change("epochs = 12", "epochs = 13"), "made");
   CHECK(other.code == 2);
   CHECK_THAT(other.messages,
-             Contains("of another study") && Contains("training.epochs: was 12, is 13"));
+             Contains("holds another study") && Contains("training.epochs: was 12, is 13"));
   CHECK(read_folder(files / "made") == before);
   fs::create_directory(files / "full");
   std::ofstream(files / "full" / "letter.txt") << "dear";
@@ -207,7 +206,7 @@ TEST_CASE("A folder of another study or of none is refused", "[io][slow]") {
 }
 
 TEST_CASE("A study makes no sweep where a link inside its folder leads", "[io]") {
-  const StudyFiles files;
+  const StudyProgram<StudyFiles> files;
   const StudyRequest request = read_study(files / "study.toml");
   const StudyFolder folder = make_study_folder(files / "made", request);
   const std::string sweep = make_sweep_name(request, list_cells(request).front());
@@ -219,43 +218,16 @@ TEST_CASE("A study makes no sweep where a link inside its folder leads", "[io]")
   CHECK(fs::is_empty(files / "elsewhere"));
 }
 
-TEST_CASE("Wrong words and numbers of a study file are told", "[io]") {
-  const StudyFiles files;
-  std::string damping = test::kSweep;
-  const std::size_t rear = damping.find("rear_stiffness");
-  damping.replace(rear, damping.find('\n', rear) - rear,
-                  "rear_damping = { from = 1980, to = 1800, step = -20 }");
-  files.write_sweep("other.toml", damping);
-  struct Fault {
-    const char *from, *to, *said;
-  };
-  const Fault faults[] = {
-      {"seeds   = 2", "seads = 2", "did you mean 'seeds'"},
-      {"seeds   = 2", "seeds = 0", "seeds = 0"},
-      {"\"trimmed\"]", "\"trimed\"]", "did you mean 'trimmed'"},
-      {"[90, 70]", "[90, 101]", "sample.count = 101: more than the grid has; must lie in [1, 100]"},
-      {"[90, 70]", "[90, 90]", "twice"},
-      {"[90, 70]", "[90.5]", "whole numbers"},
-      {"[4]", "[0]", "networks.small"},
-      {"\"pitch_angle\"]\n[best", "\"pitch_angel\"]\n[best", "did you mean 'pitch_angle'"},
-      {"[training]", "[main]\nnetwork = \"smal\"\n[training]", "did you mean 'small'"},
-      {"[training]", "[main]\nsamples = 80\n[training]", "main.samples"},
-      {"epochs = 12", "epoch = 12", "did you mean 'epochs'"},
-      {"trimmed = -0.5", "trimmed = \"best\"", "design"},
-      {"small = [4]", "little = [4]", "cells.small_90_four: no cell of the study"},
-      {"sweep.toml", "other.toml", "cells.small_90_two.rear_stiffness: no parameter of the study"},
-  };
-  for (const Fault& fault : faults) {
-    const Outcome outcome = files.run_file(files.change(fault.from, fault.to), "never");
-    INFO(fault.to);
-    CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains(fault.said));
-    CHECK_FALSE(fs::exists(files / "never"));
-  }
+TEST_CASE("A fault in a study file is refused before a folder is made", "[io]") {
+  const StudyProgram<StudyFiles> files;
+  const Outcome outcome = files.run_file(files.change("seeds   = 2", "seads = 2"), "never");
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains("study2.toml") && Contains("did you mean 'seeds'"));
+  CHECK_FALSE(fs::exists(files / "never"));
 }
 
 TEST_CASE("A study's report is one well-formed page that needs no other file", "[io][slow]") {
-  const StudyFiles& files = get_study();
+  const auto& files = get_study();
   const fs::path page = files / "made/report.html";
   test::check_page(page.string(), 10);  // five charts for each preload
   const std::string text = test::read_text(page);
@@ -268,7 +240,7 @@ TEST_CASE("A study's report is one well-formed page that needs no other file", "
 }
 
 TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]") {
-  const StudyFiles& files = get_study();
+  const auto& files = get_study();
   const fs::path root = files / "sweep_copy";
   fs::remove_all(root);
   fs::copy(files / "made/sweeps/trimmed_90", root, fs::copy_options::recursive);
@@ -279,17 +251,6 @@ TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]"
   CHECK_THAT(text, Contains("90 of 90 cases") && Contains("No case failed.") &&
                        Contains("Layers by front_stiffness") && Contains("body_velocity_z"));
   CHECK(run_program("verify " + root.string()).code == 0);
-}
-
-TEST_CASE("The median of an even number of seeds is the mean of the middle two", "[unit]") {
-  const Spread odd = calc_spread({3.0, 1.0, 2.0}), even = calc_spread({4.0, 1.0, 3.0, 2.0});
-  CHECK(odd.median == 2.0);
-  CHECK(even.median == 2.5);
-  CHECK(even.low == 1.0);
-  CHECK(even.high == 4.0);
-  CHECK(calc_spread({5.0}).median == 5.0);
-  CHECK(std::isnan(calc_spread({1.0, std::nan(""), 2.0}).median));
-  CHECK_THROWS_AS(calc_spread({}), std::invalid_argument);
 }
 
 }  // namespace

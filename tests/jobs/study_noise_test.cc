@@ -6,7 +6,7 @@
 
 #include "base/text/format_number.h"
 #include "io/format/csv.h"
-#include "tests/jobs/study_files.h"
+#include "tests/jobs/study_program.h"
 
 namespace strut {
 namespace {
@@ -14,49 +14,21 @@ namespace {
 using Catch::Matchers::Contains;
 using test::drop_seconds;
 using test::JsonTree;
+using test::NoiseStudyFiles;
 using test::Outcome;
 using test::read_folder;
 using test::run_program;
-using test::StudyFiles;
+using test::StudyProgram;
 namespace fs = std::filesystem;
 
-constexpr char kWindows[] = R"(
-[grid]
-front_stiffness = { from = 40000, to = 35500 }
-rear_stiffness  = { from = 35000, to = 30500 }
-speed           = { from = 19.5,  to = 20.5 }
-[sample]
-method = "sobol"
-strata = 1
-count  = 90
-[integrate]
-closure = "table"
-[record]
-snapshot = { when = "rear_wheels_on_bump", channels = ["body_position_z"] }
-history = { rate = 250, channels = ["imu_rate_y", "imu_acceleration_z"] }
-)";
-
-constexpr char kNoise[] = R"(
-[noise]
-window_sweep = "windows.toml"
-window = [0.3, 1.3]
-scales = [0.1, 1]
-copies = 3
-fits   = 12
-)";
 constexpr int kFits = 12;
 constexpr double kScales[] = {0.1, 1.0};
 const std::vector<std::string> kParameters = {"front_stiffness", "rear_stiffness"};
 
-class NoiseStudyFiles : public StudyFiles {
- public:
-  NoiseStudyFiles() : StudyFiles(kNoise) { write_sweep("windows.toml", kWindows); }
-};
-
 /// A study that has run, made once; tests that change it take a copy.
-const StudyFiles& get_study() {
-  static const NoiseStudyFiles files;
-  static const StudyFiles& made = test::require_run(files);
+const StudyProgram<NoiseStudyFiles>& get_study() {
+  static const StudyProgram<NoiseStudyFiles> files;
+  static const StudyProgram<NoiseStudyFiles>& made = test::require_run(files);
   return made;
 }
 
@@ -274,7 +246,8 @@ TEST_CASE("Bounds of other cases are computed anew", "[io][slow]") {
   std::ofstream(file) << before.substr(0, row) + "9999" + before.substr(end);
   const Outcome again = get_study().run("", "other");
   CHECK(again.code == 0);
-  CHECK_THAT(again.messages, Contains("bounds_trimmed.csv: computed anew, it was of other cases"));
+  CHECK_THAT(again.messages,
+             Contains("bounds_trimmed.csv: computed anew: it belonged to other cases"));
   CHECK(test::read_text(file) == before);
 }
 
@@ -295,11 +268,11 @@ TEST_CASE("A study that is stopped among its fits goes on to the same numbers", 
 }
 
 TEST_CASE("A study keeps a copy of its windows' sweep", "[io][slow]") {
-  const NoiseStudyFiles files;
+  const StudyProgram<NoiseStudyFiles> files;
   const fs::path root = files / "made";
   fs::copy(get_study() / "made", root, fs::copy_options::recursive);
   CHECK(files.run().code == 0);  // the same sweep in another folder
-  std::string text = kWindows;
+  std::string text = test::kWindows;
   text.replace(text.find("20.5"), 4, "20.4");
   files.write_sweep("windows.toml", text);
   const Outcome changed = files.run();
@@ -309,60 +282,12 @@ TEST_CASE("A study keeps a copy of its windows' sweep", "[io][slow]") {
   CHECK(run_program("report " + root.string()).code == 0);
 }
 
-TEST_CASE("Wrong words and numbers of a noise section are told", "[io]") {
-  const NoiseStudyFiles files;
-  files.write_sweep("more.toml", [] {
-    std::string text = kWindows;
-    return text.replace(text.find("speed "), 6, "front_damping ");
-  }());
-  files.write_sweep("less.toml", [] {
-    std::string text = kWindows;
-    return text.replace(text.find("rear_stiffness"), 14, "rear_damping");
-  }());
-  files.write_sweep("deaf.toml", [] {
-    std::string text = kWindows;
-    return text.replace(text.find("imu_rate_y"), 10, "front_left_tire_deflection");
-  }());
-  struct Fault {
-    const char *from, *to, *said;
-  };
-  const Fault faults[] = {
-      {"\"windows.toml\"", "\"none.toml\"", "none.toml"},
-      {"\"windows.toml\"", "\"sweep.toml\"", "records no histories"},
-      {"\"windows.toml\"", "\"less.toml\"", "rear_stiffness"},
-      {"\"windows.toml\"", "\"deaf.toml\"", "front_left_tire_deflection"},
-      {"window_sweep = \"windows.toml\"", "", "window_sweep"},
-      {"[0.3, 1.3]", "[0.3]", "two times"},
-      {"[0.3, 1.3]", "[1.3, 0.3]", "must begin before it ends"},
-      {"[0.3, 1.3]", "[0.3, 3.0]", "must begin before it ends"},
-      {"[0.3, 1.3]", "[0.0, 1.3]", "must begin before it ends"},
-      {"[0.1, 1]", "[1, 0.1]", "ascending"},
-      {"[0.1, 1]", "[1, 1]", "ascending"},
-      {"[0.1, 1]", "[]", "scales"},
-      {"[0.1, 1]", "[0, 1]", "scales"},
-      {"copies = 3", "copies = 0", "noise.copies = 0"},
-      {"fits   = 12", "fits = 0", "noise.fits = 0"},
-      {"fits   = 12", "fits = 2.5", "noise.fits"},
-      {"fits   = 12", "fit = 12", "did you mean 'fits'"},
-      {"fits   = 12", "hit_time = 0", "noise.hit_time = 0"},
-      {"fits   = 12", "network = \"smal\"", "did you mean 'small'"},
-      {"[training]", "[main]\ninputs = \"one\"\n[training]", "as many main inputs"},
-  };
-  for (const Fault& fault : faults) {
-    std::string study = files.change(fault.from, fault.to);
-    if (std::string(fault.said) == "as many main inputs") {
-      std::ofstream(study) << [&] {
-        std::string text = std::string(test::kStudy) + kNoise;
-        text.replace(text.find("[best_instant]"), 14, "one = [\"pitch_angle\"]\n[best_instant]");
-        return text.replace(text.find("[training]"), 10, fault.to);
-      }();
-    }
-    const Outcome outcome = files.run_file(study, "never");
-    INFO(fault.to);
-    CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains(fault.said));
-    CHECK_FALSE(fs::exists(files / "never"));
-  }
+TEST_CASE("A fault in a noise section is refused before a folder is made", "[io]") {
+  const StudyProgram<NoiseStudyFiles> files;
+  const Outcome outcome = files.run_file(files.change("[0.3, 1.3]", "[0.3, 3.0]"), "never");
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.messages, Contains("study2.toml") && Contains("must begin before it ends"));
+  CHECK_FALSE(fs::exists(files / "never"));
 }
 
 }  // namespace

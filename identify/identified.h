@@ -1,0 +1,46 @@
+// Identified parameters with their intervals, the same for all methods.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace strut {
+
+/// One parameter; unknown numbers are NaN.
+struct IdentifiedParameter {
+  std::string name, unit;
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double half_width = std::numeric_limits<double>::quiet_NaN();  // of the 95 % interval
+  bool in_range = true;  // false: outside of the range that the model knows
+
+  double low() const { return value - half_width; }
+  double high() const { return value + half_width; }
+};
+
+/// A measured channel outside of the range that a model was trained on.
+struct OutsideChannel {
+  std::string name, unit;
+  double value = 0.0, low = 0.0, high = 0.0;
+  double excess = 0.0;  // below low (negative) or above high, as a fraction of high - low
+};
+
+/// The parameters from one snapshot, one window or one set of runs.
+struct IdentifiedRow {
+  std::string source;  // of the measurement: "drive.csv:12"
+  std::vector<IdentifiedParameter> parameters;
+  std::vector<OutsideChannel> outside;
+
+  /// True where all channels and parameters are in range.
+  bool in_range() const;
+};
+
+bool are_in_range(const std::vector<IdentifiedRow>& rows);
+
+/// Writes the columns row (from 0), NAME, NAME_low, NAME_high for each parameter, and in_range (1
+/// or 0); unknown numbers are nan. Throws EnvironmentError.
+void write_identified_csv(const std::filesystem::path& path,
+                          const std::vector<IdentifiedRow>& rows);
+
+}  // namespace strut
