@@ -145,19 +145,19 @@ TEST_CASE("Training on windows refuses what it cannot do", "[io]") {
   check("--window 0.35:1.45", {"--window = 0.35:1.45", "lie in [0.092, 1.408] s"});
   check("--window 0.35:1.2 --inputs pitch_angle",
         {"no history channel 'pitch_angle'", "imu_rate_y"});
-  check("--window 0.35:1.2 --noise imu_rate_x=1", {"--noise: 'imu_rate_x' is no input"});
+  check("--window 0.35:1.2 --noise imu_rate_x=1", {"--noise: 'imu_rate_x' is not an input"});
   check("--window 0.35:1.2 --noise imu_rate_y=-1", {"noise of imu_rate_y = -1: must be > 0"});
   check("--window 0.35:1.2 --bias imu_rate_y=-1", {"bias of imu_rate_y = -1"});
   check("--window 0.35:1.2 --hit-time-sigma -1", {"--hit-time-sigma"});
   check("--window 0.35:1.2 --noise imu_rate_y=0", {"noise of imu_rate_y = 0: must be > 0 rad/s"});
-  check("--window 0.35:1.2 --noise imu_rate_y", {"--noise 'imu_rate_y': must be name=value"});
+  check("--window 0.35:1.2 --noise imu_rate_y", {"--noise: 'imu_rate_y': must be name=value"});
   check("--window 0.35:1.2 --copies 0", {"--copies = 0"});
   check("--window 0.35:1.2 --align 1", {"the histories, 1.5 s, have no room"});
   check("--window 0.35:1.2 --align 0.001", {"--align", "records agree best"});
   check("--align 0.01", {"--align needs --window"});
   check("--copies 3", {"--copies needs --noise"});
   check("--noise front_left_spring_force=1",
-        {"--noise: 'front_left_spring_force' is no input", "body_position_z"});
+        {"--noise: 'front_left_spring_force' is not an input", "body_position_z"});
 }
 
 }  // namespace
