@@ -1,5 +1,5 @@
-// The subject of a simulation: a car in a maneuver, or a rig under its inputs. Its ModelInfo says
-// what it can do.
+// The subject of a simulation: a car in a maneuver, or a rig under its inputs. Its ModelInfo
+// describes its capabilities.
 #pragma once
 
 #include <utility>
@@ -14,8 +14,8 @@ namespace strut {
 
 class Model {
  public:
-  Model(Case c) : of_(std::move(c)) {}     // NOLINT(google-explicit-constructor)
-  Model(RigCase c) : of_(std::move(c)) {}  // NOLINT(google-explicit-constructor)
+  Model(Case c) : case_(std::move(c)) {}     // NOLINT(google-explicit-constructor)
+  Model(RigCase c) : case_(std::move(c)) {}  // NOLINT(google-explicit-constructor)
 
   const ModelInfo& info() const;
   const EffectSettings& effects() const;
@@ -23,28 +23,28 @@ class Model {
   const ForceMaps& force_maps() const;
   ForceMaps& force_maps();
 
-  /// The car and its maneuver, of a model that no recorded input drives; CheckError of others.
+  /// The car and its maneuver; throws CheckError for a rig.
   const Case& car() const;
   Case& car();
-  /// The rig and its inputs, of a model that these drive; CheckError of others.
+  /// The rig and its inputs; throws CheckError for a car.
   const RigCase& rig() const;
   RigCase& rig();
 
-  /// The highest undamped natural frequency [rad/s] as far as a rig's linear parts tell; else 0.
+  /// Highest undamped natural frequency of a rig's linear parts [rad/s]; 0 for a car.
   double calc_fastest_mode() const;
 
-  /// Calls `visitor` with the Case or RigCase: for what only one of them has.
+  /// Calls `visitor` with the Case or RigCase, for features that only one of them has.
   template <class Visitor>
   decltype(auto) visit(const Visitor& visitor) const {
-    return std::visit(visitor, of_);
+    return std::visit(visitor, case_);
   }
   template <class Visitor>
   decltype(auto) visit(const Visitor& visitor) {
-    return std::visit(visitor, of_);
+    return std::visit(visitor, case_);
   }
 
  private:
-  std::variant<Case, RigCase> of_;
+  std::variant<Case, RigCase> case_;
 };
 
 /// Every kind of model: the car, then the rigs.

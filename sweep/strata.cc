@@ -165,7 +165,7 @@ Strata make_strata(const SweepRequest& request, const CasePoints& points) {
 int calc_stratum(const Strata& strata, const CasePoints& points, std::int64_t id) {
   if (strata.axis >= 0) {
     const AxisPart part = points.calc_part(id, static_cast<std::size_t>(strata.axis));
-    return find_layer(part.index, part.count, static_cast<int>(strata.list.size()));
+    return find_stratum(part.index, part.count, static_cast<int>(strata.list.size()));
   }
   const RankedPoint rank = rank_case(strata.losses, points, id);
   return static_cast<int>(std::upper_bound(strata.first.begin(), strata.first.end(), rank) -

@@ -1,4 +1,4 @@
-// Invariants of strut itself: a broken one is a bug, not the user's fault nor the machine's.
+// Invariants of strut itself: a violation is a bug, not an error of the user or the machine.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace strut {
 
-/// The program ends with exit code 70 and asks for a report.
+/// A violated invariant. The program ends with exit code 70 and asks for a bug report.
 class CheckError : public std::logic_error {
   using std::logic_error::logic_error;
 };
@@ -17,7 +17,7 @@ class CheckError : public std::logic_error {
 
 }  // namespace strut
 
-/// Throws CheckError with `what` where `condition` does not hold; `what` is only made then.
+/// Throws CheckError with `what` where `condition` is false; `what` is evaluated only then.
 #define STRUT_CHECK(condition, what)                           \
   do {                                                         \
     if (!(condition)) ::strut::fail_check(#condition, (what)); \

@@ -10,12 +10,13 @@ namespace strut {
 struct CholeskyKernel {
   const char* isa;  // "baseline", "avx2", "avx512"
 
-  // A = L L', lower triangle by columns, `lead` numbers from one to the next.
+  /// Factors A = L L' in place, lower triangle by columns that are `lead` numbers apart; false
+  /// where A is not positive definite.
   bool (*factor_diagonal)(double* a, std::size_t n, std::size_t lead);
-  /// b = b L^-T, b being rows x n.
+  /// b = b L^-T with b of rows x n.
   void (*solve_panel)(const double* l, std::size_t n, double* b, std::size_t rows,
                       std::size_t lead);
-  /// c -= a b', a being rows x depth, b columns x depth.
+  /// c -= a b' with a of rows x depth and b of columns x depth.
   void (*update_panel)(const double* a, const double* b, double* c, std::size_t rows,
                        std::size_t columns, std::size_t depth, std::size_t lead);
   /// x = A^-1 x.
@@ -24,7 +25,7 @@ struct CholeskyKernel {
 
 /// Kernels that this processor can run, widest first; never empty.
 const std::vector<CholeskyKernel>& list_cholesky_kernels();
-/// The widest.
+/// The widest kernel.
 const CholeskyKernel& get_cholesky_kernel();
 
 }  // namespace strut

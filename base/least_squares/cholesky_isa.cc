@@ -1,5 +1,5 @@
 // Parts of a Cholesky factorization for one instruction set: compiled once for each, with STRUT_ISA
-// naming it.
+// defined as its name.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
@@ -21,7 +21,7 @@ bool factor_diagonal(double* a, std::size_t n, std::size_t lead) {
   const Eigen::LLT<Eigen::Ref<ColumnMatrix, 0, Stride>> factor(in_place);
   if (factor.info() != Eigen::Success) return false;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!(a[i * lead + i] > 0.0)) return false;  // Eigen lets NaN pass
+    if (!(a[i * lead + i] > 0.0)) return false;  // Eigen does not report NaN
   }
   return true;
 }
@@ -52,7 +52,7 @@ void solve(const double* l, std::size_t n, double* x) {
 extern "C" strut::CholeskyKernel STRUT_ISA_NAME(strut_cholesky_)();
 
 extern "C" strut::CholeskyKernel STRUT_ISA_NAME(strut_cholesky_)() {
-  // Eigen cuts its sums by the size of the caches. Asked of the processor, results would differ
+  // Eigen splits its sums by the cache sizes. With those of the processor, results would differ
   // between machines of one instruction set.
   Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
   return {STRUT_ISA_STRING, &factor_diagonal, &solve_panel, &update_panel, &solve};

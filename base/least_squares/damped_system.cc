@@ -40,7 +40,7 @@ bool DampedSystem::factor(const std::vector<double>& h, const std::vector<double
       const std::size_t row = next + p * kPanel;
       kernel_->solve_panel(a + k * n + k, width, a + k * n + row, std::min(kPanel, n - row), n);
     });
-    // The panels shrink to the right: the largest are handed out first.
+    // The panels shrink to the right, so ascending order starts with the largest.
     share_items(threads_, panels, [&](std::size_t p, int) {
       const std::size_t at = next + p * kPanel;
       kernel_->update_panel(a + k * n + at, a + k * n + at, a + at * n + at, n - at,

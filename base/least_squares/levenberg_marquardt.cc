@@ -1,5 +1,7 @@
 #include "base/least_squares/levenberg_marquardt.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -9,12 +11,12 @@
 namespace strut {
 namespace {
 
-/// mu below this is no damping; trainlm stops decreasing there, too.
-constexpr double kLeastDamping = 1e-20;
-/// The rules' own first mu.
-constexpr double kFirstDamping = 0.1, kTrainlmDamping = 1e-3;
+/// Minimum of mu, below which damping has no effect; the same as trainlm's.
+constexpr double kMinDamping = 1e-20;
+/// Default of the first mu, by rule.
+constexpr double kGainRatioDamping = 0.1, kTrainlmDamping = 1e-3;
 
-double now() {
+double get_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
@@ -64,8 +66,8 @@ void LevenbergMarquardt::start(const std::vector<double>& weights) {
 
 void LevenbergMarquardt::restore(const LevenbergMarquardtState& state) {
   if (state.weights.size() != problem_->weight_count()) {
-    throw InputError("training: " + std::to_string(state.weights.size()) +
-                     " start weights; the network has " + std::to_string(problem_->weight_count()));
+    throw InputError(fmt::format("training: {} start weights; the network has {}",
+                                 state.weights.size(), problem_->weight_count()));
   }
   state_ = state;
 }
@@ -80,16 +82,16 @@ TrainingSummary LevenbergMarquardt::run(const EpochCallback& callback) {
 
 bool LevenbergMarquardt::step() {
   if (state_.stop != StopReason::kNone) return false;
-  const double start = now();
+  const double start = get_seconds();
   begin_epoch();
   if (callback_) callback_(record_, state_);
-  state_.stop = check_stops(state_.seconds + now() - start);
+  state_.stop = check_stops(state_.seconds + get_seconds() - start);
   if (state_.stop == StopReason::kNone && !find_step()) state_.stop = StopReason::kDamping;
   if (state_.stop == StopReason::kNone) {
     ++state_.epoch;
     update_validation();
   }
-  state_.seconds += now() - start;
+  state_.seconds += get_seconds() - start;
   return state_.stop == StopReason::kNone;
 }
 
@@ -112,12 +114,12 @@ void LevenbergMarquardt::update_scale() {
     if (identity) continue;
     const double before = options_.scale == DampingScale::kDiagonal ? 0.0 : state_.scale[i];
     state_.scale[i] = std::max(before, diagonal);
-    if (state_.scale[i] == 0.0) state_.scale[i] = 1.0;  // a weight without effect stays
+    if (state_.scale[i] == 0.0) state_.scale[i] = 1.0;  // keeps a weight without effect constant
   }
   if (state_.damping == 0.0) {
     const bool by_ratio = options_.rule == DampingRule::kGainRatio;
-    const double own = by_ratio ? kFirstDamping : kTrainlmDamping;
-    state_.damping = (options_.first_damping > 0.0 ? options_.first_damping : own) *
+    const double fallback = by_ratio ? kGainRatioDamping : kTrainlmDamping;
+    state_.damping = (options_.first_damping > 0.0 ? options_.first_damping : fallback) *
                      (by_ratio && identity ? largest : 1.0);
   }
 }
@@ -135,7 +137,8 @@ StopReason LevenbergMarquardt::check_stops(double seconds) const {
   return StopReason::kNone;
 }
 
-/// Raises mu until a step lowers the loss, and takes it; false where none does.
+/// Raises mu until a step lowers the loss and takes that step; false where mu reaches its maximum
+/// first.
 bool LevenbergMarquardt::find_step() {
   while (state_.damping <= options_.max_damping) {
     ++state_.trials;
@@ -152,7 +155,7 @@ bool LevenbergMarquardt::find_step() {
   return false;
 }
 
-/// Writes trial_ = weights + v + a; false where H + mu D has no factor or a is too long.
+/// Writes trial_ = weights + v + a; false where H + mu D is not positive definite or a is too long.
 bool LevenbergMarquardt::calc_step(double* predicted) {
   if (!system_.factor(h_, state_.scale, state_.damping)) return false;
   for (std::size_t i = 0; i < velocity_.size(); ++i) velocity_[i] = -gradient_[i];
@@ -161,12 +164,12 @@ bool LevenbergMarquardt::calc_step(double* predicted) {
     *predicted += velocity_[i] * (state_.damping * state_.scale[i] * velocity_[i] - gradient_[i]);
     trial_[i] = state_.weights[i] + velocity_[i];
   }
-  const bool bends = options_.accelerate && options_.rule == DampingRule::kGainRatio &&
-                     problem_->has_second_derivative();
-  return !bends || accelerate();
+  const bool accelerated = options_.accelerate && options_.rule == DampingRule::kGainRatio &&
+                           problem_->has_second_derivative();
+  return !accelerated || accelerate();
 }
 
-/// Adds a = -(H + mu D)^-1 J'e" / 2.
+/// Adds a = -(H + mu D)^-1 J'e" / 2 to trial_; false where a is too long.
 bool LevenbergMarquardt::accelerate() {
   problem_->calc_second_gradient(state_.weights.data(), velocity_.data(), acceleration_.data());
   system_.solve(acceleration_);
@@ -183,11 +186,11 @@ void LevenbergMarquardt::accept(double loss, double predicted) {
   prediction_ = predicted;
   double factor = options_.damping_decrease;
   if (options_.rule == DampingRule::kGainRatio) {
-    const double off = 2.0 * (loss_ - loss) / predicted - 1.0;
-    factor = std::max(1.0 / 3.0, 1.0 - off * off * off);
+    const double excess = 2.0 * (loss_ - loss) / predicted - 1.0;  // 2 ratio - 1
+    factor = std::max(1.0 / 3.0, 1.0 - excess * excess * excess);
     state_.growth = 2.0;
   }
-  state_.damping = std::max(kLeastDamping, state_.damping * factor);
+  state_.damping = std::max(kMinDamping, state_.damping * factor);
 }
 
 void LevenbergMarquardt::reject() {

@@ -1,7 +1,7 @@
-// Levenberg-Marquardt: minimize e'e by steps v with (H + mu D) v = -J'e, H = J'J.
+// Levenberg-Marquardt: minimizes e'e by steps v with (H + mu D) v = -J'e, H = J'J.
 //
-// K. Levenberg (1944), D. W. Marquardt (1963); the damping rules and the acceleration are cited at
-// the options that choose them.
+// K. Levenberg (1944), D. W. Marquardt (1963); the sources of the damping rules and of the
+// acceleration stand at their options.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +16,19 @@
 namespace strut {
 
 enum class DampingRule {
-  /// By the ratio of actual to predicted decrease: after a step mu max(1/3, 1 - (2 ratio - 1)^3),
-  /// after a failed one mu nu with nu = 2, 4, 8, ... H. B. Nielsen, IMM-REP-1999-05, Technical
-  /// University of Denmark.
+  /// By the ratio of actual to predicted decrease: an accepted step multiplies mu by
+  /// max(1/3, 1 - (2 ratio - 1)^3), a rejected one by nu = 2, 4, 8, ... H. B. Nielsen,
+  /// IMM-REP-1999-05, Technical University of Denmark.
   kGainRatio,
-  /// As MATLAB documents for trainlm: mu * damping_increase until the loss falls, then
-  /// mu * damping_decrease.
+  /// As MATLAB documents for trainlm: mu is multiplied by damping_increase until the loss falls,
+  /// then
+  /// by damping_decrease.
   kTrainlm,
 };
 
 enum class DampingScale {
-  kIdentity,         // D = I (Levenberg, trainlm): for networks, whose weights are alike
-  kDiagonal,         // D = diag(H) (Marquardt): parameters of different unit
+  kIdentity,         // D = I (Levenberg, trainlm): for networks, whose weights have one scale
+  kDiagonal,         // D = diag(H) (Marquardt): for parameters of different units
   kLargestDiagonal,  // D = largest diag(H) so far (J. J. More, 1978): shorter steps off plateaus
 };
 
@@ -35,30 +36,31 @@ struct LevenbergMarquardtOptions {
   DampingRule rule = DampingRule::kGainRatio;
   DampingScale scale = DampingScale::kIdentity;
 
-  /// Add the second-order term of the path (M. K. Transtrum, J. P. Sethna, arXiv 1201.5885) to a
+  /// Adds the second-order term of the path (M. K. Transtrum, J. P. Sethna, arXiv 1201.5885) to a
   /// step where the problem has second derivatives: half the iterations for one more back
-  /// substitution and one pass. Only with kGainRatio; trainlm has none.
+  /// substitution and one pass. Only with kGainRatio; trainlm has no such term.
   bool accelerate = true;
-  /// Largest 2 |a| / |v| of a step v + a; beyond, the step is no better known than its correction
-  /// and is not tried. Transtrum and Sethna's choice.
+  /// Maximum of 2 |a| / |v| for a step v + a, by Transtrum and Sethna; longer corrections are
+  /// rejected untried.
   double max_acceleration = 0.75;
 
-  /// First mu; 0: the rule's own. kGainRatio: relative to the largest element of diag(H) (to D with
-  /// the other scales), by itself 0.1, within Nielsen's 1e-3 to 1 for starts that are not known to
-  /// be good. kTrainlm: as it is, by itself trainlm's 1e-3.
+  /// First mu; 0: the default of the rule. kGainRatio: relative to the largest element of diag(H)
+  /// (to D with the other scales), default 0.1, within Nielsen's 1e-3 to 1 for uncertain starts.
+  /// kTrainlm: absolute, default 1e-3 as in trainlm.
   double first_damping = 0.0;
-  double damping_increase = 10.0;  // kTrainlm alone, its default
-  double damping_decrease = 0.1;   // kTrainlm alone, its default
-  /// mu beyond which no step can help any more: trainlm's default (with kDiagonal relative to D).
+  double damping_increase = 10.0;  // kTrainlm only, its default
+  double damping_decrease = 0.1;   // kTrainlm only, its default
+  /// Maximum of mu, beyond which the search stops: trainlm's default (with kDiagonal relative to
+  /// D).
   double max_damping = 1e10;
 
   int epochs = 1000;                                         // accepted steps, trainlm's default
-  double seconds = std::numeric_limits<double>::infinity();  // s; ends after the epoch at hand
-  double goal = 0.0;           // of e'e / residual_count(), trainlm's default
-  double min_gradient = 1e-7;  // of |2 J'e / residual_count()|, trainlm's default
+  double seconds = std::numeric_limits<double>::infinity();  // s; checked once per epoch
+  double goal = 0.0;           // for e'e / residual_count(), trainlm's default
+  double min_gradient = 1e-7;  // for |2 J'e / residual_count()|, trainlm's default
   int max_failures = 6;        // epochs without a new validation minimum, trainlm's default
 
-  int threads = 1;  // of the factorization; no result depends on it
+  int threads = 1;  // for the factorization; no result depends on it
 
   /// Throws InputError naming the field, its value and what is allowed.
   void validate() const;
@@ -74,31 +76,30 @@ enum class StopReason {
   kValidation,
   kNotFinite
 };
-/// "epochs", "validation failures", ...
+/// Name for reports: "epochs", "validation failures", ...
 const char* get_name(StopReason reason);
 
 /// The state of the search at an epoch, before its step.
 struct EpochRecord {
   int epoch = 0;
   double loss = 0.0;        // e'e / residual_count()
-  double validation = 0.0;  // the same of the validation rows; NaN without
+  double validation = 0.0;  // the same for the validation rows; NaN without them
   double gradient = 0.0;    // |2 J'e / residual_count()|
-  double damping = 0.0;     // mu with which its first step is tried
+  double damping = 0.0;     // mu of the first trial step
 };
 
-/// Everything that a training is between two epochs: stored and restored, it goes on as if it had
-/// not stopped, bit for bit.
+/// The complete state of a training between two epochs: a restored training continues bit for bit.
 struct LevenbergMarquardtState {
   std::vector<double> weights;
   int epoch = 0;                 // steps taken
-  double damping = 0.0;          // mu; 0: not chosen yet
+  double damping = 0.0;          // mu; 0: not set yet
   double growth = 2.0;           // nu of Nielsen's rule
-  std::vector<double> scale;     // D; empty: not chosen yet
+  std::vector<double> scale;     // D; empty: not set yet
   double validation = 0.0;       // at `weights`; NaN without validation
-  double best_validation = 0.0;  // smallest so far
-  int best_epoch = 0;            // where that was
+  double best_validation = 0.0;  // minimum so far
+  int best_epoch = 0;            // epoch of the minimum
   std::vector<double> best_weights;
-  int failures = 0;      // epochs since
+  int failures = 0;      // epochs since the minimum
   long trials = 0;       // factorizations so far
   double seconds = 0.0;  // s, time spent so far
   StopReason stop = StopReason::kNone;
@@ -106,11 +107,11 @@ struct LevenbergMarquardtState {
 
 struct TrainingSummary {
   StopReason reason = StopReason::kNone;
-  /// At the validation minimum; without validation rows where the training stopped.
+  /// Weights at the validation minimum; without validation rows the last ones.
   std::vector<double> weights;
-  EpochRecord last;              // the epoch at which it stopped
-  int best_epoch = 0;            // of `weights`
-  double best_validation = 0.0;  // NaN without
+  EpochRecord last;              // the last epoch
+  int best_epoch = 0;            // epoch of `weights`
+  double best_validation = 0.0;  // NaN without validation rows
   long trials = 0;               // factorizations
   double seconds = 0.0;          // s
 
@@ -118,7 +119,7 @@ struct TrainingSummary {
   std::string make_report() const;
 };
 
-/// Called with each epoch's record and the state of before its step.
+/// Called with each epoch's record and the state before its step.
 using EpochCallback = std::function<void(const EpochRecord&, const LevenbergMarquardtState&)>;
 
 class LevenbergMarquardt {
@@ -128,14 +129,14 @@ class LevenbergMarquardt {
                      const LevenbergMarquardtOptions& options,
                      const CholeskyKernel& kernel = get_cholesky_kernel());
 
-  /// Begins at these weights, one for each of the problem's.
+  /// Starts at these weights. Throws InputError for a wrong number of weights.
   void start(const std::vector<double>& weights);
-  /// Goes on from a state of the same problem and options.
+  /// Continues from a state of the same problem and options.
   void restore(const LevenbergMarquardtState& state);
 
-  /// Runs one epoch. False once it has stopped; state().stop says why.
+  /// Runs one epoch. False once the search has stopped; state().stop is the reason.
   bool step();
-  /// Steps until it stops.
+  /// Runs epochs until the search stops.
   TrainingSummary run(const EpochCallback& callback = {});
 
   const LevenbergMarquardtState& state() const { return state_; }

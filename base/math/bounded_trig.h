@@ -1,6 +1,6 @@
 // Sine, cosine and arctangent for arguments whose bounds are known.
 //
-// The tire evaluates some twenty of them per wheel. The general functions of a vector library
+// The tire evaluates about twenty of them per wheel. The general functions of a vector library
 // reduce large arguments and take up to three divisions each; here it is one division for the
 // arctangent and none for sine and cosine. Polynomials: interpolation of atan(sqrt z)/sqrt z on [0,
 // 1] and of sin(sqrt z)/sqrt z on [0, (pi/2)^2] at the Chebyshev nodes in 50 digits, truncation

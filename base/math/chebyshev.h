@@ -1,4 +1,4 @@
-// Interpolation of smooth functions at Chebyshev nodes, and its polynomials.
+// Interpolation of smooth functions by polynomials at Chebyshev nodes.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@ namespace strut {
 
 inline constexpr int kChebyshevNodes = 40;
 
-/// Node i = 0..kChebyshevNodes-1 of the first kind on [-1, 1], falling with i.
+/// Node i = 0..kChebyshevNodes-1 of the first kind on [-1, 1], in descending order.
 double calc_chebyshev_node(int i);
 
 /// Coefficients of T_0, T_1, ... of the interpolant through values at the nodes.
 std::vector<long double> calc_chebyshev_series(const std::vector<double>& values);
 
-/// Coefficients of 1, x, x^2, ... of the series cut off after T_degree.
+/// Coefficients of 1, x, x^2, ... of the series truncated after T_degree.
 std::vector<long double> convert_to_powers(const std::vector<long double>& series, int degree);
 
-/// Lowest degree beyond which every coefficient is below tolerance * max(largest, floor).
+/// Minimum degree beyond which every coefficient is below tolerance * max(largest, floor).
 int find_degree(const std::vector<long double>& series, long double tolerance, long double floor);
 
 }  // namespace strut

@@ -11,8 +11,8 @@ struct PhiFunctions {
   T exponential, phi1, phi2, phi3, phi4;
 };
 
-/// Taylor series of phi_4 below |z| = 1 and the recurrence downwards; the definition above it,
-/// where it loses no more than a few units in the last place.
+/// For |z| < 1 the Taylor series of phi_4 and the downward recurrence; beyond, the definition,
+/// which loses no more than a few units in the last place there.
 template <class T>
 PhiFunctions<T> calc_phi(const T& z) {
   constexpr int kTerms = 17;

@@ -1,5 +1,7 @@
 #include "base/math/grid.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 
 #include "base/error/input_error.h"
@@ -7,10 +9,12 @@
 namespace strut {
 
 Grid::Grid(std::vector<Axis> axes) : axes_(std::move(axes)), size_(1) {
+  constexpr std::int64_t kMaxSize = std::numeric_limits<std::int64_t>::max();
   for (const Axis& axis : axes_) {
-    if (axis.count > std::numeric_limits<std::int64_t>::max() / size_) {
-      throw InputError("more than " + std::to_string(std::numeric_limits<std::int64_t>::max()) +
-                       " points; at most that many are allowed");
+    if (axis.count > kMaxSize / size_) {
+      throw InputError(fmt::format(
+          "the grid has more than {} points, the maximum; use fewer axes or larger steps",
+          kMaxSize));
     }
     size_ *= axis.count;
   }

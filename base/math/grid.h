@@ -1,5 +1,5 @@
-// A grid of parameter values that is never enumerated: a case id is a number in mixed radix, the
-// first axis slowest.
+// A grid of parameter values that is never enumerated: a case id is a mixed-radix number, first
+// axis slowest.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,9 @@
 
 namespace strut {
 
-/// `count` values from `from` in steps of `step`. For samples between the levels only the bounds
-/// count.
+/// `count` values from `from` in steps of `step`. Sampling between the levels uses only the bounds.
 struct Axis {
-  std::string name;  // of model_files/parameters.h
+  std::string name;  // a parameter (model_files/parameters.h)
   double from = 0.0;
   double step = 0.0;
   std::int64_t count = 1;
@@ -24,7 +23,7 @@ struct Axis {
 class Grid {
  public:
   Grid() = default;
-  /// Throws InputError where there are more points than an int64 counts.
+  /// Throws InputError where the number of points exceeds an int64.
   explicit Grid(std::vector<Axis> axes);
 
   const std::vector<Axis>& axes() const { return axes_; }

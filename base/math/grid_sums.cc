@@ -1,11 +1,12 @@
 #include "base/math/grid_sums.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <stdexcept>
-#include <string>
 
 namespace strut {
 namespace {
@@ -16,18 +17,18 @@ std::int64_t multiply(const std::vector<SumAxis>& axes, std::size_t begin, std::
   return product;
 }
 
-/// Where to cut so that the larger half is smallest.
+/// Number of axes in the first half; minimizes the size of the larger half.
 std::size_t find_cut(const std::vector<SumAxis>& axes) {
   std::size_t best = 0;
-  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  std::int64_t smallest = std::numeric_limits<std::int64_t>::max();
   for (std::size_t cut = 0; cut <= axes.size(); ++cut) {
     const std::int64_t larger = std::max(multiply(axes, 0, cut), multiply(axes, cut, axes.size()));
-    if (larger < least) least = larger, best = cut;
+    if (larger < smallest) smallest = larger, best = cut;
   }
   return best;
 }
 
-/// Sum of each point of axes [begin, end), by number.
+/// Sum of each point of axes [begin, end), by id.
 std::vector<std::int64_t> list_sums(const std::vector<SumAxis>& axes, std::size_t begin,
                                     std::size_t end) {
   std::vector<std::int64_t> sums = {0};
@@ -42,19 +43,20 @@ std::vector<std::int64_t> list_sums(const std::vector<SumAxis>& axes, std::size_
   return sums;
 }
 
-/// Pairs whose sum is at most `sum`. While one half's share grows, the place in the other only
-/// moves back; of halves that differ much, every place is searched for.
+/// Number of pairs whose sum is at most `sum`; both lists are ascending. As the value from `few`
+/// grows, the end of the matching values of `many` moves backwards: step by step, or by bisection
+/// where `many` is much longer.
 std::int64_t count_pairs(std::span<const std::int64_t> few, std::span<const std::int64_t> many,
                          std::int64_t sum) {
-  constexpr std::size_t kMuchMore = 32;
-  const bool search = many.size() > kMuchMore * few.size();
+  constexpr std::size_t kBisectionRatio = 32;
+  const bool bisect = many.size() > kBisectionRatio * few.size();
   std::int64_t count = 0;
   auto end = many.end();
-  for (const std::int64_t share : few) {
-    if (search) {
-      end = std::upper_bound(many.begin(), end, sum - share);
+  for (const std::int64_t value : few) {
+    if (bisect) {
+      end = std::upper_bound(many.begin(), end, sum - value);
     } else {
-      while (end != many.begin() && *(end - 1) > sum - share) --end;
+      while (end != many.begin() && *(end - 1) > sum - value) --end;
     }
     if (end == many.begin()) break;
     count += end - many.begin();
@@ -67,10 +69,9 @@ std::int64_t count_pairs(std::span<const std::int64_t> few, std::span<const std:
 GridSums::GridSums(const std::vector<SumAxis>& axes) : size_(multiply(axes, 0, axes.size())) {
   const std::size_t cut = find_cut(axes);
   const std::int64_t larger = std::max(multiply(axes, 0, cut), multiply(axes, cut, axes.size()));
-  if (larger > kLargestHalf) {
-    throw std::invalid_argument("the axes cannot be halved to at most " +
-                                std::to_string(kLargestHalf) + " points each, only to " +
-                                std::to_string(larger));
+  if (larger > kMaxHalf) {
+    throw std::invalid_argument(fmt::format(
+        "the axes split into halves of up to {} points; allowed: at most {}", larger, kMaxHalf));
   }
   high_ = list_sums(axes, 0, cut);
   sorted_high_ = high_;
@@ -100,15 +101,15 @@ RankedPoint GridSums::find(std::int64_t rank) const {
   return {sum, find_tie(sum, rank - count_up_to(below))};
 }
 
-/// Number of the point that is `place`-th among those of this sum.
-std::int64_t GridSums::find_tie(std::int64_t sum, std::int64_t place) const {
-  std::int64_t first = 0;  // number of the first point of this high part
+/// Id of the point that has `rank` points of the same sum before it.
+std::int64_t GridSums::find_tie(std::int64_t sum, std::int64_t rank) const {
+  std::int64_t first = 0;  // id of the first point with this high part
   for (const std::int64_t high : high_) {
     const auto [begin, end] = std::equal_range(sorted_low_.begin(), sorted_low_.end(), sum - high);
-    if (place < end - begin) {
-      return first + low_id_[static_cast<std::size_t>(begin - sorted_low_.begin() + place)];
+    if (rank < end - begin) {
+      return first + low_id_[static_cast<std::size_t>(begin - sorted_low_.begin() + rank)];
     }
-    place -= end - begin;
+    rank -= end - begin;
     first += static_cast<std::int64_t>(sorted_low_.size());
   }
   return -1;

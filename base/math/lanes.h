@@ -1,8 +1,8 @@
 // One scalar type for W simulations in lockstep.
 //
-// Physics is written once as a template over `T`; `T` is `double` or `Lanes<Backend>`. Everything
-// physics may ask of `T` is declared here and nowhere else. Comparing lanes gives a mask that does
-// not convert to `bool`, so a branch on a lane is a compile error; `select` is the only way.
+// Physics is written once as a template over `T`; `T` is `double` or `Lanes<Backend>`. This header
+// declares every operation on `T` that physics uses. Comparing lanes gives a mask that does not
+// convert to `bool`, so a branch on a lane is a compile error; `select` replaces it.
 #pragma once
 
 #include <array>
@@ -119,7 +119,7 @@ struct Lanes {
   }
 };
 
-// --- what generic code needs to know about T ------------------------------------------------
+// --- traits of T for generic code -----------------------------------------------------------
 
 template <class T>
 struct ScalarTraits {
@@ -132,7 +132,7 @@ struct ScalarTraits<double> {
   using Mask = bool;
 };
 
-/// Number of simulations a `T` holds.
+/// Number of simulations in a `T`.
 template <class T>
 inline constexpr int kLaneCount = ScalarTraits<T>::kWidth;
 
@@ -150,15 +150,15 @@ T square(const T& x) {
   return x * x;
 }
 
-/// Interleaves the fields of W plain structs of doubles into one struct of lanes: `Of<double>` and
-/// `Of<T>` hold the same fields in the same order and nothing but fields of their scalar.
-template <template <class> class Of, class T>
-Of<T> pack_lanes(const Of<double>* lanes) {
-  static_assert(std::is_trivially_copyable_v<Of<double>> && std::is_trivially_copyable_v<Of<T>>);
-  constexpr std::size_t kFields = sizeof(Of<double>) / sizeof(double);
-  static_assert(sizeof(Of<T>) == kFields * sizeof(T));
+/// Interleaves the fields of W plain structs of doubles into one struct of lanes: `X<double>` and
+/// `X<T>` hold the same fields in the same order, all of their scalar type.
+template <template <class> class X, class T>
+X<T> pack_lanes(const X<double>* lanes) {
+  static_assert(std::is_trivially_copyable_v<X<double>> && std::is_trivially_copyable_v<X<T>>);
+  constexpr std::size_t kFields = sizeof(X<double>) / sizeof(double);
+  static_assert(sizeof(X<T>) == kFields * sizeof(T));
   constexpr std::size_t kWidth = static_cast<std::size_t>(kLaneCount<T>);
-  Of<T> packed;
+  X<T> packed;
   auto* out = reinterpret_cast<unsigned char*>(&packed);
   for (std::size_t field = 0; field < kFields; ++field) {
     for (std::size_t lane = 0; lane < kWidth; ++lane) {

@@ -1,4 +1,4 @@
-// Eigen's view of arrays whose columns or rows are some way apart.
+// Eigen maps of arrays with a stride between columns or rows.
 #pragma once
 
 #include <Eigen/Core>

@@ -10,10 +10,11 @@
 
 namespace strut {
 
-/// Half width of the interval that holds 95 % of a normal distribution, in standard deviations.
+/// Half width of the central 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double kNormal95 = 1.959963984540054;
 
-/// Two independent standard normal numbers.
+/// Two independent standard normal numbers, by the trigonometric form of G. E. P. Box, M. E. Muller
+/// (1958).
 inline std::pair<double, double> calc_normal_pair(std::uint64_t seed, std::uint64_t stream,
                                                   std::uint64_t counter) {
   const double u = calc_uniform(seed, stream, 2 * counter);
@@ -22,7 +23,7 @@ inline std::pair<double, double> calc_normal_pair(std::uint64_t seed, std::uint6
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Standard normal number of a place, by the polar form of G. E. P. Box, M. E. Muller (1958).
+/// The first of calc_normal_pair.
 inline double calc_normal(std::uint64_t seed, std::uint64_t stream, std::uint64_t counter) {
   return calc_normal_pair(seed, stream, counter).first;
 }

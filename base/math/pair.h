@@ -1,7 +1,7 @@
-// Two of the same in step: the left and right wheel of an axle through one piece of code.
+// Two values evaluated in step: the left and right wheel of an axle.
 //
 // Long chains of dependent operations (the arctangents of the tire) leave a processor waiting.
-// Evaluating two wheels at once gives it a second, independent chain to work on meanwhile.
+// Evaluating two wheels at once gives it a second, independent chain to work on.
 #pragma once
 
 #include "base/math/lanes.h"
@@ -54,8 +54,7 @@ struct Pair {
   }
 };
 
-/// One struct of pairs from two structs, field by field; `X` holds nothing but fields of its
-/// scalar.
+/// Makes one struct of pairs from two structs, field by field; all fields of `X<T>` are of type T.
 template <template <class> class X, class T>
 X<Pair<T>> join_pair(const X<T>& a, const X<T>& b) {
   constexpr std::size_t kFields = sizeof(X<T>) / sizeof(T);
@@ -71,7 +70,7 @@ X<Pair<T>> join_pair(const X<T>& a, const X<T>& b) {
   return pair;
 }
 
-/// The reverse of join_pair.
+/// The inverse of join_pair.
 template <template <class> class X, class T>
 void split_pair(const X<Pair<T>>& pair, X<T>& a, X<T>& b) {
   constexpr std::size_t kFields = sizeof(X<T>) / sizeof(T);

@@ -1,20 +1,22 @@
 #include "base/math/permutation.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
-#include <string>
 
 #include "base/math/random.h"
 
 namespace strut {
 namespace {
 
-/// Four already look random to an observer of few values (Luby, Rackoff); the rest is margin.
+/// Four rounds suffice against an observer of few values (M. Luby, C. Rackoff, 1988); the rest is
+/// margin.
 constexpr int kRounds = 8;
-constexpr int kLeastHalfBits = 4;
-constexpr std::int64_t kLargest = std::int64_t{1} << 62;
+constexpr int kMinHalfBits = 4;
+constexpr std::int64_t kMaxSize = std::int64_t{1} << 62;
 
 int find_half_bits(std::int64_t n) {
-  int bits = kLeastHalfBits;
+  int bits = kMinHalfBits;
   while (n > std::int64_t{1} << (2 * bits)) ++bits;
   return bits;
 }
@@ -23,15 +25,14 @@ int find_half_bits(std::int64_t n) {
 
 Permutation::Permutation(std::int64_t n, std::uint64_t seed, std::uint64_t stream)
     : size_(n), seed_(seed), stream_(stream), half_bits_(0) {
-  if (n < 1 || n > kLargest) {
-    throw std::invalid_argument("Permutation: n = " + std::to_string(n) +
-                                ": must lie in [1, 2^62]");
+  if (n < 1 || n > kMaxSize) {
+    throw std::invalid_argument(fmt::format("Permutation: n = {}: must lie in [1, 2^62]", n));
   }
   half_bits_ = find_half_bits(n);
 }
 
 std::uint64_t Permutation::calc_round(int round, std::uint64_t half) const {
-  // A half has at most 31 bits: round and half share the counter.
+  // A half has at most 31 bits, so round and half fit into one counter.
   const std::uint64_t counter = half | static_cast<std::uint64_t>(round) << 32;
   return calc_random_bits(seed_, stream_, counter) >> (64 - half_bits_);
 }

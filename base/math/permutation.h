@@ -1,23 +1,24 @@
-// A random order of 0 .. n - 1 that is computed, not stored.
+// A random permutation of 0 .. n - 1 that is computed, not stored.
 #pragma once
 
 #include <cstdint>
 
 namespace strut {
 
-/// Keyed bijection of [0, n) by index, in constant memory: a balanced Feistel network over the next
-/// even number of bits whose round function is Philox, walked along its cycle until it is back
-/// below n (J. Black, P. Rogaway: "Ciphers with arbitrary finite domains", CT-RSA 2002). Small n
-/// take a larger network, because few bits leave few networks to choose from.
+/// Keyed bijection of [0, n), in constant memory: a balanced Feistel network over the next even
+/// number of bits, with Philox as round function and cycle walking until the value is below n
+/// (J. Black, P. Rogaway: "Ciphers with arbitrary finite domains", CT-RSA 2002). Small n use a
+/// larger network, because a few bits allow only a few networks.
 class Permutation {
  public:
-  /// 0 < n <= 2^62; throws std::invalid_argument. `stream` tells permutations of one seed apart.
+  /// Throws std::invalid_argument unless 0 < n <= 2^62. Different streams of one seed give
+  /// independent permutations.
   Permutation(std::int64_t n, std::uint64_t seed, std::uint64_t stream);
 
   std::int64_t size() const { return size_; }
-  /// Where `index` of [0, n) goes.
+  /// The value in [0, n) at `index`.
   std::int64_t apply(std::int64_t index) const;
-  /// The number that the permutation maps to `value`.
+  /// The index of `value`.
   std::int64_t invert(std::int64_t value) const;
 
  private:

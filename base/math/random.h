@@ -1,5 +1,5 @@
-// Counter-based random numbers: the value of a place, not the next of a sequence. Whoever asks, in
-// whatever order, on whatever thread, gets the same.
+// Counter-based random numbers: each value is a function of seed, stream and counter, whatever the
+// order of the calls and the number of threads.
 //
 // Philox4x32-10 of J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw: "Parallel random numbers: as
 // easy as 1, 2, 3", SC11, doi:10.1145/2063384.2063405, from their library Random123.
@@ -14,7 +14,7 @@ namespace strut {
 std::array<std::uint32_t, 4> calc_philox(const std::array<std::uint32_t, 4>& counter,
                                          const std::array<std::uint32_t, 2>& key);
 
-/// 64 random bits; another `stream` or `seed` is an independent sequence over `counter`.
+/// 64 random bits; each pair of `seed` and `stream` has an independent sequence over `counter`.
 std::uint64_t calc_random_bits(std::uint64_t seed, std::uint64_t stream, std::uint64_t counter);
 
 /// Uniform on [0, 1), a multiple of 2^-53.

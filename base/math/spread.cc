@@ -8,7 +8,7 @@
 namespace strut {
 namespace {
 
-/// Mean of f(value) over what is there.
+/// Mean of f(value) over the finite values; 0 without any.
 template <class F>
 double average(std::span<const double> values, const F& f) {
   double sum = 0.0;
@@ -36,16 +36,16 @@ double calc_spread(std::span<const double> values) {
   return std::sqrt(average(values, [mean](double v) { return (v - mean) * (v - mean); }));
 }
 
-double calc_quantile(std::span<const double> values, double share) {
-  std::vector<double> there;
-  there.reserve(values.size());
+double calc_quantile(std::span<const double> values, double fraction) {
+  std::vector<double> finite;
+  finite.reserve(values.size());
   for (const double v : values) {
-    if (std::isfinite(v)) there.push_back(v);
+    if (std::isfinite(v)) finite.push_back(v);
   }
-  if (there.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(there.size() - 1));
-  std::nth_element(there.begin(), there.begin() + at, there.end());
-  return there[static_cast<std::size_t>(at)];
+  if (finite.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(finite.size() - 1));
+  std::nth_element(finite.begin(), finite.begin() + at, finite.end());
+  return finite[static_cast<std::size_t>(at)];
 }
 
 std::size_t count_readings(std::span<const double> values) {

@@ -1,4 +1,4 @@
-// Instruction sets: code compiled once for each of them, chosen when the program runs.
+// Instruction sets: code that is compiled once for each of them and chosen at run time.
 //
 // A unit NAME_isa.cc is compiled once per instruction set with STRUT_ISA defined as the set's name
 // (.ci/cmake/isolate_isa.cmake) and exports one function, STRUT_ISA_NAME(prefix_). The unit that
@@ -26,7 +26,7 @@
 #else
 #define STRUT_AVX512_KERNEL(prefix) nullptr
 #endif
-/// Declares what the compiled units export.
+/// Declares the functions that the compiled units export.
 #define STRUT_DECLARE_KERNELS(Kernel, prefix) \
   extern "C" {                                \
   Kernel prefix##baseline();                  \
@@ -46,7 +46,8 @@ bool has_avx512();
 /// Names of the instruction sets of this build that this processor can run, widest first.
 std::vector<const char*> list_instruction_sets();
 
-/// Null where the build lacks the instruction set.
+/// Calls the functions whose instruction set this processor has; they are null where this build
+/// lacks the instruction set.
 template <class Kernel>
 std::vector<Kernel> list_runnable(Kernel (*avx512)(), Kernel (*avx2)(), Kernel (*baseline)()) {
   std::vector<Kernel> kernels;

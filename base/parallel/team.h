@@ -1,4 +1,4 @@
-// Work on every thread of an OpenMP team, in a form that ThreadSanitizer can follow.
+// Parallel work in OpenMP teams, in a form that ThreadSanitizer can follow.
 #pragma once
 
 #include <omp.h>
@@ -14,10 +14,10 @@
 
 namespace strut {
 
-/// Throws std::system_error where a team of `threads` cannot be started: libgomp would end the
-/// process. To be called before a parallel region, by the thread that enters it.
+/// Throws std::system_error where a team of `threads` cannot be started; libgomp would terminate
+/// the process instead. The thread that enters the parallel region calls this before it.
 inline void check_team(int threads) {
-  // libgomp keeps a team's threads for the next one of the same thread, up to that one's size.
+  // libgomp keeps the threads of a team for the next team that the same thread starts.
   thread_local int kept = 1;
   std::vector<std::thread> probes;
   std::atomic<bool> over{false};
@@ -38,14 +38,16 @@ inline void check_team(int threads) {
   if (threads > 1) kept = threads;
 }
 
-/// Calls `work()` on each of `threads` threads. The first exception turns `halt` true and comes out
-/// when all have returned. Throws std::system_error where so many threads cannot be started.
+/// Calls `work()` on each of `threads` threads. The first exception sets `halt` and is rethrown
+/// when all threads have returned. Throws std::system_error where so many threads cannot be
+/// started.
 template <class Work>
 void run_team(int threads, std::atomic<bool>& halt, const Work& work) {
   check_team(threads);
   std::exception_ptr failure;
   std::mutex mutex;
-  // libgomp's own fork and join are invisible to ThreadSanitizer; these show it the same order.
+  // ThreadSanitizer does not see the fork and join of libgomp; these atomics give it the same
+  // order.
   std::atomic<int> forked{0}, joined{0};
   forked.store(1, std::memory_order_release);
 #pragma omp parallel num_threads(threads)
@@ -64,9 +66,10 @@ void run_team(int threads, std::atomic<bool>& halt, const Work& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Calls `work(item, thread)` for item = 0 .. count - 1 on `threads` threads, each item as soon as
-/// one is free, in ascending order: a thread that the system holds back delays only its own item.
-/// `thread` is 0 .. threads - 1. The first exception comes out; items not yet begun are left out.
+/// Calls `work(item, thread)` for item = 0 .. count - 1 on `threads` threads. Free threads take the
+/// items in ascending order, so a thread that the system suspends delays only its own item.
+/// `thread` is 0 .. threads - 1. The first exception is rethrown; items not yet started are
+/// skipped.
 template <class Work>
 void share_items(int threads, std::size_t count, const Work& work) {
   if (threads == 1 || count < 2) {

@@ -1,5 +1,5 @@
-// Version, commit and compiler of this program, for `--version` and for the provenance of what it
-// writes.
+// Version, commit and compiler of this program, for `--version` and for the provenance of the files
+// it writes.
 #pragma once
 
 namespace strut {
@@ -11,7 +11,7 @@ struct BuildInfo {
   const char* build_type;  // e.g. "Release"
 };
 
-/// As they were when the program was linked.
+/// Returns the values of the time at which the program was linked.
 const BuildInfo& get_build_info();
 
 }  // namespace strut

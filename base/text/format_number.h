@@ -7,7 +7,7 @@ namespace strut {
 
 /// The shortest decimal text that reads back as the same double.
 std::string format_number(double value);
-/// Six significant digits, for numbers in messages that were computed.
+/// Six significant digits, for computed numbers in messages.
 std::string format_rounded(double value);
 
 }  // namespace strut

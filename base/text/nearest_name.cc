@@ -1,5 +1,7 @@
 #include "base/text/nearest_name.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -29,9 +31,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   int best = std::max(2, static_cast<int>(name.size() / 3)) + 1;
   std::string nearest;
   for (const std::string& candidate : known) {
-    // No distance is below the difference of the lengths.
-    const auto longer = std::abs(std::ssize(name) - std::ssize(candidate));
-    if (longer >= best) continue;
+    // The distance is at least the difference of the lengths.
+    const auto min_distance = std::abs(std::ssize(name) - std::ssize(candidate));
+    if (min_distance >= best) continue;
     const int distance = edit_distance(name, candidate);
     if (distance < best) {
       best = distance;
@@ -43,7 +45,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 std::string suggest_name(std::string_view name, const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(name, known);
-  return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
 std::string join_names(const std::vector<std::string>& names) {
@@ -51,7 +53,7 @@ std::string join_names(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxNames = 200;
   const std::size_t count = std::min(names.size(), kMaxNames);
   for (std::size_t i = 0; i < count; ++i) text += (i == 0 ? "" : ", ") + shorten(names[i]);
-  if (count < names.size()) text += " and " + std::to_string(names.size() - count) + " more";
+  if (count < names.size()) text += fmt::format(" and {} more", names.size() - count);
   return text;
 }
 

@@ -1,4 +1,4 @@
-// Which known name a misspelled one most likely meant.
+// Suggestions for misspelled names.
 #pragma once
 
 #include <string>
@@ -11,15 +11,16 @@ namespace strut {
 /// (optimal string alignment distance).
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The known name closest to `name`, or "" where none is close enough to be a misspelling of it
-/// (more than two edits and more than a third of its letters), or too long to be one. Ties go to
-/// the first.
+/// The known name closest to `name`; "" where `name` is longer than kMaxQuoted, or where every
+/// known name is more than two edits and more than a third of the letters of `name` away. Ties go
+/// to the first.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 /// "; did you mean 'x'?" for `nearest_name`, or "".
 std::string suggest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// "a, b, c"; of many names the first, and how many more there are.
+/// "a, b, c"; of more than 200 names the first 200 and the number of the others. Long names are
+/// shortened.
 std::string join_names(const std::vector<std::string>& names);
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// A number from all of a text.
+// Numbers from text.
 #pragma once
 
 #include <charconv>
@@ -8,8 +8,9 @@
 
 namespace strut {
 
-/// Nothing where the text is empty, or more or less than one number. Reads as std::from_chars: no
-/// locale, no white space, no leading '+'; "nan" and "inf" are numbers.
+/// Returns the number that the whole text represents; nothing where it is not exactly one number.
+/// Reads as std::from_chars: no locale, no white space, no leading '+'; "nan" and "inf" are
+/// numbers.
 template <class Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number value{};

@@ -1,4 +1,4 @@
-// Texts in scripts.
+// Quoting of texts for shell scripts and terminals.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 namespace strut {
 
-/// One word of bash, whatever is in it.
+/// Quotes any text as one word of bash.
 inline std::string quote_word(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 
-/// ASCII control characters: they end lines and steer terminals.
+/// Whether the text has ASCII control characters, which end lines and steer terminals.
 inline bool has_control_character(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -24,7 +24,7 @@ inline bool has_control_character(const std::string& text) {
   });
 }
 
-/// One word of bash in visible ASCII: $'\033[31m'.
+/// Quotes any text as one word of bash in visible ASCII: $'\033[31m'.
 inline std::string escape_word(const std::string& word) {
   std::string escaped = "$'";
   for (const char c : word) {
@@ -42,8 +42,8 @@ inline std::string escape_word(const std::string& word) {
   return escaped + "'";
 }
 
-/// One word of bash for people, in one line that leaves a terminal as it is: unquoted where bash
-/// takes it so.
+/// Quotes a text as one word of bash where it needs quotes, for output on one line of a terminal;
+/// control characters are escaped.
 inline std::string quote_if_needed(const std::string& word) {
   constexpr char kPlain[] =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:,+@%=-";

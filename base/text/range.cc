@@ -1,5 +1,7 @@
 #include "base/text/range.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "base/text/format_number.h"
@@ -13,13 +15,13 @@ bool Range::contains(double value) const {
 std::string Range::describe() const {
   const std::string suffix = unit.empty() ? "" : " " + unit;
   if (std::isfinite(low) && std::isfinite(high)) {
-    return std::string("must lie in ") + (open_low ? "(" : "[") + format_number(low) + ", " +
-           format_number(high) + "]" + suffix;
+    return fmt::format("must lie in {}{}, {}]{}", open_low ? "(" : "[", format_number(low),
+                       format_number(high), suffix);
   }
   if (std::isfinite(low)) {
-    return std::string("must be ") + (open_low ? "> " : ">= ") + format_number(low) + suffix;
+    return fmt::format("must be {} {}{}", open_low ? ">" : ">=", format_number(low), suffix);
   }
-  if (std::isfinite(high)) return "must be <= " + format_number(high) + suffix;
+  if (std::isfinite(high)) return fmt::format("must be <= {}{}", format_number(high), suffix);
   return "must be a finite number" + (unit.empty() ? "" : " of " + unit);
 }
 

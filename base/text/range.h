@@ -1,4 +1,4 @@
-// Allowed ranges of numbers, and how messages name them.
+// Allowed ranges of numbers and their wording in messages.
 #pragma once
 
 #include <limits>
@@ -6,7 +6,7 @@
 
 namespace strut {
 
-/// Allowed interval of a number; the bounds belong to it unless `open_low`.
+/// Allowed interval of a number; the bounds are included, the lower one only without `open_low`.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();

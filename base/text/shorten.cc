@@ -12,7 +12,7 @@ bool continues(std::string_view text, std::size_t i) {
 
 std::string shorten(std::string_view text, std::size_t max_bytes) {
   constexpr std::string_view kGap = "...";
-  constexpr std::size_t kMaxContinued = 3;  // bytes, of one character
+  constexpr std::size_t kMaxContinued = 3;  // continuation bytes of one character
   if (text.size() <= max_bytes) return std::string(text);
   const std::size_t kept = max_bytes - kGap.size();
   std::size_t head = kept - kept / 2, tail = text.size() - kept / 2;

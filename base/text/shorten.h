@@ -1,4 +1,4 @@
-// Texts from files in messages.
+// Shortening of texts from files for messages.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace strut {
 
-/// Bytes of a value that a message quotes.
+/// Maximum number of bytes of a value that a message quotes.
 inline constexpr std::size_t kMaxQuoted = 80;
 
-/// `text`, where it has more than `max_bytes`, with its middle replaced by "..."; no UTF-8
-/// character is cut in two. max_bytes >= 3.
+/// Replaces the middle of a `text` of more than `max_bytes` >= 3 by "..."; no UTF-8 character is
+/// cut in two.
 std::string shorten(std::string_view text, std::size_t max_bytes = kMaxQuoted);
 
 }  // namespace strut

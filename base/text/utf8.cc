@@ -7,8 +7,8 @@
 namespace strut {
 namespace {
 
-/// Lead bytes of one length, and what the byte after them may be: neither longer than need be, nor
-/// surrogates, nor beyond U+10FFFF.
+/// Range of lead bytes of one length, and the range of the byte that follows them, which excludes
+/// overlong forms, surrogates and code points beyond U+10FFFF.
 struct Lead {
   unsigned char first, last, next_low, next_high;
   std::size_t length;
@@ -24,7 +24,7 @@ constexpr std::array<Lead, 9> kLeads = {{{0x00, 0x7f, 0x80, 0xbf, 1},
                                          {0xf1, 0xf3, 0x80, 0xbf, 4},
                                          {0xf4, 0xf4, 0x80, 0x8f, 4}}};
 
-/// Bytes of the character that the text begins with; 0: it begins with none.
+/// Number of bytes of the character that the text starts with; 0 where it is not valid.
 std::size_t measure_character(std::string_view text) {
   const auto get = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const auto* lead = std::find_if(kLeads.begin(), kLeads.end(), [&](const Lead& l) {

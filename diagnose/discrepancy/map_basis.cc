@@ -22,7 +22,7 @@ AxisShapes make_axis_shapes(const MapAxis& axis, const std::vector<double>& samp
   const Index n = axis.count;
   AxisShapes shapes;
   shapes.one = Eigen::VectorXd::Ones(n);
-  if (n < kFewestSplines || samples.empty()) return shapes;
+  if (n < kMinSplines || samples.empty()) return shapes;
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n, n), second = Eigen::MatrixXd::Zero(n - 2, n);
   for (const double x : samples) {
     const Eigen::VectorXd b = axis.calc_splines(x);

@@ -198,11 +198,6 @@ Finding check_links(const fs::path& path) {
 
 }  // namespace
 
-const char* get_name(Health health) {
-  constexpr std::array<const char*, 3> kNames = {"good", "warning", "bad"};
-  return kNames[static_cast<std::size_t>(health)];
-}
-
 Findings check_file_system(const fs::path& folder, const SpaceNeeds& needs) {
   const TrialFolder trial(folder);
   return {check_sight(folder),        check_links(folder),         check_exclusive_create(trial),

@@ -1,19 +1,24 @@
 #include "model/car/assemble.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <sstream>
 
 #include "model/car/dynamics.h"
 
 namespace strut {
 namespace {
 
-/// Height of a wheel center over flat ground under a load, its axis tilted by the camber.
+/// Minimum change of the spring length per unit of a corner's coordinate.
+constexpr double kMinSpringRatio = 0.05;
+
+/// Height of a wheel center over flat ground under a load; the camber tilts the wheel's axis.
 double calc_center_height(const VehicleSpec& spec, const Vec3<double>& axis, double load) {
   const double loaded_radius = spec.tire.unloaded_radius - load / spec.tire.stiffness;
   return loaded_radius * std::sqrt(1.0 - square(axis.z));
 }
 
+/// Sets the geometry and inertia of all corners for a position of the steering rack [m].
 void build_corners(const VehicleSpec& spec, double gravity, double rack, AssembledVehicle& car) {
   for (int c = 0; c < kCorners; ++c) {
     car.nominal_load[c] = calc_nominal_load(spec, gravity, axle_of(c));
@@ -36,7 +41,8 @@ double calc_corner_mass(const CornerTopology& topology, const CornerInertia<doub
   return mass;
 }
 
-/// Chassis mass, center and inertia such that the whole car meets its specification.
+/// Sets mass, center and inertia of the chassis so that the whole car meets its specification, and
+/// the nominal lengths of the lines.
 void fit_chassis(const VehicleSpec& spec, AssembledVehicle& car) {
   VehicleParameters<double>& numbers = car.numbers;
   const NewtonClosure<double> closure{&car.layout, &numbers};
@@ -56,10 +62,10 @@ void fit_chassis(const VehicleSpec& spec, AssembledVehicle& car) {
     }
   }
   if (!(mass > 0.0)) {
-    std::ostringstream message;
-    message << "whole_car.mass: " << spec.whole.mass << " kg leaves " << mass
-            << " kg for the chassis; allowed: more than wheels and suspension weigh";
-    throw ModelError(message.str());
+    throw ModelError(
+        fmt::format("whole_car.mass = {:g} kg: the chassis would have a mass of {:g} kg; allowed: "
+                    "more than the mass of wheels and suspension",
+                    spec.whole.mass, mass));
   }
   const Vec3<double> center = (1.0 / mass) * moment;
   inertia = inertia - (0.5 * mass) * inertia_form(center, center);
@@ -74,7 +80,7 @@ State<double> make_rest_state(double center_height) {
   return x;
 }
 
-/// Spring force at nominal trim from the corner's own equation of equilibrium.
+/// Sets the spring forces at nominal trim, from the equilibrium of each corner.
 void fit_preload(AssembledVehicle& car) {
   Vehicle<double> bare{car.layout, car.numbers, {}, {}};
   bare.layout.on_bump.fill(false);
@@ -86,18 +92,20 @@ void fit_preload(AssembledVehicle& car) {
   calc_forces(bare, x.data(), ws, rhs);
   for (int c = 0; c < kCorners; ++c) {
     const double ratio = ws.motion[c].length_q[kSpringLine];
-    if (std::abs(ratio) < 0.05) {
-      throw ModelError(std::string(get_axle_key(axle_of(c))) +
-                       ".spring: its mounts do not move towards each other with wheel travel");
+    if (std::abs(ratio) < kMinSpringRatio) {
+      throw ModelError(
+          fmt::format("{}.spring: its length changes by only {:g} m per m of travel; "
+                      "allowed: at least {:g}",
+                      get_axle_key(axle_of(c)), std::abs(ratio), kMinSpringRatio));
     }
     car.preload[c] = -rhs.corner[c] / ratio;
   }
 }
 
 std::array<bool, kCorners> find_wheels_on_bump(const RoadSpec& road) {
-  const bool some = road.shape != BumpShape::kNone;
-  const bool left = some && road.side != BumpSide::kRight;
-  const bool right = some && road.side != BumpSide::kLeft;
+  const bool has_bump = road.shape != BumpShape::kNone;
+  const bool left = has_bump && road.side != BumpSide::kRight;
+  const bool right = has_bump && road.side != BumpSide::kLeft;
   return {left, right, left, right};
 }
 
@@ -124,11 +132,10 @@ void check_chassis_inertia(const Sym3<double>& j) {
   const double det = j.xx * (j.yy * j.zz - j.yz * j.yz) - j.xy * (j.xy * j.zz - j.yz * j.xz) +
                      j.xz * (j.xy * j.yz - j.yy * j.xz);
   if (j.xx > 0.0 && minor > 0.0 && det > 0.0) return;
-  std::ostringstream message;
-  message << "whole_car.inertia: what is left for the chassis is not positive definite (" << j.xx
-          << ", " << j.yy << ", " << j.zz
-          << " kg m^2); allowed: more than wheels and suspension have";
-  throw ModelError(message.str());
+  throw ModelError(
+      fmt::format("whole_car.inertia: the inertia of the chassis would not be positive definite "
+                  "({:g}, {:g}, {:g} kg m^2); allowed: more than that of wheels and suspension",
+                  j.xx, j.yy, j.zz));
 }
 
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
@@ -142,7 +149,7 @@ AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& m
   car.layout.relaxation = spec.tire.relaxation;
   car.layout.tire_parts = find_parts(spec.pacejka);
   car.layout.on_bump = find_wheels_on_bump(maneuver.road);
-  // Nominal trim is straight ahead; the rack moves afterwards.
+  // Nominal trim is straight ahead: chassis and preload are fitted before the rack moves.
   build_corners(spec, maneuver.gravity, 0.0, car);
   fit_chassis(spec, car);
   fit_preload(car);
@@ -156,9 +163,10 @@ void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneu
   for (int c = 0; c < kCorners; ++c) {
     const SuspensionSpec& suspension = spec.suspension[axle_of(c)];
     const StrutSpec& strut = suspension.strut[is_right(c) ? 1 : 0];
-    const bool worn_spring_sags =
+    // With a fixed free length, which the new spring had, a worn spring sags.
+    const bool keeps_free_length =
         spec.preload == PreloadKind::kFreeLength && strut.nominal_stiffness > 0.0;
-    const double rate = worn_spring_sags ? strut.nominal_stiffness : strut.stiffness;
+    const double rate = keeps_free_length ? strut.nominal_stiffness : strut.stiffness;
     const double length = numbers.nominal_length[c * kLines + kSpringLine];
     numbers.spring[c] = {strut.stiffness, length + car.preload[c] / rate};
     numbers.damper[c] = {strut.damping};

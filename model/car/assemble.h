@@ -1,4 +1,4 @@
-// From a vehicle and a maneuver as a person writes them to the numbers the equations read.
+// From the specification of a vehicle and a maneuver to the parameters of the equations of motion.
 #pragma once
 
 #include "model/car/build_corner.h"
@@ -10,7 +10,7 @@
 
 namespace strut {
 
-/// One car in one maneuver, scalar.
+/// One car in one maneuver.
 struct AssembledVehicle {
   VehicleLayout layout;
   VehicleParameters<double> numbers;
@@ -19,37 +19,39 @@ struct AssembledVehicle {
   double center_height = 0.0;                 // m, chassis origin over the ground at nominal trim
 };
 
-/// Returns the load on one tire of an axle at rest [N].
+/// Load on one tire of an axle at rest [N].
 double calc_nominal_load(const VehicleSpec& spec, double gravity, int axle);
 
-/// Returns the wheel center at nominal trim relative to the whole car's centroid [m], projected on
-/// the car's plane of symmetry (y = 0). A cambered wheel stands lower by the cosine of its camber.
+/// Wheel center at nominal trim relative to the whole car's centroid [m], projected on the car's
+/// plane of symmetry (y = 0). Camber reduces the height of the wheel center by its cosine.
 Vec3<double> calc_wheel_reference(const VehicleSpec& spec, double gravity, int corner);
 
-/// Throws ModelError when no such car can stand: chassis mass or inertia not positive, loops that
-/// do not close over +-kHalfTravel.
+/// Assembles a car without effects. Throws ModelError where mass or inertia of the chassis are not
+/// positive (definite), a spring does not move with its wheel, or loops do not close over
+/// +/-kHalfTravel.
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 
-/// Throws ModelError unless it is positive definite.
+/// Throws ModelError unless the inertia is positive definite.
 void check_chassis_inertia(const Sym3<double>& inertia);
 
-/// Springs and dampers of `spec` over the preload of `car`; drive torque of `maneuver`.
+/// Sets the springs (with the preload of `car`) and dampers of `spec` and the drive torque of
+/// `maneuver`.
 void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneuver,
                               const AssembledVehicle& car, VehicleParameters<double>& numbers);
 
-/// Corner tables of an assembled car; each group of functions gets the lowest degree that
-/// resolves it to kTableTolerance. Throws ModelError if kTableTerms do not suffice.
+/// Corner tables of an assembled car; each group of functions gets the minimum degree that resolves
+/// it to kTableTolerance. Throws ModelError where kTableTerms do not suffice.
 VehicleTables<double> tabulate_corners(const AssembledVehicle& car);
 
-/// The effective road under this car's wheels: tire radius and contact model shape it.
+/// The effective road under this car's wheels, by tire radius and contact model.
 Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 
 /// World x of the bump center: `bump_distance` ahead of the nominal front wheel centers when the
 /// chassis origin starts at x = 0.
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver);
 
-/// Puts the spring, damper and effect elements of T numbers into their lists, and the force maps of
-/// each lane.
+/// Fills the lists of spring, damper and effect elements from the vehicle's parameters, and that of
+/// force maps from those of each lane.
 template <class T>
 void fill_strut_elements(Vehicle<T>& vehicle, const CornerForceMaps* const* maps = nullptr) {
   const VehicleLayout& layout = vehicle.layout;

@@ -7,13 +7,13 @@
 
 namespace strut {
 
-/// The case with those effects put into it that are nothing but other numbers of car and maneuver
-/// (wheel masses, bump, speed, place of the sensor); the settings of the others remain.
+/// Returns the case after the effects that only change its own numbers (wheel masses, bump, speed,
+/// position of the sensor); the settings of all other effects remain.
 Case apply_case_effects(const Case& c);
 
-/// Puts all other effects of `spec` into the numbers of a car and writes to its layout which are
-/// on; both are those of an assembled car, without effects. Throws ModelError where what is left of
-/// the chassis is no body.
+/// Applies all other effects of `spec` to the parameters and the layout of an assembled car without
+/// effects. Throws ModelError where the mass or the inertia of the chassis is not positive
+/// (definite) afterwards.
 void set_effects(const VehicleSpec& spec, VehicleLayout& layout,
                  VehicleParameters<double>& numbers);
 

@@ -1,14 +1,20 @@
 #include "model/car/build_corner.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "base/error/check.h"
 #include "base/math/chebyshev.h"
 #include "model/error/model_error.h"
 
 namespace strut {
 namespace {
+
+constexpr double kMinPivot = 1e-4;           // m; below, the loop equations count as singular
+constexpr double kMaxLoopError = 1e-12;      // m
+constexpr double kMaxJointCoordinate = 1.2;  // rad or m; beyond, Newton has left the assembly mode
 
 Vec3<double> mirrored(const Vec3<double>& r) { return {r.x, -r.y, r.z}; }
 
@@ -38,11 +44,12 @@ void set_ball(int first, const Vec3<double>& point, CornerGeometry<double>& geom
 void add_body(CornerTopology& topology, CornerInertia<double>& inertia, int part,
               const RigidBody<double>& body) {
   if (body.mass == 0.0) return;
+  STRUT_CHECK(topology.body_count < kMaxBodies, "a corner has more bodies than its capacity");
   topology.body_part[topology.body_count] = part;
   inertia.body[topology.body_count++] = body;
 }
 
-/// Joints of kMacPhersonTree.
+/// Sets the joints and bodies of kMacPhersonTree.
 void build_macpherson(const SuspensionSpec& spec, const Placement& place, BuiltCorner& parts) {
   constexpr int kArm = 0, kStrutBall = 1, kStrutRod = 3, kSlide = 4;
   CornerGeometry<double>& geometry = parts.geometry;
@@ -57,13 +64,14 @@ void build_macpherson(const SuspensionSpec& spec, const Placement& place, BuiltC
   add_body(parts.topology, parts.inertia, kStrutRod, place.body(spec.strut_rod));
 }
 
-/// Joints of kMultilinkTree.
+/// Sets the joints of kMultilinkTree.
 void build_multilink(const Vec3<double>& center, BuiltCorner& parts) {
-  set_ball(0, center, parts.geometry);  // the prismatic joints run along the same three axes
+  set_ball(0, center, parts.geometry);  // the prismatic joints have the same three axes
   set_ball(3, center, parts.geometry);
 }
 
-/// Rigid rod of mass m, center at fraction a from the chassis end, central transverse inertia J.
+/// Inertia of a rigid rod of mass m, with its center at fraction a from the chassis end and the
+/// central transverse inertia J.
 RodInertia<double> calc_rod_inertia(const RodSpec& rod) {
   const Vec3<double> d = rod.upright - rod.chassis;
   const double a = rod.center_fraction, m = rod.mass;
@@ -77,10 +85,9 @@ void add_rods(const SuspensionSpec& spec, const Placement& place, double rack, B
   CornerGeometry<double>& geometry = parts.geometry;
   const int expected = get_tree(spec.kind).rod_count;
   if (static_cast<int>(spec.rods.size()) != expected) {
-    std::ostringstream message;
-    message << "suspension: " << spec.rods.size() << " rods; allowed: " << expected
-            << (expected == 1 ? " (the tie rod of a MacPherson strut)" : " (a multilink)");
-    throw ModelError(message.str());
+    throw ModelError(
+        fmt::format("suspension: {} rods; allowed: {} ({})", spec.rods.size(), expected,
+                    expected == 1 ? "the tie rod of a MacPherson strut" : "a multilink"));
   }
   for (int i = 0; i < expected; ++i) {
     const RodSpec& rod = spec.rods[static_cast<std::size_t>(i)];
@@ -102,7 +109,6 @@ Attachment find_attachment(const MountSpec& mount, const BuiltCorner& parts) {
       if (parts.topology.kind != SuspensionKind::kMacPherson) {
         throw ModelError("mount: lower_arm is a part of MacPherson suspensions only");
       }
-
       return {kMacPhersonTree.ball_part, -1};
     case MountBody::kRod:
       return {kChassisPart, mount.rod};
@@ -129,7 +135,7 @@ void add_lines(const SuspensionSpec& spec, const Placement& place, BuiltCorner& 
   }
 }
 
-/// Upright, hub and wheel as one carrier; the wheel's inertia about its axis is left out.
+/// Combines upright, hub and wheel into one body, without the wheel's inertia about its axis.
 RigidBody<double> combine_upright_and_wheel(const SuspensionSpec& spec, const Placement& place,
                                             const Vec3<double>& center, const Vec3<double>& axis) {
   const RigidBody<double> upright = place.body(spec.upright);
@@ -167,9 +173,9 @@ void choose_pivots(const CornerGeometry<double>& geometry, const char* where,
         if (std::abs(a[i][j]) > std::abs(a[row][column])) row = i, column = j;
       }
     }
-    if (std::abs(a[row][column]) < 1e-4) {
-      throw ModelError(std::string(where) +
-                       ": hardpoints: the loop equations are singular at nominal trim");
+    if (std::abs(a[row][column]) < kMinPivot) {
+      throw ModelError(
+          fmt::format("{}: hardpoints: the loop equations are singular at nominal trim", where));
     }
     std::swap(a[k], a[row]);
     std::swap(topology.pivot_row[k], topology.pivot_row[row]);
@@ -184,11 +190,11 @@ void choose_pivots(const CornerGeometry<double>& geometry, const char* where,
 
 using JointSamples = std::vector<std::array<double, kMaxJoints>>;
 
-/// Joint coordinates at every node, each continued from its neighbor nearer to nominal trim.
+/// Joint coordinates at every node, each by Newton from the neighbor nearer to nominal trim.
 template <CornerTree kTree>
 JointSamples close_over_travel(const CornerTopology& topology,
                                const CornerGeometry<double>& geometry, const char* where) {
-  constexpr int kManyIterations = 12;
+  constexpr int kIterations = 12;
   JointSamples joints(kChebyshevNodes);
   for (int side = 0; side < 2; ++side) {
     std::array<double, kMaxJoints> z{};
@@ -197,14 +203,15 @@ JointSamples close_over_travel(const CornerTopology& topology,
       z[kTree.independent] = kHalfTravel * calc_chebyshev_node(node);
       CornerPose<double> pose;
       LoopFactor<double> factor;
-      const double error = close_loops<kTree>(topology, geometry, kManyIterations, z, pose, factor);
-      const bool wild = std::any_of(z.begin(), z.end(), [](double a) { return std::abs(a) > 1.2; });
-      if (!(error < 1e-12) || wild) {
-        std::ostringstream message;
-        message << where << ": hardpoints cannot close the loop at " << 1e3 * z[kTree.independent]
-                << " mm of travel (loop error " << error << " m); allowed: closed over +-"
-                << 1e3 * kHalfTravel << " mm";
-        throw ModelError(message.str());
+      const double error = close_loops<kTree>(topology, geometry, kIterations, z, pose, factor);
+      const bool is_far = std::any_of(z.begin(), z.end(), [](double coordinate) {
+        return std::abs(coordinate) > kMaxJointCoordinate;
+      });
+      if (!(error < kMaxLoopError) || is_far) {
+        throw ModelError(fmt::format(
+            "{}: hardpoints cannot close the loop at {:g} mm of travel (loop error {:g} "
+            "m); allowed: closed over +/-{:g} mm",
+            where, 1e3 * z[kTree.independent], error, 1e3 * kHalfTravel));
       }
       joints[static_cast<std::size_t>(node)] = z;
     }
@@ -227,7 +234,7 @@ ClosurePredictor fit_predictor(const JointSamples& joints) {
   return predictor;
 }
 
-/// Pivots and predictor of a corner.
+/// Sets pivots and predictor of a corner.
 template <CornerTree kTree>
 void prepare_closure(const char* where, BuiltCorner& corner) {
   choose_pivots<kTree>(corner.geometry, where, corner.topology);

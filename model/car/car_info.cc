@@ -27,7 +27,7 @@ std::vector<StrutInfo> list_struts() {
   return struts;
 }
 
-/// Means of an axle's two corners.
+/// States of the axles, each the mean of two corners.
 std::vector<StateInfo> list_states() {
   std::vector<StateInfo> states;
   for (int axle = 0; axle < kAxles; ++axle) {

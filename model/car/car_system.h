@@ -1,4 +1,4 @@
-// The car as a system that simulate.h can run.
+// The car as a system for simulate.h.
 #pragma once
 
 #include "model/car/channels.h"
@@ -8,22 +8,23 @@
 
 namespace strut {
 
-/// Largest loop error a step may leave [m].
+/// Maximum residual loop error of a step [m].
 inline constexpr double kClosureTolerance = 1e-10;
-/// Behind the bump, until thrown wheels are back on the road and their hop fades, steps stay fine
-/// for this long [s] (docs/design/0004-integrators.md).
+/// Steps remain fine for this long behind the bump [s], until lifted wheels are back on the road
+/// and their hop has faded (docs/design/0004-integrators.md).
 inline constexpr double kSettlingTime = 0.2;
 
-/// Wheel spin against slip: integrated with the exponential formulas, or like everything else.
+/// Integration of the wheel spin against slip: by the exponential formulas, or as all other states.
 enum class SpinTreatment { kExponential, kExplicit };
 
-/// The closure is reached through two function pointers, so that integrators are compiled once for
-/// all closures.
+/// The closure is called through function pointers, so that integrators are compiled once for all
+/// closures.
 template <class T>
 class CarSystem {
  public:
   static constexpr int kCapacity = StateIndex::kCount;
   using Mask = MaskOf<T>;
+  static_assert(kCorners + StateIndex::kStrutCount <= kMaxStiff);
 
   template <class Closure>
   CarSystem(const Vehicle<T>& vehicle, const Closure& closure, SpinTreatment spin,
@@ -44,7 +45,7 @@ class CarSystem {
     return vehicle_.layout.relaxation ? StateIndex::kCountWithoutStruts
                                       : StateIndex::kCountWithoutRelaxation;
   }
-  /// The wheels' spins, then the states of the struts, if there are any.
+  /// The spins of the wheels, then the states of the struts, if there are any.
   int stiff_at(int i) const {
     return i < kCorners ? StateIndex::kSpin + i : StateIndex::kStrut + (i - kCorners);
   }
@@ -88,7 +89,7 @@ class CarSystem {
     for (int c = 0; c < kCorners; ++c) g[c] = workspace_.contact[c].unclamped_load;
     for (int c = 0; has_kinks_ && c < kCorners; ++c) g[kCorners + c] = calc_kink_distance(c);
   }
-  /// Guards and trigger at any state, without the dynamics: only the wheels are placed.
+  /// Guards and trigger at any state, from the positions of the wheels without the dynamics.
   void calc_guards(const T& /*t*/, const T* x, T* g) {
     workspace_.rotation = rotation_of(get_quaternion(x));
     for (int c = 0; c < kCorners; ++c) {
@@ -99,7 +100,7 @@ class CarSystem {
     update_trigger(x);
     get_guards(g);
   }
-  /// A passed kink moves the wheel on to the next road segment.
+  /// A wheel that has passed a kink moves on to the next road segment.
   bool cross(int guard, Mask lanes) {
     if (guard < kCorners) return false;
     T& segment = workspace_.segment[guard - kCorners];
@@ -107,7 +108,8 @@ class CarSystem {
     return true;
   }
 
-  /// On the bump, about to reach it within a coarse step and a half, or still shaking from it.
+  /// True on the bump, less than one and a half coarse steps ahead of it, and for kSettlingTime
+  /// behind it.
   Mask wants_fine_step(const T* x, const T& coarse_step) const {
     const T& speed = x[StateIndex::kVelocity];
     const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;
@@ -117,7 +119,8 @@ class CarSystem {
            (rear < vehicle_.road.reach_end + T(kSettlingTime) * speed);
   }
 
-  /// Mean forward position of the rear wheels that see the bump, from the trigger line [m].
+  /// Mean forward position of the rear wheels that cross the bump, relative to the trigger line
+  /// [m].
   T get_trigger() const { return wheel_x_ - trigger_x_; }
 
   Mask has_failed() const { return failed_; }
@@ -138,7 +141,7 @@ class CarSystem {
     }
   }
 
-  /// Largest loop error of any right-hand side so far [m]; zero with tables.
+  /// Maximum loop error of all right-hand sides so far [m]; zero with tables.
   T get_largest_loop_error() const { return largest_loop_error_; }
 
   const Workspace<T>& workspace() const { return workspace_; }

@@ -1,4 +1,4 @@
-// One car in one maneuver: what a single simulation is about.
+// One car in one maneuver, the subject of one simulation.
 #pragma once
 
 #include "model/car/spec.h"

@@ -1,4 +1,4 @@
-// Computes the channels of car_channels.h from a state and what the right-hand side found at it.
+// Computes the channels of car_channels.h from a state and the workspace of the right-hand side.
 #pragma once
 
 #include "model/car/dynamics.h"

@@ -1,7 +1,7 @@
 // The two sources of a corner's motion functions: Newton on the loops, or the table.
 //
 // A closure c offers
-//   c(corner, q, motion): all motion functions; returns the loop error left [m]
+//   c(corner, q, motion): all motion functions; returns the residual loop error [m]
 //   c.place_wheel(corner, q, motion): wheel center and axis alone, for contact events
 //   c.update_center_acceleration(corner, q, motion): center_qq, for output, after c(...)
 #pragma once
@@ -12,7 +12,7 @@
 
 namespace strut {
 
-/// Newton's one iteration from the predictor. Returns the loop error left [m].
+/// One Newton iteration from the predictor.
 template <class T>
 struct NewtonClosure {
   const VehicleLayout* layout;
@@ -32,19 +32,19 @@ struct NewtonClosure {
   void update_center_acceleration(int, const T&, CornerMotion<T>&) const {}
 };
 
-/// Tables of one car (C = double, all lanes alike) or of one car a lane (C = T).
+/// Tables of one car (C = double, the same in all lanes) or of one car per lane (C = T).
 template <class C>
 struct VehicleTables {
   std::array<CornerCoefficients<C>, kCorners> corner;
   std::array<CornerDegrees, kCorners> degree{};
-  double half_travel = 0.0;  // m, the fit holds for |q| up to here
+  double half_travel = 0.0;  // m, maximum |q| of the fit
 };
 
 template <class T, class C>
 struct TableClosure {
   const VehicleTables<C>* tables;
 
-  /// A table has no loops left to err in.
+  /// The loop error of a table is zero.
   T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
     update_corner_motion(tables->corner[corner], tables->degree[corner], q, motion);
     return T(0.0);

@@ -26,14 +26,14 @@
 
 namespace strut {
 
-/// Everything the right-hand side finds on its way, by the stage that fills it.
+/// Intermediate results of the right-hand side, by the stage that computes them.
 template <class T>
 struct Workspace {
   // pose
   Mat3<T> rotation;  // chassis to world
   std::array<CornerMotion<T>, kCorners> motion;
-  T closure_error;  // m, largest over corners
-  T travel_excess;  // m, how far a corner is beyond its travel; negative inside
+  T closure_error;  // m, maximum over corners
+  T travel_excess;  // m, maximum over corners of the distance beyond the travel; negative inside
   // tires
   std::array<WheelMotion<T>, kCorners> wheel;
   std::array<TireContact<T>, kCorners> contact;
@@ -53,7 +53,7 @@ struct Workspace {
   std::array<T, kCorners> spin_decay;  // 1/s, decay rate of spin against slip
 };
 
-/// Which forces act; statics have no rolling and hence no in-plane tire forces.
+/// Forces of the tires: a car at rest does not roll and has no in-plane tire forces.
 enum class TireMode { kRolling, kFrictionless };
 
 /// Height and slope of the road under a wheel center at world x.
@@ -74,7 +74,7 @@ WheelMotion<T> calc_wheel_motion(const T* x, int corner, const CornerMotion<T>& 
           w + rate * motion.upright_rate, x[I::kSpin + corner]};
 }
 
-/// How much out-of-round wheels bring the road closer [m].
+/// Decrease of the clearance by the run-out of an axle's wheels [m].
 template <class T>
 Pair<T> calc_runout(const Vehicle<T>& vehicle, const T* x, int axle) {
   T offset[2];
@@ -147,8 +147,9 @@ void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle
   split_pair(slip, ws.slip[left], ws.slip[right]);
 }
 
-/// Relaxation lengths vanish with the load; a tire off the road forgets its slip over this [m].
-inline constexpr double kShortestRelaxation = 0.05;
+/// Minimum relaxation length [m]; relaxation lengths vanish with the load, as of a tire off the
+/// road.
+inline constexpr double kMinRelaxation = 0.05;
 
 /// First-order slip: length * d(slip)/dt = speed * (steady slip - slip).
 template <class T>
@@ -158,10 +159,10 @@ void add_relaxation(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& w
     const TireSlipState<T>& slip = ws.slip[c];
     const RelaxationLength<T> length = calc_relaxation_length(
         vehicle.numbers.pacejka, ws.contact[c].load, dot(ws.wheel[c].axis, ws.contact[c].normal));
-    dx[I::kKappa + c] = slip.speed * (slip.kappa - x[I::kKappa + c]) /
-                        max(length.longitudinal, T(kShortestRelaxation));
+    dx[I::kKappa + c] =
+        slip.speed * (slip.kappa - x[I::kKappa + c]) / max(length.longitudinal, T(kMinRelaxation));
     dx[I::kTanAlpha + c] = slip.speed * (slip.tan_alpha - x[I::kTanAlpha + c]) /
-                           max(length.lateral, T(kShortestRelaxation));
+                           max(length.lateral, T(kMinRelaxation));
   }
 }
 
@@ -180,7 +181,7 @@ void update_composite(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws) {
   }
 }
 
-/// Force and moment about the chassis origin; one generalized force a corner.
+/// Force and moment about the chassis origin; one generalized force per corner.
 template <class T>
 struct GeneralizedForce {
   Vec3<T> force, moment;
@@ -203,8 +204,8 @@ T add_lift(const Vehicle<T>& vehicle, const Vec3<T>& v, const Vec3<T>& w, Vec3<T
   return power;
 }
 
-/// External and inertia forces: right sides of the equations at the top of this file. Returns the
-/// power of non-conservative forces [W].
+/// External and inertia forces: the right-hand sides of the equations at the top of this file.
+/// Returns the power of non-conservative forces [W].
 template <class T>
 T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, GeneralizedForce<T>& rhs) {
   using I = StateIndex;
@@ -231,7 +232,7 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const Vec3<T> contact_point = m.center + ws.contact[c].arm;
     const Vec3<T> arm_moment = cross(ws.contact[c].arm, tire.force) + tire.moment;
     const T tire_spin_moment = dot(arm_moment, m.axis);
-    // The drive torque turns the wheel and is reacted by the chassis; the upright feels none of it.
+    // The drive torque acts on the wheel and, as reaction, on the chassis, but not on the upright.
     const T& drive = vehicle.numbers.drive_torque[c];
     ws.spin_moment[c] = tire_spin_moment + drive;
 
@@ -290,7 +291,7 @@ void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
   const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
   set_vec3(dx, I::kPosition, ws.rotation * v);
   const Quaternion<T> e = get_quaternion(x);
-  // The pull towards unit length vanishes at length one and bounds the drift of integration.
+  // This term vanishes at unit length and bounds the drift of the length by integration.
   const T pull = T(1.0) - (e.w * e.w + e.x * e.x + e.y * e.y + e.z * e.z);
   dx[I::kQuaternion] = T(-0.5) * (e.x * w.x + e.y * w.y + e.z * w.z) + pull * e.w;
   dx[I::kQuaternion + 1] = T(0.5) * (e.w * w.x + e.y * w.z - e.z * w.y) + pull * e.x;
@@ -304,7 +305,8 @@ void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
   }
 }
 
-/// What effects add to the struts' linear forces; the rates of their states, if they have any.
+/// Adds the forces of effects to the linear forces of the struts, and computes the rates of the
+/// effects' states, if there are any.
 template <class T>
 void update_strut_effects(const Vehicle<T>& vehicle, const T* x, T* dx, Workspace<T>& ws) {
   using I = StateIndex;
@@ -317,8 +319,9 @@ void update_strut_effects(const Vehicle<T>& vehicle, const T* x, T* dx, Workspac
                                  ws.strut);
 }
 
-/// dx/dt of the car at state x. `closure(corner, q, motion)` supplies the corner's motion functions
-/// and returns the loop error left [m] (closures.h). ws.segment is read, the rest of ws is written.
+/// dx/dt of the car at state x. `closure(corner, q, motion)` computes the corner's motion functions
+/// and returns the residual loop error [m] (closures.h). ws.segment is input, the rest of ws
+/// output.
 template <class T, class Closure>
 void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode mode, const T* x,
                      T* dx, Workspace<T>& ws) {

@@ -1,20 +1,21 @@
 #include "model/car/kinematics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace strut {
 namespace {
 
-constexpr int kLoopIterations = 12;    // from a neighbor 2.5 mm away five do
-constexpr int kTravelIterations = 12;  // likewise
-constexpr double kTravelTolerance = 1e-13;
-constexpr double kLoopTolerance = 1e-12;  // m
+constexpr int kLoopIterations = 12;         // five suffice from a neighbor 2.5 mm away
+constexpr int kTravelIterations = 12;       // the same
+constexpr double kTravelTolerance = 1e-13;  // m
+constexpr double kLoopTolerance = 1e-12;    // m
 
 /// A corner closed at one coordinate q.
 struct ClosedCorner {
-  std::array<double, kMaxJoints> joints{};  // in: the guess
+  std::array<double, kMaxJoints> joints{};  // input: the initial guess
   CornerPose<double> pose;
   CornerMotion<double> motion;
   double loop_error = 0.0;  // m
@@ -32,7 +33,7 @@ void close_at(const CornerTopology& topology, const CornerGeometry<double>& geom
   update_wheel_and_lines<kTree>(topology, geometry, corner.pose, parts, corner.motion);
 }
 
-/// Moves `corner` from where it is to a wheel travel.
+/// Moves `corner` from its current coordinate to a wheel travel [m].
 template <CornerTree kTree>
 void move_to_travel(const CornerTopology& topology, const CornerGeometry<double>& geometry,
                     double travel, ClosedCorner& corner) {
@@ -45,11 +46,9 @@ void move_to_travel(const CornerTopology& topology, const CornerGeometry<double>
     q -= error / corner.motion.center_q.z;
   }
   if (std::abs(error) < kTravelTolerance && corner.loop_error < kLoopTolerance) return;
-  std::ostringstream message;
-  message << "hardpoints cannot close the loop at " << 1e3 * travel
-          << " mm of wheel travel (error left: " << std::max(std::abs(error), corner.loop_error)
-          << " m)";
-  throw ModelError(message.str());
+  throw ModelError(
+      fmt::format("hardpoints cannot close the loop at {:g} mm of wheel travel (residual {:g} m)",
+                  1e3 * travel, std::max(std::abs(error), corner.loop_error)));
 }
 
 template <CornerTree kTree>
@@ -60,7 +59,7 @@ KinematicsPoint describe(const CornerGeometry<double>& geometry, bool right, dou
   const Mat3<double>& turn = corner.pose.part[kTree.upright].rotation;
   KinematicsPoint point;
   point.travel = travel;
-  point.camber = 0.0 - outward * std::asin(axis.z);  // 0 - x: no negative zero in files
+  point.camber = 0.0 - outward * std::asin(axis.z);  // 0 - x avoids negative zeros in files
   point.toe = outward * std::atan2(axis.x, axis.y);
   point.displacement = corner.motion.center - geometry.wheel_center;
   point.caster_change = 0.0 - std::atan2(turn.z.x, turn.z.z);
@@ -97,8 +96,7 @@ std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int co
   try {
     return sweep(topology, car.numbers.geometry[corner], is_right(corner), travels);
   } catch (const ModelError& e) {
-    throw ModelError((axle_of(corner) == kFront ? "front_suspension: " : "rear_suspension: ") +
-                     std::string(e.what()));
+    throw ModelError(fmt::format("{}: {}", get_axle_key(axle_of(corner)), e.what()));
   }
 }
 

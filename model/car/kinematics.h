@@ -1,4 +1,4 @@
-// What a suspension does to its wheel over its travel, with the chassis held.
+// Kinematics of a suspension: the wheel over its travel, with the chassis fixed.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace strut {
 
-/// A corner's wheel at one travel. Chassis axes: x forward, y left, z up.
+/// State of a corner's wheel at one travel. Chassis axes: x forward, y left, z up.
 struct KinematicsPoint {
   double travel = 0.0;          // m, vertical displacement of the wheel center from nominal trim
   double camber = 0.0;          // rad, + top outwards
@@ -16,13 +16,13 @@ struct KinematicsPoint {
   double caster_change = 0.0;   // rad, side-view turn of the upright's z axis, + top rearwards
   double spring_length = 0.0;   // m, between its mounts
   double damper_length = 0.0;   // m
-  double track = 0.0;           // m, of the axle when both wheels travel alike
+  double track = 0.0;           // m, of the axle when both wheels have this travel
 };
 
-/// A corner of `car` at wheel travels [m] in ascending order, each solved by Newton from its
-/// neighbor nearer to nominal trim, to 1e-13 m; neighbors should lie within some 5 mm. Travels may
-/// exceed kHalfTravel a little. Throws ModelError, naming axle and travel, where the loops do not
-/// close.
+/// Kinematics of a corner of `car` at wheel travels [m] in ascending order, each by Newton from the
+/// neighbor nearer to nominal trim, to 1e-13 m; neighbors should be at most about 5 mm apart.
+/// Travels may slightly exceed kHalfTravel. Throws ModelError with axle and travel where the loops
+/// do not close.
 std::vector<KinematicsPoint> calc_kinematics(const AssembledVehicle& car, int corner,
                                              const std::vector<double>& travels);
 

@@ -1,5 +1,5 @@
-// What describes a car and a maneuver: plain data in SI units, as a person would write it down.
-// `assemble.h` turns it into the arrays the equations read; no physics here.
+// Specification of a car: plain data in SI units, as in its file. `assemble.h` turns it into the
+// parameters of the equations; no physics here.
 //
 // Axes: chassis axes x forward, y left, z up. Suspension points are given for the LEFT corner of an
 // axle, relative to the axle reference: x of the wheel center, the car's center plane, z of the
@@ -38,21 +38,21 @@ struct RodSpec {
   bool operator==(const RodSpec&) const = default;
 };
 
-/// What one end of a spring or damper is fixed to.
+/// The body to which one end of a spring or damper is fixed.
 enum class MountBody { kChassis, kUpright, kLowerArm, kRod };
 
 struct MountSpec {
   MountBody body = MountBody::kChassis;
-  int rod = 0;              // which rod, if on a rod; the point is taken at its foot on the rod
+  int rod = 0;              // for kRod: its number; the point is projected onto the rod
   Vec3<double> position{};  // m, at nominal trim
   bool operator==(const MountSpec&) const = default;
 };
 
-/// Spring and damper of one corner; a rate is of one element along its own axis.
+/// Spring and damper of one corner; the rate of each element is along its own axis.
 struct StrutSpec {
   double stiffness = 0.0;          // N/m
   double damping = 0.0;            // N s/m
-  double nominal_stiffness = 0.0;  // N/m, of the new spring; sets the free length
+  double nominal_stiffness = 0.0;  // N/m, of the new spring; determines the free length
   bool operator==(const StrutSpec&) const = default;
 };
 
@@ -63,7 +63,7 @@ struct SuspensionSpec {
   Vec3<double> arm_front{}, arm_rear{}, ball_joint{};  // m
   Vec3<double> strut_top{}, strut_bottom{};            // m; the slide runs along this line
   BodySpec lower_arm;
-  BodySpec strut_rod;  // upper part, turns about strut_top; may be massless
+  BodySpec strut_rod;  // upper part, rotates about strut_top; may be massless
 
   std::vector<RodSpec> rods;  // MacPherson: the tie rod; multilink: five links
   int tie_rod = 0;            // the rod whose chassis end moves with the steering rack
@@ -78,13 +78,13 @@ struct SuspensionSpec {
 
   MountSpec spring_upper, spring_lower, damper_upper, damper_lower;
   std::array<StrutSpec, 2> strut;  // left, right
-  double drive_share = 0.0;        // share of the drive torque on this axle, half to each wheel
+  double drive_share = 0.0;        // fraction of the drive torque on this axle, half to each wheel
   bool operator==(const SuspensionSpec&) const = default;
 };
 
 enum class PreloadKind { kFreeLength, kTrimmed };
 
-/// Vertical tire spring and contact; in-plane forces are PAC2002's.
+/// Vertical tire spring and contact; in-plane forces by PAC2002.
 struct TireContactSpec {
   double unloaded_radius = 0.0;  // m
   double stiffness = 0.0;        // N/m

@@ -1,4 +1,4 @@
-// What is integrated, as one flat array of T, and the names of its parts.
+// The integrated state, one flat array of T, and the names of its parts.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "base/math/chebyshev.h"
@@ -43,9 +44,10 @@ int find_group_degree(const std::vector<Series>& series, std::size_t first, std:
     degree = std::max(degree, find_degree(series[f], kTableTolerance, kSmallFunction));
   }
   if (degree < kTableTerms) return degree;
-  throw ModelError("hardpoints: a corner's kinematics need a polynomial of degree " +
-                   std::to_string(degree) + " over the travel; allowed: at most " +
-                   std::to_string(kTableTerms - 1) + "");
+  throw ModelError(
+      fmt::format("hardpoints: a corner's kinematics need a polynomial of degree {} over the "
+                  "travel; allowed: at most {}",
+                  degree, kTableTerms - 1));
 }
 
 /// Writes the power series in q of functions [first, first + N) into a group's coefficients.

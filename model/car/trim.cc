@@ -1,5 +1,6 @@
 #include "model/car/trim.h"
 
+#include <fmt/format.h>
 #include <kinsol/kinsol.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 
 #include "model/car/dynamics.h"
 #include "model/integrate/sundials.h"
@@ -18,46 +18,61 @@ namespace {
 
 using I = StateIndex;
 
-/// Unknowns: height, roll, pitch, four corner coordinates; rolling also four spins.
-constexpr int kRestUnknowns = 3 + kCorners;
-constexpr int kRollingUnknowns = kRestUnknowns + kCorners;
+/// Unknowns u of a trim, and its equations r: the acceleration of each unknown. Rest has those
+/// before kSpinSlip only.
+enum Unknown : int {
+  kHeight = 0,
+  kRoll = 1,
+  kPitch = 2,
+  kCorner = 3,                     // a coordinate for each corner
+  kSpinSlip = kCorner + kCorners,  // for each wheel the deviation from the speed of free rolling
+  kUnknowns = kSpinSlip + kCorners
+};
+
+/// Units of the unknowns, so that they are of order one.
+constexpr double kLengthUnit = 1e-2;  // m
+constexpr double kAngleUnit = 1e-2;   // rad
+constexpr double kSlipUnit = 1e-2;    // relative to the speed of free rolling
+/// Weights of the corner and spin accelerations beside those of the chassis.
+constexpr double kCornerWeight = 0.1;
+constexpr double kSpinWeight = 1e-3;
+
+constexpr double kMaxResidual = 1e-8;  // m/s^2
 
 struct TrimProblem {
   const Vehicle<double>* vehicle;
   TableClosure<double, double> closure;
-  double center_height = 0.0;
-  double speed = 0.0;
+  double center_height = 0.0;  // m, at nominal trim
+  double speed = 0.0;          // m/s
   bool rolling = false;
   Workspace<double> workspace{};
 
-  int unknowns() const { return rolling ? kRollingUnknowns : kRestUnknowns; }
-  /// Unknowns are of order one: centimeters, hundredths of a radian, hundredths of rolling speed.
-  static constexpr double kLength = 1e-2, kAngle = 1e-2, kSlip = 1e-2;
+  int size() const { return rolling ? kUnknowns : kSpinSlip; }
 };
 
 State<double> make_state(const TrimProblem& p, const double* u) {
   State<double> x{};
-  const double roll = TrimProblem::kAngle * u[1], pitch = TrimProblem::kAngle * u[2];
+  const double roll = kAngleUnit * u[kRoll], pitch = kAngleUnit * u[kPitch];
   const double cr = std::cos(0.5 * roll), sr = std::sin(0.5 * roll);
   const double cp = std::cos(0.5 * pitch), sp = std::sin(0.5 * pitch);
-  x[I::kPosition + 2] = p.center_height + TrimProblem::kLength * u[0];
+  x[I::kPosition + 2] = p.center_height + kLengthUnit * u[kHeight];
   x[I::kQuaternion] = cp * cr;  // pitch about y, then roll about the pitched x
   x[I::kQuaternion + 1] = cp * sr;
   x[I::kQuaternion + 2] = sp * cr;
   x[I::kQuaternion + 3] = -sp * sr;
-  for (int c = 0; c < kCorners; ++c) x[I::kCorner + c] = TrimProblem::kLength * u[3 + c];
+  for (int c = 0; c < kCorners; ++c) x[I::kCorner + c] = kLengthUnit * u[kCorner + c];
   if (!p.rolling) return x;
   const Vec3<double> v =
       transpose_times(rotation_of(get_quaternion(x.data())), Vec3<double>{p.speed, 0.0, 0.0});
   set_vec3(x.data(), I::kVelocity, v);
   for (int c = 0; c < kCorners; ++c) {
     const double radius = p.vehicle->numbers.tire[axle_of(c)].radius;
-    x[I::kSpin + c] = p.speed / radius * (1.0 + TrimProblem::kSlip * u[7 + c]);
+    x[I::kSpin + c] = p.speed / radius * (1.0 + kSlipUnit * u[kSpinSlip + c]);
   }
   return x;
 }
 
-/// Steady slip of every tire, so that relaxation starts at rest.
+/// Sets the relaxed slips of all tires to their steady values.
 void settle_slips(const Workspace<double>& ws, State<double>& x) {
   for (int c = 0; c < kCorners; ++c) {
     x[I::kKappa + c] = ws.slip[c].kappa;
@@ -65,6 +80,7 @@ void settle_slips(const Workspace<double>& ws, State<double>& x) {
   }
 }
 
+/// dx/dt at x; with relaxation the slips of x are settled first.
 void evaluate(TrimProblem& p, State<double>& x, State<double>& dx) {
   const TireMode mode = p.rolling ? TireMode::kRolling : TireMode::kFrictionless;
   calc_derivative(*p.vehicle, p.closure, mode, x.data(), dx.data(), p.workspace);
@@ -74,25 +90,25 @@ void evaluate(TrimProblem& p, State<double>& x, State<double>& dx) {
   }
 }
 
-/// Accelerations relative to steady motion, scaled to order one [1 = 1 m/s^2 or rad/s^2]; x is the
-/// state of unknowns u. False if not finite.
+/// Writes the weighted accelerations relative to steady motion [m/s^2, rad/s^2] at the unknowns u
+/// and the state x of these unknowns. False where they are not finite.
 bool calc_residual(TrimProblem& p, const double* u, State<double>& x, double* r) {
   x = make_state(p, u);
   State<double> dx{};
   evaluate(p, x, dx);
   const Workspace<double>& ws = p.workspace;
   const Vec3<double> acceleration = ws.rotation * ws.acceleration;
-  r[0] = acceleration.z;
-  r[1] = ws.angular_acceleration.x;
-  r[2] = ws.angular_acceleration.y;
-  for (int c = 0; c < kCorners; ++c) r[3 + c] = 0.1 * ws.corner_acceleration[c];
+  r[kHeight] = acceleration.z;
+  r[kRoll] = ws.angular_acceleration.x;
+  r[kPitch] = ws.angular_acceleration.y;
+  for (int c = 0; c < kCorners; ++c) r[kCorner + c] = kCornerWeight * ws.corner_acceleration[c];
   if (p.rolling) {
     for (int c = 0; c < kCorners; ++c) {
       const double steady = acceleration.x * x[I::kSpin + c] / p.speed;
-      r[7 + c] = 1e-3 * (dx[I::kSpin + c] - steady);
+      r[kSpinSlip + c] = kSpinWeight * (dx[I::kSpin + c] - steady);
     }
   }
-  return std::all_of(r, r + p.unknowns(), [](double v) { return std::isfinite(v); });
+  return std::all_of(r, r + p.size(), [](double v) { return std::isfinite(v); });
 }
 
 int calc_kinsol_residual(N_Vector u, N_Vector f, void* data) {
@@ -102,10 +118,10 @@ int calc_kinsol_residual(N_Vector u, N_Vector f, void* data) {
   return finite ? 0 : 1;
 }
 
-/// Solution u of calc_residual = 0 by KINSOL; returns its flag.
-int solve_with_kinsol(TrimProblem& p, double* u) {
+/// Solves calc_residual = 0 for u by KINSOL, whose flag is ignored: the residual at u decides.
+void solve_with_kinsol(TrimProblem& p, double* u) {
   const SundialsContext context;
-  const int n = p.unknowns();
+  const int n = p.size();
   const SundialsPointer<_generic_N_Vector> x(N_VMake_Serial(n, u, context.raw));
   const SundialsPointer<_generic_N_Vector> one(N_VNew_Serial(n, context.raw));
   N_VConst(1.0, one.get());
@@ -120,36 +136,29 @@ int solve_with_kinsol(TrimProblem& p, double* u) {
   KINSetFuncNormTol(kin, 1e-11);
   KINSetScaledStepTol(kin, 1e-14);
   KINSetMaxSetupCalls(kin, 3);
-  KINSetMaxNewtonStep(kin, 100.0);  // the default derives from the start, which is zero
+  KINSetMaxNewtonStep(kin, 100.0);  // the default is derived from the start, which is zero
   KINSetNumMaxIters(kin, 100);
   KINSetPrintLevel(kin, 0);
   KINSetErrHandlerFn(
       kin, [](int, const char*, const char*, char*, void*) {}, nullptr);
-  return KINSol(kin, x.get(), KIN_LINESEARCH, one.get(), one.get());
-}
-
-[[noreturn]] void fail(const TrimProblem& p, double residual) {
-  std::ostringstream message;
-  message << "static equilibrium: the car finds none " << (p.rolling ? "rolling" : "at rest")
-          << " within +-" << 1e3 * p.closure.tables->half_travel << " mm of travel (residual "
-          << residual << " m/s^2); a spring is too soft for its load, or a parameter is far off";
-  throw ModelError(message.str());
+  KINSol(kin, x.get(), KIN_LINESEARCH, one.get(), one.get());
 }
 
 TrimResult solve(TrimProblem p) {
-  std::array<double, kRollingUnknowns> u{}, residual{};
+  std::array<double, kUnknowns> u{}, residual{};
   solve_with_kinsol(p, u.data());
   TrimResult result{};
   const bool finite = calc_residual(p, u.data(), result.state, residual.data());
-  for (int i = 0; i < p.unknowns(); ++i) {
+  for (int i = 0; i < p.size(); ++i) {
     result.residual = std::max(result.residual, std::abs(residual[i]));
   }
   for (int c = 0; c < kCorners; ++c) result.load[c] = p.workspace.contact[c].load;
-  // KINSOL's flag is no judge: what counts is whether the car stands still, inside its travel.
-  if (!finite || !(result.residual < 1e-8) || p.workspace.travel_excess > 0.0) {
-    fail(p, result.residual);
-  }
-  return result;
+  if (finite && result.residual < kMaxResidual && !(p.workspace.travel_excess > 0.0)) return result;
+  throw ModelError(fmt::format(
+      "the car has no equilibrium {} within +/-{:g} mm of travel (residual {:g} m/s^2): a spring "
+      "is "
+      "too soft for its load, or another parameter is far from plausible",
+      p.rolling ? "rolling" : "at rest", 1e3 * p.closure.tables->half_travel, result.residual));
 }
 
 TrimProblem make_problem(const Vehicle<double>& vehicle, const VehicleTables<double>& tables,

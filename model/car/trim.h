@@ -1,4 +1,4 @@
-// The state a run starts from.
+// Trim: the equilibrium from which a run starts.
 #pragma once
 
 #include "model/car/assemble.h"
@@ -7,20 +7,20 @@
 
 namespace strut {
 
-/// What a trim found.
 struct TrimResult {
   State<double> state;
   std::array<double, kCorners> load;  // N, of each tire
-  double residual = 0.0;              // m/s^2, largest relative acceleration left
+  double residual = 0.0;              // m/s^2, maximum scaled acceleration
 };
 
-/// At rest on flat ground, tires without in-plane force: vertical, roll, pitch and corner
-/// accelerations vanish. Throws ModelError if the car finds no equilibrium within its travel (a
-/// spring that cannot carry it). KINSOL, Newton with line search.
+/// Finds the equilibrium at rest on flat ground, without in-plane tire forces: vertical, roll,
+/// pitch and corner accelerations vanish. KINSOL, Newton with line search. Throws ModelError where
+/// there is no equilibrium within the travel, as with a spring that cannot carry the car.
 TrimResult solve_rest(const Vehicle<double>& vehicle, const VehicleTables<double>& tables,
                       double center_height);
 
-/// Steadily rolling on flat ground at `speed`: as at rest, and every wheel turns at constant slip.
+/// Finds steady rolling on flat ground at `speed` [m/s]: as solve_rest, and every wheel turns at
+/// constant slip.
 TrimResult solve_rolling(const Vehicle<double>& vehicle, const VehicleTables<double>& tables,
                          double center_height, double speed);
 

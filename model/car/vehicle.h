@@ -1,4 +1,5 @@
-// The car as the equations read it: topology common to a batch, numbers one per simulation.
+// The car in the form of the equations of motion: topology common to a batch, parameters per
+// simulation.
 #pragma once
 
 #include "model/car/spec.h"
@@ -9,7 +10,7 @@
 
 namespace strut {
 
-/// Numbers of one car and maneuver: fields of T only, so that W of them pack into lanes.
+/// Parameters of one car and maneuver: fields of T only, so that W of them pack into lanes.
 template <class T>
 struct VehicleParameters {
   T mass;                // kg, whole car
@@ -30,7 +31,7 @@ struct VehicleParameters {
   T gravity;    // m/s^2
 };
 
-/// What is common to all simulations of a batch.
+/// The properties common to all simulations of a batch.
 struct VehicleLayout {
   std::array<CornerTopology, kCorners> corner;
   std::array<ClosurePredictor, kCorners> predictor;

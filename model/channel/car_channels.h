@@ -1,4 +1,4 @@
-// What a simulation of the car reports: one list of names, units and meanings.
+// The channels of a simulated car: one list of names, units and meanings.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace strut {
 
-/// Channel order: the body's, then kCornerChannels for each corner in Corner order.
+/// Order of the channels: those of the body, then kCornerChannels for each corner in Corner order.
 struct CarChannel {
   enum : int {
     kTime,

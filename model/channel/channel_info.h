@@ -1,4 +1,4 @@
-// What a table of channels holds.
+// One entry of a table of channels.
 #pragma once
 
 #include <string>

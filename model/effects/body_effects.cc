@@ -5,8 +5,8 @@ namespace strut {
 namespace {
 
 EffectInfo make_payload() {
-  return {"payload",
-          "load that the model does not know, a point mass on the body",
+  return {EffectName::kPayload,
+          "load that the file does not include, a point mass on the body",
           "m_body + m_p at x_p, z_p from the whole car's centroid",
           "rigid load; the car sinks on its springs",
           kOnBody,
@@ -16,25 +16,27 @@ EffectInfo make_payload() {
 }
 
 EffectInfo make_center_of_mass_shift() {
-  return {"center_of_mass_shift",
+  return {EffectName::kCenterOfMassShift,
           "the whole car's center of mass is not where the file says",
           "r_body + (m / m_body) (x, 0, z)",
-          "masses and inertia stay; 1 to 10 cm between model and car",
+          "masses and inertia are unchanged; 1 to 10 cm between model and car",
           kOnBody,
           {make_switch("x", "m", "shift forward", -1.0, 1.0, 0.05, kHasCar),
            make_switch("z", "m", "shift upward", -0.5, 0.5, 0.05, kHasCar)}};
 }
 
 EffectInfo make_pitch_inertia() {
-  return {
-      "pitch_inertia", "the whole car's pitch inertia is not what the file says",
-      "I_yy (1 + e)",  "4 to 15 % by estimates from size and mass",
-      kOnBody,         {make_switch("gain", "1", "e: relative error", -0.3, 1.0, 0.1, kHasCar)}};
+  return {EffectName::kPitchInertia,
+          "the whole car's pitch inertia is not what the file says",
+          "I_yy (1 + e)",
+          "4 to 15 % by estimates from size and mass",
+          kOnBody,
+          {make_switch("gain", "1", "e: relative error", -0.3, 1.0, 0.1, kHasCar)}};
 }
 
 EffectInfo make_unsprung_mass() {
   return {
-      "unsprung_mass",
+      EffectName::kUnsprungMass,
       "each wheel of the axle weighs more than the file says, the body as much less",
       "m_wheel + m_e; quarter_car: m_unsprung + m_e",
       "point mass at the wheel center; 5 to 25 % of the unsprung mass",
@@ -43,7 +45,7 @@ EffectInfo make_unsprung_mass() {
 }
 
 EffectInfo make_tire_stiffness() {
-  return {"tire_stiffness",
+  return {EffectName::kTireStiffness,
           "inflation pressure: the tires' vertical stiffness is not what the file says",
           "k_t (1 + e)",
           "nearly proportional to pressure; 5 to 20 %",
@@ -53,7 +55,7 @@ EffectInfo make_tire_stiffness() {
 
 EffectInfo make_tire_progressive() {
   return {
-      "tire_progressive",
+      EffectName::kTireProgressive,
       "the tire's vertical stiffness grows with its deflection",
       "F = k_t (x + q x abs(x)), rate k_t (1 + 2 q abs(x))",
       "quadratic term of PAC2002's load (QFZ2); +10 to +30 % stiffness at bump loads",
@@ -62,7 +64,7 @@ EffectInfo make_tire_progressive() {
 }
 
 EffectInfo make_tire_damping() {
-  return {"tire_damping",
+  return {EffectName::kTireDamping,
           "the tires damp more than the file says",
           "c_t + c_e",
           "50 to 2000 N s/m in the literature",
@@ -73,7 +75,7 @@ EffectInfo make_tire_damping() {
 
 EffectInfo make_tire_enveloping() {
   return {
-      "tire_enveloping",
+      EffectName::kTireEnveloping,
       "the contact patch that smooths short obstacles is longer than the file says",
       "footprint + l",
       "averaging over the patch, docs/design/0003-road-contact.md; patches of 0.08 to 0.15 m",
@@ -82,7 +84,7 @@ EffectInfo make_tire_enveloping() {
 }
 
 EffectInfo make_wheel_runout() {
-  return {"wheel_runout",
+  return {EffectName::kWheelRunout,
           "the wheels of the axle are out of round",
           "x + a cos(theta + phi), theta: angle of the wheel since the start",
           "first harmonic of radial run-out; 0.3 to 0.5 mm for 80 N of radial force variation",
@@ -92,13 +94,16 @@ EffectInfo make_wheel_runout() {
 }
 
 EffectInfo make_bump_height() {
-  return {"bump_height", "the bump is higher than surveyed",
-          "h (1 + e)",   "2 to 8 % as built",
-          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kHasCar)}};
+  return {EffectName::kBumpHeight,
+          "the bump is higher than surveyed",
+          "h (1 + e)",
+          "2 to 8 % as built",
+          kOnRoad,
+          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.05, kHasCar)}};
 }
 
 EffectInfo make_bump_length() {
-  return {"bump_length",
+  return {EffectName::kBumpLength,
           "the bump is longer than surveyed",
           "L (1 + e), flanks as well",
           "2 to 8 % as built",
@@ -107,13 +112,16 @@ EffectInfo make_bump_length() {
 }
 
 EffectInfo make_speed_error() {
-  return {"speed_error", "the car drives faster than the speedometer says",
-          "v (1 + e)",   "wheel speed and effective radius; 0.2 to 2 %",
-          kOnRoad,       {make_switch("gain", "1", "e: relative error", -0.5, 1.0, 0.01, kHasCar)}};
+  return {EffectName::kSpeedError,
+          "the car drives faster than the speedometer says",
+          "v (1 + e)",
+          "wheel speed and effective radius; 0.2 to 2 %",
+          kOnRoad,
+          {make_switch("gain", "1", "e: relative error", -0.5, 1.0, 0.01, kHasCar)}};
 }
 
 EffectInfo make_road_gain() {
-  return {"road_gain",
+  return {EffectName::kRoadGain,
           "the road moves the rig more than its recording says",
           "z_road (1 + e)",
           "gain of the stand's displacement sensor",
@@ -123,7 +131,7 @@ EffectInfo make_road_gain() {
 
 EffectInfo make_aerodynamic_lift() {
   return {
-      "aerodynamic_lift",
+      EffectName::kAerodynamicLift,
       "air lifts the axle, along the body's vertical through the axle's wheel centers",
       "F = rho / 2 A_l v^2, rho = 1.2 kg/m^3",
       "A_l: lift coefficient times frontal area, -0.1 to 0.3 m^2 an axle; Hucho, Aerodynamics of "

@@ -1,11 +1,13 @@
 #include "model/effects/catalogue.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <sstream>
-#include <stdexcept>
 
+#include "base/error/check.h"
 #include "base/names/corners.h"
+#include "base/text/nearest_name.h"
 #include "model/effects/tables.h"
 #include "model/error/model_error.h"
 
@@ -19,7 +21,7 @@ std::vector<EffectInfo> make_effects() {
   return effects;
 }
 
-/// "rear" for "rear_left" and "rear_right", "" for what is no corner.
+/// "rear" for "rear_left" and "rear_right", "" where `place` is not a corner.
 std::string find_axle_of(const std::string& place) {
   const int corner = find_corner(place);
   return corner < 0 ? "" : kAxleNames[static_cast<std::size_t>(axle_of(corner))];
@@ -41,12 +43,12 @@ std::vector<double> get_values(const EffectSettings& settings, const EffectInfo&
   return make_neutral_setting(effect, place, model).values;
 }
 
-/// Replaces the setting at a place, or drops it where it says what would hold without it.
+/// Replaces the setting at a place, or removes it where the same values hold without it.
 void put_values(EffectSettings& settings, const EffectInfo& effect, const ModelInfo& model,
                 const std::string& place, const std::vector<double>& values) {
   const auto found = find_setting(settings, effect.name, place);
   const auto at = found - settings.begin();
-  EffectSettings others = settings;
+  EffectSettings others = settings;  // without the one at this place
   if (found != settings.end()) others.erase(others.begin() + at);
   if (get_values(others, effect, model, place) == values) {
     settings = std::move(others);
@@ -67,41 +69,43 @@ std::vector<std::string> list_sensor_channels(const ModelInfo& model) {
   return names;
 }
 
-std::string join(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 std::string describe(const EffectSetting& setting) {
   return "effect " + setting.effect + (setting.place.empty() ? "" : " at " + setting.place);
+}
+
+const EffectInfo& get_effect(const std::string& name) {
+  const EffectInfo* effect = find_effect(name);
+  STRUT_CHECK(effect != nullptr, fmt::format("effect {} is not in the catalogue", name));
+  return *effect;
 }
 
 void check_values(const EffectSetting& setting,
                   const std::vector<const EffectParameter*>& parameters) {
   if (setting.values.size() != parameters.size()) {
-    throw ModelError(describe(setting) + ": has " + std::to_string(setting.values.size()) +
-                     " values; allowed: " + std::to_string(parameters.size()));
+    throw ModelError(fmt::format("{}: has {} values; allowed: {}", describe(setting),
+                                 setting.values.size(), parameters.size()));
   }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
     if (setting.values[i] >= p.low && setting.values[i] <= p.high) continue;
-    std::ostringstream message;
-    message << describe(setting) << ": " << p.name << " = " << setting.values[i]
-            << ": must lie in [" << p.low << ", " << p.high << "] " << p.unit;
-    throw ModelError(message.str());
+    throw ModelError(fmt::format("{}: {} = {:g}: must lie in [{:g}, {:g}] {}", describe(setting),
+                                 p.name, setting.values[i], p.low, p.high, p.unit));
   }
 }
 
 void check_setting(const EffectSetting& setting, const ModelInfo& model) {
   const EffectInfo* effect = find_effect(setting.effect);
-  if (effect == nullptr) throw ModelError("effect " + setting.effect + ": there is none");
+  if (effect == nullptr) {
+    throw ModelError(
+        fmt::format("effect {}: unknown; `strut list effects` lists all", setting.effect));
+  }
   const std::vector<std::string> places = list_effect_places(*effect, model);
   if (places.empty()) {
-    throw ModelError("effect " + setting.effect + ": a " + model.name + " does not have it");
+    throw ModelError(fmt::format("effect {}: does not exist in a {}", setting.effect, model.name));
   }
   if (std::find(places.begin(), places.end(), setting.place) == places.end()) {
-    throw ModelError(describe(setting) + ": place must be one of " + join(places));
+    throw ModelError(
+        fmt::format("{}: place must be one of {}", describe(setting), join_names(places)));
   }
   check_values(setting, list_effect_parameters(*effect, model));
 }
@@ -132,14 +136,14 @@ std::vector<const EffectParameter*> list_effect_parameters(const EffectInfo& eff
 
 std::string make_effect_parameter_name(const EffectInfo& effect, const std::string& place,
                                        const EffectParameter& parameter, const ModelInfo& model) {
-  const bool only_one = list_effect_parameters(effect, model).size() == 1;
-  return (place.empty() ? "" : place + "_") + effect.name + (only_one ? "" : "_" + parameter.name);
+  const bool is_single = list_effect_parameters(effect, model).size() == 1;
+  return (place.empty() ? "" : place + "_") + effect.name + (is_single ? "" : "_" + parameter.name);
 }
 
 std::vector<std::string> list_effect_places(const EffectInfo& effect, const ModelInfo& model) {
   if (list_effect_parameters(effect, model).empty()) return {};
   if ((effect.places & kOnChannel) != 0) return list_sensor_channels(model);
-  if (!model.has(kHasCar)) return {""};
+  if (!model.has(kHasCar)) return {PlaceName::kRig};
   std::vector<std::string> places;
   if ((effect.places & kOnAxle) != 0) {
     places.insert(places.end(), kAxleNames.begin(), kAxleNames.end());
@@ -147,8 +151,8 @@ std::vector<std::string> list_effect_places(const EffectInfo& effect, const Mode
   if ((effect.places & kOnCorner) != 0) {
     places.insert(places.end(), kCornerNames.begin(), kCornerNames.end());
   }
-  if ((effect.places & kOnBody) != 0) places.emplace_back("body");
-  if ((effect.places & kOnRoad) != 0) places.emplace_back("road");
+  if ((effect.places & kOnBody) != 0) places.emplace_back(PlaceName::kBody);
+  if ((effect.places & kOnRoad) != 0) places.emplace_back(PlaceName::kRoad);
   return places;
 }
 
@@ -162,7 +166,7 @@ EffectSetting make_neutral_setting(const EffectInfo& effect, const std::string& 
 }
 
 bool is_neutral(const EffectSetting& setting, const ModelInfo& model) {
-  const auto parameters = list_effect_parameters(*find_effect(setting.effect), model);
+  const auto parameters = list_effect_parameters(get_effect(setting.effect), model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i]->switches && setting.values[i] != parameters[i]->neutral) return false;
   }
@@ -176,23 +180,22 @@ void validate(const EffectSettings& settings, const ModelInfo& model) {
       return other.effect == setting.effect && other.place == setting.place;
     };
     if (std::count_if(settings.begin(), settings.end(), same) > 1) {
-      throw ModelError(describe(setting) + ": is there twice; allowed: once");
+      throw ModelError(describe(setting) + ": given twice; allowed: once");
     }
   }
 }
 
 double get_effect_value(const EffectSettings& settings, const EffectInfo& effect,
                         const ModelInfo& model, const std::string& place, std::size_t parameter) {
-  // An axle reads as the mean of its two corners.
-  std::vector<double> found;
+  std::vector<double> at_corners;  // corners of the axle with settings of their own
   for (const char* corner : kCornerNames) {
     if (find_axle_of(corner) != place) continue;
     if (find_setting(settings, effect.name, corner) == settings.end()) continue;
-    found.push_back(get_values(settings, effect, model, corner).at(parameter));
+    at_corners.push_back(get_values(settings, effect, model, corner).at(parameter));
   }
   const double own = get_values(settings, effect, model, place).at(parameter);
-  if (found.empty()) return own;
-  return 0.5 * (found.front() + (found.size() > 1 ? found.back() : own));
+  if (at_corners.empty()) return own;
+  return 0.5 * (at_corners.front() + (at_corners.size() > 1 ? at_corners.back() : own));
 }
 
 void set_effect_value(EffectSettings& settings, const EffectInfo& effect, const ModelInfo& model,
@@ -202,7 +205,7 @@ void set_effect_value(EffectSettings& settings, const EffectInfo& effect, const 
     values.at(parameter) = value;
     put_values(settings, effect, model, where, values);
   };
-  // Corners with settings of their own first: once the axle says the same they are dropped.
+  // Collected before the axle is set: afterwards their settings are redundant and are removed.
   std::vector<std::string> corners;
   for (const char* corner : kCornerNames) {
     if (find_axle_of(corner) != place) continue;

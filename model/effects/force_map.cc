@@ -1,14 +1,19 @@
 #include "model/effects/force_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "base/names/corners.h"
+#include "base/text/nearest_name.h"
+#include "model/effects/names.h"
 #include "model/error/model_error.h"
 
 namespace strut {
 namespace {
+
+std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
 ModelError refuse(const ForceMap& map, const std::string& what) {
   return ModelError("force map" + (map.place.empty() ? "" : " at " + map.place) + ": " + what);
@@ -16,40 +21,34 @@ ModelError refuse(const ForceMap& map, const std::string& what) {
 
 void check_range(const ForceMap& map, const std::string& name, double low, double high) {
   if (std::isfinite(low) && std::isfinite(high) && low < high) return;
-  std::ostringstream message;
-  message << name << " = [" << low << ", " << high << "]: must be two numbers, the lower first";
-  throw refuse(map, message.str());
+  throw refuse(
+      map, fmt::format("{} = [{:g}, {:g}]: must be two numbers, the lower first", name, low, high));
 }
 
 void check_count(const ForceMap& map, const std::string& name, int count) {
-  if (count == 1 || (count >= kFewestSplines && count <= kMostSplines)) return;
-  throw refuse(map, name + " has " + std::to_string(count) + " splines; allowed: 1 or " +
-                        std::to_string(kFewestSplines) + " to " + std::to_string(kMostSplines));
+  if (count > 0 && is_spline_count(to_size(count))) return;
+  throw refuse(map, fmt::format("{} has {} splines; allowed: 1 or {} to {}", name, count,
+                                kMinSplines, kMaxSplines));
 }
 
-std::size_t count_of(int n) { return static_cast<std::size_t>(n); }
-
 void check_coefficients(const ForceMap& map) {
-  const std::size_t wanted = count_of(map.deflection_count) * count_of(map.velocity_count);
+  const std::size_t wanted = to_size(map.deflection_count) * to_size(map.velocity_count);
   if (map.coefficients.size() != wanted) {
-    throw refuse(map, "has " + std::to_string(map.coefficients.size()) +
-                          " coefficients; allowed: " + std::to_string(wanted));
+    throw refuse(map,
+                 fmt::format("has {} coefficients; allowed: {}", map.coefficients.size(), wanted));
   }
   for (const double force : map.coefficients) {
-    if (std::fabs(force) <= kLargestMapForce) continue;
-    std::ostringstream message;
-    message << "coefficient " << force << " N: must lie in [" << -kLargestMapForce << ", "
-            << kLargestMapForce << "] N";
-    throw refuse(map, message.str());
+    if (std::fabs(force) <= kMaxMapForce) continue;
+    throw refuse(map, fmt::format("coefficient {:g} N: must lie in [{:g}, {:g}] N", force,
+                                  -kMaxMapForce, kMaxMapForce));
   }
 }
 
 void check_map(const ForceMap& map, const ModelInfo& model) {
   const std::vector<std::string>& places = list_force_map_places(model);
   if (std::find(places.begin(), places.end(), map.place) == places.end()) {
-    std::string names;
-    for (const std::string& place : places) names += (names.empty() ? "" : ", ") + place;
-    throw refuse(map, names.empty() ? "a rig's has no place" : "place must be one of " + names);
+    throw refuse(map, model.has(kHasCar) ? "place must be one of " + join_names(places)
+                                         : "a rig's force map has no place");
   }
   check_range(map, "deflection", map.deflection_low, map.deflection_high);
   check_range(map, "velocity", map.velocity_low, map.velocity_high);
@@ -58,6 +57,7 @@ void check_map(const ForceMap& map, const ModelInfo& model) {
   check_coefficients(map);
 }
 
+/// `count` B-splines over the range [low, high].
 SplineAxis<double> make_axis(double low, double high, int count) {
   const double cells = std::max(count - 3, 1);
   return {low, cells / (high - low), cells};
@@ -66,13 +66,13 @@ SplineAxis<double> make_axis(double low, double high, int count) {
 }  // namespace
 
 const std::vector<std::string>& list_force_map_places(const ModelInfo& model) {
-  static const std::vector<std::string> of_rig = {""};
-  static const std::vector<std::string> of_car = [] {
+  static const std::vector<std::string> rig_places = {PlaceName::kRig};
+  static const std::vector<std::string> car_places = [] {
     std::vector<std::string> places(kAxleNames.begin(), kAxleNames.end());
     places.insert(places.end(), kCornerNames.begin(), kCornerNames.end());
     return places;
   }();
-  return model.has(kHasCar) ? of_car : of_rig;
+  return model.has(kHasCar) ? car_places : rig_places;
 }
 
 void validate(const ForceMaps& maps, const ModelInfo& model) {
@@ -80,7 +80,7 @@ void validate(const ForceMaps& maps, const ModelInfo& model) {
     check_map(map, model);
     const auto same = [&](const ForceMap& other) { return other.place == map.place; };
     if (std::count_if(maps.begin(), maps.end(), same) > 1) {
-      throw refuse(map, "is there twice; allowed: once");
+      throw refuse(map, "given twice; allowed: once");
     }
   }
 }
@@ -96,7 +96,7 @@ const ForceMap* find_force_map(const ForceMaps& maps, const std::string& place) 
 std::vector<double> calc_map_abscissas(double low, double high, int count) {
   if (count == 1) return {0.5 * (low + high)};
   std::vector<double> abscissas;
-  abscissas.reserve(count_of(count));
+  abscissas.reserve(to_size(count));
   for (int i = 0; i < count; ++i) {
     abscissas.push_back(low + (high - low) * (i - 1) / (count - 3));
   }
@@ -115,13 +115,14 @@ std::shared_ptr<const ForceMapTable> make_force_map_table(const ForceMap& map) {
   ForceMapTable table;
   table.deflection = make_axis(map.deflection_low, map.deflection_high, map.deflection_count);
   table.velocity = make_axis(map.velocity_low, map.velocity_high, map.velocity_count);
-  // Where the map does not depend on a variable all four splines of one cell have one coefficient.
-  const std::size_t rows = count_of(std::max(map.deflection_count, kFewestSplines));
-  const std::size_t columns = count_of(std::max(map.velocity_count, kFewestSplines));
+  // Where the map does not depend on a variable, the four splines of one cell share one
+  // coefficient.
+  const std::size_t rows = to_size(std::max(map.deflection_count, kMinSplines));
+  const std::size_t columns = to_size(std::max(map.velocity_count, kMinSplines));
   table.stride = static_cast<double>(columns);
   table.coefficients.reserve(rows * columns);
   for (std::size_t i = 0; i < rows; ++i) {
-    const std::size_t row = map.deflection_count == 1 ? 0 : i * count_of(map.velocity_count);
+    const std::size_t row = map.deflection_count == 1 ? 0 : i * to_size(map.velocity_count);
     for (std::size_t j = 0; j < columns; ++j) {
       table.coefficients.push_back(map.coefficients[row + (map.velocity_count == 1 ? 0 : j)]);
     }

@@ -1,18 +1,21 @@
-// Effects of sensors: what a reading differs by from the channel itself.
+// Effects of sensors: the deviation of a reading from its channel.
 #include "model/effects/tables.h"
 
 namespace strut {
 namespace {
 
 EffectInfo make_sensor_gain() {
-  return {"sensor_gain", "the sensor's sensitivity is not what its data sheet says",
-          "(1 + e) y",   "1 to 5 % uncalibrated, 0.02 %/K",
-          kOnChannel,    {make_switch("gain", "1", "e: relative error", -2.0, 9.0, 0.02)}};
+  return {EffectName::kSensorGain,
+          "the sensor's sensitivity is not what its data sheet says",
+          "(1 + e) y",
+          "1 to 5 % uncalibrated, 0.02 %/K",
+          kOnChannel,
+          {make_switch("gain", "1", "e: relative error", -2.0, 9.0, 0.02)}};
 }
 
 EffectInfo make_sensor_bias() {
-  return {"sensor_bias",
-          "the sensor reads something where there is nothing",
+  return {EffectName::kSensorBias,
+          "the sensor's reading has a constant offset",
           "y + b",
           "zero-g offset of MEMS accelerometers 0.2 to 0.6 m/s^2, of gyroscopes 0.01 to 0.05 rad/s",
           kOnChannel,
@@ -20,7 +23,7 @@ EffectInfo make_sensor_bias() {
 }
 
 EffectInfo make_sensor_delay() {
-  return {"sensor_delay",
+  return {EffectName::kSensorDelay,
           "the reading is late: transport, filters with linear phase",
           "y(t - tau)",
           "1 to 10 ms on a vehicle's bus",
@@ -30,13 +33,16 @@ EffectInfo make_sensor_delay() {
 }
 
 EffectInfo make_sensor_lowpass() {
-  return {"sensor_lowpass",  "the sensor or its amplifier smooths what it reads",
-          "T dz/dt + z = y", "first-order filter, corner frequency 1 / (2 pi T)",
-          kOnChannel,        {make_switch("time", "s", "T: time constant", 0.0, 0.5, 2e-3)}};
+  return {EffectName::kSensorLowpass,
+          "the sensor or its amplifier smooths what it reads",
+          "T dz/dt + z = y",
+          "first-order filter, corner frequency 1 / (2 pi T)",
+          kOnChannel,
+          {make_switch("time", "s", "T: time constant", 0.0, 0.5, 2e-3)}};
 }
 
 EffectInfo make_sensor_position() {
-  return {"sensor_position",
+  return {EffectName::kSensorPosition,
           "the inertial sensor sits elsewhere than the file says",
           "a + dw/dt x s + w x (w x s), s: the shift",
           "rigid body kinematics; 3 to 30 cm, or in the frame of another drawing",

@@ -7,7 +7,7 @@ namespace {
 constexpr unsigned kOnStrut = kOnAxle | kOnCorner;
 
 EffectInfo make_damper_asymmetry() {
-  return {"damper_asymmetry",
+  return {EffectName::kDamperAsymmetry,
           "the damper is stiffer in rebound than in compression",
           "F = c (1 - a sgn v) v",
           "Dixon, The Shock Absorber Handbook, 2nd ed.; 0.2 to 0.5 in passenger cars",
@@ -17,7 +17,7 @@ EffectInfo make_damper_asymmetry() {
 }
 
 EffectInfo make_damper_blow_off() {
-  return {"damper_blow_off",
+  return {EffectName::kDamperBlowOff,
           "valves open: above a knee the damper is softer (digressive)",
           "F = c ((1 - r) + r / sqrt(1 + (v / v_b)^2)) v",
           "smooth form of two straight lines that meet at v_b; Dixon: v_b 0.05 to 0.2 m/s, "
@@ -29,7 +29,7 @@ EffectInfo make_damper_blow_off() {
 }
 
 EffectInfo make_damper_hysteresis() {
-  return {"damper_hysteresis",
+  return {EffectName::kDamperHysteresis,
           "the damper's force lags behind its speed: compressible oil, valve dynamics",
           "tau dF/dt + F = f(v), f: the damper's law with all other effects",
           "first-order lag; 1 ms (force), 40 ms (frequency selective) in Project Chrono's FEDA",
@@ -38,7 +38,7 @@ EffectInfo make_damper_hysteresis() {
 }
 
 EffectInfo make_damper_leak() {
-  return {"damper_leak",
+  return {EffectName::kDamperLeak,
           "a damper short of oil loses stroke: after each reversal it gives no force until it has "
           "moved that far; joint_play in another size: no data tell the two apart, and where both "
           "are on, their lengths add",
@@ -52,7 +52,7 @@ EffectInfo make_damper_leak() {
 
 EffectInfo make_damper_fade() {
   EffectInfo fade = {
-      "damper_fade",
+      EffectName::kDamperFade,
       "the damper is softer than its rate says: warm oil; with a measured temperature, by it",
       "F = c (1 - l) v; on a strut_rig F = c exp(-b (T - 293.15 K)) v",
       "Dixon, The Shock Absorber Handbook, 2nd ed.: 0.2 to 2 %/K",
@@ -67,10 +67,10 @@ EffectInfo make_damper_fade() {
 
 EffectInfo make_strut_friction() {
   return {
-      "strut_friction",
+      EffectName::kStrutFriction,
       "dry friction of seals, guide and bushings",
       "F = F_c tanh(v / v_s), explicit steps need h F_c / (v_s m) < 2.7",
-      "regularized Coulomb friction; 20 to 150 N an axle, a strut's most: Deubel and Prokop, "
+      "regularized Coulomb friction; 20 to 150 N an axle, mostly in the struts: Deubel and Prokop, "
       "2022",
       kOnStrut,
       {make_switch("force", "N", "F_c: sliding friction", 0.0, 2000.0, 50.0),
@@ -78,7 +78,7 @@ EffectInfo make_strut_friction() {
 }
 
 EffectInfo make_progressive_spring() {
-  return {"progressive_spring",
+  return {EffectName::kProgressiveSpring,
           "the spring's rate grows with its deflection from nominal trim, in both directions",
           "F = k (d + q d^3), rate k (1 + 3 q d^2)",
           "odd cubic law; +10 to +60 % rate at 50 mm are q = 13 to 80 1/m^2",
@@ -87,19 +87,18 @@ EffectInfo make_progressive_spring() {
 }
 
 EffectInfo make_bump_stop() {
-  return {"bump_stop",
+  return {EffectName::kBumpStop,
           "a jounce bumper comes in beyond a gap, along the spring's line",
           "F = k_b (s + p s^2), s = max(d - g, 0)",
           "70 N/mm and p = 50 1/m follow the table of ADAMS/Car's sedan to 20 % up to 50 mm",
           kOnStrut,
           {make_switch("stiffness", "N/m", "k_b: rate where it comes in", 0.0, 1e6, 5e4),
-           make_shape("gap", "m", "g: compression from nominal trim that is free", 0.04, 0.0, 0.3,
-                      0.04),
+           make_shape("gap", "m", "g: free compression from nominal trim", 0.04, 0.0, 0.3, 0.04),
            make_shape("progression", "1/m", "p: growth of the rate", 50.0, 0.0, 500.0, 50.0)}};
 }
 
 EffectInfo make_top_mount_compliance() {
-  return {"top_mount_compliance",
+  return {EffectName::kTopMountCompliance,
           "rubber between damper and body, a Kelvin-Voigt element in series with the damper",
           "F = w + tau_m dw/dt, (tau_m + kappa c_s) dw/dt + w = f(v), c_s = f(v) / v",
           "Kelvin-Voigt mount of stiffness 1 / kappa and damping tau_m / kappa; exact for a linear "
@@ -111,7 +110,7 @@ EffectInfo make_top_mount_compliance() {
 }
 
 EffectInfo make_joint_play() {
-  return {"joint_play",
+  return {EffectName::kJointPlay,
           "a worn joint between damper and body or wheel: after a reversal the damper stands until "
           "the rod has crossed the play; damper_leak in another size: no data tell the two apart, "
           "and where both are on, their lengths add",
@@ -127,7 +126,7 @@ EffectInfo make_joint_play() {
 
 EffectInfo make_gas_force() {
   EffectInfo gas = {
-      "gas_force",
+      EffectName::kGasForce,
       "gas pressure on the damper's rod pushes the strut apart; invisible in displacements from "
       "rest, hence not on a quarter_car or single_mass",
       "F = F_g",
@@ -140,7 +139,7 @@ EffectInfo make_gas_force() {
 
 EffectInfo make_anti_roll_bar() {
   EffectInfo bar = {
-      "anti_roll_bar",
+      EffectName::kAntiRollBar,
       "a bar resists the difference of an axle's two deflections",
       "F_left = k_r (d_left - d_right) = -F_right",
       "linear torsion bar, its rate taken at the springs; Milliken, Race Car Vehicle Dynamics, "

@@ -1,13 +1,16 @@
 #include "model/effects/strut_numbers.h"
 
+#include <fmt/format.h>
+
 #include "base/error/check.h"
+#include "model/effects/names.h"
 
 namespace strut {
 
 double EffectValues::get(const char* effect, const char* parameter,
                          const std::string& place) const {
   const EffectInfo* info = find_effect(effect);
-  STRUT_CHECK(info != nullptr, std::string(effect) + ": no such effect");
+  STRUT_CHECK(info != nullptr, fmt::format("effect {} is not in the catalogue", effect));
   const auto here = list_effect_parameters(*info, model);
   for (std::size_t i = 0; i < here.size(); ++i) {
     if (here[i]->name == parameter) return get_effect_value(settings, *info, model, place, i);
@@ -15,7 +18,7 @@ double EffectValues::get(const char* effect, const char* parameter,
   for (const EffectParameter& p : info->parameters) {
     if (p.name == parameter) return p.neutral;
   }
-  throw CheckError(std::string(effect) + ": has no parameter " + parameter);
+  throw CheckError(fmt::format("effect {} has no parameter {}", effect, parameter));
 }
 
 StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
@@ -27,19 +30,21 @@ StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
   const double length = strut.nominal_spring_length;
   StrutEffectNumbers<double> n{};
   n.law = {strut.damping,
-           get("damper_asymmetry", "asymmetry"),
-           get("damper_blow_off", "loss"),
-           get("damper_blow_off", "knee"),
-           get("damper_fade", "loss"),
-           get("damper_fade", "rate")};
-  n.series = {get("joint_play", "play") + get("damper_leak", "stroke"),
-              get("damper_hysteresis", "lag"), get("top_mount_compliance", "compliance"),
-              get("top_mount_compliance", "relaxation")};
-  n.spring = {strut.stiffness * get("progressive_spring", "cubic"), length};
-  n.stop = {get("bump_stop", "stiffness"), get("bump_stop", "progression"),
-            length - get("bump_stop", "gap")};
-  n.friction = {get("strut_friction", "force"), 1.0 / get("strut_friction", "speed")};
-  n.gas = {get("gas_force", "force")};
+           get(EffectName::kDamperAsymmetry, "asymmetry"),
+           get(EffectName::kDamperBlowOff, "loss"),
+           get(EffectName::kDamperBlowOff, "knee"),
+           get(EffectName::kDamperFade, "loss"),
+           get(EffectName::kDamperFade, "rate")};
+  n.series = {get(EffectName::kJointPlay, "play") + get(EffectName::kDamperLeak, "stroke"),
+              get(EffectName::kDamperHysteresis, "lag"),
+              get(EffectName::kTopMountCompliance, "compliance"),
+              get(EffectName::kTopMountCompliance, "relaxation")};
+  n.spring = {strut.stiffness * get(EffectName::kProgressiveSpring, "cubic"), length};
+  n.stop = {get(EffectName::kBumpStop, "stiffness"), get(EffectName::kBumpStop, "progression"),
+            length - get(EffectName::kBumpStop, "gap")};
+  n.friction = {get(EffectName::kStrutFriction, "force"),
+                1.0 / get(EffectName::kStrutFriction, "speed")};
+  n.gas = {get(EffectName::kGasForce, "force")};
   return n;
 }
 

@@ -1,4 +1,4 @@
-// From settings to the numbers of a strut's elements.
+// The parameters of a strut's force elements from effect settings.
 #pragma once
 
 #include "model/effects/catalogue.h"
@@ -6,13 +6,13 @@
 
 namespace strut {
 
-/// Reads values of settings by name.
+/// Access to the values of settings by name.
 struct EffectValues {
   const EffectSettings& settings;
   const ModelInfo& model;
 
-  /// The value at a place, neutral where there is no such setting or this kind of model does not
-  /// have the parameter.
+  /// The value at a place; neutral where there is no such setting or this kind of model does not
+  /// have the parameter. Throws CheckError for an unknown effect (EffectName) or parameter.
   double get(const char* effect, const char* parameter, const std::string& place) const;
 };
 
@@ -20,15 +20,15 @@ struct EffectValues {
 struct PlainStrut {
   double stiffness;              // N/m
   double damping;                // N s/m
-  double nominal_spring_length;  // m, of its line where deflection counts from
+  double nominal_spring_length;  // m, spring line at zero deflection
 };
 
-/// All effects of the strut at a place; each neutral where it is off.
+/// Parameters of all effects of the strut at a place; neutral for those that are off.
 StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
                                                      const std::string& place,
                                                      const PlainStrut& strut);
 
-/// Which elements those numbers need: StrutEffectBits.
+/// The elements that these numbers need, as StrutEffectBits.
 unsigned find_strut_effects(const StrutEffectNumbers<double>& numbers);
 
 }  // namespace strut

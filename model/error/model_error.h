@@ -1,4 +1,4 @@
-// The one error the model room throws: at its door, never inside a step.
+// The error of invalid models: thrown before a simulation starts, never inside a step.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// A damper whose force is not proportional to its speed, and one that answers late.
+// A damper whose force is not proportional to its speed, and elements in series with a damper.
 #pragma once
 
 #include "model/force/strut.h"
@@ -25,11 +25,10 @@ struct DamperLaw {
   }
 };
 
-/// How steep the force comes in where a lost stroke is used up: a contact that yields within
-/// kContactTime [s], of a small play as much as the play itself at kJointSpeed [m/s], so that it
-/// vanishes with the play. As steep as RK4 with 1 ms allows: it errs by 1 % of what 1 to 30 mm do
-/// to the body acceleration of a quarter car, with half the time by 3 to 17 %; of 0.3 mm by 1 to 10
-/// %.
+/// Stiffness of the contact at the end of a lost stroke: it yields within kContactTime [s]; at
+/// kJointSpeed [m/s] by at most the play, so that it vanishes with the play. This is as stiff as
+/// RK4 with 1 ms steps allows: the error is 1 % of the effect of 1 to 30 mm of play on the body
+/// acceleration of a quarter car (3 to 17 % with half the time), and 1 to 10 % of that of 0.3 mm.
 inline constexpr double kContactTime = 1e-3, kJointSpeed = 0.5;
 
 /// Rate at which a contact of a joint with play > 0 yields [1/s].
@@ -38,18 +37,18 @@ T calc_contact_rate(const T& play) {
   return sqrt(T(1.0 / square(kContactTime)) + square(T(kJointSpeed) / play));
 }
 
-/// What lies in series with a damper whose instantaneous force is f(v): a lost stroke, a lag, then
-/// a rubber mount.
+/// Elements in series with a damper whose instantaneous force is f(v): a lost stroke, a lag, then a
+/// rubber mount.
 ///
 ///   du/dt = v - w,   w = r (u - clamp(u, -p / 2, p / 2)),   r^2 = (1 / t_c)^2 + (v_j / p)^2
 ///   tau dy/dt + y = f(w),   (tau_m + kappa c_s) dz/dt + z = y,   F = z + tau_m dz/dt
 ///
-/// with c_s = f(w) / w. u is the displacement in a joint: within its play p, that of a worn joint
-/// and the stroke that the damper itself loses together, the rod moves freely and the damper
-/// stands; beyond it the contact is a spring whose force f(w) grows as the damper's over speed
-/// does, for f = c w of stiffness c r. Its energy is the integral of f(w) over u, the damper takes
-/// f(w) w, so none is created, whatever the law. As p vanishes w becomes v. w is v itself where p
-/// is 0, y is f(w) itself where tau is 0, F is y where kappa is 0.
+/// with c_s = f(w) / w. u is the displacement in a joint with play p, the sum of the play of a worn
+/// joint and the lost stroke of the damper itself. Within the play the rod moves freely and the
+/// damper does not move; beyond it the contact is a spring with the force law f(w), of stiffness c
+/// r for f = c w. Its energy is the integral of f(w) over u and the damper dissipates f(w) w, so no
+/// energy is created by any law. w tends to v as p vanishes. w is exactly v where p is 0, y is
+/// exactly f(w) where tau is 0, F is exactly y where kappa is 0.
 template <class T>
 struct DamperSeries {
   T play;        // p, m, of joint and damper
@@ -58,8 +57,8 @@ struct DamperSeries {
   T relaxation;  // tau_m, s
 };
 
-/// States y [N], z [N] and u [m] of a DamperSeries with their rates [1/s], each also as -decay *
-/// state + the rest, decay [1/s].
+/// States y [N], z [N] and u [m] of a DamperSeries, their time derivatives, and their decay rates
+/// [1/s] in the form d(state)/dt = -decay state + N.
 template <class T>
 struct DamperSeriesState {
   T lagged, lagged_rate, lagged_decay;
@@ -67,8 +66,8 @@ struct DamperSeriesState {
   T joint, joint_rate, joint_decay;
 };
 
-/// Speed w that reaches the damper through its joint [m/s], of the strut's speed v; fills rate and
-/// decay of the joint.
+/// Speed w of the damper behind its joint [m/s] at the strut's speed v; sets rate and decay of the
+/// joint.
 template <class T>
 T calc_joint_speed(const DamperSeries<T>& series, const T& speed, DamperSeriesState<T>& state) {
   const auto loose = series.play > T(0.0);
@@ -79,7 +78,7 @@ T calc_joint_speed(const DamperSeries<T>& series, const T& speed, DamperSeriesSt
   return select(loose, passed, speed);
 }
 
-/// Displacement at which a joint has settled that moves at a steady speed [m].
+/// Displacement of a joint after a long motion at constant speed [m].
 template <class T>
 T calc_settled_joint(const DamperSeries<T>& series, const T& speed) {
   const auto loose = series.play > T(0.0);
@@ -88,7 +87,7 @@ T calc_settled_joint(const DamperSeries<T>& series, const T& speed) {
   return select(loose, series.play * side + yielded, T(0.0));
 }
 
-/// Force of the damper [N]; fills rates and decays of `state`.
+/// Force of the damper [N]; sets rates and decays of `state`.
 template <class T>
 T calc_series_force(const DamperSeries<T>& series, const T& law_force, const T& law_rate,
                     DamperSeriesState<T>& state) {

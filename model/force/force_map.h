@@ -9,23 +9,22 @@
 
 namespace strut {
 
-/// A range cut into cells of equal width.
+/// A range divided into cells of equal width.
 template <class T>
 struct SplineAxis {
-  T low;    // of the argument's unit
-  T scale;  // cells over width, 1 / unit
-  T cells;
+  T low;    // in the argument's unit
+  T scale;  // cells per unit
+  T cells;  // their number
 };
 
-/// The four splines that are not zero at an argument: the first of them and their values.
+/// The four splines that are not zero at an argument: index of the first and values of all.
 template <class T>
 struct SplinePoint {
   T first;
   std::array<T, 4> weight;
 };
 
-/// Outside of the range as at its end. An argument that is no number falls into the first cell:
-/// what comes of it is an index.
+/// Clamps the argument to the range. NaN selects the first cell, because the result is an index.
 template <class T>
 SplinePoint<T> calc_spline_point(const SplineAxis<T>& axis, const T& argument) {
   T u = (argument - axis.low) * axis.scale;
@@ -39,10 +38,11 @@ SplinePoint<T> calc_spline_point(const SplineAxis<T>& axis, const T& argument) {
           {sixth * s2 * s, rest - t2 + half * t2 * t, rest - s2 + half * s2 * s, sixth * t2 * t}};
 }
 
-/// A map of at least one cell by one: a variable that it does not depend on is one of constants.
+/// A map of at least one cell per variable; it is constant in a variable on which it does not
+/// depend.
 struct ForceMapTable {
   SplineAxis<double> deflection, velocity;
-  double stride;                     // coefficients a row of one deflection
+  double stride;                     // coefficients per row, which has one deflection
   std::vector<double> coefficients;  // N
 };
 
@@ -58,8 +58,8 @@ struct MappedForce {
   static constexpr bool kConservative = false;
   T nominal_length;  // m
   SplineAxis<T> deflection, velocity;
-  T first, stride;                // of the coefficients in `table`
-  const double* table = nullptr;  // of all maps of all lanes
+  T first, stride;                // index of the first coefficient in `table`, coefficients per row
+  const double* table = nullptr;  // coefficients of all maps of all lanes
 
   T calc_force(const LineState<T>& line) const {
     const SplinePoint<T> d = calc_spline_point(deflection, nominal_length - line.length);
@@ -76,11 +76,11 @@ struct MappedForce {
   T calc_energy(const LineState<T>&) const { return T(0.0); }
 };
 
-/// The tables of several lanes behind each other.
+/// Concatenates the tables of several lanes.
 class ForceMapPacker {
  public:
-  /// The force of one strut in W lanes by their tables; zero in those that have none (null). Its
-  /// table is not set before `finish`.
+  /// The force of one strut in W lanes by their tables; zero in lanes without one (null). The
+  /// caller sets its `table` to the coefficients that `finish` returns.
   template <class T>
   MappedForce<T> add(const ForceMapTable* const* lanes, const T& nominal_length) {
     MappedForce<T> force{};
@@ -107,7 +107,7 @@ class ForceMapPacker {
     set_lane(axis.scale, lane, of.scale);
     set_lane(axis.cells, lane, of.cells);
   }
-  /// Where the coefficients begin; a map that is there already is not put there twice.
+  /// Index of the map's first coefficient; each map is appended once.
   double append(const ForceMapTable* key, const ForceMapTable& map) {
     for (const auto& [known, first] : placed_) {
       if (known == key) return first;

@@ -3,8 +3,8 @@
 // Sources: [P06] H. B. Pacejka, Tyre and Vehicle Dynamics, 2nd ed., Butterworth-Heinemann 2006,
 // section 4.3.2, equations (4.E1) to (4.E78); [ADAMS] Adams/Tire help, "Using the PAC2002 tire
 // model", whose coefficient names and scale factors are used here; [MF52] MF-Tyre 5.2 equation
-// manual for the relaxation lengths. Where they differ the comment at the equation says which one
-// is followed. Not modeled: turn slip, inflation pressure, the gyroscopic couple of the belt.
+// manual for the relaxation lengths. Where they differ, the comment at the equation cites the one
+// that is followed. Not modeled: turn slip, inflation pressure, the gyroscopic couple of the belt.
 //
 // Axes: ISO W (TYDEX): x forward in the wheel plane along the road, y left, z up the road normal.
 // Slip: kappa = (omega R_e - V_x)/|V_x|, positive driving; alpha = atan(V_y/|V_x|), V the velocity
@@ -42,8 +42,8 @@ struct RelaxationLength {
   T longitudinal, lateral;  // m
 };
 
-/// Parts of the model that cost nothing when every tire of a batch lacks their coefficients. A part
-/// whose coefficients are zero contributes zero, so leaving it out changes no result.
+/// Parts of the model that are skipped when no tire of a batch has coefficients for them. A part
+/// whose coefficients are zero contributes zero, so skipping it changes no result.
 struct Pac2002Parts {
   bool combined = true;      // RBX1, RBY1, RVY1 to RVY3
   bool aligning = true;      // QDZ*, SSZ*
@@ -54,14 +54,13 @@ struct Pac2002Parts {
 /// Whether the shifts of the combined weights are so small that their power series are exact to
 /// rounding (see `atan_small`, `cos_small`): |B S_H| <= 0.1, |E| <= 50 and |C| <= 2 at every load.
 inline bool has_small_shift(const Pac2002<double>& p) {
-  const double reach = max(1.0, p.FZMAX / (p.LFZO * p.FNOMIN) - 1.0);  // greatest |df_z|
-  const auto greatest = [&](double constant, double slope) {
-    return abs(constant) + abs(slope) * (slope == 0.0 ? 0.0 : reach);
+  const double max_dfz = max(1.0, p.FZMAX / (p.LFZO * p.FNOMIN) - 1.0);
+  const auto bound = [&](double constant, double slope) {
+    return abs(constant) + abs(slope) * (slope == 0.0 ? 0.0 : max_dfz);
   };
   return abs(p.RBX1 * p.LXAL * p.RHX1) <= 0.1 &&
-         abs(p.RBY1 * p.LYKA) * greatest(p.RHY1, p.RHY2) <= 0.1 &&
-         greatest(p.REX1, p.REX2) <= 50.0 && greatest(p.REY1, p.REY2) <= 50.0 &&
-         abs(p.RCX1) <= 2.0 && abs(p.RCY1) <= 2.0;
+         abs(p.RBY1 * p.LYKA) * bound(p.RHY1, p.RHY2) <= 0.1 && bound(p.REX1, p.REX2) <= 50.0 &&
+         bound(p.REY1, p.REY2) <= 50.0 && abs(p.RCX1) <= 2.0 && abs(p.RCY1) <= 2.0;
 }
 
 /// The parts that `tire` needs.
@@ -83,8 +82,9 @@ inline Pac2002Parts operator|(const Pac2002Parts& a, const Pac2002Parts& b) {
 
 namespace pac2002 {
 
-/// Load the coefficients are evaluated at. Outside [FZMIN, FZMAX] the force per load keeps its
-/// value at the limit: the polynomials in load are fits and turn friction negative far outside.
+/// Load at which the coefficients are evaluated. Outside [FZMIN, FZMAX] the force per load keeps
+/// its value at the limit: the polynomials in load are fits, which make friction negative far
+/// outside.
 template <class T>
 struct LoadPoint {
   T ratio;       // load / (LFZO FNOMIN), limited
@@ -122,7 +122,7 @@ T limit_curvature(const T& curvature) {
 }
 
 /// The argument of a sine or cosine of the Magic Formula: C arctan(u - E (u - arctan u)), u = B s.
-/// Joining two of them (`join_pair`) evaluates them in step, which hides the latency of the
+/// Two of them joined (`join_pair`) are evaluated in step, which hides the latency of the
 /// arctangents.
 template <class T>
 struct MagicAngle {
@@ -226,7 +226,7 @@ T calc_induced_side_force(const Pac2002<C>& p, const T& dfz, const T& friction,
   return peak * sin_bounded(p.RVY5 * atan_any(p.RVY6 * s.kappa)) * p.LVYKA;
 }
 
-/// F_x / Fz and F_y / Fz of combined slip, with what the moments need.
+/// F_x / Fz and F_y / Fz of combined slip, with the intermediate results for the moments.
 template <class T>
 struct CombinedSlip {
   T fx, fy;        // 1
@@ -341,11 +341,11 @@ T calc_rolling_resistance(const Pac2002<C>& p, const LoadPoint<T>& at, const Tir
 /// Force and moment of the road on a tire. Zero load gives exactly zero. No `if` depends on the
 /// state; `parts` is common to a batch.
 ///
-/// `flatten`: one function without calls lets independent chains of operations overlap.
+/// `flatten`: without calls, independent chains of operations overlap.
 ///
 /// @param side +1 left tire, the side of the coefficients; -1 right tire, its mirror image: camber
 ///   and alpha are given in the same W axes on both sides, f(alpha, camber) becomes f(-alpha,
-///   -camber) with the sign of fy, mx and mz changed.
+///   -camber) with the signs of fy, mx and mz changed.
 template <class C, class T>
 [[gnu::flatten]] TireForce<T> calc_tire_force(const Pac2002<C>& p, const TireSlip<T>& slip,
                                               const T& side, const Pac2002Parts& parts = {}) {
@@ -383,7 +383,7 @@ RelaxationLength<T> calc_relaxation_length(const Pac2002<C>& p, const T& load, c
 }
 
 /// Effective rolling radius R_e = R0 - rho0 (DREFF arctan(BREFF rho/rho0) + FREFF rho/rho0) with
-/// rho0 = Fz0/C_z [ADAMS]; R0 - rho/3 where the tire gives no coefficients.
+/// rho0 = Fz0/C_z [ADAMS]; R0 - rho/3 for a tire without these coefficients.
 ///
 /// @param deflection rho [m]; a tire off the road (rho < 0) has R_e = R0.
 /// @param vertical_stiffness C_z [N/m], > 0.

@@ -3,8 +3,8 @@
 
 namespace strut {
 
-// Every coefficient once: X(section of the .tir, name, default, unit, meaning). The struct, the
-// reader and the documentation are made from this list.
+// List of the coefficients: X(section of the .tir, name, default, unit, meaning). The struct and
+// the reader are generated from it.
 #define STRUT_PAC2002_COEFFICIENTS(X)                                                              \
   X("MODEL", LONGVL, 16.7, "m/s", "speed of the measurement, reference of the rolling resistance") \
   X("DIMENSION", UNLOADED_RADIUS, 0.0, "m", "free radius R0")                                      \
@@ -145,8 +145,8 @@ struct Pac2002 {
   bool operator==(const Pac2002&) const = default;
 };
 
-/// The tire mounted on the other side of the car: what is odd under reflection at the wheel plane
-/// changes its sign. A file measured on a right tire is brought to the left by it.
+/// The tire mounted on the other side of the car: coefficients that are odd under reflection at the
+/// wheel plane change their sign. Converts a file measured on a right tire to the left.
 template <class T>
 Pac2002<T> mirror_tire(Pac2002<T> p) {
   for (T* odd : {&p.RHX1, &p.QSX1, &p.PEY3, &p.PHY1, &p.PHY2, &p.PVY1, &p.PVY2, &p.RBY3, &p.RVY1,

@@ -1,16 +1,17 @@
 // Force elements that act along a line of a corner (spring line, damper line).
 //
 // An element is a plain struct of T fields. Force is positive in compression (it pushes the mounts
-// apart), so its power on the car is force * length_rate. A conservative element states its stored
-// energy; the power of any other is dissipation or input. A new element is a header like this and
-// one entry in `StrutElements`, or in `StrutEffects` (strut_effects.h) if it is an effect: the
-// dynamics never names an element.
+// apart), so its power on the car is force * length_rate. A conservative element computes its
+// stored energy; the power of any other is dissipation or input. A new element is a header like
+// this and one entry in `StrutElements`, or in `StrutEffects` (strut_effects.h) if it is an effect;
+// the dynamics do not depend on the kinds of elements.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <tuple>
 
+#include "base/error/check.h"
 #include "base/math/lanes.h"
 #include "model/multibody/corner.h"
 
@@ -47,8 +48,8 @@ struct LinearDamper {
   T calc_energy(const LineState<T>&) const { return T(0.0); }
 };
 
-/// The elements of one kind that are switched on, each at its corner. The count is common to a
-/// batch: an effect that is off is not in the list.
+/// The elements of one kind, each at its corner. The list is common to a batch and has no effects
+/// that are off.
 template <class Element, int Capacity = kMaxJoints>
 struct ElementList {
   std::array<Element, Capacity> element;
@@ -56,6 +57,7 @@ struct ElementList {
   int count = 0;
 
   void add(int at_corner, const Element& e) {
+    STRUT_CHECK(count < Capacity, "a list of force elements exceeds its capacity");
     element[static_cast<std::size_t>(count)] = e;
     corner[static_cast<std::size_t>(count)] = at_corner;
     ++count;
@@ -65,13 +67,13 @@ struct ElementList {
 template <class T>
 using StrutElements = std::tuple<ElementList<LinearSpring<T>>, ElementList<LinearDamper<T>>>;
 
-/// Generalized force on q, power that is not change of stored energy, stored energy.
+/// Forces of all elements of one strut.
 template <class T>
 struct StrutForce {
   T spring_force, damper_force;  // N, by line
   T generalized;                 // N, on q
-  T power;                       // W
-  T energy;                      // J
+  T power;                       // W, of elements that are not conservative
+  T energy;                      // J, stored in conservative elements
 };
 
 /// Adds the forces of the elements of one kind.

@@ -1,5 +1,5 @@
-// Force elements of the catalogue's effects (model/effects) in a strut. An effect that is off is in
-// no list; where none is on, nothing here is called.
+// Force elements of the catalogue's effects (model/effects) in a strut. An effect that is off is
+// not in any list; without effects none of these functions is called.
 //
 // d = nominal length - length and v = -d(length)/dt are deflection and speed in compression.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// F = k q d^3, beside the LinearSpring.
+/// F = k q d^3, in addition to the LinearSpring.
 template <class T>
 struct CubicSpring {
   static constexpr Line kLine = kSpringLine;
@@ -85,7 +85,7 @@ struct AntiRollBar {
   T nominal_twist;  // m, nominal length left - right
 };
 
-/// Numbers of all effects of one strut; each neutral where it is off.
+/// Parameters of all effects of one strut; neutral for those that are off.
 template <class T>
 struct StrutEffectNumbers {
   DamperLaw<T> law;
@@ -96,10 +96,10 @@ struct StrutEffectNumbers {
   GasForce<T> gas;
 };
 
-/// Which elements a strut has beyond spring and damper; bits of a set, common to a batch.
+/// The elements of a strut other than spring and damper; bits of a set, common to a batch.
 enum StrutEffectBits : unsigned {
-  kShapedDamper = 1,  // in place of the linear one
-  kSeriesDamper = 2,  // a shaped one with states
+  kShapedDamper = 1,  // instead of the linear damper
+  kSeriesDamper = 2,  // a shaped damper with states
   kCubicSpring = 4,
   kBumpStop = 8,
   kDryFriction = 16,
@@ -121,8 +121,8 @@ struct StrutEffects {
              ElementList<GasForce<T>>, ElementList<MappedForce<T>>>
       added;
   ElementList<AntiRollBar<T>> bars;                               // at the axle's left corner
-  int count = 0;                                                  // of all elements
-  std::shared_ptr<const std::vector<double>> map_coefficients{};  // what mapped forces read
+  int count = 0;                                                  // elements of all lists
+  std::shared_ptr<const std::vector<double>> map_coefficients{};  // those of the mapped forces
 
   bool has_states() const { return series.count > 0; }
 
@@ -145,7 +145,7 @@ struct StrutEffects {
     ++count;
   }
 
-  /// Puts the maps of `tables[lane][corner]` (null: none) into the list. `get_length(corner)`: the
+  /// Adds the maps `tables[lane][corner]` (null: none). `get_length(corner)`: length of the
   /// damper's line at nominal trim [m].
   template <class Tables, class GetLength>
   void add_maps(const Tables* const* tables, const GetLength& get_length) {
@@ -168,8 +168,8 @@ struct StrutEffects {
   }
 };
 
-/// States of all struts and what becomes of them: first every strut's lagged force, then every
-/// strut's mount force, then every strut's joint; null where no strut has any.
+/// States of all struts with their time derivatives and decay rates: the lagged forces of all
+/// struts, then the mount forces, then the joint displacements; null without states.
 template <class T>
 struct StrutStates {
   const T* value = nullptr;
@@ -229,8 +229,8 @@ void add_anti_roll_bars(const ElementList<AntiRollBar<T>>& list,
   }
 }
 
-/// Adds what all effects do to `out`, which holds the linear elements' forces. `warming`: how much
-/// warmer the dampers are than at their rate's reference [K].
+/// Adds the forces of all effects to those of the linear elements in `out`. `warming`: temperature
+/// of the dampers above the reference of their rates [K].
 template <class T, int Corners>
 [[gnu::noinline]] void add_strut_effects(const StrutEffects<T>& effects,
                                          const std::array<CornerMotion<T>, Corners>& motion,

@@ -7,9 +7,10 @@
 
 namespace strut {
 
-/// Slip velocities are divided by no less than this, so a standing wheel has finite slip [m/s].
+/// Minimum divisor of slip velocities, which keeps the slip of a standing wheel finite [m/s].
 inline constexpr double kSlipSpeedFloor = 0.5;
-/// Deflection over which the tire's damper comes in, so that touching down is no force step [m].
+/// Deflection over which the tire's damping builds up, so that the force of a touchdown has no step
+/// [m].
 inline constexpr double kDampingRamp = 2e-3;
 
 template <class T>
@@ -17,7 +18,7 @@ struct TireVertical {
   T radius;     // m, unloaded
   T stiffness;  // N/m
   T damping;    // N s/m
-  /// 1/m, growth of the stiffness with the deflection; of effect only where a model says so.
+  /// 1/m, growth of the stiffness with the deflection; used by calc_progressive_load only.
   T progression;
 };
 
@@ -28,7 +29,7 @@ struct WheelRunout {
   T phase;      // rad
 };
 
-/// Wheel as the tire sees it, all vectors in one frame (chassis axes).
+/// Motion of a wheel, all vectors in one frame (chassis axes).
 template <class T>
 struct WheelMotion {
   Vec3<T> center;         // m
@@ -38,7 +39,7 @@ struct WheelMotion {
   T spin;                 // rad/s, wheel's angular velocity along the axis, in inertial space
 };
 
-/// Where wheel and effective road plane meet.
+/// Contact of a wheel with the plane of the effective road.
 template <class T>
 struct TireContact {
   Vec3<T> normal, forward, lateral;  // unit, contact frame
@@ -56,25 +57,25 @@ T smoothstep(const T& x) {
   return t * t * t * (t * (t * T(6.0) - T(15.0)) + T(10.0));
 }
 
-/// k d + c r s(d / kDampingRamp): load [N] of a tire deflected by d [m] at the rate r [m/s], before
-/// it is cut off at zero. Its sign is the contact event.
+/// k d + c r s(d / kDampingRamp), s = smoothstep: load [N] of a tire at deflection d [m] and rate r
+/// [m/s] before clamping at zero. Its sign change is the contact event.
 template <class C, class T>
 T calc_unclamped_load(const TireVertical<C>& tire, const T& deflection, const T& rate) {
   return tire.stiffness * deflection +
          tire.damping * smoothstep(deflection * T(1.0 / kDampingRamp)) * rate;
 }
 
-/// k q d abs(d): what a progressive tire carries beyond the linear one [N].
+/// k q d abs(d): load of a progressive tire in addition to that of the linear tire [N].
 template <class C, class T>
 T calc_progressive_load(const TireVertical<C>& tire, const T& deflection) {
   return (tire.stiffness * tire.progression) * (deflection * abs(deflection));
 }
 
-/// Contact with the effective road under the wheel: `normal`, its vertical component `normal_z` in
-/// the world, and `clearance`, the wheel center's height over the road below it [m].
-/// Envelope: the road is where a rigid disc of the free radius would carry the center, so the
-/// deflection is the gap to that path along its normal. Point: the plane itself is the road.
-/// `progressive`: whether the tire's progression counts.
+/// Contact with the effective road under the wheel: `normal` of the road, its vertical component
+/// `normal_z` in the world, and `clearance`, the height of the wheel center over the road [m].
+/// Envelope: the road is the path of the center of a rolling rigid disc of the free radius, so the
+/// deflection is the distance to that path along its normal. Point: the road is the plane itself.
+/// `progressive`: adds calc_progressive_load.
 template <class C, class T>
 TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind, bool progressive,
                                  const WheelMotion<T>& wheel, const Vec3<T>& normal,
@@ -100,7 +101,7 @@ TireContact<T> calc_tire_contact(const TireVertical<C>& tire, ContactKind kind, 
   return contact;
 }
 
-/// Slip velocities of a tire and what follows from them.
+/// Slip velocities of a tire and its slips.
 template <class T>
 struct TireSlipState {
   T speed;           // m/s, >= kSlipSpeedFloor
@@ -134,7 +135,7 @@ struct TireWrench {
   T spin_damping;  // N m s/rad, -d(moment about the axis)/d(spin) at free rolling
 };
 
-/// `kappa`, `tan_alpha`: the slips that make force, steady or relaxed. `side`: +1 left, -1 right.
+/// `kappa`, `tan_alpha`: slips of the force law, steady or relaxed. `side`: +1 left, -1 right.
 template <class C, class T>
 TireWrench<T> calc_tire_wrench(const Pac2002<C>& pacejka, const Pac2002Parts& parts,
                                const WheelMotion<T>& wheel, const TireContact<T>& contact,

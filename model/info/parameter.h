@@ -1,4 +1,4 @@
-// A number of a model that people set by name: in files, `--set name=value`, as an axis of a grid,
+// A number of a model that is set by name: in files, by `--set name=value`, as an axis of a grid,
 // as an unknown of a fit.
 #pragma once
 
@@ -13,20 +13,20 @@ namespace strut {
 struct Parameter {
   std::string name;
   std::string unit;                     // "1" if none
-  std::optional<double> default_value;  // where a file does not give it; nothing: it must
+  std::optional<double> default_value;  // for files without it; nothing: required
   Range allowed;  // the plausible range; a value outside of it is an input error
   std::string description;
-  std::string source;  // of default and range; "" where they need none
-  /// An ordinary size, the scale of a search that starts from 0; 0: half of the range.
+  std::string source;  // for default and range; "" where they need none
+  /// Typical magnitude, the scale of a search that starts from 0; 0: half of the range.
   double typical = 0.0;
   bool is_effect = false;
-  bool is_maneuver = false;  // of the maneuver's file, not of the vehicle's
+  bool is_maneuver = false;  // belongs to the maneuver's file, not to the vehicle's
 };
 
-/// A parameter, and where it is kept in what it is a parameter of.
+/// A parameter with access to its value in a Subject.
 template <class Subject>
 struct ParameterOf : Parameter {
-  /// A parameter of an axle reads as the mean of its two corners.
+  /// For a parameter of an axle the mean of its two corners.
   std::function<double(const Subject&)> get;
   std::function<void(Subject&, double)> set;
 };

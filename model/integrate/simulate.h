@@ -4,15 +4,16 @@
 // off, touches down or reaches a kink of the road) takes a shorter RK4 step that ends there and
 // restarts its multistep history; its neighbors keep their step and every bit of their result.
 //
-// Besides what steppers.h asks, a system offers, all after calc_derivative at the same state:
+// Besides the functions of steppers.h a system offers, all after calc_derivative at the same state:
 //   int guard_count() const;  void get_guards(T* g) const;
 //   T get_trigger() const;                         its sign change is the snapshot
 //   MaskOf<T> has_failed() const;                  closure or finiteness lost
 //   void observe(const T& t, const T* x, T* out);  channels
 // and at any state
 //   void calc_guards(const T& t, const T* x, T* g);
-//   bool cross(int guard, MaskOf<T> lanes);        guard passed there; true if f must be renewed
-// and, if it can tell where long steps will do (StepOptions::coarse_step),
+//   bool cross(int guard, MaskOf<T> lanes);        these lanes passed it; true: f must be
+//   reevaluated
+// and, if it supports long steps (StepOptions::coarse_step),
 //   MaskOf<T> wants_fine_step(const T* x, const T& coarse_step) const;
 #pragma once
 
@@ -32,19 +33,19 @@ class Simulation {
   static constexpr int N = System::kCapacity;
   static constexpr int kLanes = kLaneCount<T>;
   static constexpr int kMaxGuards = 8;  // capacity; a car on a road with kinks has eight
-  /// Steps, in those that a run without contact events takes, that no run needs which gets
-  /// anywhere.
-  static constexpr double kMostSteps = 20.0;
-  /// Of a step, what one that ends at a guard has at least: two wheels that cross within rounding
-  /// could else shorten each other's steps until time stands still.
-  static constexpr double kShortestStep = 1e-9;
+  /// Step budget, as a multiple of the steps of an event-free run; a run that exceeds it is
+  /// reported as stalled.
+  static constexpr double kMaxStepRatio = 20.0;
+  /// Minimum length of an event-shortened step, as a fraction of the step: without it two wheels
+  /// that cross within rounding could shorten each other's steps until time stands still.
+  static constexpr double kMinStepFraction = 1e-9;
   using Vector = std::array<T, N>;
   using Mask = MaskOf<T>;
 
   Simulation(System& system, const StepOptions& options, const SamplePlan& plan)
       : system_(system), options_(options), plan_(plan) {}
 
-  /// Integrates from x0; allocates only here, before the first step.
+  /// Integrates from x0; all allocations happen before the first step.
   LaneResults run(const Vector& x0) {
     prepare(x0);
     while (any(time_ < end_)) advance();
@@ -112,14 +113,15 @@ class Simulation {
     retire_failed();
     if (plan_.snapshot) locate_trigger();
     if (results_.sample_count > 0) record_samples();
-    // Only now may the right-hand side change sides: the step just taken belongs to the old one.
+    // The right-hand side changes sides after the samples: the step just taken belongs to the old
+    // side.
     const Mask restarted = landed > T(-0.5);
     const bool guarded = system_.guard_count() > 0;
     if (any(restarted) || (guarded && !options_.locate_events)) pass_guards(restarted, landed);
     commit(restarted, last);
   }
 
-  /// Fine or coarse, by each lane's own state.
+  /// The fine or the coarse step, by each lane's own state.
   T choose_step() {
     const T fine(options_.step);
     if constexpr (requires { system_.wants_fine_step(x(), T(0.0)); }) {
@@ -131,7 +133,7 @@ class Simulation {
     return fine;
   }
 
-  /// x1_ from the stepper each lane is ready for.
+  /// Computes x1 by the multistep formula in lanes with enough history, else by RK4.
   void take_step(Mask full) {
     const Mask multistep =
         options_.stepper == Stepper::kAbm4 ? (past_count_ > T(2.5)) & full : past_count_ < T(-1.0);
@@ -154,11 +156,11 @@ class Simulation {
   /// 1 where a guard is positive, 0 elsewhere.
   static T calc_side(const T& guard) { return select(guard > T(0.0), T(1.0), T(0.0)); }
 
-  /// Shortens the step of lanes in which a guard changed sides, to end at the first change. Returns
-  /// the guard at which each lane's step now ends, -1 where none.
+  /// Shortens the step of lanes in which a guard changed sides, so that it ends at the first
+  /// change. Returns the guard at which each lane's step now ends, -1 without any.
   T locate_events() {
     const int guards = system_.guard_count();
-    const T shortest = T(kShortestStep) * h_;
+    const T shortest = T(kMinStepFraction) * h_;
     T landed = T(-1.0);
     for (int attempt = 0; attempt < kMaxGuards; ++attempt) {
       T theta = T(2.0), chosen = T(-1.0);
@@ -167,7 +169,7 @@ class Simulation {
         const Mask changed =
             (abs(side1 - side_[g]) > T(0.5)) & (abs(landed - T(g)) > T(0.5)) & (time_ < end_);
         const Mask inside = guard_[g] * guard1_[g] < T(0.0);
-        // Crossed between steps within rounding: nothing to locate, only to note.
+        // Crossed between steps within rounding: there is no root to locate in this step.
         side_[g] = select(changed & (!inside), side1, side_[g]);
         const T guess = guard_[g] / (guard_[g] - guard1_[g]);
         const Mask first = changed & inside & (guess < theta);
@@ -192,7 +194,7 @@ class Simulation {
       gb = select(mine, guard1_[g], gb);
     }
     constexpr int kIterations = 8;
-    T theta = T(1.0), kept = T(0.0);  // which end stayed in the last iteration: -1 a, +1 b
+    T theta = T(1.0), kept = T(0.0);  // the end kept in the last iteration: -1 a, +1 b
     std::array<T, kMaxGuards> g_now;
     for (int i = 0; i < kIterations; ++i) {
       theta = select(crossing, (a * gb - b * ga) / (gb - ga), T(1.0));
@@ -202,7 +204,7 @@ class Simulation {
       for (int g = 0; g < guards; ++g) {
         value = select(abs(chosen - T(g)) < T(0.5), g_now[g], value);
       }
-      // An end that stays twice counts half: without this the method creeps towards the other.
+      // The value at an end that is kept twice is halved, which prevents one-sided convergence.
       const Mask replaces_b = value * gb > T(0.0);
       ga = select(replaces_b, select(kept < T(-0.5), T(0.5) * ga, ga), value);
       gb = select(replaces_b, value, select(kept > T(0.5), T(0.5) * gb, gb));
@@ -224,20 +226,20 @@ class Simulation {
     trigger1_ = system_.get_trigger();
   }
 
-  /// Lanes that passed guard g in the step just taken: it ended there, or, both wheels of an axle
-  /// meeting a kink at once, this guard reached zero with the one it ended at. With events not
-  /// located: the guard changed sides somewhere in the step.
+  /// Lanes that passed guard g in the step just taken: the step ended there, or (where both wheels
+  /// of an axle reach a kink at once) this guard reached zero together with that at which it ended.
+  /// If events are not located: the guard changed sides anywhere in the step.
   Mask find_passed(int g, Mask restarted, const T& landed) const {
     if (!options_.locate_events) {
       const T side1 = calc_side(guard1_[g]);
       return (abs(side1 - side_[g]) > T(0.5)) & (time_ < end_);
     }
-    constexpr double kTogether = 1e-7;  // share of the way to zero left, far above rounding
+    constexpr double kTogether = 1e-7;  // relative distance from zero, far above rounding
     const Mask reached = abs(guard1_[g]) <= T(kTogether) * abs(guard_[g]);
     return restarted & ((abs(landed - T(g)) < T(0.5)) | reached);
   }
 
-  /// Notes the passed guards; where the right-hand side changes with them, renews f1.
+  /// Registers the passed guards; reevaluates f1 where the right-hand side changes with them.
   void pass_guards(Mask restarted, const T& landed) {
     bool renew = false;
     std::array<Mask, kMaxGuards> passed;
@@ -255,7 +257,7 @@ class Simulation {
     T renewed[kMaxGuards];
     system_.get_guards(renewed);
     for (int g = 0; g < system_.guard_count(); ++g) {
-      // A kink's guard now measures the distance to the next kink: its side starts anew.
+      // The guard of a kink now measures the distance to the next kink: its side is reset.
       const Mask fresh = passed[g] & (abs(renewed[g] - guard1_[g]) > T(1e-6));
       side_[g] = select(fresh, calc_side(renewed[g]), side_[g]);
       guard1_[g] = renewed[g];
@@ -263,7 +265,7 @@ class Simulation {
   }
 
   void retire_failed() {
-    const Mask stalled = step_count_ > T(kMostSteps * plan_.duration / options_.step);
+    const Mask stalled = step_count_ > T(kMaxStepRatio * plan_.duration / options_.step);
     const Mask failed = (system_.has_failed() | stalled) & (time_ < end_);
     if (!any(failed)) return;
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -273,7 +275,7 @@ class Simulation {
           get_mask_lane(stalled, lane) ? RunStatus::kStalled : system_.get_failure(lane));
       results_.failure_time[at] = get_lane(time_, lane);
     }
-    // A retired lane stands still at its last good state.
+    // A retired lane remains at its last valid state.
     end_ = select(failed, time_, end_);
     h_ = select(failed, T(0.0), h_);
     for (int i = 0; i < system_.size(); ++i) {
@@ -298,7 +300,7 @@ class Simulation {
       results_.derivative_count += 3;
       const T error = system_.get_trigger();
       if (i == 2) break;
-      // The trigger moves with nearly constant speed: its mean slope over the step serves Newton.
+      // Newton with the mean slope of the step, because the trigger's speed is nearly constant.
       theta = theta - select(hit, error / (trigger1_ - trigger_), T(0.0));
     }
     const T at = time_ + theta * h_;
@@ -341,7 +343,7 @@ class Simulation {
     store_sample(time_ <= end_);
   }
 
-  /// Samples that fall into this step, on the dense output.
+  /// Records the samples that fall into this step, on the dense output.
   void record_samples() {
     const T slack = T(1e-9 * options_.step);
     while (true) {
@@ -408,7 +410,7 @@ class Simulation {
   StepOptions options_;
   SamplePlan plan_;
   LaneResults results_;
-  // The last step ends in a ring: current at head_, the next one after it, the past before it.
+  // Ring of the last step ends: the current one at head_, the next behind it, the past before it.
   static constexpr int kRing = 5;
   std::array<Vector, kRing> x_ring_{}, f_ring_{};
   int head_ = 0;
@@ -420,7 +422,7 @@ class Simulation {
   T time_, end_, h_, past_count_, past_step_, step_count_, next_sample_, trigger_, trigger1_,
       triggered_;
   std::vector<T> channel_;
-  std::size_t history_row_ = 0;  // numbers a history sample
+  std::size_t history_row_ = 0;  // numbers per history sample
 };
 
 }  // namespace strut

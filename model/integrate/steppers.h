@@ -4,14 +4,14 @@
 // d(u)/dt = -decay u + N(u, rest). For those both methods are taken in exponential form, with the
 // decay rate frozen at the start of the step: Krogstad's ETDRK4-B (J. Comput. Phys. 203, 2005, eq.
 // 51) and the exponential Adams formulas of Cox and Matthews (J. Comput. Phys. 176, 2002, eq. 11)
-// with their implicit twin. With decay = 0
-// they are the classical methods; for any decay they keep order four, since what the linear part
-// takes away the nonlinear part N gives back.
+// with their implicit counterpart. With decay = 0 they are the classical methods; they have order
+// four for any decay, because N compensates for the linear part.
 //
 // A system offers
 //   static constexpr int kCapacity;         largest state
 //   int size() const;                       state in use
-//   int stiff_count() const, stiff_at(int i) const;   component of the i-th stiff one
+//   int stiff_count() const;                number of stiff components, at most kMaxStiff
+//   int stiff_at(int i) const;              index of the i-th stiff component in the state
 //   void calc_derivative(const T& t, const T* x, T* dx, T* decay);
 #pragma once
 
@@ -40,7 +40,7 @@ void update_stiff_weights(const T* decay, const T& h, int count, StiffWeights<T>
   }
 }
 
-/// Scratch of both steppers.
+/// Buffers of both steppers.
 template <class T, int N>
 struct StepScratch {
   std::array<std::array<T, N>, 4> k;
@@ -112,8 +112,8 @@ struct AdamsHistory {
   std::array<const T*, 3> x, f;
 };
 
-/// Predict (Adams-Bashforth 4), evaluate, correct (Adams-Moulton 4). The final evaluation is the
-/// caller's, who needs it anyway as the next step's derivative.
+/// x1 = step by predicting (Adams-Bashforth 4), evaluating and correcting (Adams-Moulton 4). The
+/// caller does the final evaluation, which is also the next step's derivative.
 template <class T, class System>
 void step_abm4(System& system, const T& t, const T* x, const T* f, const AdamsHistory<T>& past,
                const StiffWeights<T>& weights, const T& h, T* x1,

@@ -1,4 +1,4 @@
-// Ownership of what SUNDIALS allocates.
+// Ownership of the objects that SUNDIALS allocates.
 #pragma once
 
 #include <sundials/sundials_context.h>

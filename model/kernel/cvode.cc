@@ -1,6 +1,7 @@
 // The reference integrator: SUNDIALS CVODE with contact events and the snapshot as roots.
 
 #include <cvode/cvode.h>
+#include <fmt/format.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -18,16 +19,20 @@
 namespace strut {
 namespace {
 
-/// A decay rate [1/s] of spin or strut from which the implicit BDF formulas cost less than Adams
-/// formulas with fixed-point iteration, whose step it would bound.
-constexpr double kStiffDecay = 5000.0;
-constexpr int kMaxRoots = 2 * kCorners + 1;
+using System = CarSystem<double>;
 
-/// What CVODE's callbacks see.
+/// Decay rate of spin or strut [1/s] above which the implicit BDF formulas cost less than Adams
+/// formulas with fixed-point iteration, whose step the rate bounds.
+constexpr double kStiffDecay = 5000.0;
+constexpr double kMaxStep = 2e-3;  // s; no step may jump over the bump
+constexpr long kMaxSteps = 10000000;
+constexpr int kMaxRoots = 2 * kCorners + 1;  // the guards, then the trigger
+
+/// User data of CVODE's callbacks.
 struct Problem {
-  CarSystem<double>* system;
+  System* system;
   long derivatives = 0;
-  bool triggered = false;  // the snapshot is taken; its root is switched off
+  bool triggered = false;  // the snapshot is taken, its root is switched off
 };
 
 int calc_rhs(double t, N_Vector y, N_Vector dy, void* data) {
@@ -45,6 +50,10 @@ int calc_roots(double t, N_Vector y, double* g, void* data) {
   return 0;
 }
 
+void check(int flag, const char* function) {
+  if (flag < 0) throw std::runtime_error(fmt::format("{} failed with flag {}", function, flag));
+}
+
 /// Owns CVODE's memory block.
 struct CvodeMemory {
   CvodeMemory() = default;
@@ -54,158 +63,173 @@ struct CvodeMemory {
   void* raw = nullptr;
 };
 
-class ReferenceRun {
+/// CVODE set up for one problem; owns everything that SUNDIALS allocates.
+class Cvode {
  public:
-  ReferenceRun(const PreparedCase& c, const ReferenceOptions& options, const SamplePlan& plan)
-      : newton_{&c.vehicle.layout, &c.vehicle.numbers},
-        table_{&c.mechanism->tables},
-        system_(options.closure == Closure::kNewton
-                    ? CarSystem<double>(c.vehicle, newton_, SpinTreatment::kExplicit, c.trigger_x)
-                    : CarSystem<double>(c.vehicle, table_, SpinTreatment::kExplicit, c.trigger_x)),
-        problem_{&system_},
-        plan_(plan),
-        state_(c.start) {
-    plan_.duration = c.duration;
-    plan_.channel_count = CarChannel::kCount;
-    problem_.triggered = !plan.snapshot;
-    create(options);
+  /// Integrates `state` in place from t = 0; problem and state must outlive this.
+  Cvode(Problem& problem, State<double>& state, bool stiff, const ReferenceOptions& options)
+      : y_(N_VMake_Serial(problem.system->size(), state.data(), context_.raw)) {
+    memory_.raw = CVodeCreate(stiff ? CV_BDF : CV_ADAMS, context_.raw);
+    check(CVodeInit(memory_.raw, calc_rhs, 0.0, y_.get()), "CVodeInit");
+    CVodeSetUserData(memory_.raw, &problem);
+    CVodeSStolerances(memory_.raw, options.relative_tolerance, options.absolute_tolerance);
+    CVodeSetMaxNumSteps(memory_.raw, kMaxSteps);
+    CVodeSetMaxStep(memory_.raw, kMaxStep);
+    CVodeSetErrHandlerFn(
+        memory_.raw, [](int, const char*, const char*, char*, void*) {}, nullptr);
+    stiff ? set_newton_solver(problem.system->size()) : set_fixed_point_solver();
+    check(CVodeRootInit(memory_.raw, problem.system->guard_count() + 1, calc_roots),
+          "CVodeRootInit");
   }
-  ReferenceRun(const ReferenceRun&) = delete;
-  ReferenceRun& operator=(const ReferenceRun&) = delete;
 
-  LaneResults run() {
-    prepare_results();
-    double t = 0.0;
-    record_due(t);
-    while (t < plan_.duration) {
-      const double target = sample_ < results_.sample_count
-                                ? calc_sample_time<double>(plan_, sample_)
-                                : plan_.duration;
-      const int flag = CVode(cvode_.raw, std::min(target, plan_.duration), y_.get(), &t, CV_NORMAL);
-      if (flag < 0) {
-        results_.status[0] = static_cast<int>(system_.get_failure(0));
-        results_.failure_time[0] = t;
-        break;
-      }
-      if (flag == CV_ROOT_RETURN) pass_roots(t);
-      record_due(t);
-    }
-    results_.derivative_count = problem_.derivatives;
-    results_.final_state.assign(state_.begin(), state_.begin() + system_.size());
-    return std::move(results_);
+  /// Integrates from `t` to the next root or to `target`; returns CVODE's flag.
+  int advance(double target, double& t) {
+    return CVode(memory_.raw, target, y_.get(), &t, CV_NORMAL);
   }
+
+  /// Direction in which each root was crossed, 0 where it was not.
+  std::array<int, kMaxRoots> get_roots() const {
+    std::array<int, kMaxRoots> roots{};
+    CVodeGetRootInfo(memory_.raw, roots.data());
+    return roots;
+  }
+
+  /// Discards the history of the multistep formulas.
+  void restart(double t) { check(CVodeReInit(memory_.raw, t, y_.get()), "CVodeReInit"); }
 
  private:
-  void create(const ReferenceOptions& options) {
-    system_.start(state_.data());
-    double decay[kMaxStiff] = {};
-    State<double> dx{};
-    system_.calc_derivative(0.0, state_.data(), dx.data(), decay);
-    const Workspace<double>& ws = system_.workspace();
-    double fastest = *std::max_element(ws.spin_decay.begin(), ws.spin_decay.end());
-    if (system_.vehicle().effects.has_states()) {
-      fastest = std::max(fastest, *std::max_element(ws.strut_decay.begin(), ws.strut_decay.end()));
-    }
-    const bool stiff = fastest > kStiffDecay;
-    const int n = system_.size();
-    y_.reset(N_VMake_Serial(n, state_.data(), context_.raw));
-    cvode_.raw = CVodeCreate(stiff ? CV_BDF : CV_ADAMS, context_.raw);
-    check(CVodeInit(cvode_.raw, calc_rhs, 0.0, y_.get()), "CVodeInit");
-    CVodeSetUserData(cvode_.raw, &problem_);
-    CVodeSStolerances(cvode_.raw, options.relative_tolerance, options.absolute_tolerance);
-    CVodeSetMaxNumSteps(cvode_.raw, 10000000);
-    CVodeSetMaxStep(cvode_.raw, 2e-3);  // no step may jump over the bump
-    CVodeSetErrHandlerFn(
-        cvode_.raw, [](int, const char*, const char*, char*, void*) {}, nullptr);
-    if (stiff) {
-      matrix_.reset(SUNDenseMatrix(n, n, context_.raw));
-      linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.raw));
-      check(CVodeSetLinearSolver(cvode_.raw, linear_.get(), matrix_.get()), "CVodeSetLinearSolver");
-    } else {
-      nonlinear_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.raw));
-      check(CVodeSetNonlinearSolver(cvode_.raw, nonlinear_.get()), "CVodeSetNonlinearSolver");
-    }
-    check(CVodeRootInit(cvode_.raw, system_.guard_count() + 1, calc_roots), "CVodeRootInit");
+  void set_newton_solver(int n) {
+    matrix_.reset(SUNDenseMatrix(n, n, context_.raw));
+    linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.raw));
+    check(CVodeSetLinearSolver(memory_.raw, linear_.get(), matrix_.get()), "CVodeSetLinearSolver");
   }
-
-  static void check(int flag, const char* what) {
-    if (flag < 0) throw std::runtime_error(std::string(what) + " failed");
-  }
-
-  void prepare_results() {
-    results_.lanes = 1;
-    results_.status.assign(1, 0);
-    results_.failure_time.assign(1, plan_.duration);
-    results_.event_time.assign(1, std::nan(""));
-    results_.snapshot.assign(CarChannel::kCount, std::nan(""));
-    results_.sample_count = count_samples(plan_);
-    results_.recorded = plan_.recorded;
-    results_.history.assign(static_cast<std::size_t>(results_.sample_count) *
-                                static_cast<std::size_t>(plan_.recorded_count()),
-                            std::nan(""));
-  }
-
-  void observe(double t, double* out) {
-    State<double> dx{};
-    double decay[kMaxStiff];
-    system_.calc_derivative(t, state_.data(), dx.data(), decay);
-    system_.observe(t, state_.data(), out);
-  }
-
-  void record_due(double t) {
-    while (sample_ < results_.sample_count &&
-           calc_sample_time<double>(plan_, sample_) <= t + 1e-12) {
-      std::array<double, CarChannel::kCount> all;
-      observe(t, all.data());
-      double* row = results_.history.data() + static_cast<std::size_t>(sample_) *
-                                                  static_cast<std::size_t>(plan_.recorded_count());
-      if (plan_.recorded.empty()) std::copy(all.begin(), all.end(), row);
-      for (const int c : plan_.recorded) *row++ = all[static_cast<std::size_t>(c)];
-      ++sample_;
-    }
-  }
-
-  /// Restarts after a contact event, whose kink no multistep formula may span.
-  void pass_roots(double t) {
-    int found[kMaxRoots] = {};
-    CVodeGetRootInfo(cvode_.raw, found);
-    const int guards = system_.guard_count();
-    if (found[guards] > 0) {
-      problem_.triggered = true;
-      results_.event_time[0] = t;
-      observe(t, results_.snapshot.data());
-    }
-    bool restart = false;
-    for (int g = 0; g < guards; ++g) {
-      if (found[g] == 0) continue;
-      system_.cross(g, true);
-      restart = true;
-      ++results_.event_count;
-    }
-    if (restart) check(CVodeReInit(cvode_.raw, t, y_.get()), "CVodeReInit");
+  void set_fixed_point_solver() {
+    nonlinear_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.raw));
+    check(CVodeSetNonlinearSolver(memory_.raw, nonlinear_.get()), "CVodeSetNonlinearSolver");
   }
 
   SundialsContext context_;
-  NewtonClosure<double> newton_;
-  TableClosure<double, double> table_;
-  CarSystem<double> system_;
-  Problem problem_;
-  SamplePlan plan_;
-  State<double> state_;
-  LaneResults results_;
-  int sample_ = 0;
   SundialsPointer<_generic_N_Vector> y_;
   SundialsPointer<_generic_SUNMatrix> matrix_;
   SundialsPointer<_generic_SUNLinearSolver> linear_;
   SundialsPointer<_generic_SUNNonlinearSolver> nonlinear_;
-  CvodeMemory cvode_;  // last: freed before what it uses
+  CvodeMemory memory_;  // last member, because it is freed before the objects that it uses
 };
+
+/// Whether a decay rate at the start exceeds kStiffDecay.
+bool is_stiff(System& system, const State<double>& start) {
+  double decay[kMaxStiff] = {};
+  State<double> dx{};
+  system.calc_derivative(0.0, start.data(), dx.data(), decay);
+  const Workspace<double>& ws = system.workspace();
+  double fastest = *std::max_element(ws.spin_decay.begin(), ws.spin_decay.end());
+  if (system.vehicle().effects.has_states()) {
+    fastest = std::max(fastest, *std::max_element(ws.strut_decay.begin(), ws.strut_decay.end()));
+  }
+  return fastest > kStiffDecay;
+}
+
+/// Results of a plan before the first sample.
+LaneResults make_results(const SamplePlan& plan) {
+  LaneResults results;
+  results.status.assign(1, 0);
+  results.failure_time.assign(1, plan.duration);
+  results.event_time.assign(1, std::nan(""));
+  results.snapshot.assign(CarChannel::kCount, std::nan(""));
+  results.sample_count = count_samples(plan);
+  results.recorded = plan.recorded;
+  results.history.assign(static_cast<std::size_t>(results.sample_count) *
+                             static_cast<std::size_t>(plan.recorded_count()),
+                         std::nan(""));
+  return results;
+}
+
+/// A run as far as it is recorded.
+struct Recording {
+  SamplePlan plan;
+  LaneResults results;
+  int sample = 0;  // the next one
+
+  double get_next_time() const {
+    return sample < results.sample_count ? calc_sample_time<double>(plan, sample) : plan.duration;
+  }
+};
+
+void observe(System& system, double t, const State<double>& state, double* out) {
+  State<double> dx{};
+  double decay[kMaxStiff];
+  system.calc_derivative(t, state.data(), dx.data(), decay);
+  system.observe(t, state.data(), out);
+}
+
+/// Records the samples that are due at t.
+void record_samples(System& system, double t, const State<double>& state, Recording& recording) {
+  LaneResults& results = recording.results;
+  while (recording.sample < results.sample_count && recording.get_next_time() <= t + 1e-12) {
+    std::array<double, CarChannel::kCount> all;
+    observe(system, t, state, all.data());
+    const SamplePlan& plan = recording.plan;
+    double* row = results.history.data() + static_cast<std::size_t>(recording.sample) *
+                                               static_cast<std::size_t>(plan.recorded_count());
+    if (plan.recorded.empty()) std::copy(all.begin(), all.end(), row);
+    for (const int c : plan.recorded) *row++ = all[static_cast<std::size_t>(c)];
+    ++recording.sample;
+  }
+}
+
+/// Takes the snapshot at its root. After a contact event restarts the integrator, because no
+/// multistep formula may span the kink.
+void pass_roots(double t, const State<double>& state, Problem& problem, Cvode& cvode,
+                LaneResults& results) {
+  const std::array<int, kMaxRoots> crossed = cvode.get_roots();
+  const int guards = problem.system->guard_count();
+  if (crossed[static_cast<std::size_t>(guards)] > 0) {
+    problem.triggered = true;
+    results.event_time[0] = t;
+    observe(*problem.system, t, state, results.snapshot.data());
+  }
+  bool restart = false;
+  for (int g = 0; g < guards; ++g) {
+    if (crossed[static_cast<std::size_t>(g)] == 0) continue;
+    problem.system->cross(g, true);
+    restart = true;
+    ++results.event_count;
+  }
+  if (restart) cvode.restart(t);
+}
 
 }  // namespace
 
-LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options,
-                      const SamplePlan& plan) {
-  return ReferenceRun(c, options, plan).run();
+LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options, SamplePlan plan) {
+  plan.duration = c.duration;
+  plan.channel_count = CarChannel::kCount;
+  const NewtonClosure<double> newton{&c.vehicle.layout, &c.vehicle.numbers};
+  const TableClosure<double, double> table{&c.mechanism->tables};
+  System system = options.closure == Closure::kNewton
+                      ? System(c.vehicle, newton, SpinTreatment::kExplicit, c.trigger_x)
+                      : System(c.vehicle, table, SpinTreatment::kExplicit, c.trigger_x);
+  State<double> state = c.start;
+  system.start(state.data());
+  Problem problem{.system = &system, .triggered = !plan.snapshot};
+  Cvode cvode(problem, state, is_stiff(system, state), options);
+
+  Recording recording{plan, make_results(plan)};
+  LaneResults& results = recording.results;
+  double t = 0.0;
+  record_samples(system, t, state, recording);
+  while (t < plan.duration) {
+    const int flag = cvode.advance(std::min(recording.get_next_time(), plan.duration), t);
+    if (flag < 0) {
+      results.status[0] = static_cast<int>(system.get_failure(0));
+      results.failure_time[0] = t;
+      break;
+    }
+    if (flag == CV_ROOT_RETURN) pass_roots(t, state, problem, cvode, results);
+    record_samples(system, t, state, recording);
+  }
+  results.derivative_count = problem.derivatives;
+  results.final_state.assign(state.begin(), state.begin() + system.size());
+  return std::move(recording.results);
 }
 
 }  // namespace strut

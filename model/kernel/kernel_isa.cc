@@ -1,4 +1,5 @@
-// The simulation for one instruction set: compiled once for each, with STRUT_ISA naming it.
+// The simulation for one instruction set: compiled once for each, with STRUT_ISA defined as its
+// name.
 
 #include "base/math/xsimd_backend.h"
 #include "base/parallel/instruction_sets.h"
@@ -40,12 +41,12 @@ LaneResults run_rigs(const RigSpec* const* specs, int count, const std::vector<I
   return strut::simulate_rigs<NativeLanes>(padded, inputs, options, plan);
 }
 
-/// Twelve chains hide the latency of two four-cycle units, and with the two factors fit the sixteen
-/// registers of AVX2.
+/// Twelve chains hide the latency of two units of four cycles each, and with the two factors fit
+/// into the sixteen registers of AVX2.
 double run_peak_loop(long rounds, double& sink) {
   using Vector = xsimd::batch<double, xsimd::default_arch>;
   constexpr std::size_t kChains = 12;
-  // Not constants to the compiler; values stay of order one.
+  // Volatile, so that the compiler cannot fold them; the values remain of order one.
   const volatile double factor = 0.999999, term = 1e-6;
   const Vector a(factor), b(term);
   std::array<Vector, kChains> chain;

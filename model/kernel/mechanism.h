@@ -1,12 +1,12 @@
-// Which cases are cheap to run one after the other.
+// Cases that share a mechanism, which are cheap to run one after the other.
 #pragma once
 
 #include "model/car/case.h"
 
 namespace strut {
 
-/// True if one mechanism (simulation.h) serves both cases: at most springs, dampers, preload,
-/// speed, torque, trim, duration and the bump's distance differ.
+/// True if both cases have the same mechanism (simulation.h): they may differ in springs, dampers,
+/// preload, speed, torque, trim, duration and the bump's distance.
 bool shares_mechanism(const Case& a, const Case& b);
 
 }  // namespace strut

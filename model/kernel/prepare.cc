@@ -1,4 +1,4 @@
-#include <sstream>
+#include <fmt/format.h>
 
 #include "model/car/assemble_effects.h"
 #include "model/car/car_info.h"
@@ -9,7 +9,7 @@
 namespace strut {
 namespace {
 
-/// The parts of a case that shape its mechanism; the rest is neutral.
+/// The parts of a case that determine its mechanism; all others are set to neutral values.
 Case strip_to_mechanism(const Case& c) {
   Case key = apply_case_effects(c);
   key.vehicle.effects.clear();
@@ -31,36 +31,41 @@ bool shares_surface(const Mechanism& other, const Case& key) {
          a.unloaded_radius == b.unloaded_radius && a.footprint == b.footprint;
 }
 
-/// `other`: a mechanism of which parts may serve here, or null.
+/// `other`: a mechanism whose parts are reused where they are equal, or null.
 std::shared_ptr<const Mechanism> make_mechanism(const Case& c, const Case& key,
                                                 const Mechanism* other) {
   auto mechanism = std::make_shared<Mechanism>();
   mechanism->vehicle = key.vehicle;
   mechanism->maneuver = key.maneuver;
   mechanism->car = assemble_vehicle(c.vehicle, c.maneuver);
-  mechanism->tables =
-      other && other->vehicle == key.vehicle ? other->tables : tabulate_corners(mechanism->car);
+  const bool same_vehicle = other && other->vehicle == key.vehicle;
+  mechanism->tables = same_vehicle ? other->tables : tabulate_corners(mechanism->car);
   mechanism->surface =
       other && shares_surface(*other, key) ? other->surface : make_surface(c.vehicle, c.maneuver);
   return mechanism;
 }
 
-Road<double> make_flat_road() { return {}; }
-
-/// A spring softer than this sags beyond its corner's travel before anything moves.
+/// Throws ModelError for a spring so soft that it sags beyond its corner's travel at rest.
 void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
   for (int c = 0; c < kCorners; ++c) {
     const StrutSpec& strut = spec.suspension[axle_of(c)].strut[is_right(c) ? 1 : 0];
     if (spec.preload == PreloadKind::kTrimmed || strut.nominal_stiffness <= 0.0) continue;
     const double load = car.preload[c];
-    const double least = load / (load / strut.nominal_stiffness + kHalfTravel);
-    if (strut.stiffness >= least) continue;
-    std::ostringstream message;
-    message << get_axle_key(axle_of(c)) << ".spring.stiffness = " << strut.stiffness
-            << " N/m: cannot carry the car, whose weight needs " << load
-            << " N there; allowed: at least " << least << " N/m";
-    throw ModelError(message.str());
+    const double minimum = load / (load / strut.nominal_stiffness + kHalfTravel);
+    if (strut.stiffness >= minimum) continue;
+    throw ModelError(
+        fmt::format("{}.spring.stiffness = {:g} N/m: cannot carry the car, whose weight needs {:g} "
+                    "N there; allowed: at least {:g} N/m",
+                    get_axle_key(axle_of(c)), strut.stiffness, load, minimum));
   }
+}
+
+/// The start state of the maneuver: steady rolling on flat road, with the drive torque or without.
+State<double> trim(const Case& c, const Mechanism& mechanism, Vehicle<double> vehicle) {
+  vehicle.layout.on_bump.fill(false);
+  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
+  return solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, c.maneuver.speed)
+      .state;
 }
 
 }  // namespace
@@ -80,7 +85,8 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
     mechanism_ = make_mechanism(c, key, mechanism_.get());
   }
   const AssembledVehicle& car = mechanism_->car;
-  PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, make_flat_road()}, {}};
+  const Road<double> flat_road{};
+  PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, flat_road}, {}};
   Vehicle<double>& vehicle = prepared.vehicle;
   set_operating_parameters(c.vehicle, c.maneuver, car, vehicle.numbers);
   set_effects(c.vehicle, vehicle.layout, vehicle.numbers);
@@ -93,14 +99,7 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   prepared.sensors = list_sensor_settings(c.vehicle.effects);
 
   check_springs(c.vehicle, car);
-  // Trims roll on flat road.
-  vehicle.layout.on_bump.fill(false);
-  const auto torque = vehicle.numbers.drive_torque;
-  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
-  prepared.start =
-      solve_rolling(vehicle, mechanism_->tables, car.center_height, c.maneuver.speed).state;
-  vehicle.numbers.drive_torque = torque;
-  vehicle.layout.on_bump = car.layout.on_bump;
+  prepared.start = trim(c, *mechanism_, vehicle);
   const Surface* surface = &mechanism_->surface;
   vehicle.road = make_road<double>(&surface, &prepared.bump_center);
   return prepared;

@@ -1,5 +1,5 @@
-// One batch through the simulation, for any lane type. Included by the kernels of every
-// instruction set, by nobody else.
+// Simulation of one batch of cases, for any lane type. Only the kernels of the instruction sets
+// include this.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ inline CornerDegrees calc_larger(const CornerDegrees& a, const CornerDegrees& b)
           std::max(a.rate, b.rate)};
 }
 
-/// Tables with the coefficients of W different mechanisms.
+/// Tables with the coefficients of W mechanisms.
 template <class T>
 VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
   VehicleTables<T> packed;
@@ -30,7 +30,7 @@ VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
   return packed;
 }
 
-/// A batch computes what any of its lanes needs; in the others it is neutral.
+/// Adds the parts that a lane needs to the layout of the batch; they are neutral in other lanes.
 inline void add_parts(const VehicleLayout& lane, VehicleLayout& batch) {
   batch.tire_parts = batch.tire_parts | lane.tire_parts;
   for (int c = 0; c < kCorners; ++c) batch.strut_effects[c] |= lane.strut_effects[c];

@@ -1,4 +1,4 @@
-// Simulating cases: the door from specifications to results. Instruction sets stay behind it.
+// Simulation of cases: from specifications to results. Instruction sets are hidden behind Kernel.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,7 @@ struct IntegrateOptions {
   SpinTreatment spin = SpinTreatment::kExponential;
 };
 
-/// What many cases share: one car's mechanism and road, expensive to make.
+/// The expensive parts that many cases share: one car's mechanism and road.
 struct Mechanism {
   VehicleSpec vehicle;
   ManeuverSpec maneuver;
@@ -29,7 +29,7 @@ struct Mechanism {
   Surface surface;
 };
 
-/// A case ready to run: its numbers, its trimmed start, its mechanism.
+/// A case ready to run: its parameters, its trimmed start, its mechanism.
 struct PreparedCase {
   std::shared_ptr<const Mechanism> mechanism;
   Vehicle<double> vehicle;
@@ -37,11 +37,11 @@ struct PreparedCase {
   double bump_center = 0.0;  // m, world x
   double trigger_x = 0.0;    // m, world x of the snapshot's line
   double duration = 0.0;     // s
-  EffectSettings sensors{};  // effects of channels: nothing that runs asks for them
+  EffectSettings sensors{};  // effects of channels, for ReadOut; the simulation ignores them
   CornerForceMaps force_maps{};
 };
 
-/// Prepares cases, reusing the mechanism while only springs, dampers, speed or torque change.
+/// Prepares cases; reuses the mechanism of the previous case where both share it (mechanism.h).
 class CasePreparer {
  public:
   /// `snapshot_offset` [m] moves the snapshot's line from the bump's center. Throws ModelError.
@@ -55,45 +55,47 @@ class CasePreparer {
 struct Kernel {
   const char* isa;  // "baseline", "avx2", "avx512"
   int lanes;        // W
-  /// Runs up to W cases in lockstep; results hold W lanes, those beyond `count` repeat the last.
-  /// Throws ModelError for cases that may not share lanes.
+  /// Runs up to W cases in lockstep; results have W lanes, those beyond `count` repeat the last
+  /// case. Throws ModelError for cases that may not share lanes.
   LaneResults (*run_lanes)(const PreparedCase* const* cases, int count,
                            const IntegrateOptions& options, const SamplePlan& plan);
   /// Runs one case in plain double.
   LaneResults (*run_scalar)(const PreparedCase& c, const IntegrateOptions& options,
                             const SamplePlan& plan);
-  /// Runs up to W rigs of one kind under the same inputs; lanes as run_lanes'. Throws ModelError as
-  /// simulate_rigs does.
+  /// Runs up to W rigs of one kind under the same inputs; lanes as in run_lanes. Throws ModelError
+  /// as simulate_rigs does.
   LaneResults (*run_rigs)(const RigSpec* const* specs, int count,
                           const std::vector<InputSignal>& inputs, const StepOptions& options,
                           const SamplePlan& plan);
-  /// Nothing but independent fused multiply-adds in registers: `rounds` times over, for timing the
-  /// processor's peak. Returns the number of floating-point operations; `sink` keeps their result.
+  /// Runs `rounds` of independent fused multiply-adds in registers, for timing the processor's
+  /// peak. Returns the number of floating-point operations; `sink` keeps their result.
   double (*run_peak_loop)(long rounds, double& sink);
 };
 
 /// Kernels this processor can run, widest first; never empty.
 const std::vector<Kernel>& list_kernels();
 
-/// True if the cases may share lanes: same layout, and for Newton closure the same hardpoints.
+/// True if the cases may share lanes: same layout, and with Newton closure the same hardpoints.
 bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure);
 
-/// Reference: CVODE (BDF or Adams as the problem asks) with contact events as roots.
 struct ReferenceOptions {
   double relative_tolerance = 1e-12;
   double absolute_tolerance = 1e-12;
   Closure closure = Closure::kNewton;
 };
-LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options,
-                      const SamplePlan& plan);
+
+/// Runs one case by CVODE, with BDF or Adams formulas by the stiffness at the start, and contact
+/// events as roots; duration and channels are those of the case. Throws std::runtime_error where
+/// SUNDIALS cannot be set up.
+LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options, SamplePlan plan);
 
 enum class Solver { kLanes, kCvode };
 
-/// Who integrates, and how.
+/// Choice of the integrator and its options.
 struct SolverOptions {
   Solver solver = Solver::kLanes;
-  IntegrateOptions options;    // of the lanes
-  ReferenceOptions reference;  // of CVODE
+  IntegrateOptions options;    // for kLanes
+  ReferenceOptions reference;  // for kCvode
 };
 
 }  // namespace strut

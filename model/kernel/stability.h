@@ -1,21 +1,20 @@
-// Whether a step is short enough for an integrator to be stable on a car.
+// Stability limit of the integrator's step for a car.
 #pragma once
 
 #include "model/kernel/simulation.h"
 
 namespace strut {
 
-/// Amplification per step beyond which a run counts as unstable; what a car itself does (a slow
+/// Amplification per step above which a run counts as unstable. The motion of a stable car (slow
 /// drift, a mild unstable mode) stays below.
 inline constexpr double kMaxAmplification = 1.005;
 
-/// Factor by which one step of `options` multiplies the worst small disturbance of the start state:
-/// the spectral radius of the step's map, differentiated numerically. Multistep formulas count with
-/// their history. Not finite where the step itself is not.
+/// Factor by which one step of `options` amplifies the worst small disturbance of the start state:
+/// the spectral radius of the step's Jacobian, by central differences. The Jacobian of a multistep
+/// formula includes its history. Not finite where the step is not.
 double calc_amplification(const PreparedCase& c, const IntegrateOptions& options);
 
-/// The longest step [s] up to `options.step.step` that is not unstable, to 2 %; 0 if none above
-/// 1e-6 s.
+/// The longest stable step [s] up to `options.step.step`, to 2 %; 0 where 1e-6 s is unstable.
 double find_stable_step(const PreparedCase& c, IntegrateOptions options);
 
 }  // namespace strut

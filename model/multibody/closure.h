@@ -7,10 +7,10 @@
 namespace strut {
 
 inline constexpr int kPredictorTerms = 13;
-inline constexpr int kNewtonIterations = 1;  // the predictor is good to 1e-12 m
+inline constexpr int kNewtonIterations = 1;  // suffices: the predictor is accurate to 1e-12 m
 
-/// First guess of the dependent coordinates: polynomials in q / half_travel, lowest power first.
-/// It depends on q alone, so a closure has no memory and a case's result no history.
+/// Initial guess of the dependent coordinates: polynomials in q / half_travel, lowest power first.
+/// It depends on q only, so a closure has no memory and the result of a case no history.
 struct ClosurePredictor {
   double half_travel = 0.1;  // m
   std::array<std::array<double, kMaxDependent>, kPredictorTerms> coefficient{};
@@ -187,8 +187,8 @@ std::array<T, kMaxJoints> predict_joints(const ClosurePredictor& predictor, cons
   return z;
 }
 
-/// Closes the loops at coordinate z[independent] from the guess z by `iterations` Newton steps.
-/// Leaves pose and factor at the solution; returns the largest loop error left [m].
+/// Closes the loops at coordinate z[independent] from the initial guess z by `iterations` Newton
+/// steps. Sets pose and factor at the solution; returns the maximum residual loop error [m].
 template <CornerTree kTree, class T>
 T close_loops(const CornerTopology& topology, const CornerGeometry<T>& geometry, int iterations,
               std::array<T, kMaxJoints>& z, CornerPose<T>& pose, LoopFactor<T>& factor) {

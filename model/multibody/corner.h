@@ -1,7 +1,7 @@
-// One suspension corner as data: a small tree of one-degree-of-freedom joints hung on the chassis,
-// loops closed by cut ball joints and removed rods, one independent coordinate q.
+// One suspension corner as data: a small tree of one-degree-of-freedom joints on the chassis, loops
+// closed by cut ball joints and removed rods, one independent coordinate q.
 //
-// Everything is placed at nominal trim in chassis axes (origin: the whole car's centroid there).
+// All positions are given at nominal trim in chassis axes (origin: the whole car's centroid there).
 // A moving part has no frame of its own: its displacement maps nominal to current points,
 // r = R r_nominal + p, so all displacements are the identity at nominal trim.
 #pragma once
@@ -26,14 +26,14 @@ inline constexpr int kChassisPart = -1;
 
 enum class JointKind : std::int8_t { kRevolute, kPrismatic };
 
-/// Where one end of a line is fixed: to a part (joint index or kChassisPart), or on a rod.
+/// Attachment of one end of a line: to a part (joint index or kChassisPart), or to a rod.
 struct Attachment {
   int part = kChassisPart;
   int rod = -1;  // >= 0: on this rod, `rod_fraction` of the way from chassis to upright
 };
 
-/// Joints and loops of a kind of suspension. A value of this type is a template argument, so that
-/// loops over joints unroll while the suspension stays data.
+/// Joints and loops of a kind of suspension. Values of this type are template arguments, so that
+/// loops over joints are unrolled although the suspension is data.
 struct CornerTree {
   int joint_count = 0;
   std::array<JointKind, kMaxJoints> kind{};
@@ -48,7 +48,7 @@ struct CornerTree {
   /// Joint of dependent coordinate d = 0..dependent_count-1.
   constexpr int dependent(int d) const { return d < independent ? d : d + 1; }
   constexpr int constraint_count() const { return (has_cut_ball ? 3 : 0) + rod_count; }
-  /// Whether turning `joint` moves `part`.
+  /// Whether motion of `joint` moves `part`.
   constexpr bool moves(int joint, int part) const {
     for (; part != kChassisPart; part = parent[static_cast<std::size_t>(part)]) {
       if (part == joint) return true;
@@ -89,7 +89,8 @@ constexpr const CornerTree& get_tree(SuspensionKind kind) {
   return kind == SuspensionKind::kMacPherson ? kMacPhersonTree : kMultilinkTree;
 }
 
-/// What hangs on the tree of one corner, and how to solve it; common to a batch.
+/// Bodies and lines of the tree of one corner, and the elimination order of its loop equations;
+/// common to a batch.
 struct CornerTopology {
   SuspensionKind kind = SuspensionKind::kMacPherson;
   int body_count = 0;
@@ -133,13 +134,13 @@ struct CornerInertia {
   T spin_inertia;  // kg m^2, wheel about its axis
 };
 
-/// What the equations of motion ask of a corner at coordinate q: the composite of its bodies and
-/// rods about the chassis origin, the wheel's place and the lengths of its lines. A suffix _q
-/// (_qq) is the first (second) derivative with respect to q. The wheel's spin about its axis is
-/// left out of all inertia (see dynamics.h).
+/// Motion functions of a corner at coordinate q for the equations of motion: the composite of its
+/// bodies and rods about the chassis origin, the position of its wheel and the lengths of its
+/// lines. A suffix _q (_qq) is the first (second) derivative with respect to q. All inertia
+/// excludes the wheel's spin about its axis (see dynamics.h).
 template <class T>
 struct CornerMotion {
-  Vec3<T> moment, moment_q, moment_qq;  // first moment sum m r; moment_q also is the linear
+  Vec3<T> moment, moment_q, moment_qq;  // first moment sum m r; moment_q is also the linear
                                         // momentum per unit q_dot
   Sym3<T> inertia, inertia_q;           // about the chassis origin
   Vec3<T> coupling, coupling_q;         // angular momentum per unit q_dot

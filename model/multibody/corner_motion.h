@@ -1,4 +1,4 @@
-// A closed corner's composite motion functions: how its parts move with q, and what they weigh.
+// Motion functions of a closed corner: the motion of its parts with q, and their composite inertia.
 //
 // All in chassis axes with the chassis at rest and q_dot = 1, so that a twist is a derivative with
 // respect to q (docs/theory.md, sections 2 and 3).
@@ -21,7 +21,7 @@ struct PointMotion {
   Vec3<T> r, r_q, r_qq;
 };
 
-/// Motion of the part's point now at r.
+/// Motion of the part's point whose current position is r.
 template <class T>
 PointMotion<T> calc_point_at(const Twist<T>& rate, const Twist<T>& accel, const Vec3<T>& r) {
   const Vec3<T> r_q = rate.at(r);
@@ -129,7 +129,7 @@ void add_rod(const RodInertia<T>& rod, const Vec3<T>& a, const PointMotion<T>& b
   motion.mass_q += T(2.0) * rod.bb * dot(b.r_q, b.r_qq);
 }
 
-/// One end of a line; `fraction` is where it sits on a rod.
+/// Motion of one end of a line; `fraction` is its position on a rod.
 template <class T>
 PointMotion<T> calc_attachment(const CornerGeometry<T>& geometry, const CornerPose<T>& pose,
                                const PartMotion<T>& parts, const Attachment& attachment,
@@ -181,7 +181,8 @@ void update_corner_motion(const CornerTopology& topology, const CornerGeometry<T
   PartMotion<T> parts;
   update_part_motion<kTree>(topology, geometry, pose, factor, parts);
   update_wheel_and_lines<kTree>(topology, geometry, pose, parts, motion);
-  // Sums in registers, written once: `motion` may alias anything in the eyes of the compiler.
+  // Sums in registers, written once, because the compiler must assume that `motion` aliases its
+  // inputs.
   CornerMotion<T> sum;
   const Vec3<T> zero{T(0.0), T(0.0), T(0.0)};
   sum.moment = sum.moment_q = sum.moment_qq = sum.coupling = sum.coupling_q = zero;
@@ -208,7 +209,8 @@ void update_corner_motion(const CornerTopology& topology, const CornerGeometry<T
   motion.mass_q = sum.mass_q;
 }
 
-/// Motion functions at q by Newton on the loops from the predictor; returns the loop error left.
+/// Motion functions at q by Newton on the loops from the predictor; returns the residual loop error
+/// [m].
 template <CornerTree kTree, class T>
 T close_corner(const CornerTopology& topology, const ClosurePredictor& predictor,
                const CornerGeometry<T>& geometry, const CornerInertia<T>& inertia, const T& q,

@@ -1,9 +1,9 @@
 // A corner's motion functions as polynomials in its one coordinate.
 //
-// With the steering rack held, everything a corner contributes is a function of q alone, analytic
+// With a fixed steering rack, all motion functions of a corner depend on q only and are analytic
 // over the travel, so one polynomial per function serves every simulation: no gathers, no Newton,
-// no trigonometry. Derivatives are those of the polynomials, so the tabulated car is itself an
-// exactly consistent mechanical system. The Newton closure remains the checker.
+// no trigonometry. Derivatives are those of the polynomials, so the tabulated car is an exactly
+// consistent mechanical system. Tests compare it with the Newton closure.
 #pragma once
 
 #include "model/multibody/corner.h"
@@ -11,14 +11,14 @@
 namespace strut {
 
 inline constexpr int kTableTerms = 20;  // capacity; the degrees in use are in CornerDegrees
-/// Chebyshev coefficients below this share of a function's size are dropped.
+/// Relative size below which Chebyshev coefficients are dropped.
 inline constexpr long double kTableTolerance = 1e-11L;
 
-/// Tabulated functions, grouped by how many derivatives the equations need.
+/// Tabulated functions, grouped by the number of derivatives that the equations need.
 inline constexpr int kTwiceFunctions = 3;  // moment
 inline constexpr int kOnceFunctions = 18;  // inertia 6, coupling 3, mass, center 3, axis 3, lines 2
 inline constexpr int kPlainFunctions = 3;  // upright rate
-inline constexpr int kInertiaFunctions = 9;  // of the once group, those evaluated first
+inline constexpr int kInertiaFunctions = 9;  // the first functions of the once group
 
 /// Degree in use, by group of functions.
 struct CornerDegrees {
@@ -68,7 +68,7 @@ inline void evaluate_group(const std::array<std::array<C, N>, kTableTerms>& coef
   }
 }
 
-/// Motion functions at q from the table; center_qq is left to update_center_acceleration.
+/// Motion functions at q from the table, except center_qq (update_center_acceleration).
 template <class T, class C>
 void update_corner_motion(const CornerCoefficients<C>& table, const CornerDegrees& degree,
                           const T& q, CornerMotion<T>& motion) {
@@ -100,7 +100,7 @@ void update_corner_motion(const CornerCoefficients<C>& table, const CornerDegree
   motion.upright_rate = {w[0], w[1], w[2]};
 }
 
-/// Second derivative of the wheel center, needed for output only.
+/// Second derivative of the wheel center, used for output only.
 template <class T, class C>
 void update_center_acceleration(const CornerCoefficients<C>& table, const CornerDegrees& degree,
                                 const T& q, CornerMotion<T>& motion) {
@@ -109,7 +109,7 @@ void update_center_acceleration(const CornerCoefficients<C>& table, const Corner
   motion.center_qq = {c_qq[0], c_qq[1], c_qq[2]};
 }
 
-/// Wheel center with its slope, and spin axis: what locating contact events needs.
+/// Wheel center with its slope, and spin axis, for the location of contact events.
 template <class T, class C>
 void update_wheel_place(const CornerCoefficients<C>& table, const CornerDegrees& degree, const T& q,
                         CornerMotion<T>& motion) {

@@ -1,4 +1,4 @@
-// The order of a rig's channels; their names, units and meanings: rig_info.cc.
+// The order of each rig's channels; names, units and meanings: rig_info.cc.
 #pragma once
 
 namespace strut {

@@ -22,7 +22,7 @@ RigField make_field(const std::string& name, const std::string& unit, double hig
   return f;
 }
 
-/// One that a file need not give. A search from zero begins with a unit of it.
+/// An optional parameter. A search from zero starts with one unit of it.
 RigField make_optional(const std::string& name, const std::string& unit, double high,
                        const std::string& description, double default_value,
                        double RigSpec::*field) {
@@ -81,11 +81,11 @@ RigInfo make_quarter_car() {
                    {"tire_force", "N", "of the road on the tire, upwards, static load included"}};
   info.inputs = {{.name = "road_position",
                   .unit = "m",
-                  .description = "height of the road",
+                  .description = "height of the road under the tire",
                   .is_ground = true},
                  {.name = "actuator_force",
                   .unit = "N",
-                  .description = "pushes the masses apart",
+                  .description = "between the masses, positive where it pushes them apart",
                   .is_command = true}};
   info.masses = {{C::kUnsprungPosition, C::kUnsprungVelocity},
                  {C::kSprungPosition, C::kSprungVelocity}};
@@ -122,16 +122,18 @@ RigInfo make_strut_rig() {
   info.channels = {{"time", "s", "time since the start"},
                    {"displacement", "m", "compression of the strut"},
                    {"velocity", "m/s", "rate of displacement"},
-                   {"force", "N", "of the whole strut, positive in compression"},
+                   {"force", "N", "force of the whole strut, positive in compression"},
                    {"spring_force", "N", "strut's spring, positive in compression"},
                    {"damper_force", "N", "strut's damper, positive in compression"},
-                   {"temperature", "K", "of the damper, as given"}};
-  info.inputs = {
-      {.name = "displacement",
-       .unit = "m",
-       .description = "compression of the strut",
-       .required = true},
-      {.name = "temperature", .unit = "K", .description = "of the damper", .moves = false}};
+                   {"temperature", "K", "temperature of the damper, as given"}};
+  info.inputs = {{.name = "displacement",
+                  .unit = "m",
+                  .description = "compression of the strut",
+                  .required = true},
+                 {.name = "temperature",
+                  .unit = "K",
+                  .description = "temperature of the damper",
+                  .moves = false}};
   const ChannelSum deflection = {{C::kDisplacement, 1.0}}, velocity = {{C::kVelocity, 1.0}};
   info.struts = {
       {"", "displacement", "velocity", deflection, velocity, C::kSpringForce, C::kDamperForce}};
@@ -144,7 +146,7 @@ RigInfo make_strut_rig() {
 
 // --- single_mass -----------------------------------------------------------------------------
 
-double calc_mode_of_one_mass(const RigSpec& spec) {
+double calc_single_mode(const RigSpec& spec) {
   return std::sqrt(spec.stiffness / spec.sprung_mass);
 }
 
@@ -164,15 +166,16 @@ RigInfo make_single_mass() {
   info.name = "single_mass";
   info.parts = kHasSprungMass;
   info.channels = {{"time", "s", "time since the start"},
-                   {"position", "m", "from rest"},
+                   {"position", "m", "displacement of the mass from rest"},
                    {"velocity", "m/s", "rate of position"},
                    {"acceleration", "m/s^2", "rate of velocity"},
                    {"force", "N", "applied to the mass, as given"},
                    {"spring_force", "N", "spring to ground, positive in compression"},
                    {"damper_force", "N", "damper to ground, positive in compression"}};
-  info.inputs = {{.name = "force", .unit = "N", .description = "on the mass, along its position"}};
+  info.inputs = {
+      {.name = "force", .unit = "N", .description = "force on the mass, along its position"}};
   info.masses = {{C::kPosition, C::kVelocity}};
-  // Compressed as the mass comes down.
+  // The strut is compressed as the mass moves down.
   info.struts = {{"",
                   "deflection",
                   "deflection_velocity",
@@ -183,7 +186,7 @@ RigInfo make_single_mass() {
   info.states = {make_deflection("position", {{C::kPosition, 1.0}}),
                  make_velocity("velocity", {{C::kVelocity, 1.0}})};
   info.fields = list_single_mass_fields();
-  info.calc_fastest_mode = calc_mode_of_one_mass;
+  info.calc_fastest_mode = calc_single_mode;
   return info;
 }
 
@@ -197,7 +200,7 @@ std::vector<RigField> list_guided_mass_fields() {
       make_optional("damping", "N s/m", 1e6, "rate of the damper to the base", 0.0, &S::damping),
       make_optional("guide_friction", "N", 1e5, "dry friction between mass and guide", 0.0,
                     &S::guide_friction),
-      make_optional("guide_speed", "m/s", 10.0, "speed at which 76 % of the guide's friction act",
+      make_optional("guide_speed", "m/s", 10.0, "speed at which 76 % of the guide's friction acts",
                     0.01, &S::guide_speed),
       make_gravity(0.0)};
   fields[4].allowed.open_low = true;
@@ -212,7 +215,7 @@ RigInfo make_guided_mass() {
   info.parts = kHasGroundInput | kHasSprungMass;
   info.channels = {{"time", "s", "time since the start"},
                    {"base_position", "m", "height of the base under the strut"},
-                   {"position", "m", "of the mass, from rest"},
+                   {"position", "m", "displacement of the mass from rest"},
                    {"base_velocity", "m/s", "rate of base_position"},
                    {"velocity", "m/s", "rate of position"},
                    {"base_acceleration", "m/s^2", "rate of base_velocity"},
@@ -221,11 +224,12 @@ RigInfo make_guided_mass() {
                    {"spring_force", "N", "strut's spring, positive in compression"},
                    {"damper_force", "N", "strut's damper, positive in compression"},
                    {"guide_force", "N", "friction of the guide on the mass, upwards"}};
-  info.inputs = {{.name = "base_position",
-                  .unit = "m",
-                  .description = "height of the base",
-                  .is_ground = true},
-                 {.name = "force", .unit = "N", .description = "on the mass, along its position"}};
+  info.inputs = {
+      {.name = "base_position",
+       .unit = "m",
+       .description = "height of the base",
+       .is_ground = true},
+      {.name = "force", .unit = "N", .description = "force on the mass, along its position"}};
   info.masses = {{C::kPosition, C::kVelocity}};
   const ChannelSum deflection = {{C::kBasePosition, 1.0}, {C::kPosition, -1.0}};
   const ChannelSum velocity = {{C::kBaseVelocity, 1.0}, {C::kVelocity, -1.0}};
@@ -235,7 +239,7 @@ RigInfo make_guided_mass() {
                  make_velocity("strut_velocity", velocity),
                  {StateKind::kGuideVelocity, "", "velocity", "m/s", {{C::kVelocity, 1.0}}}};
   info.fields = list_guided_mass_fields();
-  info.calc_fastest_mode = calc_mode_of_one_mass;
+  info.calc_fastest_mode = calc_single_mode;
   return info;
 }
 

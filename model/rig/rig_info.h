@@ -1,5 +1,5 @@
-// The kinds of rigs: what each is made of, each listed once. Readers, help texts, fits and
-// diagnosis derive from the list. A new rig is a row here and its equations in rig_system.h.
+// The kinds of rigs and their parts, each listed once. Readers, help texts, fits and diagnosis
+// derive from the list. A new rig is a row in rig_info.cc and its equations in rig_system.h.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace strut {
 
-/// A number of a rig that files, settings and fits know by name.
+/// A parameter of a rig and its field.
 struct RigField : Parameter {
   double RigSpec::*field;
 };
@@ -19,7 +19,7 @@ struct RigField : Parameter {
 struct RigInfo : ModelInfo {
   RigKind kind;
   std::vector<RigField> fields;
-  /// The highest undamped natural frequency on its linear parts [rad/s]; 0 without masses.
+  /// Highest undamped natural frequency of the linear parts [rad/s]; 0 without masses.
   double (*calc_fastest_mode)(const RigSpec&);
 };
 

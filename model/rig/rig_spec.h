@@ -1,4 +1,4 @@
-// A test stand made of the car's force elements, and what drives it.
+// Specification of a test stand made of the car's force elements, and of the inputs that drive it.
 #pragma once
 
 #include <array>
@@ -14,37 +14,38 @@ namespace strut {
 enum class RigKind { kQuarterCar, kStrutRig, kSingleMass, kGuidedMass };
 
 inline constexpr int kRigCoordinates = 2;
-/// Coordinates; a rig of one mass has only the first.
+/// Coordinates of a quarter car; a rig with one mass has only the first.
 enum RigCoordinate : int { kUnsprung = 0, kSprung = 1 };
 
 struct RigSpec {
   RigKind kind = RigKind::kQuarterCar;
   std::string name;
-  double sprung_mass = 0.0;      // kg; of a rig of one mass: the mass
+  double sprung_mass = 0.0;      // kg; the only mass of a rig with one mass
   double unsprung_mass = 0.0;    // kg
-  double stiffness = 0.0;        // N/m, strut; 0 for none where a rig allows it
+  double stiffness = 0.0;        // N/m, strut; 0: no spring, where a rig allows it
   double damping = 0.0;          // N s/m, strut
   double tire_stiffness = 0.0;   // N/m
   double tire_damping = 0.0;     // N s/m
   double guide_friction = 0.0;   // N, between mass and guide
-  double guide_speed = 0.01;     // m/s, at which 76 % of it act
+  double guide_speed = 0.01;     // m/s, at which 76 % of it acts
   double gravity = 0.0;          // m/s^2, along the guide
-  double temperature = 293.15;   // K, where no input gives it
+  double temperature = 293.15;   // K, without an input for it
   bool unilateral_tire = false;  // true: the car's tire law, which lifts off
-  /// Start, as an offset from rest on the ground's first position [m], [m/s]; by RigCoordinate.
+  /// Initial state, as an offset from rest on the ground's first position [m], [m/s]; by
+  /// RigCoordinate.
   std::array<double, kRigCoordinates> initial_position{}, initial_velocity{};
   EffectSettings effects;
-  ForceMaps force_maps;  // at most one; what it gives at rest the spring need not carry
+  ForceMaps force_maps;  // at most one; its force at rest reduces the load of the spring
   bool operator==(const RigSpec&) const = default;
 };
 
-/// What drives a rig and for how long.
+/// The inputs of a rig and their duration.
 struct RigManeuver {
   double duration = 0.0;  // s
   std::vector<InputSignal> inputs;
 };
 
-/// One rig under its inputs: what a single simulation is about.
+/// One rig under its inputs, the subject of one simulation.
 struct RigCase {
   RigSpec rig;
   std::vector<InputSignal> inputs;

@@ -1,11 +1,11 @@
-// A rig as a system that simulate.h can run; its equations stand at the head of rigs.h.
+// A rig as a system for simulate.h; the equations are at the head of rigs.h.
 //
-// State: positions, then velocities, of two masses by RigCoordinate, of a rig of one mass its own;
-// strut_rig has none, its inputs say everything. Behind them, where effects give the strut states,
-// its lagged force, its mount's and its joint's displacement.
+// State: the positions, then the velocities, of the rig's masses (two by RigCoordinate, one, or
+// none for strut_rig, whose inputs impose the motion); then, where effects give the strut states,
+// its lagged force, the force of its mount and the displacement of its joint.
 //
-// A kink of a piecewise linear input is no event: where the order of the integrator matters, let
-// samples fall on ends of steps, or interpolate by a spline.
+// A kink of a piecewise linear input is not an event: where the order of the integrator matters,
+// choose steps that end at the samples, or interpolate by a spline.
 #pragma once
 
 #include <cmath>
@@ -15,11 +15,11 @@
 
 namespace strut {
 
-/// Everything the equations find on their way.
+/// Intermediate results of the right-hand side.
 template <class T>
 struct RigWorkspace {
   std::array<SignalPoint<T>, kMaxRigInputs> input;  // in the order of the rig's inputs
-  std::array<CornerMotion<T>, 1> motion;            // only its lines' length and length_q
+  std::array<CornerMotion<T>, 1> motion;            // only length and length_q are used
   std::array<StrutForce<T>, 1> strut;
   T unclamped_load, tire_force, guide_force;    // N
   std::array<T, kRigCoordinates> acceleration;  // m/s^2
@@ -35,7 +35,7 @@ class RigSystem {
   static constexpr int kCapacity = 2 * kRigCoordinates + kStatesPerStrut;
   using Mask = MaskOf<T>;
 
-  /// `inputs` from assign_rig_inputs. Rig and signals must outlive the system.
+  /// `inputs` by assign_rig_inputs. Rig and signals must outlive the system.
   RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs)
       : rig_(rig),
         inputs_(inputs),
@@ -46,8 +46,8 @@ class RigSystem {
   int stiff_at(int i) const { return 2 * count_ + i; }
   int stiff_count() const { return rig_.effects.has_states() ? kStatesPerStrut : 0; }
 
-  /// At rest on the ground's first position, plus the rig's own initial offsets; a strut with
-  /// states as if it had moved for long as it moves at the start.
+  /// The initial state: at rest on the ground's first position, plus the initial offsets; the
+  /// states of a strut as after a long motion at its initial speed.
   std::array<T, kCapacity> make_start() {
     std::array<T, kCapacity> x;
     x.fill(T(0.0));
@@ -104,7 +104,7 @@ class RigSystem {
   }
   bool cross(int /*guard*/, Mask /*lanes*/) { return false; }
 
-  /// A rig has no snapshot: never changes sign.
+  /// Constant, because a rig has no snapshot.
   T get_trigger() const { return T(1.0); }
   Mask has_failed() const { return failed_; }
   RunStatus get_failure(int /*lane*/) const { return RunStatus::kDiverged; }
@@ -128,7 +128,7 @@ class RigSystem {
  private:
   static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  /// The ground moves by a gain more than its recording; other inputs are as recorded.
+  /// A gain scales the motion of the ground; other inputs are as recorded.
   void update_first_input(const T& t) {
     SignalPoint<T>& input = ws_.input[0];
     input = calc_signal(*inputs_[0], t);
@@ -152,7 +152,7 @@ class RigSystem {
     x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
   }
 
-  /// Of the strut, positive in compression.
+  /// Initial speed of the strut [m/s], positive in compression.
   T calc_start_speed(const T* x) const {
     switch (rig_.layout.kind) {
       case RigKind::kQuarterCar:
@@ -172,7 +172,7 @@ class RigSystem {
     return get_temperature() - T(kReferenceTemperature);
   }
 
-  /// Forces of the strut whose ends are `length` further apart than at rest.
+  /// Forces of the strut at `length` [m], the increase of its length from rest.
   void update_strut(const T& length, const T& rate) {
     ws_.motion[0].length.fill(length);
     ws_.motion[0].length_q.fill(T(1.0));
@@ -204,7 +204,7 @@ class RigSystem {
     ws_.acceleration[kSprung] = between * (T(1.0) / p.mass[kSprung]) - p.gravity;
   }
 
-  /// `applied`: all but the strut's force and the weight.
+  /// `applied`: all forces except the strut's force and the weight.
   void accelerate_one_mass(const T& applied) {
     ws_.acceleration[0] = (applied + ws_.strut[0].generalized) * (T(1.0) / rig_.numbers.mass[0]) -
                           rig_.numbers.gravity;
@@ -292,7 +292,7 @@ LaneResults simulate_rigs(const RigSpec* const specs[], const std::vector<InputS
   return Simulation<T, RigSystem<T>>(system, options, plan).run(system.make_start());
 }
 
-/// The same for one rig in double: history[sample * channels + channel], failure in status[0].
+/// The same for one rig in double.
 inline LaneResults simulate_rig(const RigSpec& spec, const std::vector<InputSignal>& inputs,
                                 const StepOptions& options, const SamplePlan& plan) {
   const RigSpec* const specs[] = {&spec};

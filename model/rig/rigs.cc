@@ -1,8 +1,13 @@
 #include "model/rig/rigs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/error/check.h"
+#include "base/text/nearest_name.h"
+#include "model/effects/names.h"
 #include "model/effects/strut_numbers.h"
 #include "model/error/model_error.h"
 
@@ -10,38 +15,46 @@ namespace strut {
 
 namespace {
 
-[[noreturn]] void refuse_input(const RigInfo& rig, const std::string& name) {
-  std::string names;
-  for (const InputInfo& input : rig.inputs) names += (names.empty() ? "" : ", ") + input.name;
-  throw ModelError("input " + name + ": a " + rig.name + " is driven by " + names);
+using E = EffectName;
+
+double get_value(const EffectValues& values, const char* effect, const char* parameter) {
+  return values.get(effect, parameter, PlaceName::kRig);
 }
 
-/// The rig with its masses as effects make them.
+[[noreturn]] void refuse_input(const RigInfo& rig, const std::string& name) {
+  std::vector<std::string> names;
+  for (const InputInfo& input : rig.inputs) names.push_back(input.name);
+  throw ModelError(
+      fmt::format("input {}: unknown; inputs of a {}: {}", name, rig.name, join_names(names)));
+}
+
+/// The rig with the masses after its effects.
 RigSpec apply_mass_effects(const RigSpec& spec) {
   const EffectValues values{spec.effects, get_rig_info(spec.kind)};
   RigSpec changed = spec;
-  changed.sprung_mass += values.get("payload", "mass", "");
-  changed.unsprung_mass += values.get("unsprung_mass", "mass", "");
+  changed.sprung_mass += get_value(values, E::kPayload, "mass");
+  changed.unsprung_mass += get_value(values, E::kUnsprungMass, "mass");
   const std::size_t masses = get_rig_info(spec.kind).masses.size();
-  const bool wheel = masses < 2 || changed.unsprung_mass > 0.0;
-  const bool body = masses == 0 || changed.sprung_mass > 0.0;
-  if (wheel && body) return changed;
-  throw ModelError(std::string("effect ") + (body ? "unsprung_mass" : "payload") +
-                   ": leaves no mass; allowed: more than minus the mass that is there");
+  const bool has_wheel_mass = masses < 2 || changed.unsprung_mass > 0.0;
+  const bool has_body_mass = masses == 0 || changed.sprung_mass > 0.0;
+  if (has_wheel_mass && has_body_mass) return changed;
+  throw ModelError(fmt::format(
+      "effect {}: the rig's mass would not be positive; allowed: more than minus its mass",
+      has_body_mass ? E::kUnsprungMass : E::kPayload));
 }
 
-/// At rest the line has length zero and the spring carries what stands on it, a map's force
-/// included.
+/// At rest the line has length zero and the spring carries the weight on it less the force of a
+/// map.
 LinearSpring<double> make_spring(const RigSpec& spec) {
-  const bool carries = !get_rig_info(spec.kind).masses.empty();
-  double carried = carries ? spec.sprung_mass * spec.gravity : 0.0;
-  if (carries && !spec.force_maps.empty()) {
-    carried -= calc_force(spec.force_maps.front(), 0.0, 0.0);
+  const bool carries_mass = !get_rig_info(spec.kind).masses.empty();
+  double load = carries_mass ? spec.sprung_mass * spec.gravity : 0.0;
+  if (carries_mass && !spec.force_maps.empty()) {
+    load -= calc_force(spec.force_maps.front(), 0.0, 0.0);
   }
-  return {spec.stiffness, spec.stiffness > 0.0 ? carried / spec.stiffness : 0.0};
+  return {spec.stiffness, spec.stiffness > 0.0 ? load / spec.stiffness : 0.0};
 }
 
-/// x of k (x + q x^2) = load; load >= 0.
+/// Solves k (x + q x^2) = load >= 0 for the deflection x.
 double calc_static_deflection(double load, double stiffness, double progression) {
   const double linear = load / stiffness;
   if (progression == 0.0) return linear;
@@ -54,17 +67,21 @@ std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
     RigKind kind, const std::vector<InputSignal>& inputs) {
   const RigInfo& rig = get_rig_info(kind);
   const std::vector<InputInfo>& known = rig.inputs;
+  STRUT_CHECK(known.size() <= kMaxRigInputs, rig.name + " has more inputs than kMaxRigInputs");
   std::array<const InputSignal*, kMaxRigInputs> assigned{};
   for (const InputSignal& signal : inputs) {
     const int found = find_input(rig, signal.channel);
     if (found < 0) refuse_input(rig, signal.channel);
     const auto at = static_cast<std::size_t>(found);
-    if (assigned[at]) throw ModelError("input " + signal.channel + ": is given twice");
+    if (assigned[at]) {
+      throw ModelError(fmt::format("input {}: given twice; allowed: once", signal.channel));
+    }
     assigned[at] = &signal;
   }
   for (std::size_t i = 0; i < known.size(); ++i) {
     if (!known[i].required || assigned[i]) continue;
-    throw ModelError("input " + known[i].name + ": is missing, nothing else moves the rig");
+    throw ModelError(
+        fmt::format("input {}: missing; the motion of a {} needs it", known[i].name, rig.name));
   }
   return assigned;
 }
@@ -93,17 +110,18 @@ RigParameters<double> make_rig_parameters(const RigSpec& given) {
   p.spring = make_spring(spec);
   p.damper = {spec.damping};
   const EffectValues values{spec.effects, rig};
-  p.effects = make_strut_effect_numbers(values, "", PlainStrut{spec.stiffness, spec.damping, 0.0});
-  p.tire = {0.0, spec.tire_stiffness * (1.0 + values.get("tire_stiffness", "gain", "")),
-            std::max(0.0, spec.tire_damping + values.get("tire_damping", "rate", "")),
-            values.get("tire_progressive", "progression", "")};
+  p.effects = make_strut_effect_numbers(values, PlaceName::kRig,
+                                        PlainStrut{spec.stiffness, spec.damping, 0.0});
+  p.tire = {0.0, spec.tire_stiffness * (1.0 + get_value(values, E::kTireStiffness, "gain")),
+            std::max(0.0, spec.tire_damping + get_value(values, E::kTireDamping, "rate")),
+            get_value(values, E::kTireProgressive, "progression")};
   if (rig.has(kHasTire)) {
     p.static_deflection =
         calc_static_deflection((spec.sprung_mass + spec.unsprung_mass) * spec.gravity,
                                p.tire.stiffness, p.tire.progression);
   }
   p.guide = {spec.guide_friction, 1.0 / spec.guide_speed};
-  p.ground_gain = 1.0 + values.get("road_gain", "gain", "");
+  p.ground_gain = 1.0 + get_value(values, E::kRoadGain, "gain");
   p.gravity = spec.gravity;
   p.temperature = spec.temperature;
   return p;
@@ -119,7 +137,7 @@ RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<doub
   RigLayout layout{specs[0]->kind, specs[0]->unilateral_tire, 0, false};
   for (int i = 0; i < count; ++i) {
     if (specs[i]->kind != layout.kind || specs[i]->unilateral_tire != layout.unilateral_tire) {
-      throw ModelError("rigs of one batch: type and tire contact must be the same");
+      throw ModelError("rigs of one batch must have the same type and tire contact");
     }
     layout.strut_effects |= find_strut_effects(numbers[i].effects);
     layout.progressive_tire = layout.progressive_tire || numbers[i].tire.progression != 0.0;

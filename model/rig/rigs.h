@@ -1,11 +1,11 @@
 // Test stands from the car's force elements: quarter car, strut on a dynamometer, single mass,
 // guided mass on a moving base.
 //
-// Positions are displacements from the rest position, up positive: the static equilibrium under
-// gravity at ground position zero (masses), the point at which the spring is relaxed (strut_rig,
-// whose displacement is positive in compression). Forces are total, the static load included. Force
-// of strut and actuator is positive where it pushes its two ends apart. So with gravity = 0, and
-// for every rig whose tire cannot lift off, motion is that of the deviations from rest.
+// Positions are displacements from the rest position, up positive: from the static equilibrium
+// under gravity at ground position zero (masses), or from the relaxed spring (strut_rig, whose
+// displacement is positive in compression). Forces are total and include the static load. Forces of
+// strut and actuator are positive where they push their two ends apart. So with gravity = 0, and
+// for every rig whose tire cannot lift off, the motion is that of the deviations from rest.
 //
 //   quarter_car  m_u a_u = F_t - F_s - F_a - m_u g,   m_s a_s = F_s + F_a - m_s g
 //   single_mass  m a = F + F_s - m g
@@ -13,8 +13,8 @@
 //   guided_mass  m a = F + F_s + F_g - m g,   F_g = -f tanh(v / v_f)
 //
 // F_s: sum of the strut's elements, F_t: tire, F_a: actuator force, F: applied force, F_g: friction
-// of the guide (f: guide_friction, v_f: guide_speed), on the mass and against its velocity. The
-// guided mass's strut stands on the base, whose position is an input.
+// of the guide on the mass (f: guide_friction, v_f: guide_speed), against its velocity. The strut
+// of the guided mass stands on the base, whose position is an input.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ namespace strut {
 inline constexpr int kMaxRigInputs = 2;
 
 /// The signals in the order of the rig's inputs, null where none is given. Throws ModelError for an
-/// input that this kind of rig does not have, one that is given twice and one that is missing.
+/// unknown input, one that is given twice and a missing required one.
 std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
     RigKind kind, const std::vector<InputSignal>& inputs);
 
@@ -45,12 +45,12 @@ struct RigParameters {
   TireVertical<T> tire;
   DryFriction<T> guide;
   T static_deflection;  // m, of the tire at rest
-  T ground_gain;        // of the input that moves the ground
+  T ground_gain;        // factor on the input that moves the ground
   T gravity;            // m/s^2
   T temperature;        // K
 };
 
-/// What is common to all simulations of a batch.
+/// The properties common to all simulations of a batch.
 struct RigLayout {
   RigKind kind = RigKind::kQuarterCar;
   bool unilateral_tire = false;
@@ -66,8 +66,8 @@ struct Rig {
   StrutEffects<T> effects{};
 };
 
-/// The strut of a rig on a stand that moves it (strut_rig), with the effects that are its own:
-/// those that have the same parameters there.
+/// The strut of a rig on a stand that moves it (strut_rig), with its effects: those that have the
+/// same parameters there.
 RigSpec take_strut(const RigSpec& rig);
 
 /// Numbers of a rig at its rest position. Throws ModelError as validate does.

@@ -1,5 +1,5 @@
-// Rolling disc: candidates for what it touches (smooth stretches where it fits, corners that point
-// upwards), the highest of them everywhere, and the crossings between them.
+// Rolling disc: the candidates of contact (smooth stretches that the disc fits, convex corners),
+// the highest candidate at each position, and the crossings between them.
 #include "model/scenario/envelope.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace strut {
 namespace {
 
-// --- candidates: what the disc touches ------------------------------------------------------
+// --- candidates of contact ------------------------------------------------------------------
 
 /// Root of f between a and b, f(a) and f(b) of different sign, to the last bit.
 template <class Function>
@@ -25,8 +25,8 @@ double bisect(const Function& f, double a, double b) {
   }
 }
 
-/// Where a disc of radius R that touches the profile at u with slope z' has its center: x = u -
-/// R sin(theta), tan(theta) = z'.
+/// Position of the center of a disc of radius R that touches the profile at u with slope z':
+/// x = u - R sin(theta), tan(theta) = z'.
 double calc_disc_center(double u, double slope, double radius) {
   return u - radius * slope / std::sqrt(1.0 + slope * slope);
 }
@@ -85,7 +85,7 @@ void add_smooth_branches(const Profile& profile, std::size_t piece, double radiu
   }
 }
 
-/// The disc turns about a corner of the profile that points upwards.
+/// Adds the contact of the disc with a convex corner of the profile, about which it rotates.
 void add_corner_branch(double u, double height, double slope_before, double slope_after,
                        double radius, std::vector<Branch>& branches) {
   if (slope_before - slope_after < 1e-9) return;
@@ -100,7 +100,7 @@ void add_corner_branch(double u, double height, double slope_before, double slop
 
 Jet calc_flat(double /*x*/) { return {}; }
 
-/// All candidates of the disc envelope; outside of the first and last lies the flat road.
+/// All candidates of the disc envelope; beyond the first and the last the road is flat.
 std::vector<Branch> make_disc_branches(const Profile& profile, double radius) {
   std::vector<Branch> branches;
   const std::size_t pieces = profile.get_piece_count();
@@ -137,7 +137,7 @@ struct Run {
   std::size_t branch;
 };
 
-/// Appends to `runs` who is highest between a and b, where no branch begins or ends.
+/// Appends the highest branches between a and b, where no branch begins or ends, to `runs`.
 void add_runs(const std::vector<Branch>& branches, double a, double b, int depth,
               std::vector<Run>& runs) {
   const double inset = 1e-3 * (b - a);
@@ -149,10 +149,10 @@ void add_runs(const std::vector<Branch>& branches, double a, double b, int depth
     return branches[left].calc(x).value - branches[right].calc(x).value;
   };
   const double crossing = bisect(lead, a + inset, b - inset);
-  const std::size_t there = find_highest(branches, crossing);
-  const double most =
+  const std::size_t highest = find_highest(branches, crossing);
+  const double higher =
       std::max(branches[left].calc(crossing).value, branches[right].calc(crossing).value);
-  if (depth > 0 && branches[there].calc(crossing).value > most + 1e-14) {
+  if (depth > 0 && branches[highest].calc(crossing).value > higher + 1e-14) {
     add_runs(branches, a, crossing, depth - 1, runs);
     add_runs(branches, crossing, b, depth - 1, runs);
     return;
@@ -160,7 +160,8 @@ void add_runs(const std::vector<Branch>& branches, double a, double b, int depth
   runs.push_back({crossing, right});
 }
 
-/// The highest of the branches and the flat road on both sides, without those sides.
+/// The highest of the branches and of the flat road on both sides, without the parts that are flat
+/// road.
 std::vector<Branch> calc_upper_envelope(std::vector<Branch> branches, double begin, double end) {
   double first = begin, last = end;
   for (const Branch& branch : branches) {

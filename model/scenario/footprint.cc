@@ -13,7 +13,7 @@
 namespace strut {
 namespace {
 
-/// Halves [begin, end] until a quintic is good to 1e-13 m.
+/// Bisects [begin, end] until quintics are accurate to 1e-13 m.
 void add_patches(const std::function<Jet(double)>& f, double begin, double end, int depth,
                  Patchwork& patches) {
   const double h = end - begin;
@@ -28,7 +28,7 @@ void add_patches(const std::function<Jet(double)>& f, double begin, double end, 
   patches.cells.push_back(cell);
 }
 
-/// Centered cubic B-spline of unit spacing and integral, with two derivatives.
+/// Centered cubic B-spline of unit spacing and unit integral, with two derivatives.
 Jet calc_kernel(double t) {
   const double side = t < 0.0 ? -1.0 : 1.0, a = std::fabs(t), b = 2.0 - a;
   if (a >= 2.0) return {};

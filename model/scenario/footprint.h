@@ -7,13 +7,13 @@
 
 namespace strut {
 
-/// Cells of different length that cover the disc envelope.
+/// Cells of different lengths that cover the disc envelope.
 struct Patchwork {
-  std::vector<double> begins;  // m, and the end of the last
+  std::vector<double> begins;  // m, then the end of the last cell
   std::vector<RoadCell> cells;
 };
 
-/// Halves each branch until a quintic is good to 1e-13 m; at least one branch.
+/// Bisects each branch until quintics are accurate to 1e-13 m; requires at least one branch.
 Patchwork make_patchwork(const std::vector<Branch>& envelope);
 
 /// Average of the patchwork at x [m] with the cubic B-spline kernel, a [m] a quarter of the

@@ -1,10 +1,11 @@
 #include "model/scenario/input_signal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "model/error/model_error.h"
 
@@ -23,21 +24,22 @@ void check_samples(const std::string& channel, const Samples& times, const Sampl
     throw ModelError(channel + what, ModelFault::kInput);
   };
   if (times.size() != values.size()) {
-    fail(": " + std::to_string(times.size()) + " times and " + std::to_string(values.size()) +
-         " values: must be as many");
+    fail(fmt::format(": {} times and {} values: the numbers must be equal", times.size(),
+                     values.size()));
   }
-  if (times.size() < 2) fail(": " + std::to_string(times.size()) + " samples: must be at least 2");
+  if (times.size() < 2) fail(fmt::format(": {} samples: must be at least 2", times.size()));
   for (std::size_t i = 0; i < times.size(); ++i) {
-    const std::string sample = ", sample " + std::to_string(i + 1);
-    if (!std::isfinite(times[i]) || !std::isfinite(values[i])) fail(sample + ": must be finite");
+    if (!std::isfinite(times[i]) || !std::isfinite(values[i])) {
+      fail(fmt::format(", sample {}: must be finite", i + 1));
+    }
     if (i > 0 && !(times[i] > times[i - 1])) {
-      fail(sample + ": time = " + std::to_string(times[i]) + " s: must be > " +
-           std::to_string(times[i - 1]) + " s, the time before");
+      fail(fmt::format(", sample {}: time = {:f} s: must be > {:f} s, the previous time", i + 1,
+                       times[i], times[i - 1]));
     }
   }
 }
 
-/// The bins: about one a cell, more where the samples are uneven.
+/// Adds about one bin per cell, more where the samples are unevenly spaced.
 void add_bins(InputSignal& signal) {
   const std::size_t cells = signal.cells.size() - 1;
   double shortest = signal.end - signal.begin;
@@ -50,7 +52,7 @@ void add_bins(InputSignal& signal) {
   const auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
   const double width = span / static_cast<double>(count);
   signal.inverse_bin = 1.0 / width;
-  // A little early and late: a time at a bin's edge may be rounded into either bin.
+  // Widens the bins, because a time at the edge of a bin may be rounded into either one.
   const double slack = 1e-6 * width;
   const auto find_cell = [&](double t, std::size_t from) {
     while (from + 1 < cells && signal.cells[from + 1].begin <= t) ++from;
@@ -78,7 +80,7 @@ InputSignal join_cells(const std::string& channel, std::vector<SignalCell> cells
 }
 
 /// Second derivatives of the not-a-knot spline: the first two cells share one cubic, and so do the
-/// last two. Its end values are eliminated from the usual tridiagonal system (Thomas algorithm).
+/// last two. The end values are eliminated from the tridiagonal system (Thomas algorithm).
 Samples solve_moments(const Samples& t, const Samples& y) {
   const std::size_t n = t.size();
   Samples moment(n, 0.0), ratio(n, 0.0);

@@ -1,7 +1,7 @@
-// A measured or made input over time that drives a rig: road displacement, force, temperature.
+// A measured or synthetic input over time that drives a rig: road displacement, force, temperature.
 //
-// Samples at their own times become a piecewise cubic. Signals hold no state, so that all lanes and
-// threads share one. Before the first and after the last sample the end value holds, at rate zero.
+// Samples at arbitrary times become a piecewise cubic. Signals have no state, so that all lanes and
+// threads share one. Before the first and after the last sample the signal is constant.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ enum class Interpolation {
   kLinear,  // no overshoot at steps; the rate jumps at the samples
 };
 
-/// value = c0 + c1 s + c2 s^2 + c3 s^3, s = t - begin. Nothing but doubles, so that lanes gather.
+/// value = c0 + c1 s + c2 s^2 + c3 s^3, s = t - begin. Only doubles, so that lanes can gather them.
 struct SignalCell {
   double begin;  // s
   double c0, c1, c2, c3;
@@ -26,15 +26,16 @@ static_assert(sizeof(SignalCell) == 5 * sizeof(double));
 struct InputSignal {
   std::string channel;            // input it drives, a name of ModelInfo::inputs
   double begin = 0.0, end = 0.0;  // s, first and last sample
-  std::vector<SignalCell> cells;  // one an interval, then a sentinel
-  // Equal bins of time lead to the cells: the cell of t is at most `search_steps` after its bin's.
+  std::vector<SignalCell> cells;  // one per interval, then a sentinel
+  // Equal bins of time index the cells: the cell of t is at most `search_steps` after that of its
+  // bin.
   std::vector<double> bins;
   double inverse_bin = 0.0;  // 1/s
   int search_steps = 0;
 };
 
-/// Interpolates samples. Throws ModelError that names the channel: fewer than two
-/// samples, times and values not of one length, not finite, times that do not increase.
+/// Interpolates samples. Throws ModelError with the channel for fewer than two samples, different
+/// numbers of times and values, numbers that are not finite, and times that do not increase.
 InputSignal make_signal(const std::string& channel, const std::vector<double>& times,
                         const std::vector<double>& values, Interpolation interpolation);
 
@@ -47,7 +48,7 @@ InputSignal make_signal(const std::string& channel, const std::vector<double>& t
 InputSignal make_chirp(const std::string& channel, double amplitude, double begin_frequency,
                        double end_frequency, double duration);
 
-/// The whole signal times a factor.
+/// Multiplies the signal by a factor.
 void scale_signal(InputSignal& signal, double factor);
 
 /// 0 until `begin` [s], then linearly within `rise` [s] > 0 to `height`.
@@ -61,7 +62,7 @@ struct SignalPoint {
   T value, rate, second_rate;  // [u], [u/s], [u/s^2] in the signal's unit u
 };
 
-/// The signal at t [s]; at a sample the interval after it counts.
+/// The signal at t [s]; at a sample that of the interval after it.
 template <class T>
 SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
   constexpr double kStride = 5.0;

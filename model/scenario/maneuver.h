@@ -1,4 +1,4 @@
-// What the car is asked to do: speed, drive torque, road. Plain data in SI units.
+// Specification of a maneuver: speed, drive torque, road. Plain data in SI units.
 #pragma once
 
 #include "model/scenario/road.h"
@@ -13,7 +13,7 @@ enum class TrimKind {
 struct ManeuverSpec {
   double speed = 20.0;          // m/s, initial forward speed
   double duration = 3.0;        // s
-  double drive_torque = 500.0;  // N m in all, reacted by the chassis
+  double drive_torque = 500.0;  // N m, sum over the wheels, reacted by the chassis
   double bump_distance = 10.0;  // m, bump center ahead of the front wheel centers at t = 0
   TrimKind trim = TrimKind::kSteady;
   double gravity = 9.81;  // m/s^2

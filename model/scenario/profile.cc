@@ -1,4 +1,4 @@
-// Each bump shape in closed form, and the natural cubic spline of a table.
+// The bump shapes in closed form, and the natural cubic spline of a table.
 #include "model/scenario/profile.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr double kPi = std::numbers::pi;
 
 Jet calc_arc(double height, double length, double x) {
   const double radius = (0.25 * length * length + height * height) / (2.0 * height);
-  // A semicircle stands upright at its ends; the bound keeps the slope a number.
+  // The slope of a semicircle is infinite at its ends; the bound makes it finite.
   const double rise = std::max(std::sqrt(std::max(radius * radius - x * x, 0.0)), 1e-9 * radius);
   return {height - x * x / (radius + rise), -x / rise, -radius * radius / (rise * rise * rise)};
 }

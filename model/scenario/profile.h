@@ -1,4 +1,4 @@
-// The bump's shape before any tire: its profile as smooth pieces, with two derivatives.
+// The profile of the bump, without a tire, as smooth pieces with two derivatives.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct Profile {
   std::size_t get_piece_count() const { return ends.empty() ? 0 : ends.size() - 1; }
 };
 
-/// Profile of a valid specification; no pieces for a flat road. A table becomes a natural cubic
-/// spline. Keeps copies of what it needs, not the specification.
+/// Profile of a valid specification; without pieces for a flat road. A table becomes a natural
+/// cubic spline. The profile does not refer to the specification.
 Profile make_profile(const RoadSpec& spec);
 
 }  // namespace strut

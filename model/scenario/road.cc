@@ -1,12 +1,13 @@
-// How a bump becomes a surface: profile -> envelope (what the tire touches) -> averaged over the
-// contact patch -> cells. Here: what a road may be, and the surface put together from its segments.
+// Steps from a bump to a surface: profile -> envelope (contact height of the tire) -> average over
+// the contact patch -> cells. This file validates roads and assembles the surface from its
+// segments.
 #include "model/scenario/road.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,26 +24,23 @@ namespace {
 
 void require(bool ok, const std::string& field, double value, const std::string& allowed) {
   if (ok) return;
-  std::ostringstream message;
-  message << field << " = " << value << " is not allowed: " << allowed;
-  throw ModelError(message.str(), ModelFault::kRoad);
+  throw ModelError(fmt::format("{} = {:g} is not allowed: {}", field, value, allowed),
+                   ModelFault::kRoad);
 }
 
-void require_range(const char* field, double value, double lowest, double highest) {
-  if (value >= lowest && value <= highest) return;
-  std::ostringstream allowed;
-  allowed << "must lie in [" << lowest << ", " << highest << "] m";
-  require(false, field, value, allowed.str());
+void require_range(const std::string& field, double value, double min, double max) {
+  if (value >= min && value <= max) return;
+  require(false, field, value, fmt::format("must lie in [{:g}, {:g}] m", min, max));
 }
 
 void validate_table_point(const RoadSpec& spec, std::size_t i) {
   const double x = spec.table_x[i], z = spec.table_z[i];
   const bool ahead = i == 0 || x - spec.table_x[i - 1] >= 1e-4;
   if (std::fabs(x) <= 20.0 && std::fabs(z) <= 0.5 && ahead) return;
-  const std::string at = "[" + std::to_string(i) + "]";
-  require_range(("road.table_x" + at).c_str(), x, -20.0, 20.0);
-  require_range(("road.table_z" + at).c_str(), z, -0.5, 0.5);
-  require(ahead, "road.table_x" + at, x, "must exceed the point before by 0.0001 m or more");
+  require_range(fmt::format("road.table_x[{}]", i), x, -20.0, 20.0);
+  require_range(fmt::format("road.table_z[{}]", i), z, -0.5, 0.5);
+  require(ahead, fmt::format("road.table_x[{}]", i), x,
+          "must exceed the previous point by at least 0.0001 m");
 }
 
 void validate_table(const RoadSpec& spec) {
@@ -50,10 +48,10 @@ void validate_table(const RoadSpec& spec) {
   require(x.size() >= 3, "road.table_x, number of points", static_cast<double>(x.size()),
           "a profile needs at least 3");
   require(z.size() == x.size(), "road.table_z, number of points", static_cast<double>(z.size()),
-          "must equal the " + std::to_string(x.size()) + " of road.table_x");
+          fmt::format("must equal the {} of road.table_x", x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) validate_table_point(spec, i);
   require(std::fabs(z.front()) <= 1e-6, "road.table_z[0]", z.front(),
-          "a profile begins at the flat road, within 1e-6 m of 0");
+          "a profile starts at the flat road, within 1e-6 m of 0");
   require(std::fabs(z.back()) <= 1e-6, "road.table_z, last", z.back(),
           "a profile ends at the flat road, within 1e-6 m of 0");
 }
@@ -79,15 +77,15 @@ bool is_smooth_joint(const Branch& before, const Branch& after) {
          std::fabs(a.curvature - b.curvature) < 1e-5 * (1.0 + std::fabs(a.curvature));
 }
 
-/// One segment from the branches first .. last, which join smoothly.
+/// Adds one segment for the branches first .. last, which join smoothly.
 void add_kinked_segment(const std::vector<Branch>& branches, std::size_t first, std::size_t last,
                         Surface& surface) {
   const double begin = branches[first].begin, end = branches[last].end;
   const std::size_t count = last - first + 1;
-  bool even = true;  // cells that end where equal branches meet are exact for a spline
+  bool even = true;  // cells that end at the joints of equally long branches are exact for a spline
   for (std::size_t i = first; i <= last; ++i) {
-    const double share = (branches[i].end - branches[i].begin) * static_cast<double>(count);
-    even = even && std::fabs(share / (end - begin) - 1.0) < 1e-9;
+    const double scaled = (branches[i].end - branches[i].begin) * static_cast<double>(count);
+    even = even && std::fabs(scaled / (end - begin) - 1.0) < 1e-9;
   }
   const auto f = [&](double x) {
     std::size_t i = first;
@@ -113,11 +111,11 @@ Surface make_kinked_surface(const std::vector<Branch>& branches) {
   add_segment({RoadCell{}}, surface.reach_end, 1.0, 1e300, surface);
   require(surface.segments.size() <= 66, "road, number of kinks",
           static_cast<double>(surface.segments.size() - 1),
-          "at most 65 events a crossing; use a contact with a footprint, which needs none");
+          "at most 65 events per crossing; set a footprint above 0, which needs none");
   return surface;
 }
 
-/// One smooth segment; a zero cell at each end stands for the flat road.
+/// Surface of one smooth segment; a zero cell at each end represents the flat road.
 Surface make_smooth_surface(const std::vector<Branch>& branches, double footprint) {
   const Patchwork patches = make_patchwork(branches);
   const double a = 0.25 * footprint;
@@ -152,7 +150,7 @@ void validate(const RoadSpec& spec) {
   require_range("road.height", spec.height, 0.0, 0.5);
   if (spec.shape == BumpShape::kArc) {
     require(spec.height <= 0.5 * spec.length, "road.height", spec.height,
-            "an arc is at most half as high as long, " + std::to_string(0.5 * spec.length) + " m");
+            fmt::format("an arc is at most half as high as long, {:f} m", 0.5 * spec.length));
   }
   if (spec.shape == BumpShape::kTrapezoid) {
     require_range("road.ramp", spec.ramp, 1e-4, 0.5 * spec.length);
@@ -182,7 +180,7 @@ Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact) {
   if (contact.kind == ContactKind::kPoint) {
     const bool upright = spec.shape == BumpShape::kArc && spec.height > 0.45 * spec.length;
     require(!upright, "road.height", spec.height,
-            "with point contact an arc is at most 0.45 of its length high");
+            "with point contact the height of an arc is at most 0.45 times its length");
     return make_kinked_surface(make_point_branches(profile));
   }
   const std::vector<Branch> branches = make_disc_envelope(profile, contact.radius);

@@ -1,9 +1,9 @@
-// The road: one speed bump, as each wheel feels it.
+// The road: one speed bump, in the form in which it acts on each wheel.
 //
 // A tire does not follow the profile point by point. The default contact (kEnvelope) rolls a rigid
 // disc of the free tire radius over the profile and averages the height of its center over the
 // contact patch; the result has four continuous derivatives and costs the integrator no event.
-// Everything expensive happens in `make_surface`, once per tire and bump; a run reads quintic
+// The expensive computation is in `make_surface`, once per tire and bump; a run evaluates quintic
 // polynomials (`calc_road_point`). Numbers: docs/design/0003-road-contact.md.
 #pragma once
 
@@ -24,28 +24,28 @@ struct RoadSpec {
   double height = 0.05;                  // m, [0, 0.5]; an arc at most length / 2
   double length = 0.4;                   // m, [0.001, 20]
   double ramp = 0.1;                     // m, length of each flank of a trapezoid, (0, length / 2]
-  BumpSide side = BumpSide::kBoth;       // which wheels meet it; the caller's business
+  BumpSide side = BumpSide::kBoth;       // the wheels that cross it; evaluated by the caller
   std::vector<double> table_x, table_z;  // m, kTable: natural cubic spline, flat road outside
   bool operator==(const RoadSpec&) const = default;
-  /// Whether height and length (a trapezoid's ramp) describe it.
+  /// Whether height, length and ramp describe the bump.
   bool has_formula() const { return shape != BumpShape::kNone && shape != BumpShape::kTable; }
 };
 
 enum class ContactKind { kEnvelope, kPoint };
 
-/// What of the tire shapes the road it feels.
+/// The properties of the tire that determine its effective road.
 struct ContactGeometry {
   ContactKind kind = ContactKind::kEnvelope;
   double radius = 0.0;     // m, free tire radius, [0.05, 2]
-  double footprint = 0.0;  // m, length averaged over, 0 or [0.02, 1]; 0: the bare disc, with kinks
+  double footprint = 0.0;  // m, averaging length, 0 or [0.02, 1]; 0: disc without averaging, kinks
 };
 
 /// Throws ModelError with field, value and allowed range.
 void validate(const RoadSpec& spec);
 void validate(const ContactGeometry& contact);
 
-/// Height [m] of the bump's profile, x [m] from its center. A table's spline is built anew in every
-/// call: for plots and tests, not for a run. Throws as `validate` does.
+/// Height [m] of the bump's profile at x [m] from its center. Builds a table's spline in every
+/// call: for plots and tests, not for simulations. Throws as `validate` does.
 double calc_profile_height(const RoadSpec& spec, double x);
 
 /// Quintic over one cell, sum of coefficient[k] t^k with t in [0, 1]; one cache line.
@@ -55,19 +55,20 @@ struct alignas(64) RoadCell {
 };
 static_assert(sizeof(RoadCell) == 8 * sizeof(double));
 
-/// Smooth stretch of road cut into equal cells; whole numbers are kept as doubles for `gather`.
+/// Smooth stretch of road, divided into equal cells; whole numbers are stored as doubles for
+/// `gather`.
 struct alignas(64) RoadSegment {
   double end = 1e300;         // m from the bump's center; 1e300 after the last
-  double origin = 0.0;        // m, where the first cell begins
+  double origin = 0.0;        // m, start of the first cell
   double inverse_cell = 1.0;  // 1/m
-  double first_cell = 0.0;    // place of its first cell in the list of all cells
+  double first_cell = 0.0;    // index of its first cell in the list of all cells
   double last_cell = 0.0;     // number of cells - 1
   bool operator==(const RoadSegment&) const = default;
 };
 static_assert(sizeof(RoadSegment) == 8 * sizeof(double));
 
-/// The effective road under one wheel: smooth segments; slope or curvature jumps exactly at their
-/// ends. The first and the last segment are flat, or the only segment begins and ends flat.
+/// The effective road under one wheel: smooth segments, at whose ends slope or curvature jump. The
+/// first and the last segment are flat, or the only segment starts and ends flat.
 struct Surface {
   std::vector<RoadSegment> segments;
   std::vector<RoadCell> cells;
@@ -75,23 +76,23 @@ struct Surface {
   bool operator==(const Surface&) const = default;
 };
 
-/// Builds the surface a tire feels (a few milliseconds). Disc envelope
+/// Builds the effective road of a tire (a few milliseconds): the disc envelope
 /// z_e(x) = max over s of z(x + s) + sqrt(R^2 - s^2) - R, then averaged with the cubic B-spline
 /// kernel of total support `footprint` (four boxcars of a quarter of it); kPoint: the profile
-/// itself. Throws ModelError for a bad specification, and where events would be needed
-/// at more than 64 kinks.
+/// itself. Throws ModelError for an invalid specification, and where more than 65 kinks would need
+/// events.
 Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact);
 
-/// The roads of the lanes for one wheel: one surface a lane and where its bump's center lies.
+/// The roads of the lanes: one surface per lane and the position of its bump.
 template <class T>
 struct Road {
-  std::vector<RoadSegment> segments;  // of all different surfaces, one after the other
+  std::vector<RoadSegment> segments;  // those of all distinct surfaces, one after the other
   std::vector<RoadCell> cells;
-  int segment_count = 0;     // the most any lane has; 0 or 1: no events
+  int segment_count = 0;     // maximum over the lanes; 0 or 1: no events
   T center = T(0.0);         // m, world x of the bump's center
   T reach_begin = T(1e300);  // m from the center
   T reach_end = T(-1e300);   // m from the center
-  T first_segment = T(0.0);  // the lane's first segment, in doubles into `segments`
+  T first_segment = T(0.0);  // offset of the lane's first segment in `segments`, in doubles
   T last_segment = T(0.0);   // number of the lane's segments - 1
   T origin = T(0.0), inverse_cell = T(1.0), first_cell = T(0.0), last_cell = T(0.0);  // if only one
 };
@@ -102,13 +103,13 @@ struct RoadPoint {
   T slope;   // dz/dx
 };
 
-/// Appends `surface` to the lists unless an equal one is there; returns its first segment.
-/// `starts` remembers where each appended surface begins; `surfaces` are the ones appended so far.
+/// Appends `surface` to the lists unless they have an equal one; returns its first segment.
+/// `surfaces` are those appended so far, `starts` their first segments.
 std::size_t add_surface(const Surface& surface, std::vector<RoadSegment>& segments,
                         std::vector<RoadCell>& cells, std::vector<const Surface*>& surfaces,
                         std::vector<std::size_t>& starts);
 
-/// Road of W lanes from W surfaces and W bump centers [m]; the surfaces may be gone afterwards.
+/// Road of W lanes from W surfaces and W bump centers [m]; does not refer to the surfaces.
 template <class T>
 Road<T> make_road(const Surface* const surfaces[], const double centers[]) {
   Road<T> road;
@@ -133,12 +134,13 @@ Road<T> make_road(const Surface* const surfaces[], const double centers[]) {
   return road;
 }
 
-/// Height and slope of cell floor((x - origin) * inverse_cell), the end cells going on for ever.
+/// Height and slope by cell floor((x - origin) * inverse_cell); the end cells extend to infinity.
 template <class T>
 RoadPoint<T> calc_cell_point(const std::vector<RoadCell>& cells, const T& x, const T& origin,
                              const T& inverse_cell, const T& first_cell, const T& last_cell) {
   const T place = (x - origin) * inverse_cell;
-  // Comparisons, not min and max: a diverged lane's NaN must end in cell 0, not outside the table.
+  // Comparisons instead of min and max: the NaN of a diverged lane must select cell 0, not an index
+  // outside the table.
   T cell = floor(place);
   cell = select(cell > T(0.0), cell, T(0.0));
   cell = select(cell < last_cell, cell, last_cell);
@@ -159,8 +161,8 @@ T get_segment_field(const Road<T>& road, double RoadSegment::*field, const T& se
 }
 
 /// Height [m] and slope of the road at world x [m]. `segment` is the polynomial to use, also beyond
-/// its ends: a step that ends at a kink must not see what comes after it. Exactly zero, at the cost
-/// of two comparisons, if no lane is at its bump.
+/// its ends: a step that ends at a kink must not depend on the road behind it. Exactly zero, at the
+/// cost of two comparisons, if no lane is at its bump.
 template <class T>
 RoadPoint<T> calc_road_point(const Road<T>& road, const T& x_world, const T& segment) {
   const T x = x_world - road.center;

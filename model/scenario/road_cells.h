@@ -1,4 +1,4 @@
-// Cells: quintics that stand for a function within a tolerance, all of one length.
+// Cells: quintics of equal length that approximate a function within a tolerance.
 #pragma once
 
 #include <cmath>
@@ -30,13 +30,13 @@ inline double calc_cell_slope(const RoadCell& cell, double t) {
   return c[1] + t * (2.0 * c[2] + t * (3.0 * c[3] + t * (4.0 * c[4] + t * 5.0 * c[5])));
 }
 
-/// How far a polynomial may be from the function it stands for.
+/// Maximum deviation of a polynomial from the function that it approximates.
 struct CellTolerance {
   double value;  // m
   double slope;
 };
 
-/// Compared with f at the middle and the quarter points.
+/// Whether the cell agrees with f at the middle and the quarter points.
 template <class Function>
 bool is_accurate(const RoadCell& cell, const Function& f, double begin, double h,
                  const CellTolerance& tolerance) {
@@ -48,7 +48,7 @@ bool is_accurate(const RoadCell& cell, const Function& f, double begin, double h
   return true;
 }
 
-/// `count` equal cells over [begin, end]; none at all if `checked` and one is not accurate.
+/// `count` equal cells over [begin, end]; empty if `checked` and a cell is not accurate.
 template <class Function>
 std::vector<RoadCell> fill_cells(const Function& f, double begin, double end, std::size_t count,
                                  const CellTolerance& tolerance, bool checked) {
@@ -65,7 +65,8 @@ std::vector<RoadCell> fill_cells(const Function& f, double begin, double end, st
   return cells;
 }
 
-/// Equal cells over [begin, end], doubled from `count` until accurate, at most 4096.
+/// Equal cells over [begin, end]; their number is doubled from `count` until they are accurate, up
+/// to 4096.
 template <class Function>
 std::vector<RoadCell> tabulate_cells(const Function& f, double begin, double end, std::size_t count,
                                      const CellTolerance& tolerance) {

@@ -1,5 +1,5 @@
-// From finished simulations to what is given out of them: the channels as their sensors read them.
-// Whatever writes or shows channels runs its simulation through here.
+// From finished simulations to readings: the channels as their sensors read them. Every program
+// that writes or shows channels runs its simulations through ReadOut.
 #pragma once
 
 #include <vector>
@@ -10,40 +10,41 @@
 
 namespace strut {
 
-/// Longest time between the samples of which a sensor with memory makes its readings [s].
+/// Maximum interval of the samples from which a sensor with memory makes its readings [s].
 inline constexpr double kSensorInterval = 1e-3;
 
+/// The sensor effects of simulations that run in lanes.
 class ReadOut {
  public:
-  /// `channels` of the model, and the effects of each simulation that runs in lanes.
+  /// `channels` of the model, and the effects of the simulation in each lane.
   ReadOut(const std::vector<ChannelInfo>& channels,
           const std::vector<const EffectSettings*>& effects);
 
-  /// What to record where `asked` is to be read: more samples where a sensor with memory is on.
-  /// Those of `asked` and the snapshot stay as they are, bit for bit.
-  SamplePlan make_plan(const SamplePlan& asked) const;
+  /// The plan to simulate for the readings that `requested` describes: it has more samples where a
+  /// sensor with memory is on. The requested samples and the snapshot keep every bit.
+  SamplePlan make_plan(const SamplePlan& requested) const;
 
-  /// History and snapshot become readings, with the samples that `asked` wants. Simulations that
-  /// failed and channels without effects keep every bit.
-  void read(const SamplePlan& asked, LaneResults& run) const;
+  /// Turns history and snapshot of a run by make_plan into readings at the requested samples.
+  /// Simulations that failed and channels without effects keep every bit. Where a sensor is on, the
+  /// history must hold all channels.
+  void read(const SamplePlan& requested, LaneResults& run) const;
 
  private:
   struct Reading {
-    std::size_t lane, channel;
+    int lane, channel;
     ChannelSensor sensor;
   };
 
-  std::size_t channel_count_;
-  std::vector<Reading> readings_;  // those that are on
+  std::vector<Reading> readings_;  // channels whose sensor is on
   bool has_memory_ = false;
 };
 
-/// `simulate(plan)` runs what `out` was made for.
+/// Readings of `simulate(plan)`, which runs the simulations of `out`.
 template <class Simulate>
-LaneResults simulate_readings(const ReadOut& out, const SamplePlan& asked,
+LaneResults simulate_readings(const ReadOut& out, const SamplePlan& requested,
                               const Simulate& simulate) {
-  LaneResults run = simulate(out.make_plan(asked));
-  out.read(asked, run);
+  LaneResults run = simulate(out.make_plan(requested));
+  out.read(requested, run);
   return run;
 }
 

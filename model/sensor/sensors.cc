@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/math/exponential.h"
+#include "model/effects/names.h"
 #include "model/scenario/input_signal.h"
 
 namespace strut {
@@ -16,10 +17,11 @@ struct SensorEffect {
   const char* name;
   double ChannelSensor::*value;
 };
-constexpr std::array<SensorEffect, 4> kSensorEffects = {{{"sensor_gain", &ChannelSensor::gain},
-                                                         {"sensor_bias", &ChannelSensor::bias},
-                                                         {"sensor_delay", &ChannelSensor::delay},
-                                                         {"sensor_lowpass", &ChannelSensor::time}}};
+constexpr std::array<SensorEffect, 4> kSensorEffects = {
+    {{EffectName::kSensorGain, &ChannelSensor::gain},
+     {EffectName::kSensorBias, &ChannelSensor::bias},
+     {EffectName::kSensorDelay, &ChannelSensor::delay},
+     {EffectName::kSensorLowpass, &ChannelSensor::time}}};
 
 const SensorEffect* find_sensor_effect(const std::string& name) {
   for (const SensorEffect& effect : kSensorEffects) {
@@ -34,7 +36,7 @@ std::vector<double> list_sample_times(double interval, std::size_t count) {
   return times;
 }
 
-/// T dz/dt + z = y, exact for a y that is a cubic between samples.
+/// Replaces the samples of y by those of z, T dz/dt + z = y; exact for y a cubic between samples.
 void filter(const std::vector<double>& times, double interval, double time_constant,
             std::vector<double>& values) {
   const InputSignal y = make_signal("sensor", times, values, Interpolation::kSpline);

@@ -1,10 +1,10 @@
-// Effects of sensors: from a channel's samples to what a sensor with its faults would read.
+// Effects of sensors: from a channel's samples to the readings of an imperfect sensor.
 //
 //   reading(t) = (1 + e) z(t - tau) + b,   T dz/dt + z = y
 //
-// y is the channel, a cubic spline between its samples; before the first and after the last it
-// stands still, and the filter starts settled. Readings are made from a finished run, so no sensor
-// changes a simulation, nor a channel that derives from another.
+// y is the channel, a cubic spline between its samples and constant before the first and after the
+// last; the filter starts settled. Readings are made from a finished run, so a sensor changes
+// neither the simulation nor channels derived from its own.
 #pragma once
 
 #include <string>
@@ -14,23 +14,23 @@
 
 namespace strut {
 
-/// The faults of the sensor of one channel; neutral where none is on.
+/// The sensor of one channel; by default ideal.
 struct ChannelSensor {
   double gain = 0.0;   // e, sensor_gain
   double bias = 0.0;   // b, sensor_bias, unit of the channel
   double delay = 0.0;  // tau, sensor_delay, s; < 0: early
   double time = 0.0;   // T, sensor_lowpass, s
 
-  /// Whether a reading takes more than the channel's value at that instant.
+  /// Whether a reading depends on the channel at other instants.
   bool has_memory() const { return delay != 0.0 || time != 0.0; }
   bool is_on() const { return has_memory() || gain != 0.0 || bias != 0.0; }
   double amplify(double value) const { return (1.0 + gain) * value + bias; }
 };
 
-/// The settings of `settings` that are of sensors' channels.
+/// The settings that act on channels.
 EffectSettings list_sensor_settings(const EffectSettings& settings);
 
-/// `settings`: of any kind of model; a search through them, nothing more.
+/// The sensor of a channel by the effects of a model of any kind.
 ChannelSensor find_sensor(const EffectSettings& settings, const std::string& channel);
 
 /// Readings at `times` [s] of a channel sampled every `interval` [s] from t = 0; NaN throughout
@@ -38,7 +38,7 @@ ChannelSensor find_sensor(const EffectSettings& settings, const std::string& cha
 std::vector<double> read_sensor(const ChannelSensor& sensor, double interval,
                                 std::vector<double> samples, const std::vector<double>& times);
 
-/// The same at the samples themselves; unchanged, bit for bit, where no effect is on at `channel`.
+/// Readings at the sample times; the samples, bit for bit, where no effect acts on `channel`.
 std::vector<double> read_sensor(const EffectSettings& settings, const std::string& channel,
                                 double interval, std::vector<double> samples);
 

@@ -51,53 +51,53 @@ TEST_CASE("Allocation adds up, stays within one of the share, and takes nothing 
   }
 }
 
-TEST_CASE("Levels fill the layers in order and as evenly as they can", "[unit][property]") {
+TEST_CASE("Levels fill the strata in order and as evenly as they can", "[unit][property]") {
   for (const std::int64_t levels : {1, 7, 10, 11, 1000}) {
-    for (const int layers : {1, 3, 7, 10}) {
-      Counts sizes(static_cast<std::size_t>(layers), 0);
+    for (const int strata : {1, 3, 7, 10}) {
+      Counts sizes(static_cast<std::size_t>(strata), 0);
       int before = 0;
       for (std::int64_t level = 0; level < levels; ++level) {
-        const int layer = find_layer(level, levels, layers);
-        REQUIRE(layer >= before);
-        REQUIRE(layer < layers);
-        REQUIRE(level >= find_first_level(layer, levels, layers));
-        REQUIRE(level < find_first_level(layer + 1, levels, layers));
-        before = layer;
-        ++sizes[static_cast<std::size_t>(layer)];
+        const int stratum = find_stratum(level, levels, strata);
+        REQUIRE(stratum >= before);
+        REQUIRE(stratum < strata);
+        REQUIRE(level >= find_first_level(stratum, levels, strata));
+        REQUIRE(level < find_first_level(stratum + 1, levels, strata));
+        before = stratum;
+        ++sizes[static_cast<std::size_t>(stratum)];
       }
-      CAPTURE(levels, layers);
-      CHECK(find_first_level(layers, levels, layers) == levels);
+      CAPTURE(levels, strata);
+      CHECK(find_first_level(strata, levels, strata) == levels);
       const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
       CHECK(*most - *least <= 1);
     }
   }
-  CHECK(find_layer((std::int64_t{1} << 62) - 1, std::int64_t{1} << 62, 10) == 9);
+  CHECK(find_stratum((std::int64_t{1} << 62) - 1, std::int64_t{1} << 62, 10) == 9);
 }
 
 TEST_CASE("A stratified sample meets its quotas without repeats", "[unit][property]") {
-  const auto layer_of = [](std::int64_t i) { return static_cast<int>(i % 4); };
+  const auto stratum_of = [](std::int64_t i) { return static_cast<int>(i % 4); };
   const Counts quotas = {5, 0, 25, 1};
-  const Counts drawn = draw_stratified(quotas, Permutation(100, 3, 0), layer_of);
+  const Counts drawn = draw_stratified(quotas, Permutation(100, 3, 0), stratum_of);
   CHECK(std::is_sorted(drawn.begin(), drawn.end()));
   CHECK(std::set<std::int64_t>(drawn.begin(), drawn.end()).size() == 31);
   Counts found(4, 0);
-  for (const std::int64_t i : drawn) ++found[static_cast<std::size_t>(layer_of(i))];
+  for (const std::int64_t i : drawn) ++found[static_cast<std::size_t>(stratum_of(i))];
   CHECK(found == quotas);
-  CHECK(draw_stratified(quotas, Permutation(100, 3, 0), layer_of) == drawn);
-  CHECK(draw_stratified(quotas, Permutation(100, 4, 0), layer_of) != drawn);
+  CHECK(draw_stratified(quotas, Permutation(100, 3, 0), stratum_of) == drawn);
+  CHECK(draw_stratified(quotas, Permutation(100, 4, 0), stratum_of) != drawn);
 }
 
-TEST_CASE("Every member of a layer is drawn equally often", "[unit][statistical]") {
+TEST_CASE("Every member of a stratum is drawn equally often", "[unit][statistical]") {
   constexpr int kSeeds = 20000;
-  const auto layer_of = [](std::int64_t i) { return i < 10 ? 0 : 1; };
+  const auto stratum_of = [](std::int64_t i) { return i < 10 ? 0 : 1; };
   std::vector<int> counts(30, 0);
   for (int seed = 0; seed < kSeeds; ++seed) {
     const Permutation order(30, static_cast<std::uint64_t>(seed), 1);
-    for (const std::int64_t i : draw_stratified({2, 4}, order, layer_of)) {
+    for (const std::int64_t i : draw_stratified({2, 4}, order, stratum_of)) {
       ++counts[static_cast<std::size_t>(i)];
     }
   }
-  // Both layers give a fifth; five standard deviations of a binomial.
+  // Both strata give a fifth; five standard deviations of a binomial.
   for (const int n : counts) CHECK(std::abs(n - 0.2 * kSeeds) < 5.0 * std::sqrt(0.16 * kSeeds));
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("The point of any rank is the one that sorting the whole grid finds",
 }
 
 TEST_CASE("A grid that cannot be halved is refused", "[unit]") {
-  CHECK_THROWS(GridSums({{GridSums::kLargestHalf + 1, 1}}));
+  CHECK_THROWS(GridSums({{GridSums::kMaxHalf + 1, 1}}));
 }
 
 }  // namespace

@@ -148,13 +148,13 @@ TEST_CASE("An equilibrium beyond a corner's travel is refused", "[unit]") {
   set_travel(1.01 * sag);
   CHECK_NOTHROW(rest(c));
   set_travel(0.99 * sag);
-  CHECK_THROWS_WITH(rest(c), Catch::Contains("finds none at rest within"));
+  CHECK_THROWS_WITH(rest(c), Catch::Contains("has no equilibrium at rest within"));
 }
 
 TEST_CASE("A torque the tires cannot pass on leaves no steady rolling", "[unit]") {
   Case c = make_flat_case(reference::make_paper_sedan_spec());
   c.maneuver.drive_torque = 2e4;  // 43 kN at the radius, five times the load on the front tires
-  CHECK_THROWS_WITH(prepare(c), Catch::Contains("finds none rolling"));
+  CHECK_THROWS_WITH(prepare(c), Catch::Contains("has no equilibrium rolling"));
 }
 
 /// Vertical stiffness of one wheel against the chassis: potential energy of the spring, twice

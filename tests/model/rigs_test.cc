@@ -434,14 +434,15 @@ TEST_CASE("Rigs that cannot be are refused by name", "[unit][rigs]") {
   const InputSignal road = make_step("road_position", 0.01, 0.0, 0.1);
   CHECK_THROWS_AS(simulate_rig(spec, {road, road}, options, plan), ModelError);
   CHECK_THROWS_WITH(simulate_rig(spec, {make_step("rod_position", 0.01, 0.0, 0.1)}, options, plan),
-                    "input rod_position: a quarter_car is driven by road_position, actuator_force");
+                    "input rod_position: unknown; inputs of a quarter_car: road_position, "
+                    "actuator_force");
   spec.tire_stiffness = 0.0;
   CHECK_THROWS_WITH(simulate_rig(spec, {road}, options, plan),
                     "tire_stiffness = 0: must lie in (0, 1e+08] N/m");
   RigSpec dyno;
   dyno.kind = RigKind::kStrutRig;
   CHECK_THROWS_WITH(simulate_rig(dyno, {}, options, plan),
-                    "input displacement: is missing, nothing else moves the rig");
+                    "input displacement: missing; the motion of a strut_rig needs it");
 }
 
 }  // namespace
