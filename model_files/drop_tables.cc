@@ -1,5 +1,7 @@
 #include "model_files/drop_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error/input_error.h"
@@ -7,7 +9,7 @@
 namespace strut {
 namespace {
 
-/// Brackets that a line opens less those that it closes, without those in texts and comments.
+/// Opening minus closing brackets of a line, without those in strings and comments.
 int count_brackets(const std::string& line) {
   int open = 0;
   char quote = 0;
@@ -37,13 +39,13 @@ bool is_header(const std::string& line) {
 std::string drop_tables(const std::string& text, const std::string& name) {
   std::string kept;
   bool dropping = false;
-  int open = 0;  // brackets of an array that goes on
+  int open = 0;  // open brackets of an array over several lines
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     const std::string line = text.substr(begin, end - begin);
     if (line.starts_with(name + " ") || line.starts_with(name + "=")) {
-      throw InputError(name + ": write each as a table [[" + name +
-                       "]], not as an array in one line");
+      throw InputError(
+          fmt::format("{0}: write each as a table [[{0}]], not as an array in one line", name));
     }
     if (open == 0 && is_header(line)) {
       const bool dropped_before = dropping;

@@ -1,5 +1,7 @@
 #include "model_files/find_channel.h"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "base/error/input_error.h"
@@ -14,8 +16,8 @@ int find_car_channel(const std::string& name) {
   if (found >= 0) return found;
   std::vector<std::string> names;
   for (const ChannelInfo& info : list_car_channels()) names.push_back(info.name);
-  throw InputError("unknown channel '" + name + "'" + suggest_name(name, names) +
-                   "; channels: " + join_names(names));
+  throw InputError(fmt::format("unknown channel '{}'{}; channels: {}", name,
+                               suggest_name(name, names), join_names(names)));
 }
 
 }  // namespace strut

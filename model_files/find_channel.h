@@ -1,11 +1,11 @@
-// Channels of the car by name: in sweep files and on the command line.
+// Channels of the car by name, for sweep files and the command line.
 #pragma once
 
 #include <string>
 
 namespace strut {
 
-/// CarChannel with this name. Throws InputError with the nearest known name and all there are.
+/// The CarChannel of this name. Throws InputError with the nearest known name and all channels.
 int find_car_channel(const std::string& name);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "model_files/model_tables.h"
 
+#include <fmt/format.h>
+
 #include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
 #include "model_files/read_model.h"
@@ -33,8 +35,8 @@ ModelTables make_model_tables(const std::string& name_or_file) {
     names.push_back(info->name);
   }
   if (std::filesystem::exists(name_or_file)) return list_file(name_or_file);
-  throw InputError("'" + name_or_file + "': neither a file nor a kind of model" +
-                   suggest_name(name_or_file, names) + "; kinds: " + join_names(names));
+  throw InputError(fmt::format("'{}': neither a file nor a kind of model{}; kinds: {}",
+                               name_or_file, suggest_name(name_or_file, names), join_names(names)));
 }
 
 }  // namespace strut

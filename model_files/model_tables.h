@@ -1,4 +1,4 @@
-// The parameters, channels and inputs of a kind of model; of a file with its own values.
+// The parameters, channels and inputs of a kind of model or of a model file, with its values.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace strut {
 
 struct ListedParameter {
   const Parameter* parameter;
-  std::optional<double> value;  // in the file; nothing where there is none or it does not say
+  std::optional<double> value;  // in the file; nothing without a file, and for the maneuver
 };
 
 struct ModelTables {
@@ -21,11 +21,11 @@ struct ModelTables {
   std::vector<ListedParameter> parameters;  // those of effects last
 };
 
-/// The tables of a kind of model, by its name ("full_vehicle", "quarter_car", ...) or by a file of
-/// a vehicle or rig. Throws InputError where it is neither, or as reading the file does.
+/// The tables of a kind of model ("full_vehicle", "quarter_car", ...) or of a vehicle or rig file.
+/// Throws InputError for any other name, and as the reader of the file.
 ModelTables make_model_tables(const std::string& name_or_file);
 
-/// docs/parameters.md, docs/channels.md and docs/effects.md, of every kind of model.
+/// The text of docs/parameters.md, docs/channels.md and docs/effects.md, for every kind of model.
 std::string write_parameters_document();
 std::string write_channels_document();
 std::string write_effects_document();

@@ -1,4 +1,4 @@
-// The files that a vehicle, rig or maneuver file names in turn: a tire, a road profile, an input.
+// The files that a vehicle, rig or maneuver file refers to: a tire, a road profile, an input.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@ namespace strut {
 
 struct NamedFile {
   std::string key;             // dotted, "tire.file"
-  std::filesystem::path path;  // where it is
+  std::filesystem::path path;  // relative to the working directory, or absolute
 };
 
-/// Every key `file` in a table of it. Throws InputError where `file` is missing or not TOML.
+/// Lists every key `file` in its tables. Throws InputError where `file` is missing or not TOML.
 std::vector<NamedFile> list_named_files(const std::filesystem::path& file);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "model_files/parameter.h"
 
+#include <fmt/format.h>
+
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
@@ -13,16 +15,17 @@ void refuse_parameter(const std::string& name, const std::vector<const Parameter
     if (!parameter->is_effect) plain.push_back(parameter->name);
   }
   const std::string suggestion = suggest_name(name, names);
-  throw InputError("unknown parameter '" + name + "'" +
-                   (suggestion.empty() ? "; known: " + join_names(plain) +
-                                             ", and those of effects, docs/effects.md"
-                                       : suggestion));
+  if (!suggestion.empty())
+    throw InputError(fmt::format("unknown parameter '{}'{}", name, suggestion));
+  throw InputError(
+      fmt::format("unknown parameter '{}'; known: {}, and those of effects, docs/effects.md", name,
+                  join_names(plain)));
 }
 
 void check_value(const Parameter& parameter, double value) {
   if (parameter.allowed.contains(value)) return;
-  throw InputError(parameter.name + " = " + format_number(value) + ": " +
-                   parameter.allowed.describe());
+  throw InputError(fmt::format("{} = {}: {}", parameter.name, format_number(value),
+                               parameter.allowed.describe()));
 }
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// Parameters by their names: what is refused, and how that is said.
+// Access to parameters by name, with errors for unknown names and invalid values.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace strut {
 
-/// Throws InputError for a name that is none of `known`, with the nearest one; where none is near
-/// with all that are not of effects.
+/// Throws InputError for an unknown name, with the nearest known one; where none is near, with all
+/// parameters except those of effects.
 [[noreturn]] void refuse_parameter(const std::string& name,
                                    const std::vector<const Parameter*>& known);
 
-/// Throws InputError with name, value and allowed range where the value is outside of it.
+/// Throws InputError with name, value and allowed range where the value is out of range.
 void check_value(const Parameter& parameter, double value);
 
-/// The parameter of a table by its name. Throws as refuse_parameter.
+/// The parameter of this name in a table. Throws as refuse_parameter.
 template <class Listed>
 const Listed& find_listed(const std::vector<Listed>& table, const std::string& name) {
   std::vector<const Parameter*> known;

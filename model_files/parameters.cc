@@ -1,5 +1,7 @@
 #include "model_files/parameters.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -26,7 +28,7 @@ constexpr std::array<const char*, kCorners> kCornerWords = {
 
 using Parameters = std::vector<ParameterInfo>;
 
-/// A parameter that is one number of the case; `field` is a function Case& -> double&.
+/// Adds a parameter that is one number of the case; `field` is a function Case& -> double&.
 template <class Field>
 void add_number(Parameters& list, const std::string& name, double default_value,
                 const Range& allowed, const std::string& description, const std::string& source,
@@ -37,7 +39,7 @@ void add_number(Parameters& list, const std::string& name, double default_value,
                   [field](Case& c, double value) { field(c) = value; }});
 }
 
-/// One number of an axle's suspension, for both axles.
+/// Adds a number of the suspension for each axle.
 template <class Field>
 void add_per_axle(Parameters& list, const std::string& name, std::array<double, kAxles> defaults,
                   const Range& allowed, const std::string& description, const std::string& source,
@@ -93,9 +95,9 @@ void add_sensor_and_steering(Parameters& list) {
       list, "rack_position", 0.0, between(-0.05, 0.05, "m"),
       "steering rack to the left, fixed during a run", kStrutChoice,
       [](auto& c) -> auto& { return c.vehicle.rack_position; });
-  // The rear wheels take the rest of the torque.
+  // The rear wheels get the remaining torque.
   list.push_back({{"front_drive_share", "1", 1.0, between(0.0, 1.0),
-                   "share of the drive torque on the front wheels", kPaperText},
+                   "fraction of the drive torque on the front wheels", kPaperText},
                   [](const Case& c) { return c.vehicle.suspension[kFront].drive_share; },
                   [](Case& c, double value) {
                     c.vehicle.suspension[kFront].drive_share = value;
@@ -120,7 +122,7 @@ void add_axles(Parameters& list) {
       [](auto& s) -> auto& { return s.wheel_transverse_inertia; });
   add_per_axle(
       list, "upright_mass", {18.0, 16.0}, between(0.5, 500.0, "kg"),
-      "mass of an upright with hub and brake; its inertia stays", kVehicleFile,
+      "mass of an upright with hub and brake; its inertia is unchanged", kVehicleFile,
       [](auto& s) -> auto& { return s.upright.mass; });
   const Range angle = between(-0.1, 0.1, "rad");
   add_per_axle(
@@ -131,7 +133,7 @@ void add_axles(Parameters& list) {
       kVehicleFile, [](auto& s) -> auto& { return s.static_camber; });
 }
 
-/// A number of the springs or dampers: for both corners of each axle, then for each corner.
+/// Adds a number of the springs or dampers for both corners of each axle, then for each corner.
 void add_strut(Parameters& list, const std::string& name, std::array<double, kAxles> defaults,
                const Range& allowed, const std::string& description, double StrutSpec::*field) {
   for (std::size_t axle = 0; axle < kAxles; ++axle) {
@@ -163,7 +165,7 @@ void add_struts(Parameters& list) {
 }
 
 void add_tire(Parameters& list) {
-  // The free radius stands in the contact and among the coefficients of the in-plane forces.
+  // Both the contact and the coefficients of the in-plane forces have the free radius.
   list.push_back(
       {{"tire_radius", "m", 0.4673, between(0.1, 2.0, "m"), "free radius of a tire", kTable1},
        [](const Case& c) { return c.vehicle.tire.unloaded_radius; },
@@ -183,7 +185,7 @@ void add_tire(Parameters& list) {
       [](auto& c) -> auto& { return c.vehicle.tire.footprint; });
 }
 
-/// Height, length and ramp belong to the bump's formula; a table has none.
+/// Adds a parameter of the bump's formula, which cannot be set for a table or without a bump.
 template <class Field>
 void add_bump(Parameters& list, const std::string& name, double default_value, const Range& allowed,
               const std::string& description, Field field) {
@@ -191,8 +193,8 @@ void add_bump(Parameters& list, const std::string& name, double default_value, c
   list.back().set = [field, name](Case& c, double value) {
     const RoadSpec& road = c.maneuver.road;
     if (!road.has_formula()) {
-      throw InputError(name + ": cannot be set, the maneuver's bump is " +
-                       (road.shape == BumpShape::kNone ? "\"none\"" : "a table"));
+      throw InputError(fmt::format("{}: cannot be set, the maneuver's bump is {}", name,
+                                   road.shape == BumpShape::kNone ? "\"none\"" : "a table"));
     }
     field(c) = value;
   };
@@ -207,7 +209,7 @@ void add_maneuver(Parameters& list) {
       [](auto& c) -> auto& { return c.maneuver.duration; });
   add_number(
       list, "drive_torque", 500.0, between(-20000.0, 20000.0, "N m"),
-      "drive torque in all, reacted by the chassis", kPaperText,
+      "total drive torque, reacted by the chassis", kPaperText,
       [](auto& c) -> auto& { return c.maneuver.drive_torque; });
   add_number(
       list, "bump_distance", 10.0, between(-1000.0, 10000.0, "m"),
@@ -249,9 +251,9 @@ Parameters make_parameters() {
   add_axles(list);
   add_struts(list);
   add_tire(list);
-  const std::size_t vehicle = list.size();
+  const std::size_t first_of_maneuver = list.size();
   add_maneuver(list);
-  for (std::size_t i = vehicle; i < list.size(); ++i) list[i].is_maneuver = true;
+  for (std::size_t i = first_of_maneuver; i < list.size(); ++i) list[i].is_maneuver = true;
   for (const EffectInfo& effect : list_effects()) {
     for (const std::string& place : list_effect_places(effect, get_car_info())) {
       add_effect(list, effect, place);
@@ -290,11 +292,12 @@ void set_parameter(Case& c, const std::string& name, double value) {
 std::pair<std::string, double> parse_setting(const std::string& setting) {
   const auto equals = setting.find('=');
   if (equals == std::string::npos) {
-    throw InputError("'" + setting + "': must be name=value, for example front_stiffness=38000");
+    throw InputError(
+        fmt::format("'{}': must be name=value, for example front_stiffness=38000", setting));
   }
   const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
   if (const auto value = parse_number<double>(text)) return {name, *value};
-  throw InputError(name + " = '" + text + "': must be a number");
+  throw InputError(fmt::format("{} = '{}': must be a number", name, text));
 }
 
 void apply_setting(Case& c, const std::string& setting) {

@@ -16,13 +16,13 @@
 
 namespace strut {
 
-/// Defaults: of examples/vehicles/paper_sedan.toml and examples/maneuvers/bump_20mps.toml.
+/// Defaults are those of examples/vehicles/paper_sedan.toml and examples/maneuvers/bump_20mps.toml.
 using ParameterInfo = ParameterOf<Case>;
 
 /// All parameters in a fixed order: whole car, axles, corners, tire, maneuver, effects.
 const std::vector<ParameterInfo>& list_parameters();
 
-/// Every parameter that is not of an effect, and those of effects that are not at their default.
+/// All parameters except those of effects that have their default.
 std::vector<const ParameterInfo*> list_parameters_in_use(const Case& c);
 
 /// Throws InputError with the nearest known name.
@@ -33,10 +33,10 @@ double get_parameter(const Case& c, const std::string& name);
 /// Throws InputError with name, value and allowed range.
 void set_parameter(Case& c, const std::string& name, double value);
 
-/// Name and value of "name=value". Throws InputError where the text is not that.
+/// Name and value of "name=value". Throws InputError where the text has another form.
 std::pair<std::string, double> parse_setting(const std::string& setting);
 
-/// Applies "name=value". Throws InputError where the text is not that.
+/// Applies "name=value". Throws InputError as parse_setting and set_parameter.
 void apply_setting(Case& c, const std::string& setting);
 
 }  // namespace strut

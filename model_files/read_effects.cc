@@ -1,9 +1,10 @@
 #include "model_files/read_effects.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/text/format_number.h"
-#include "base/text/nearest_name.h"
 #include "model_files/drop_tables.h"
 
 namespace strut {
@@ -20,7 +21,7 @@ std::vector<std::string> list_effect_names(const ModelInfo& model) {
 const EffectInfo& read_name(const Table& table, const ModelInfo& model) {
   const EffectInfo* effect = find_effect(table.text("name"));
   if (effect != nullptr && list_effect_places(*effect, model).empty()) {
-    throw table.error("name", "a " + model.name + " does not have this effect");
+    throw table.error("name", fmt::format("a {} does not have this effect", model.name));
   }
   if (effect != nullptr) return *effect;
   const std::vector<std::string> names = list_effect_names(model);
@@ -43,11 +44,11 @@ EffectSetting read_effect(const Table& table, const ModelInfo& model) {
 }
 
 std::string write_effect(const EffectSetting& setting, const ModelInfo& model) {
-  std::string text = "[[effect]]\nname = \"" + setting.effect + "\"\n";
-  if (!setting.place.empty()) text += "place = \"" + setting.place + "\"\n";
+  std::string text = fmt::format("[[effect]]\nname = \"{}\"\n", setting.effect);
+  if (!setting.place.empty()) text += fmt::format("place = \"{}\"\n", setting.place);
   const auto parameters = list_effect_parameters(*find_effect(setting.effect), model);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    text += parameters[i]->name + " = " + format_number(setting.values[i]) + "\n";
+    text += fmt::format("{} = {}\n", parameters[i]->name, format_number(setting.values[i]));
   }
   return text;
 }
@@ -83,9 +84,8 @@ EffectSettings read_effects(const Table& root, const ModelInfo& model) {
       return s.effect == last.effect && s.place == last.place;
     };
     if (std::count_if(settings.begin(), settings.end(), same) > 1) {
-      throw table.error("name", "is there twice" +
-                                    (last.place.empty() ? "" : " at \"" + last.place + "\"") +
-                                    "; allowed: once");
+      const std::string where = last.place.empty() ? "" : fmt::format(" at \"{}\"", last.place);
+      throw table.error("name", fmt::format("given twice{}; allowed: once", where));
     }
   }
   return settings;

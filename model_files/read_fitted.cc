@@ -17,7 +17,7 @@ void read_fitted(const Table& root, VehicleSpec& vehicle) {
     const EffectSettings effects = c.vehicle.effects;
     set_parameter(c, name, value);
     if (c.maneuver == before && c.vehicle.effects == effects) continue;
-    throw table.error(name, "is no parameter of the car itself");
+    throw table.error(name, "is not a parameter of the car itself");
   }
   vehicle = c.vehicle;
 }
@@ -27,7 +27,7 @@ void read_fitted(const Table& root, RigSpec& spec) {
   const Table table = root.table("fitted");
   for (const std::string& name : table.keys()) {
     const RigParameter& info = find_rig_parameter(spec.kind, name);
-    if (info.is_effect) throw table.error(name, "is no parameter of the rig itself");
+    if (info.is_effect) throw table.error(name, "is not a parameter of the rig itself");
     set_rig_parameter(spec, name, table.number(name, info.allowed));
   }
 }

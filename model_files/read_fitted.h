@@ -1,6 +1,6 @@
-// Parameters of a vehicle or rig file that a fit has found: its table [fitted].
+// Fitted parameters of a vehicle or rig file: its table [fitted].
 //
-//   [fitted]                      # by the names of docs/parameters.md; replace what stands above
+//   [fitted]                      # by the names of docs/parameters.md; replace the values above
 //   front_stiffness = 22313.4
 #pragma once
 
@@ -18,11 +18,11 @@ namespace strut {
 using FittedValues = std::vector<std::pair<std::string, double>>;
 
 /// Sets the parameters of the table [fitted], if there is one. Throws InputError with file, line,
-/// name, value and what is allowed; parameters of a maneuver or of effects are not a model's.
+/// name, value and allowed values, also for parameters of the maneuver and of effects.
 void read_fitted(const Table& root, VehicleSpec& vehicle);
 void read_fitted(const Table& root, RigSpec& spec);
 
-/// `text`, that of a vehicle or rig file, with its table [fitted] replaced; all else as it stands.
+/// Replaces the table [fitted] in the text of a vehicle or rig file; the other text is unchanged.
 std::string replace_fitted(const std::string& text, const FittedValues& values);
 
 }  // namespace strut

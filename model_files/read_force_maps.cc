@@ -1,5 +1,7 @@
 #include "model_files/read_force_maps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/text/format_number.h"
@@ -11,7 +13,7 @@ namespace {
 
 const Range kDeflection = between(-10.0, 10.0, "m");
 const Range kVelocity = between(-100.0, 100.0, "m/s");
-const Range kForce = between(-kLargestMapForce, kLargestMapForce, "N");
+const Range kForce = between(-kMaxMapForce, kMaxMapForce, "N");
 
 void read_range(const Table& table, const std::string& key, const Range& allowed, double& low,
                 double& high) {
@@ -23,11 +25,9 @@ void read_range(const Table& table, const std::string& key, const Range& allowed
 }
 
 int read_count(const Table& table, std::size_t count, const std::string& what) {
-  const auto n = static_cast<int>(std::min<std::size_t>(count, kMostSplines + 1));
-  if (n == 1 || (n >= kFewestSplines && n <= kMostSplines)) return n;
-  throw table.error("force", "has " + std::to_string(count) + " " + what + "; allowed: 1 or " +
-                                 std::to_string(kFewestSplines) + " to " +
-                                 std::to_string(kMostSplines));
+  if (is_spline_count(count)) return static_cast<int>(count);
+  throw table.error("force", fmt::format("has {} {}; allowed: 1 or {} to {}", count, what,
+                                         kMinSplines, kMaxSplines));
 }
 
 ForceMap read_force_map(const Table& table, const ModelInfo& model) {
@@ -47,12 +47,12 @@ ForceMap read_force_map(const Table& table, const ModelInfo& model) {
 }
 
 std::string write_range(const std::string& key, double low, double high) {
-  return key + " = [" + format_number(low) + ", " + format_number(high) + "]\n";
+  return fmt::format("{} = [{}, {}]\n", key, format_number(low), format_number(high));
 }
 
 std::string write_force_map(const ForceMap& map) {
   std::string text = "[[force_map]]\n";
-  if (!map.place.empty()) text += "place = \"" + map.place + "\"\n";
+  if (!map.place.empty()) text += fmt::format("place = \"{}\"\n", map.place);
   text += write_range("deflection", map.deflection_low, map.deflection_high);
   text += write_range("velocity", map.velocity_low, map.velocity_high);
   text += "force = [\n";
@@ -74,7 +74,7 @@ ForceMaps read_force_maps(const Table& root, const ModelInfo& model) {
     maps.push_back(read_force_map(table, model));
     const auto same = [&](const ForceMap& map) { return map.place == maps.back().place; };
     if (std::count_if(maps.begin(), maps.end(), same) == 1) continue;
-    const std::string twice = "is there twice; allowed: once";
+    const std::string twice = "given twice; allowed: once";
     throw maps.back().place.empty() ? table.error(twice) : table.error("place", twice);
   }
   return maps;

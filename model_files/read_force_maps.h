@@ -18,12 +18,12 @@
 namespace strut {
 
 /// Maps of the tables [[force_map]] of a file of this kind, in the order of the file. Throws
-/// InputError with file, line, key, value and what is allowed.
+/// InputError with file, line, key, value and allowed values.
 ForceMaps read_force_maps(const Table& root, const ModelInfo& model);
 
-/// `text`, that of a vehicle or rig file, with its tables [[force_map]] replaced by these; all else
-/// as it stands. Reads back as exactly these maps. Throws InputError where the text writes its maps
-/// in another form, ModelError for maps that this kind of model may not have.
+/// Replaces the tables [[force_map]] in the text of a vehicle or rig file; the other text is
+/// unchanged. Reads back as exactly these maps. Throws InputError where the text writes its maps in
+/// another form, ModelError for maps that are invalid for this kind of model.
 std::string replace_force_maps(const std::string& text, const ForceMaps& maps,
                                const ModelInfo& model);
 

@@ -1,5 +1,7 @@
 #include "model_files/read_maneuver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error/input_error.h"
@@ -7,16 +9,12 @@
 #include "io/format/csv.h"
 #include "io/format/toml_document.h"
 #include "model/error/model_error.h"
+#include "model_files/choices.h"
 #include "model_files/parameters.h"
 
 namespace strut {
 
 namespace {
-
-const std::vector<std::string> kShapes = {"none",   "arc",       "half_sine",
-                                          "cosine", "trapezoid", "table"};  // as in BumpShape
-const std::vector<std::string> kSides = {"both", "left", "right"};          // as in BumpSide
-const std::vector<std::string> kTrims = {"steady", "static"};               // as in TrimKind
 
 double read_parameter(const Table& table, const std::string& key, const std::string& parameter) {
   return table.number(key, find_parameter(parameter).allowed);
@@ -28,13 +26,13 @@ void read_profile(const Table& bump, RoadSpec& road) {
   road.table_z = csv.column("height").values;
   for (std::size_t i = 1; i < road.table_x.size(); ++i) {
     if (road.table_x[i] > road.table_x[i - 1]) continue;
-    throw InputError(csv.path.string() + ":" + std::to_string(csv.lines[i]) +
-                     ": position = " + format_number(road.table_x[i]) + ": must be > " +
-                     format_number(road.table_x[i - 1]) + " m, the position before");
+    throw InputError(fmt::format("{}:{}: position = {}: must be > {} m, the previous position",
+                                 csv.path.string(), csv.lines[i], format_number(road.table_x[i]),
+                                 format_number(road.table_x[i - 1])));
   }
   if (road.table_x.size() < 2) {
-    throw InputError(csv.path.string() + ": " + std::to_string(road.table_x.size()) +
-                     " rows: must be at least 3");
+    throw InputError(
+        fmt::format("{}: {} rows: must be at least 3", csv.path.string(), road.table_x.size()));
   }
   road.height = *std::max_element(road.table_z.begin(), road.table_z.end());
   road.length = road.table_x.back() - road.table_x.front();
@@ -57,10 +55,10 @@ void read_shape(const Table& bump, RoadSpec& road) {
 
 void read_bump(const Table& bump, ManeuverSpec& maneuver) {
   RoadSpec& road = maneuver.road;
-  road.shape = static_cast<BumpShape>(bump.choice("shape", kShapes));
+  road.shape = static_cast<BumpShape>(bump.choice("shape", list_names(kBumpShapes)));
   read_shape(bump, road);
   if (road.shape == BumpShape::kNone) return;
-  road.side = static_cast<BumpSide>(bump.choice_or("side", 0, kSides));
+  road.side = static_cast<BumpSide>(bump.choice_or("side", 0, list_names(kBumpSides)));
   maneuver.bump_distance = read_parameter(bump, "distance", "bump_distance");
   try {
     validate(road);
@@ -79,7 +77,7 @@ ManeuverSpec read_maneuver(const std::filesystem::path& path) {
   maneuver.duration = read_parameter(root, "duration", "duration");
   maneuver.drive_torque = read_parameter(root, "drive_torque", "drive_torque");
   maneuver.gravity = root.number_or("gravity", maneuver.gravity, find_parameter("gravity").allowed);
-  maneuver.trim = static_cast<TrimKind>(root.choice_or("trim", 0, kTrims));
+  maneuver.trim = static_cast<TrimKind>(root.choice_or("trim", 0, list_names(kTrims)));
   read_bump(root.table("bump"), maneuver);
   document.check_all_read();
   return maneuver;

@@ -7,7 +7,7 @@
 namespace strut {
 namespace {
 
-/// Null where it is no rig's.
+/// The rig of this kind; null for the car.
 const RigInfo* find_rig(const ModelInfo& model) {
   for (const RigInfo& rig : list_rigs()) {
     if (&rig == &model) return &rig;
@@ -31,7 +31,8 @@ struct Get {
   }
 };
 
-/// Setting its own value refuses what a bump has no number for; every number of a rig can be set.
+/// Sets the current value again, which throws for parameters that the maneuver's bump does not
+/// have; every parameter of a rig can be set.
 struct RequireSettable {
   const std::string& name;
   void operator()(Case c) const { set_parameter(c, name, get_parameter(c, name)); }

@@ -1,4 +1,4 @@
-// A model of any kind: from its files, and its parameters by name.
+// Models of any kind: reading from files, parameters by name.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@
 
 namespace strut {
 
-/// The kind that a file's `type` names; a full vehicle where it names none, which read_vehicle then
-/// refuses. Throws InputError where the file cannot be parsed.
+/// The kind that a file's `type` names; the full vehicle for an unknown or missing type, which
+/// read_vehicle then refuses. Throws InputError where the file cannot be parsed.
 const ModelInfo& read_model_info(const std::filesystem::path& path);
 
-/// Reads the file of a rig, whose inputs are still to be given, or of a vehicle; its maneuver is
-/// ManeuverSpec's defaults. Throws as read_rig and read_vehicle.
+/// Reads the file of a rig, without inputs, or of a vehicle, with the default ManeuverSpec. Throws
+/// as read_rig and read_vehicle.
 Model read_model(const std::filesystem::path& path);
 
 /// Every parameter of a kind of model; those of effects last.

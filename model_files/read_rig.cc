@@ -1,5 +1,7 @@
 #include "model_files/read_rig.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error/input_error.h"
@@ -9,6 +11,7 @@
 #include "io/format/toml_document.h"
 #include "model/error/model_error.h"
 #include "model/rig/rig_system.h"
+#include "model_files/choices.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
 #include "model_files/read_force_maps.h"
@@ -17,15 +20,19 @@ namespace strut {
 
 namespace {
 
-const std::vector<std::string> kContacts = {"bilateral", "unilateral"};
-const std::vector<std::string> kInterpolations = {"spline", "linear"};  // Interpolation
-const std::vector<std::string> kShapes = {"file", "sine", "chirp", "step", "bump"};
+constexpr std::array<Named<bool>, 2> kTireContacts = {  // RigSpec::unilateral_tire
+    {{false, "bilateral"}, {true, "unilateral"}}};
+static_assert(names_all(kTireContacts, true));
+
 enum Shape : int { kFile, kSine, kChirp, kStep, kBump };
+constexpr std::array<Named<Shape>, 5> kShapes = {
+    {{kFile, "file"}, {kSine, "sine"}, {kChirp, "chirp"}, {kStep, "step"}, {kBump, "bump"}}};
+static_assert(names_all(kShapes, kBump));
 
 const Range kDuration = between(1e-3, 1e5, "s");
-/// Keeps a chirp's table below a gigabyte for any duration.
 const Range kFrequency{.low = 0.0, .high = 1000.0, .open_low = true, .unit = "Hz"};
-constexpr double kMostPeriods = 1e5;
+/// Limits the table of a chirp to less than a gigabyte.
+constexpr double kMaxPeriods = 1e5;
 const Range kInitialPosition = between(-10.0, 10.0, "m");
 const Range kInitialVelocity = between(-100.0, 100.0, "m/s");
 
@@ -80,14 +87,14 @@ void read_initial(const Table& root, RigSpec& spec) {
   }
 }
 
-/// One column of a CSV file against its time column.
+/// Reads one column of a CSV file over its time column.
 InputSignal read_recording(const Table& table, const std::string& channel) {
   const CsvTable csv = read_csv(table.file("file"));
   const std::vector<double>& times = csv.column(table.text_or("time", "time")).values;
   std::vector<double> values = csv.column(table.text_or("column", channel)).values;
   const double scale = table.number_or("scale", 1.0), offset = table.number_or("offset", 0.0);
   for (double& value : values) value = scale * value + offset;
-  const int interpolation = table.choice_or("interpolation", 0, kInterpolations);
+  const int interpolation = table.choice_or("interpolation", 0, list_names(kInterpolations));
   return make_signal(channel, times, values, static_cast<Interpolation>(interpolation));
 }
 
@@ -98,10 +105,10 @@ InputSignal read_waves(const Table& table, const std::string& channel, Shape sha
   const std::string begin_key = chirp ? "begin_frequency" : "frequency";
   const double begin = table.number(begin_key, kFrequency);
   const double end = chirp ? table.number("end_frequency", kFrequency) : begin;
-  if (duration * std::max(begin, end) > kMostPeriods) {
+  if (duration * std::max(begin, end) > kMaxPeriods) {
     throw table.error(end > begin ? "end_frequency" : begin_key,
-                      "must be at most " + format_number(kMostPeriods / duration) + " Hz over " +
-                          format_number(duration) + " s");
+                      fmt::format("must be at most {} Hz over {} s",
+                                  format_number(kMaxPeriods / duration), format_number(duration)));
   }
   return make_chirp(channel, amplitude, begin, end, duration);
 }
@@ -118,11 +125,11 @@ InputSignal read_shape(const Table& table, const std::string& channel, Shape sha
   return make_bump(channel, height, begin, table.number("width", between(1e-6, 1e3, "s")));
 }
 
-/// `duration`: 0 where the file gives none, which only recordings allow.
+/// `duration`: 0 where the file does not give it, which is allowed for recordings only.
 InputSignal read_input(const Table& table, const std::string& channel, double duration) {
-  const auto shape = static_cast<Shape>(table.choice("shape", kShapes));
+  const auto shape = static_cast<Shape>(table.choice("shape", list_names(kShapes)));
   if (shape != kFile && duration == 0.0) {
-    throw table.error("shape", "needs the maneuver's `duration`, which only files may replace");
+    throw table.error("shape", "needs the maneuver's `duration`, which only files determine");
   }
   try {
     return read_shape(table, channel, shape, duration);
@@ -155,7 +162,7 @@ RigSpec read_rig(const std::filesystem::path& path) {
                                     : root.number(f.name, f.allowed);
   }
   if (get_rig_info(spec.kind).has(kHasTire)) {
-    spec.unilateral_tire = root.choice("tire_contact", kContacts) == 1;
+    spec.unilateral_tire = root.choice("tire_contact", list_names(kTireContacts)) == 1;
   }
   read_initial(root, spec);
   read_fitted(root, spec);
@@ -167,9 +174,9 @@ RigSpec read_rig(const std::filesystem::path& path) {
 
 const std::vector<RigParameter>& list_rig_parameters(RigKind kind) {
   static const std::vector<std::vector<RigParameter>> lists = [] {
-    std::vector<std::vector<RigParameter>> of_rigs;
-    for (const RigInfo& rig : list_rigs()) of_rigs.push_back(make_parameters(rig.kind));
-    return of_rigs;
+    std::vector<std::vector<RigParameter>> by_kind;
+    for (const RigInfo& rig : list_rigs()) by_kind.push_back(make_parameters(rig.kind));
+    return by_kind;
   }();
   return lists[static_cast<std::size_t>(kind)];
 }
@@ -203,13 +210,13 @@ RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {
   document.check_all_read();
   if (maneuver.duration <= 0.0) maneuver.duration = root.number("duration", kDuration);
   if (!kDuration.contains(maneuver.duration)) {
-    throw root.error("a recording of " + format_number(maneuver.duration) +
-                     " s: " + kDuration.describe());
+    throw root.error(fmt::format("a recording of {} s: {}", format_number(maneuver.duration),
+                                 kDuration.describe()));
   }
   try {
     assign_rig_inputs(kind, maneuver.inputs);
   } catch (const ModelError& e) {
-    throw InputError(path.string() + ": " + e.what());
+    throw InputError(fmt::format("{}: {}", path.string(), e.what()));
   }
   return maneuver;
 }

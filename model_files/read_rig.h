@@ -1,11 +1,11 @@
-// A rig and what drives it, from their TOML files. How a program runs one:
+// A rig and its maneuver from their TOML files. Example of a program that simulates one:
 //
 //   if (const auto kind = find_rig_kind(vehicle_path)) {
 //     const RigSpec rig = read_rig(vehicle_path);
 //     const RigManeuver maneuver = read_rig_maneuver(maneuver_path, *kind);
 //     SamplePlan plan{.duration = maneuver.duration, .interval = 1e-3};
 //     const LaneResults run = simulate_rig(rig, maneuver.inputs, StepOptions{}, plan);
-//     // run.history[sample * channels + i]: get_rig_info(*kind).channels[i]
+//     // run.get_sample(sample, i): get_rig_info(*kind).channels[i]
 //   }
 #pragma once
 
@@ -20,20 +20,19 @@
 
 namespace strut {
 
-/// The rig that a vehicle file's `type` names; nothing where it names no rig, or nothing at all.
+/// The rig that a vehicle file's `type` names; nothing where the type is not a rig or missing.
 /// Throws InputError where the file cannot be parsed.
 std::optional<RigKind> find_rig_kind(const std::filesystem::path& path);
 
 /// Reads a rig's file: `type`, `name`, the parameters of RigInfo::fields, for a quarter car
-/// `tire_contact` ("bilateral" or "unilateral"), and the table [initial] with offsets of the start
-/// from rest (`sprung_position`, ... or `position`, `velocity`), effects (read_effects.h) and a
-/// force map (read_force_maps.h). Throws InputError with file, line, key, value and what is
-/// allowed.
+/// `tire_contact` ("bilateral" or "unilateral"), the table [initial] with the initial offsets from
+/// rest (`sprung_position`, ... or `position`, `velocity`), effects (read_effects.h) and a force
+/// map (read_force_maps.h). Throws InputError with file, line, key, value and allowed values.
 RigSpec read_rig(const std::filesystem::path& path);
 
 using RigParameter = ParameterOf<RigSpec>;
 
-/// Those of RigInfo::fields, then those of the effects that this kind of rig may have.
+/// The parameters of RigInfo::fields, then those of the effects of this kind of rig.
 const std::vector<RigParameter>& list_rig_parameters(RigKind kind);
 
 /// Throws InputError with the nearest known name.
@@ -42,8 +41,7 @@ const RigParameter& find_rig_parameter(RigKind kind, const std::string& name);
 /// Throws InputError with name, value and allowed range, or with the nearest known name.
 void set_rig_parameter(RigSpec& spec, const std::string& name, double value);
 
-/// Reads what drives a rig: `duration` [s] and, for each of the rig's inputs that is driven, a
-/// table
+/// Reads the maneuver of a rig: `duration` [s] and, for each input that drives it, a table
 ///
 ///   [input.road_position]
 ///   shape = "file"              # columns of a CSV file, interpolated between its own times
@@ -55,8 +53,8 @@ void set_rig_parameter(RigSpec& spec, const std::string& name, double value);
 ///   interpolation = "spline"    # or "linear"
 ///
 /// or shape = "sine" (amplitude, frequency), "chirp" (amplitude, begin_frequency, end_frequency),
-/// "step" (height, begin, rise), "bump" (height, begin, width). Without `duration` the longest of
-/// the files sets it. Throws InputError.
+/// "step" (height, begin, rise), "bump" (height, begin, width). Without `duration` the longest
+/// recording determines it. Throws InputError.
 RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind);
 
 }  // namespace strut

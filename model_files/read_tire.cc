@@ -1,5 +1,7 @@
 #include "model_files/read_tire.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -34,7 +36,7 @@ const std::vector<Coefficient>& get_coefficients() {
   return kCoefficients;
 }
 
-/// Keys without which there is no tire, with the section they belong to.
+/// Required keys with their sections.
 constexpr std::array<std::array<const char*, 2>, 11> kRequired = {{
     {"MODEL", "PROPERTY_FILE_FORMAT"},
     {"DIMENSION", "UNLOADED_RADIUS"},
@@ -49,7 +51,7 @@ constexpr std::array<std::array<const char*, 2>, 11> kRequired = {{
     {"LATERAL_COEFFICIENTS", "PKY2"},
 }};
 
-/// The units a file must state; the first name is the one in the message.
+/// The units that a file must state; messages show the first name.
 const std::vector<std::pair<std::string, std::vector<std::string>>> kUnits = {
     {"LENGTH", {"meter", "m"}},
     {"FORCE", {"newton", "n"}},
@@ -58,7 +60,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kUnits = {
     {"TIME", {"second", "sec", "s"}},
 };
 
-/// Parts of PAC2002 that are not modeled: accepted where they change nothing.
+/// Parts of PAC2002 that are not modeled: accepted with their neutral values only.
 const std::set<std::string> kZeroOnly = {"PPX1",
                                          "PPX2",
                                          "PPX3",
@@ -95,78 +97,79 @@ const std::set<std::string> kZeroOnly = {"PPX1",
                                          "DYNAMIC_DAMPING"};
 const std::set<std::string> kOneOnly = {"LIP", "LCZ", "LKG"};
 
-/// Keys of no consequence here.
-const std::set<std::string> kReadOver = {"FILE_TYPE",
-                                         "FILE_VERSION",
-                                         "FILE_FORMAT",
-                                         "COMMENT",
-                                         "PRESSURE",
-                                         "MESSAGES",
-                                         "VXLOW",
-                                         "BELT_DYNAMICS",
-                                         "CONTACT_MODEL",
-                                         "FITTYP",
-                                         "FUNCTION_NAME",
-                                         "N_TIRE_STATES",
-                                         "WIDTH",
-                                         "ASPECT_RATIO",
-                                         "RIM_RADIUS",
-                                         "RIM_WIDTH",
-                                         "BOTTOMING_RADIUS",
-                                         "IP",
-                                         "IP_NOM",
-                                         "KPUMIN",
-                                         "KPUMAX",
-                                         "ALPMIN",
-                                         "ALPMAX",
-                                         "CAMMIN",
-                                         "CAMMAX",
-                                         "LGYR",
-                                         "QTZ1",
-                                         "MBELT",
-                                         "PTX4",
-                                         "PTY3",
-                                         "PECP1",
-                                         "PECP2",
-                                         "PDXP1",
-                                         "PDXP2",
-                                         "PDXP3",
-                                         "PDYP1",
-                                         "PDYP2",
-                                         "PDYP3",
-                                         "PDYP4",
-                                         "PKYP1",
-                                         "PHYP1",
-                                         "PHYP2",
-                                         "PHYP3",
-                                         "PHYP4",
-                                         "QDTP1",
-                                         "QBRP1",
-                                         "QCRP1",
-                                         "QCRP2",
-                                         "QDRP1",
-                                         "QDRP2",
-                                         "PA1",
-                                         "PA2",
-                                         "MC",
-                                         "IC",
-                                         "KX",
-                                         "KY",
-                                         "KP",
-                                         "CX",
-                                         "CY",
-                                         "CP",
-                                         "EP",
-                                         "EP12",
-                                         "BF2",
-                                         "BP1",
-                                         "BP2"};
+/// Keys without influence on the model.
+const std::set<std::string> kIgnored = {"FILE_TYPE",
+                                        "FILE_VERSION",
+                                        "FILE_FORMAT",
+                                        "COMMENT",
+                                        "PRESSURE",
+                                        "MESSAGES",
+                                        "VXLOW",
+                                        "BELT_DYNAMICS",
+                                        "CONTACT_MODEL",
+                                        "FITTYP",
+                                        "FUNCTION_NAME",
+                                        "N_TIRE_STATES",
+                                        "WIDTH",
+                                        "ASPECT_RATIO",
+                                        "RIM_RADIUS",
+                                        "RIM_WIDTH",
+                                        "BOTTOMING_RADIUS",
+                                        "IP",
+                                        "IP_NOM",
+                                        "KPUMIN",
+                                        "KPUMAX",
+                                        "ALPMIN",
+                                        "ALPMAX",
+                                        "CAMMIN",
+                                        "CAMMAX",
+                                        "LGYR",
+                                        "QTZ1",
+                                        "MBELT",
+                                        "PTX4",
+                                        "PTY3",
+                                        "PECP1",
+                                        "PECP2",
+                                        "PDXP1",
+                                        "PDXP2",
+                                        "PDXP3",
+                                        "PDYP1",
+                                        "PDYP2",
+                                        "PDYP3",
+                                        "PDYP4",
+                                        "PKYP1",
+                                        "PHYP1",
+                                        "PHYP2",
+                                        "PHYP3",
+                                        "PHYP4",
+                                        "QDTP1",
+                                        "QBRP1",
+                                        "QCRP1",
+                                        "QCRP2",
+                                        "QDRP1",
+                                        "QDRP2",
+                                        "PA1",
+                                        "PA2",
+                                        "MC",
+                                        "IC",
+                                        "KX",
+                                        "KY",
+                                        "KP",
+                                        "CX",
+                                        "CY",
+                                        "CP",
+                                        "EP",
+                                        "EP12",
+                                        "BF2",
+                                        "BP1",
+                                        "BP2"};
 
-/// Keys that this reader looks at by name.
+/// Keys that this reader evaluates by name.
 const std::set<std::string> kHandled = {"PROPERTY_FILE_FORMAT", "USE_MODE", "TYRESIDE",
                                         "VERTICAL_STIFFNESS", "VERTICAL_DAMPING"};
 
-/// sin(C ...) turns back beyond C = 2, and `sin_bounded` ends there.
+/// Shape factors C are at most 2: sin(C ...) falls again beyond, and `sin_bounded` is not valid
+/// there.
 bool is_shape_factor(const std::string& name) {
   static const std::set<std::string> kShapes = {"PCX1", "PCY1", "RCX1", "RCY1", "QCZ1"};
   return kShapes.contains(name);
@@ -203,7 +206,8 @@ const TirEntry& require(const TirFile& file, const std::string& section, const s
                         const std::string& what) {
   const TirEntry* entry = file.find(key);
   if (entry == nullptr) {
-    throw InputError(file.path.string() + ": [" + section + "] " + key + " is missing: " + what);
+    throw InputError(
+        fmt::format("{}: [{}] {} is missing: {}", file.path.string(), section, key, what));
   }
   return *entry;
 }
@@ -223,7 +227,7 @@ void check_format(const TirFile& file) {
 
 void check_units(const TirFile& file) {
   for (const auto& [key, names] : kUnits) {
-    const std::string what = "must be '" + names.front() + "' (SI units only)";
+    const std::string what = fmt::format("must be '{}' (SI units only)", names.front());
     const TirEntry& entry = require(file, "UNITS", key, what);
     const bool is_si = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
       return equals_ignoring_case(entry.text, name);
@@ -235,8 +239,9 @@ void check_units(const TirFile& file) {
 void check_tables(const TirFile& file) {
   for (const TirTable& table : file.tables) {
     if (table.section == "SHAPE") continue;
-    throw InputError(file.path.string() + ":" + std::to_string(table.line) + ": [" + table.section +
-                     "]: not modeled; the vertical force is VERTICAL_STIFFNESS times deflection");
+    throw InputError(fmt::format(
+        "{}:{}: [{}]: not modeled; the vertical force is VERTICAL_STIFFNESS times deflection",
+        file.path.string(), table.line, table.section));
   }
 }
 
@@ -262,23 +267,23 @@ void read_entry(const TirFile& file, const TirEntry& entry, Pac2002<double>& tir
     if (get_number(file, entry) != 0.0) throw tir_error(file, entry, "not modeled; must be 0");
   } else if (kOneOnly.contains(entry.key)) {
     if (get_number(file, entry) != 1.0) throw tir_error(file, entry, "not modeled; must be 1");
-  } else if (!kHandled.contains(entry.key) && !kReadOver.contains(entry.key) &&
+  } else if (!kHandled.contains(entry.key) && !kIgnored.contains(entry.key) &&
              !is_unit(entry.key)) {
     throw unknown_key(file, entry);
   }
 }
 
-/// A key counts once in the whole file, whatever its section.
+/// Throws where a key is given twice in the file, also in different sections.
 void check_once(const TirFile& file) {
   std::map<std::string_view, int> lines;
   for (const TirEntry& entry : file.entries) {
     const auto [first, is_new] = lines.try_emplace(entry.key, entry.line);
-    if (is_new || kReadOver.contains(entry.key)) continue;
-    throw tir_error(file, entry, "already given in line " + std::to_string(first->second));
+    if (is_new || kIgnored.contains(entry.key)) continue;
+    throw tir_error(file, entry, fmt::format("already given in line {}", first->second));
   }
 }
 
-/// Checks that `constant + slope df_z` stays positive at every load the tire is evaluated at.
+/// Throws unless `constant + slope df_z` is positive at every load between FZMIN and FZMAX.
 void check_positive(const TirFile& file, const Pac2002<double>& tire, const std::string& name,
                     double constant, double slope) {
   for (const double load : {tire.FZMIN, tire.FZMAX}) {
@@ -286,8 +291,9 @@ void check_positive(const TirFile& file, const Pac2002<double>& tire, const std:
     if (value > 0.0) continue;
     const std::string key = name + "2";
     throw tir_error(file, require(file, "", key, ""),
-                    name + "1 + " + key + " df_z is " + format_number(value) + " at a load of " +
-                        format_number(load) + " N: must be > 0 between FZMIN and FZMAX");
+                    fmt::format("{}1 + {} df_z is {} at a load of {} N: must be > 0 between FZMIN "
+                                "and FZMAX",
+                                name, key, format_number(value), format_number(load)));
   }
 }
 
@@ -295,7 +301,7 @@ void check_together(const TirFile& file, const Pac2002<double>& tire) {
   if (tire.FZMIN >= tire.FZMAX) {
     const TirEntry* low = file.find("FZMIN");
     throw tir_error(file, low != nullptr ? *low : require(file, "", "FZMAX", ""),
-                    "must be FZMIN < FZMAX = " + format_number(tire.FZMAX) + " N");
+                    fmt::format("must be FZMIN < FZMAX = {} N", format_number(tire.FZMAX)));
   }
   if (tire.PCX1 * tire.LCX > 2.0) {
     throw tir_error(file, require(file, "", "LCX", ""), "PCX1 LCX must lie in (0, 2]");

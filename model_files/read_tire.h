@@ -15,10 +15,10 @@ struct TireData {
 };
 
 /// Reads a PAC2002 property file in SI units. A tire measured on the right (TYRESIDE) is mirrored
-/// to the left; USE_MODE 3, 13, 23 drops combined slip. Keys of parts that are not modeled
-/// (inflation pressure, extended overturning couple, nonlinear vertical stiffness, ...) may only
-/// hold their neutral value; those of relaxation at standstill, turn slip, belt gyroscopics and rim
-/// geometry are read over.
+/// to the left; USE_MODE 3, 13, 23 removes combined slip. Keys of parts that are not modeled
+/// (inflation pressure, extended overturning couple, nonlinear vertical stiffness, ...) must have
+/// their neutral values; those of relaxation at standstill, turn slip, belt gyroscopics and rim
+/// geometry are ignored.
 ///
 /// Throws InputError "file:line: KEY = value: ..." with the allowed range, for an unknown key with
 /// the nearest known one.

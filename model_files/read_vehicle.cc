@@ -1,5 +1,7 @@
 #include "model_files/read_vehicle.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "base/error/input_error.h"
@@ -7,6 +9,7 @@
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
 #include "model/model.h"
+#include "model_files/choices.h"
 #include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
@@ -17,21 +20,19 @@ namespace strut {
 
 namespace {
 
-/// Every `type` a vehicle file may name; a program looks for the rigs first (read_rig.h).
+/// Every valid `type` of a vehicle file; programs look for rigs first (read_rig.h).
 std::vector<std::string> list_types() {
   std::vector<std::string> types;
   for (const ModelInfo* model : list_models()) types.push_back(model->name);
   return types;
 }
-const std::vector<std::string> kSuspensions = {"macpherson", "multilink"};  // SuspensionKind
-const std::vector<std::string> kContacts = {"envelope", "point"};           // ContactKind
 constexpr std::size_t kMultilinkRods = 5;
 
 const Range kPlace = between(-5.0, 5.0, "m");
 const Range kPartMass = between(0.0, 500.0, "kg");
 const Range kPartInertia = between(0.0, 1000.0, "kg m^2");
-/// Two joints closer than this cannot carry a rod or guide a strut [m].
-constexpr double kShortestLink = 0.01;
+/// Minimum distance of the two joints of a rod, arm or strut [m].
+constexpr double kMinLinkLength = 0.01;
 
 double read_parameter(const Table& table, const std::string& key, const std::string& parameter) {
   return table.number(key, find_parameter(parameter).allowed);
@@ -42,8 +43,8 @@ Vec3<double> read_point(const Table& table, const std::string& key) {
   return {p[0], p[1], p[2]};
 }
 
-/// A body has principal moments none of which exceeds the sum of the others: tr(J)/2 I - J, its
-/// second moment of mass, is positive semidefinite.
+/// Whether a rigid body can have the inertia J: no principal moment exceeds the sum of the others,
+/// so the second moment of mass tr(J)/2 I - J is positive semidefinite.
 bool is_inertia_of_body(const Sym3<double>& j) {
   const double trace = j.xx + j.yy + j.zz;
   const double a = 0.5 * trace - j.xx, b = 0.5 * trace - j.yy, c = 0.5 * trace - j.zz;
@@ -55,14 +56,15 @@ bool is_inertia_of_body(const Sym3<double>& j) {
          ac >= -slack * trace && bc >= -slack * trace && det >= -slack * trace * trace;
 }
 
-/// `inertia` holds [xx, yy, zz], `inertia_products` the entries [xy, xz, yz] of the same matrix.
+/// Keys: `inertia` [xx, yy, zz] and `inertia_products` [xy, xz, yz] of the same matrix.
 Sym3<double> read_inertia(const Table& table, const Range& range) {
   const auto d = table.vector("inertia", range);
   const auto p = table.vector_or("inertia_products", {0.0, 0.0, 0.0});
   const Sym3<double> inertia{d[0], d[1], d[2], p[0], p[1], p[2]};
   if (is_inertia_of_body(inertia)) return inertia;
   throw table.error("inertia",
-                    "no body has it: each principal moment must be at most the sum of the others");
+                    "impossible for a body: each principal moment must be at most the sum of the "
+                    "others");
 }
 
 BodySpec read_body(const Table& table) {
@@ -76,8 +78,9 @@ BodySpec read_body(const Table& table) {
 
 void check_apart(const Table& table, const std::string& key, const Vec3<double>& a,
                  const Vec3<double>& b, const std::string& other) {
-  if (norm(a - b) >= kShortestLink) return;
-  throw table.error(key, "must be at least " + format_number(kShortestLink) + " m from " + other);
+  if (norm(a - b) >= kMinLinkLength) return;
+  throw table.error(
+      key, fmt::format("must be at least {} m from {}", format_number(kMinLinkLength), other));
 }
 
 RodSpec read_rod(const Table& table) {
@@ -114,8 +117,8 @@ void read_macpherson(const Table& table, SuspensionSpec& suspension) {
 std::vector<std::string> read_multilink(const Table& table, SuspensionSpec& suspension) {
   const std::vector<Table> rods = table.tables("rod");
   if (rods.size() != kMultilinkRods) {
-    throw table.error(std::to_string(rods.size()) + " rods: a multilink must have " +
-                      std::to_string(kMultilinkRods));
+    throw table.error(
+        fmt::format("{} rods: a multilink must have {}", rods.size(), kMultilinkRods));
   }
   std::vector<std::string> names;
   for (const Table& rod : rods) {
@@ -129,7 +132,7 @@ std::vector<std::string> read_multilink(const Table& table, SuspensionSpec& susp
   return names;
 }
 
-/// `<end>` and `<end>_on`: a point and the part it is fixed to.
+/// Keys: `<end>`, a point, and `<end>_on`, the part to which it is fixed.
 MountSpec read_mount(const Table& table, const std::string& end, const SuspensionSpec& suspension,
                      const std::vector<std::string>& rod_names) {
   std::vector<std::string> parts = {"chassis", "upright"};
@@ -187,12 +190,13 @@ void read_wheel(const Table& table, const std::string& axle, SuspensionSpec& sus
   suspension.static_toe = wheel.number_or("static_toe", 0.0, angle);
   suspension.static_camber = wheel.number_or("static_camber", 0.0, angle);
   if (suspension.wheel_spin_inertia <= 2.0 * suspension.wheel_transverse_inertia) return;
-  throw wheel.error("spin_inertia", "no body has it: must be at most twice transverse_inertia");
+  throw wheel.error("spin_inertia",
+                    "impossible for a body: must be at most twice transverse_inertia");
 }
 
 SuspensionSpec read_suspension(const Table& table, const std::string& axle) {
   SuspensionSpec suspension;
-  suspension.kind = static_cast<SuspensionKind>(table.choice("kind", kSuspensions));
+  suspension.kind = static_cast<SuspensionKind>(table.choice("kind", list_names(kSuspensions)));
   std::vector<std::string> rod_names = {"tie_rod"};
   if (suspension.kind == SuspensionKind::kMacPherson) {
     read_macpherson(table, suspension);
@@ -227,7 +231,7 @@ void read_tire_contact(const Table& table, VehicleSpec& vehicle) {
   tire.stiffness = read_or("stiffness", data.vertical_stiffness, "tire_stiffness");
   tire.damping = read_or("damping", data.vertical_damping, "tire_damping");
   tire.footprint = read_or("footprint", tire.footprint, "footprint");
-  tire.contact = static_cast<ContactKind>(table.choice_or("contact", 0, kContacts));
+  tire.contact = static_cast<ContactKind>(table.choice_or("contact", 0, list_names(kContacts)));
   tire.relaxation = table.boolean_or("relaxation", tire.relaxation);
 }
 
@@ -248,7 +252,7 @@ void read_options(const Table& root, VehicleSpec& vehicle) {
 }  // namespace
 
 const std::vector<std::string>& list_preloads() {
-  static const std::vector<std::string> names = {"free_length", "trimmed"};
+  static const std::vector<std::string> names = list_names(kPreloads);
   return names;
 }
 
@@ -256,7 +260,8 @@ VehicleSpec read_vehicle(const std::filesystem::path& path) {
   const Document document(path);
   const Table root = document.root();
   if (root.choice("type", list_types()) != 0) {
-    throw InputError(path.string() + ": type: a rig, where a car (full_vehicle) is needed");
+    throw InputError(
+        fmt::format("{}: type: a rig; allowed here: {}", path.string(), get_car_info().name));
   }
   VehicleSpec vehicle;
   vehicle.name = root.text_or("name", path.stem().string());

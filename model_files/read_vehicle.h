@@ -11,10 +11,9 @@ namespace strut {
 
 /// Reads a vehicle file of type "full_vehicle" (`examples/vehicles/paper_sedan.toml` shows every
 /// key) with its effects (read_effects.h), its force maps (read_force_maps.h) and the tire file it
-/// names. Throws InputError with file, line, key, value and what is allowed: unknown or missing
-/// keys, wrong types, values out of range, inertias that no body has, hardpoints that coincide.
-/// Whether the loops close and the springs carry the car is the model's question, see
-/// assemble_vehicle.
+/// names. Throws InputError with file, line, key, value and allowed values for unknown or missing
+/// keys, wrong types, values out of range, impossible inertias, and coinciding hardpoints. The
+/// model checks whether the loops close and the springs carry the car (assemble_vehicle).
 VehicleSpec read_vehicle(const std::filesystem::path& path);
 
 /// Values of the key `preload` of `[spring]`, in the order of PreloadKind.

@@ -178,12 +178,12 @@ TEST_CASE("A vehicle file that lacks something is refused", "[io]") {
 
 TEST_CASE("A body that cannot be is refused", "[io]") {
   check_refused("inertia = [300.0, 1560.0, 1700.0]", "inertia = [100.0, 1560.0, 1700.0]",
-                "whole_car.inertia = [100, 1560, 1700]: no body has it");
+                "whole_car.inertia = [100, 1560, 1700]: impossible for a body");
   check_refused("inertia = [300.0, 1560.0, 1700.0]",
                 "inertia = [300.0, 1560.0, 1700.0]\ninertia_products = [0.0, 900.0, 0.0]",
-                "whole_car.inertia = [300, 1560, 1700]: no body has it");
+                "whole_car.inertia = [300, 1560, 1700]: impossible for a body");
   check_refused("spin_inertia = 1.5 ", "spin_inertia = 1.7 ",
-                "front_suspension.wheel.spin_inertia = 1.7: no body has it");
+                "front_suspension.wheel.spin_inertia = 1.7: impossible for a body");
   check_refused("strut_bottom = [0.00001, 0.5791, -0.003]",
                 "strut_bottom = [-0.02897, 0.541, 0.516]", "front_suspension.strut_bottom");
 }
