@@ -185,7 +185,7 @@ TEST_CASE("Samples that make no signal are refused by name", "[unit][input_signa
   CHECK(message({0.0, 1.0}, {1.0}) ==
         "road_position: 2 times and 1 values: the numbers must be equal");
   CHECK(message({0.0, 1.0, 1.0}, {1.0, 2.0, 3.0}) ==
-        "road_position, sample 3: time = 1.000000 s: must be > 1.000000 s, the time before");
+        "road_position, sample 3: time = 1.000000 s: must be > 1.000000 s, the previous time");
   CHECK(message({0.0, 1.0}, {1.0, std::nan("")}) == "road_position, sample 2: must be finite");
 }
 

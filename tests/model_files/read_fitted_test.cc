@@ -47,7 +47,7 @@ TEST_CASE("A fitted parameter that is none of the model's own is refused", "[uni
   const test::TemporaryFolder folder;
   for (const auto& [line, told] : std::vector<std::pair<std::string, std::string>>{
            {"stifness = 900", "stiffness"},
-           {"strut_friction_force = 1", "no parameter of the rig itself"},
+           {"strut_friction_force = 1", "not a parameter of the rig itself"},
            {"stiffness = -1", "stiffness"}}) {
     folder.write("rig.toml", text + "\n[fitted]\n" + line + "\n");
     CHECK_THROWS_WITH(read_rig(folder / "rig.toml"), Contains(told));

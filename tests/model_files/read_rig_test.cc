@@ -126,7 +126,7 @@ TEST_CASE("What cannot drive a rig is refused with its place", "[io][rigs]") {
   check_contains(refuse(road + "shape = \"sine\"\namplitude = 1.0\nfrequency = 0.0\n"),
                  "maneuver.toml:5: input.road_position.frequency");
   check_contains(refuse("[input.road_position]\nshape = \"sine\"\n"), "duration");
-  check_contains(refuse("duration = 1.0\n", RigKind::kStrutRig), "displacement: is missing");
+  check_contains(refuse("duration = 1.0\n", RigKind::kStrutRig), "displacement: missing");
 }
 
 TEST_CASE("Parameters of a rig are set by name within their range", "[unit][rigs]") {
