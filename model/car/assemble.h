@@ -54,6 +54,7 @@ double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuve
 /// force maps from those of each lane.
 template <class T>
 void fill_strut_elements(Vehicle<T>& vehicle, const CornerForceMaps* const* maps = nullptr) {
+  static_assert(kCorners <= kMaxElements, "each corner adds at most one element of a kind");
   const VehicleLayout& layout = vehicle.layout;
   const VehicleParameters<T>& numbers = vehicle.numbers;
   vehicle.struts = {};

@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <tuple>
 
-#include "base/error/check.h"
 #include "base/math/lanes.h"
 #include "model/multibody/corner.h"
 
@@ -48,16 +47,18 @@ struct LinearDamper {
   T calc_energy(const LineState<T>&) const { return T(0.0); }
 };
 
+/// Maximum number of elements of one kind: at most one per corner.
+inline constexpr int kMaxElements = 6;
+
 /// The elements of one kind, each at its corner. The list is common to a batch and has no effects
 /// that are off.
-template <class Element, int Capacity = kMaxJoints>
+template <class Element, int Capacity = kMaxElements>
 struct ElementList {
   std::array<Element, Capacity> element;
   std::array<int, Capacity> corner{};
   int count = 0;
 
   void add(int at_corner, const Element& e) {
-    STRUT_CHECK(count < Capacity, "a list of force elements exceeds its capacity");
     element[static_cast<std::size_t>(count)] = e;
     corner[static_cast<std::size_t>(count)] = at_corner;
     ++count;
