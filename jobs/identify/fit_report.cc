@@ -95,8 +95,7 @@ void report_quality(const FitResult& fit) {
   if (!fit.converged) {
     print_error(fmt::format(
         "not converged: the minimum is about {:.3g} standard deviations away; either the model "
-        "does "
-        "not fit at all, or it needs start values nearer to the solution (--set, --prior)",
+        "does not fit at all, or it needs start values nearer to the solution (--set, --prior)",
         fit.distance));
   } else if (fit.at_kink) {
     print_note(

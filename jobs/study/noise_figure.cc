@@ -52,8 +52,7 @@ Chart make_noise_chart(const NoiseStudy& study) {
   chart.caption =
       "Root mean square errors over the noise, on test cases. Lines: Cramer-Rao bounds; circles: "
       "networks; triangles: fits of the simulation; dashed: the error of an estimate that is "
-      "always "
-      "the middle of the grid.";
+      "always the middle of the grid.";
   const double low = study.points.front().scale, high = study.points.back().scale;
   for (std::size_t p = 0; p < study.parameters.size(); ++p) {
     const ColumnInfo& parameter = study.parameters[p];

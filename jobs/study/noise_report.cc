@@ -105,10 +105,9 @@ std::string describe_measurements(const NoiseStudy& study) {
   return fmt::format(
       "The tables above are without noise. Here every network is trained and tested with it, on {} "
       "noisy copies of each case. A snapshot holds the main inputs at the sweep's own instant, "
-      "with "
-      "each preload. A window holds what the sensors on the body record at {} Hz from {} to {} s "
-      "(preload {}); its hit time (1 sigma {} ms), the speed and the sensors' biases are unknown, "
-      "too. Noise 1 is that of real sensors; the other rows scale it.",
+      "with each preload. A window holds what the sensors on the body record at {} Hz from {} to "
+      "{} s (preload {}); its hit time (1 sigma {} ms), the speed and the sensors' biases are "
+      "unknown, too. Noise 1 is that of real sensors; the other rows scale it.",
       study.copies, format_number(study.rate), format_number(study.from), format_number(study.to),
       study.window_preload, format_number(1e3 * study.hit_time));
 }
@@ -122,13 +121,10 @@ std::string describe_bounds(const NoiseStudy& study) {
       "Bound: the Cramer-Rao bound, 1 sigma of the best unbiased estimate from the sensors alone. "
       "Over the test cases it varies by a factor of up to {:.2f} for snapshots and {:.2f} for "
       "windows, so the tables hold its root mean square over {} test cases, as errors are root "
-      "mean "
-      "squares. A network also knows the grid that its cases come from: where the bound exceeds "
-      "the "
-      "grid's spread, it answers with the middle, errs by the spread and has learned nothing. "
-      "Where "
-      "the cases stand on levels of a grid and the bound is below their distance, it rounds to the "
-      "nearest level and errs less than the bound.",
+      "mean squares. A network also knows the grid that its cases come from: where the bound "
+      "exceeds the grid's spread, it answers with the middle, errs by the spread and has learned "
+      "nothing. Where the cases stand on levels of a grid and the bound is below their distance, "
+      "it rounds to the nearest level and errs less than the bound.",
       snapshot, find_largest(study.window_variation), study.fits);
 }
 
@@ -146,8 +142,7 @@ std::string describe_result(const NoiseStudy& study) {
       "At noise {}, relative to the spread of the grid, a network that sees one snapshot errs {}, "
       "depending on the parameter; 100 % is the error without any sensor. From a window it errs by "
       "{}. That is at most {:.2f} times the bound; the fitted simulation reaches at most {:.2f} "
-      "times "
-      "the bound (worst parameter; 1 sigma of a ratio from {} fits is {:.0f} %).",
+      "times the bound (worst parameter; 1 sigma of a ratio from {} fits is {:.0f} %).",
       format_number(point.scale), snapshots,
       describe_fractions(study, [](const auto& e) { return e.window.network; }), ratios.network,
       ratios.fit, study.fits, 100.0 / std::sqrt(2.0 * static_cast<double>(study.fits)));

@@ -68,8 +68,7 @@ std::string describe_seeds(const StudyRequest& request) {
   if (request.seeds == 1) return "Every setting is trained once.";
   return fmt::format(
       "Every setting is trained {} times, each with its own split and start weights; the tables "
-      "give "
-      "the median, with the smallest and the largest value below it.",
+      "give the median, with the smallest and the largest value below it.",
       request.seeds);
 }
 
@@ -85,10 +84,8 @@ ReportSection make_method(const StudyFolder& folder, const StudyRequest& request
                   "the bump, and identifies the springs and dampers of the car from it.",
                   describe_grid(sweep), sweep.base.vehicle.name),
       "Preload free_length: the springs keep the free length of the new car, so worn springs sag "
-      "and "
-      "the height at rest depends on their stiffness. Preload trimmed: every car stands at the "
-      "same "
-      "height, and only its motion depends on the stiffness.",
+      "and the height at rest depends on their stiffness. Preload trimmed: every car stands at the "
+      "same height, and only its motion depends on the stiffness.",
       fmt::format(
           "Networks are trained by Levenberg-Marquardt. {:.4g} % of the cases train, {:.4g} % "
           "validate, the others test. A training keeps the weights of its best validation; the "
