@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/text/format_number.h"
 #include "study/folder.h"
 #include "study/request.h"
 #include "tests/jobs/check_hint.h"
@@ -110,9 +111,10 @@ TEST_CASE("tables.csv has a line for every number of results.json", "[io][slow]"
   for (const auto& [no_key, cell] : results.get_child("cells")) {
     for (const auto& [parameter, metrics] : cell.get_child("parameters")) {
       for (const auto& [metric, spread] : metrics) {
-        const std::string key = cell.get<std::string>("preload") + cell.get<std::string>("offset") +
+        const std::string key = cell.get<std::string>("preload") +
+                                format_number(cell.get<double>("offset")) +
                                 cell.get<std::string>("key") + parameter + metric;
-        CHECK(medians.at(key) == spread.get<std::string>("median"));
+        CHECK(std::stod(medians.at(key)) == spread.get<double>("median"));
         ++numbers;
       }
     }

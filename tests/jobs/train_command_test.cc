@@ -160,7 +160,7 @@ TEST_CASE("Training refuses what it cannot learn from", "[io]") {
                 {"'pitch_angel'", "did you mean 'pitch_angle'?", "body_velocity_z"});
   check_refused(sweep, "--samples 9999", {"200 usable cases", "asked for 9999"});
   check_refused(sweep, "--samples 40",
-                {"28 training cases x 2 parameters are 56", "68 weights", "--allow-few"});
+                {"28 training cases x 2 parameters give 56", "68 weights", "--allow-few"});
   check_refused(sweep, "--samples 2", {"too few"});
   check_refused(sweep, "--rule newton", {"--rule = newton", "trainlm"});
   check_refused("/nowhere", "", {"/nowhere: not found"});
@@ -277,7 +277,7 @@ TEST_CASE("A test part is told only of the data that trained", "[io]") {
   const Outcome fewer =
       run_program("evaluate " + model + " " + get_sweep().string() + "/shards/000000.h5");
   CHECK(fewer.code == 2);
-  CHECK_THAT(fewer.messages, Contains("200 usable cases, this has 60"));
+  CHECK_THAT(fewer.messages, Contains("200 usable cases, these have 60"));
   CHECK(run_program("evaluate " + model).code == 2);
   const Outcome model_twice = run_program("evaluate " + model + " " + model);
   CHECK(model_twice.code == 2);
