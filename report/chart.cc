@@ -17,7 +17,7 @@ int calc_legend_height(const Chart& chart) {
   return entries == 0 ? 0 : kLegendRow * (1 + (entries - 1) / kLegendColumns) + kLegendRow / 2;
 }
 
-/// The lowest and the highest of a stretch of values, and a gap, if there is one; in order.
+/// Indices of the minimum, the maximum and a gap, if any, of y[begin, end).
 std::set<std::size_t> pick_points(const std::vector<double>& y, std::size_t begin,
                                   std::size_t end) {
   std::size_t low = end, high = end, gap = end;
@@ -76,11 +76,12 @@ std::string name_panel(const ChartPanel& panel) {
 
 ChartSeries make_curve(const std::string& name, SeriesKind kind, int color,
                        const std::vector<double>& x, const std::vector<double>& y,
-                       std::size_t most) {
+                       std::size_t max_points) {
   ChartSeries curve{name, kind, color};
-  const std::size_t stretch = x.size() <= most ? 1 : (2 * x.size() + most - 1) / most;
-  for (std::size_t begin = 0; begin < x.size(); begin += stretch) {
-    for (const std::size_t i : pick_points(y, begin, std::min(begin + stretch, x.size()))) {
+  const std::size_t segment =
+      x.size() <= max_points ? 1 : (2 * x.size() + max_points - 1) / max_points;
+  for (std::size_t begin = 0; begin < x.size(); begin += segment) {
+    for (const std::size_t i : pick_points(y, begin, std::min(begin + segment, x.size()))) {
       curve.x.push_back(x[i]);
       curve.y.push_back(y[i]);
     }

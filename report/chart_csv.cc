@@ -42,14 +42,14 @@ bool has_categories(const Chart& chart) {
                      [](const ChartPanel& panel) { return !panel.x.categories.empty(); });
 }
 
-/// The name of the place where bars, boxes and points stand; empty for lines, which cross places.
-std::string name_place(const ChartPanel& panel, const ChartSeries& s, double x) {
-  const bool stands =
+/// The category of a bar, box or point, quoted; empty for lines, which cross categories.
+std::string name_category(const ChartPanel& panel, const ChartSeries& s, double x) {
+  const bool has_category =
       s.kind == SeriesKind::kBars || s.kind == SeriesKind::kBoxes || s.kind == SeriesKind::kPoints;
   const auto& names = panel.x.categories;
-  const double place = std::round(x) - 1.0;
-  const bool is_there = place >= 0.0 && place < static_cast<double>(names.size());
-  return quote(stands && is_there ? names[static_cast<std::size_t>(place)] : "");
+  const double index = std::round(x) - 1.0;
+  const bool exists = index >= 0.0 && index < static_cast<double>(names.size());
+  return quote(has_category && exists ? names[static_cast<std::size_t>(index)] : "");
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ std::string make_chart_csv(const Chart& chart) {
       const std::string begin = quote(name_panel(panel)) + "," + quote(s.name);
       for (std::size_t i = 0; i < s.x.size(); ++i) {
         text += begin;
-        if (has_names) text += "," + name_place(panel, s, s.x[i]);
+        if (has_names) text += "," + name_category(panel, s, s.x[i]);
         for (const Column& column : columns) text += "," + print(s.*column.values, i);
         text += "\n";
       }

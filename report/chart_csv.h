@@ -7,8 +7,8 @@
 
 namespace strut {
 
-/// One line a point: panel, series, x, y and, where the chart has them, z, low, high. A panel is
-/// called by its title or its axes. Numbers read back as the same doubles; what is not there is
+/// One line per point: panel (name_panel), series, category, x, y, value, low, high; columns that
+/// the chart does not use are left out. Numbers read back as the same doubles; missing ones are
 /// empty.
 std::string make_chart_csv(const Chart& chart);
 

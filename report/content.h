@@ -5,7 +5,7 @@
 
 namespace strut {
 
-/// A command's work, told by a file that only its folder has.
+/// A kind of folder, recognized by a file that only this kind has.
 struct FolderContent {
   const char* name;
   const char* file;
@@ -15,7 +15,7 @@ inline constexpr FolderContent kStudyContent{"study", "study.toml"};
 inline constexpr FolderContent kSweepContent{"sweep", "plan.h5"};
 inline constexpr FolderContent kDiagnosisContent{"diagnosis", "verdict.json"};
 inline constexpr FolderContent kComparisonContent{"comparison", "compare.json"};
-/// Its file is the page that others have, too.
+/// Recognized last: comparisons and diagnoses also have a report.json.
 inline constexpr FolderContent kRunContent{"simulated run", "report.json"};
 
 inline constexpr const FolderContent* kFolderContents[] = {

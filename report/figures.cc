@@ -1,6 +1,7 @@
 #include "report/figures.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
@@ -19,10 +20,9 @@ constexpr std::size_t kMaxChartBytes = std::size_t{256} << 20;
 
 void check_figure_name(const Folder& folder, const std::string& name) {
   if (is_figure_name(name)) return;
-  throw InputError(
-      folder.path().string() +
-      ": a figure's name must be letters, digits, '_' and '-', as strut writes it; is '" +
-      shorten(name) + "'");
+  throw InputError(fmt::format(
+      "{}: figure '{}': the name must consist of letters, digits, '_' and '-', as strut writes it",
+      folder.path().string(), shorten(name)));
 }
 
 }  // namespace
@@ -76,8 +76,8 @@ ReportMotion FigureDrawer::read_motion_again(const std::string& name,
 
 std::string make_report_footer() {
   const BuildInfo& build = get_build_info();
-  return std::string("strut ") + build.version + " (" + build.commit + "), " + build.compiler +
-         ", " + build.build_type;
+  return fmt::format("strut {} ({}), {}, {}", build.version, build.commit, build.compiler,
+                     build.build_type);
 }
 
 }  // namespace strut

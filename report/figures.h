@@ -1,4 +1,4 @@
-// Figures on their way into a report.
+// Writes figures into the folder of a report, and reads them back.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace strut {
 
-/// Whether a name in a report's folder can be that of a table or figure: letters, digits, '_', '-',
-/// at most 200 of them. Others would lead elsewhere.
+/// Whether a name is valid for a table or figure: at most 200 letters, digits, '_' and '-', so that
+/// it cannot lead out of the report's folder.
 bool is_figure_name(const std::string& name);
 
 /// Writes figures into the subfolder figures/ of a report's folder: NAME.json for the page and
@@ -23,12 +23,12 @@ class FigureDrawer {
   explicit FigureDrawer(const Folder& root);
 
   ReportFigure draw(const Chart& chart) const;
-  /// All of them, at the end of a section.
+  /// Draws the charts and appends them to a section.
   void draw_all(const std::vector<Chart>& charts, ReportSection& section) const;
-  /// A chart that was drawn into the folder before, as it lies there; nothing is drawn. Throws
-  /// InputError where the name is none, or its file is missing or a link.
+  /// Reads a chart that was drawn into the folder earlier. Throws InputError where the name is
+  /// invalid, or its file is missing or a link.
   ReportFigure read_again(const std::string& name, const std::string& caption) const;
-  /// A scene of make_motion() as NAME.json.
+  /// Writes a scene of make_motion() as NAME.json.
   ReportMotion draw_motion(const Json& scene, const std::string& name,
                            const std::string& caption) const;
   ReportMotion read_motion_again(const std::string& name, const std::string& caption) const;

@@ -19,15 +19,15 @@ std::string replace_all(std::string text, const std::string& from, const std::st
   return text;
 }
 
-/// JSON has "<" in strings only, where it may be written otherwise: so nothing of them is a tag.
+/// In JSON, "<" occurs only in strings, where it can be escaped, so that none of them is a tag.
 std::string make_json_element(const std::string& json) {
   return "<script type=\"application/json\">" + replace_all(json, "<", "\\u003c") + "</script>";
 }
 
-/// Longer texts of a cell may be broken.
+/// Minimum length of a cell's text that may wrap [bytes].
 constexpr std::size_t kLongText = 40;
 
-/// Lines below the first stand smaller.
+/// Escapes a cell; lines after the first are in small print.
 std::string make_cell(const std::string& text) {
   const std::size_t end = text.find('\n');
   if (end == std::string::npos) return escape_html(text);
@@ -84,7 +84,7 @@ std::string make_figure(const ReportFigure& figure) {
 
 std::string make_motion_figure(const ReportMotion& motion) {
   return "<figure>\n<div class=\"motion\">" + make_json_element(motion.scene) +
-         "<noscript>The moving picture needs JavaScript.</noscript></div><figcaption>" +
+         "<noscript>The animation needs JavaScript.</noscript></div><figcaption>" +
          escape_html(motion.caption) + "</figcaption>\n</figure>\n";
 }
 
@@ -107,7 +107,7 @@ std::string make_section(const ReportSection& section, const std::string& id) {
   return text + "</section>\n";
 }
 
-/// The parts of a page that need scripts.
+/// Whether a page has content that needs scripts.
 struct Moving {
   bool charts = false, motions = false;
 };
@@ -138,7 +138,7 @@ std::string make_scripts(const ReportPage& page) {
 std::string make_footer(const ReportPage& page) {
   std::string text = "<footer>" + escape_html(page.footer);
   if (find_moving(page).charts) {
-    text += "<details><summary>Charts by plotly.js, whose license is</summary><pre>" +
+    text += "<details><summary>Charts drawn by plotly.js; its license</summary><pre>" +
             escape_html(std::string(embedded::LICENSE)) + "</pre></details>";
   }
   return text + "</footer>\n";
@@ -155,7 +155,7 @@ std::string print_number(const char* format, double value) {
 
 std::string format_short(double value) { return print_number("%.4g", value); }
 
-std::string format_percent(double share) { return print_number("%.2f %%", 100.0 * share); }
+std::string format_percent(double fraction) { return print_number("%.2f %%", 100.0 * fraction); }
 
 std::string escape_html(const std::string& text) {
   std::string escaped;
@@ -184,7 +184,7 @@ std::string escape_html(const std::string& text) {
 std::string make_html(const ReportPage& page) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      // Charts of a folder from elsewhere may name pictures and styles on a network.
+      // Charts in a folder from elsewhere may refer to images and styles on a network.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
       "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +

@@ -1,5 +1,5 @@
-// One self-contained HTML page from sections of text, tables and figures: no file, font or script
-// from outside.
+// A self-contained HTML page of sections with text, tables and figures: it loads no file, font or
+// script.
 #pragma once
 
 #include <string>
@@ -7,40 +7,41 @@
 
 namespace strut {
 
-/// `text` with the characters that HTML gives a meaning replaced.
+/// Escapes the special characters of HTML; invalid UTF-8 is replaced.
 std::string escape_html(const std::string& text);
 
-/// The text of a number in one of printf's formats; empty for NaN, what is not there.
+/// Prints a number in one of printf's formats; empty for NaN, a missing number.
 std::string print_number(const char* format, double value);
 
-/// Four digits; "12.34 %"; empty for NaN.
+/// Prints four significant digits; empty for NaN.
 std::string format_short(double value);
-std::string format_percent(double share);
+/// Prints "12.34 %" for 0.1234; empty for NaN.
+std::string format_percent(double fraction);
 
-/// Texts by rows. On a page lines of a cell below its first stand smaller.
+/// Cells by row. A page sets the lines of a cell after its first in small print.
 struct ReportTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows = {};
-  std::vector<std::string> notes = {};  // below it
-  std::size_t text_columns = 1;         // the first so many are words, the others numbers
+  std::vector<std::string> notes = {};  // below the table
+  std::size_t text_columns = 1;         // number of leading columns of text; numbers follow
 };
 
 struct ReportFigure {
   std::string name;  // of its files
   std::string caption;
-  std::string chart;               // the text of make_plotly()
-  std::vector<std::string> files;  // beside the page, as its links name them
+  std::string chart;               // JSON of make_plotly()
+  std::vector<std::string> files;  // linked below the chart, relative to the page
 };
 
-/// A car crossing its bump, with a slider: see jobs/simulate/motion.h.
+/// An animation of a car crossing its bump, with a slider (page/motion.js).
 struct ReportMotion {
   std::string name;  // of its file
   std::string caption;
-  std::string scene;  // the text of make_motion()
+  std::string scene;  // JSON of make_motion()
 };
 
-/// A part of a report. Whoever has something to report fills one of these.
+/// A section of a report.
 struct ReportSection {
   std::string heading;
   std::vector<std::string> paragraphs = {};
@@ -51,18 +52,18 @@ struct ReportSection {
 
 struct ReportPage {
   std::string title;
-  std::vector<std::string> lead;  // paragraphs below it
+  std::vector<std::string> lead;  // paragraphs below the title
   std::vector<ReportSection> sections;
   std::string footer;
-  std::vector<std::string> tables = {};  // files beside it: "channels" of channels.csv
-  std::string of = {};                   // what its folder holds, as FolderContent names it
+  std::vector<std::string> tables = {};  // CSV files beside it: "channels" for channels.csv
+  std::string of = {};                   // FolderContent::name of its folder
 };
 
-/// The page, readable in light and dark and on paper; the library that draws its charts is part of
-/// it.
+/// Returns the page, for light and dark screens and for paper. The library that draws its charts is
+/// embedded.
 std::string make_html(const ReportPage& page);
 
-/// The table for a terminal, columns aligned.
+/// Returns the table for a terminal, with aligned columns.
 std::string make_text(const ReportTable& table);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "report/page_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -18,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A list of `make(element)`.
+/// Maps `make` over `elements`.
 template <class T, class Make>
 Json make_list(const std::vector<T>& elements, const Make& make) {
   Json list = Json::array();
@@ -34,7 +36,7 @@ Json make_table_json(const ReportTable& table) {
               {"text_columns", table.text_columns}};
 }
 
-/// A figure or a motion, whose content stands in a file of its name.
+/// The entry of a figure or motion; its content is in the file of its name.
 template <class T>
 Json make_named(const T& figure) {
   return Json{{"name", figure.name}, {"caption", figure.caption}};
@@ -54,7 +56,7 @@ Json make_page_json(const ReportPage& page) {
               {"tables", page.tables}, {"footer", page.footer}};
 }
 
-/// The elements of a list, each read by `read`.
+/// Maps `read` over the list `key`.
 template <class Read>
 auto read_list(const Json& tree, const char* key, const Read& read) {
   std::vector<decltype(read(tree))> list;
@@ -72,8 +74,8 @@ ReportTable read_table(const Json& tree) {
           tree.at("text_columns").get<std::size_t>()};
 }
 
-/// Names of the figures and tables of comparisons, diagnoses and simulated runs, but those of one
-/// recording, which are run_NUMBER_...: nothing else is removed for what a report.json says.
+/// Names of the figures and tables of comparisons, diagnoses and simulated runs, except those of a
+/// single run, run_NUMBER_...: a report.json can have no other files removed.
 constexpr std::array<const char*, 9> kNames = {"channels",      "curves", "force_law",
                                                "force_map",     "gain",   "motion",
                                                "probabilities", "states", "balance"};
@@ -87,7 +89,7 @@ bool is_page_name(const std::string& name) {
          (is_of_run || std::find(kNames.begin(), kNames.end(), name) != kNames.end());
 }
 
-/// Checks that a later page will recognize these names, and so can remove their files.
+/// Checks that a later page will recognize these names and can remove their files.
 void check_names(const ReportPage& page) {
   const auto check = [](const std::string& name) {
     STRUT_CHECK(is_page_name(name), "report: '" + name + "' is not in kNames");
@@ -99,7 +101,7 @@ void check_names(const ReportPage& page) {
   }
 }
 
-/// The files that the folder's page names.
+/// Lists the files that the folder's page names.
 std::vector<fs::path> list_files(const PageFolder& folder, const Json& page) {
   std::vector<fs::path> files;
   for (const std::string& name : read_list(page, "tables", &read_text)) {
@@ -120,9 +122,9 @@ std::vector<fs::path> list_files(const PageFolder& folder, const Json& page) {
   return files;
 }
 
-/// The page that an earlier command left in a folder.
+/// The page of an earlier command in the folder.
 struct EarlierPage {
-  std::string of;               // "": there is no page of ours
+  std::string of;               // ReportPage::of; "": no page written by strut
   std::vector<fs::path> files;  // beside it
 };
 
@@ -136,7 +138,8 @@ EarlierPage read_earlier_page(const PageFolder& folder) {
   }
 }
 
-/// Each figure stands in a page once: a small file could else name a large one without end.
+/// Throws unless each figure is named once: otherwise a small page could include a large file many
+/// times.
 void refuse_repeated(const PageFolder& folder, const Json& page) {
   std::set<std::string> names;
   for (const Json& section : page.at("sections")) {
@@ -144,8 +147,8 @@ void refuse_repeated(const PageFolder& folder, const Json& page) {
       for (const Json& figure : section.at(list)) {
         const auto name = figure.at("name").get<std::string>();
         if (!names.insert(name).second) {
-          throw InputError(folder.page().string() + ": figure '" + shorten(name) +
-                           "': named twice; must be as strut wrote it");
+          throw InputError(fmt::format("{}: figure '{}': named twice; must be as strut wrote it",
+                                       folder.page().string(), shorten(name)));
         }
       }
     }
@@ -180,7 +183,7 @@ ReportPage read_page(const Json& tree, const FigureDrawer& drawer) {
 
 void check_page_folder(const std::string& option, const PageFolder& folder,
                        const FolderContent& content, const std::vector<fs::path>& files) {
-  // Links are refused before anything is calculated, and before an earlier page is removed.
+  // Refuses links before anything is computed and before an earlier page is removed.
   if (fs::exists(folder.root))
     Folder(folder.root).find_folder(folder.figures().filename().string());
   const std::string start = "--" + option + " = " + folder.root.string() + ": holds ";
@@ -189,7 +192,7 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
     throw InputError(start + "a " + other->name + " (" + other->file + "); must be another folder");
   }
   const std::string of = read_earlier_page(folder).of;
-  if (of == content.name) return;  // all such files are its own
+  if (of == content.name) return;  // its files may be replaced
   if (!of.empty()) throw InputError(start + "the report of a " + of + "; must be another folder");
   std::vector<fs::path> written = files;
   written.insert(written.end(), {folder.report(), folder.page()});
@@ -198,8 +201,8 @@ void check_page_folder(const std::string& option, const PageFolder& folder,
   }
   for (const fs::path& file : written) {
     if (fs::exists(file)) {
-      throw InputError(start + file.filename().string() + ", which is not of an earlier " +
-                       content.name + "; must be another folder");
+      throw InputError(fmt::format("{}{}, which no earlier {} wrote; must be another folder", start,
+                                   file.filename().string(), content.name));
     }
   }
 }
@@ -227,8 +230,8 @@ void write_page_again(const PageFolder& folder) {
     const FigureDrawer drawer(Folder(folder.root));
     write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));
   } catch (const Json::exception& e) {
-    throw InputError(folder.page().string() + ": " + explain(e) +
-                     "; must be as strut compare, diagnose or simulate wrote it");
+    throw InputError(fmt::format("{}: {}; must be as strut compare, diagnose or simulate wrote it",
+                                 folder.page().string(), explain(e)));
   }
 }
 

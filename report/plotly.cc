@@ -23,7 +23,7 @@ Json make_numbers(const std::vector<double>& values) {
 
 std::string get_color(int color) { return color == kInk ? "ink" : kChartColors[color - 1]; }
 
-/// The color with an opacity, as two more hexadecimal digits.
+/// The color at 25 % opacity, given by two more hexadecimal digits.
 std::string get_fill(int color) { return get_color(color) + "40"; }
 
 const char* get_symbol(Marker marker) {
@@ -41,7 +41,7 @@ const char* get_symbol(Marker marker) {
 }
 
 int get_size(const ChartSeries& s) {
-  constexpr std::size_t kMany = 400;  // beyond, smaller ones
+  constexpr std::size_t kMany = 400;  // number of points above which dots are smaller
   if (s.marker != Marker::kDot) return 8;
   return s.kind == SeriesKind::kLinePoints || s.x.size() <= kMany ? 6 : 3;
 }
@@ -77,7 +77,7 @@ void set_lines(const ChartSeries& s, Json& trace) {
   }
 }
 
-/// The band's outline, there on the high edge and back on the low one.
+/// The band's outline: forward along the high edge, back along the low one.
 void set_band(const ChartSeries& s, Json& trace) {
   std::vector<double> x = s.x, y = s.high;
   x.insert(x.end(), s.x.rbegin(), s.x.rend());
@@ -137,8 +137,8 @@ void set_values(const ChartSeries& s, Json& trace) {
   }
 }
 
-/// The colors of points with values: from blue to orange, as well seen on a light page as on a dark
-/// one; beside the panel their scale.
+/// The color scale of points with values, from blue to orange, which is readable on light and dark
+/// pages, and its bar beside the panel.
 Json make_value_scale(const Chart& chart, std::size_t panel, const ChartSeries& s) {
   const PanelPlace place = calc_place(chart, panel);
   const Json title = Json{
@@ -158,7 +158,7 @@ Json make_value_scale(const Chart& chart, std::size_t panel, const ChartSeries& 
               {"colorbar", bar}};
 }
 
-/// "" for the first panel, then "2", "3", ...: how plotly.js numbers axes.
+/// Suffix of a panel's axes in plotly.js: "" for the first panel, then "2", "3", ...
 std::string get_number(std::size_t panel) { return panel == 0 ? "" : std::to_string(panel + 1); }
 
 Json make_trace(const Chart& chart, std::size_t panel, const ChartSeries& s, bool has_entry) {
@@ -183,15 +183,15 @@ Json make_traces(const Chart& chart) {
   return traces;
 }
 
-/// plotly.js takes the logarithms of a logarithmic axis' ends.
+/// The range of an axis; for a logarithmic axis plotly.js takes the logarithms of its ends.
 Json make_range(const ChartAxis& axis) {
-  const auto place = [&](double value) { return axis.is_logarithmic ? std::log10(value) : value; };
-  return make_numbers({place(axis.range[0]), place(axis.range[1])});
+  const auto scale = [&](double value) { return axis.is_logarithmic ? std::log10(value) : value; };
+  return make_numbers({scale(axis.range[0]), scale(axis.range[1])});
 }
 
 Json make_axis(const ChartAxis& axis) {
   Json json = Json{{"title", Json{{"text", axis.label}}}};
-  // "D2": digits 2 and 5 between the powers of ten.
+  // "D2": ticks at 2 and 5 between the powers of ten.
   if (axis.is_logarithmic) {
     json["type"] = "log";
     json["exponentformat"] = "power";

@@ -6,9 +6,9 @@
 
 namespace strut {
 
-/// {"name", "height" [px], "data", "layout"}: plotly.js's traces and layout. Colors of
-/// the page's text are the word "ink", which the page replaces as it is light or dark. Numbers have
-/// seven digits, more than is seen.
+/// Returns {"name", "height" [px], "width" [px], "data", "layout"}, the latter two the traces and
+/// layout of plotly.js. The color "ink" stands for that of the page's text, which the page
+/// substitutes. Numbers have seven digits, more than a figure resolves.
 Json make_plotly(const Chart& chart);
 
 }  // namespace strut

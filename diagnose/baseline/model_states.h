@@ -11,7 +11,7 @@ struct StateCurve {
   std::vector<double> values;  // at the run's times; NaN: not simulated
 };
 
-/// ModelInfo::states, in order.
+/// Lists the curves of ModelInfo::states, in order.
 std::vector<StateCurve> list_states(const CampaignData& data, const RunCurves& curves);
 
 }  // namespace strut

@@ -1,5 +1,4 @@
-// Deflections and velocities of a model's struts in given runs, on which a force in them may
-// depend.
+// Deflections and velocities of a model's struts in given runs.
 #pragma once
 
 #include <string>
@@ -9,8 +8,8 @@
 
 namespace strut {
 
-/// The states of one place at which a force of a strut may act, all runs one after the other.
-/// Deflection counts from nominal trim or rest; both are positive in compression. For a car: the
+/// The states of the strut at one location, all runs in sequence. Deflection is measured from
+/// nominal trim or rest; deflection and velocity are positive in compression. For a car: the
 /// springs of both corners of an axle.
 struct VisitedStates {
   std::string place;                         // "front", "rear"; "" for a rig
@@ -21,8 +20,8 @@ struct VisitedStates {
   std::string describe() const;
 };
 
-/// Simulates `runs` at `shared`, without those that cannot be simulated. At most about 6000 samples
-/// a place, evenly spread over the runs.
+/// Simulates `runs` at `shared` and leaves out those that cannot be simulated. At most about 6000
+/// samples per location, evenly spread over the runs.
 std::vector<VisitedStates> list_visited_states(const CampaignData& data,
                                                const std::vector<std::size_t>& runs,
                                                const SharedValues& shared);

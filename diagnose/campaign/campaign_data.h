@@ -38,8 +38,8 @@ struct CampaignData {
 /// The campaign with a single one of its runs.
 CampaignData take_run(const CampaignData& data, std::size_t run);
 
-/// Whether a run crosses more than a road's roughness; a run that recorded inputs drive always
-/// does.
+/// Whether a run crosses a bump, not only a rough road; always true for a run that recorded inputs
+/// drive.
 bool meets_bump(const CampaignData& data, std::size_t run);
 
 /// Reads the campaign, its model with the values of `[fit] fix`, and every run. Throws InputError

@@ -1,4 +1,4 @@
-// Checks of a campaign's data that can be read but not used.
+// Checks a campaign's data, which may be readable and yet unusable.
 #pragma once
 
 namespace strut {
@@ -10,9 +10,8 @@ struct CampaignData;
 ///    are recommended), for cars below 50 Hz (100 are recommended); with a hint if the clock may be
 ///    in another unit;
 ///  - a rig is not driven: all inputs are constant;
-///  - a channel's spread is implausible for such a quantity, or differs more than 300-fold from
-///  that
-///    of the nominal model in the same run: its unit may be wrong.
+///  - a channel's spread is implausible for its quantity, or differs from that of the nominal model
+///    in the same run by a factor above 300: its unit may be wrong.
 /// Adds a note for a rate between the required and the recommended one.
 void check_campaign_data(CampaignData& data);
 

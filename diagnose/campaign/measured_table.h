@@ -33,9 +33,9 @@ struct MeasuredTable {
 /// window without samples.
 MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& run);
 
-/// Replaces times printed with few digits (0.0033, 0.0067, 0.0100) by the even clock they are
-/// rounded from: t_i = a + b i, if that lies within 0.75 of their resolution of all of them;
-/// returns whether it does. Otherwise such rounding would jitter every derivative by resolution /
+/// Replaces times printed with few digits (0.0033, 0.0067, 0.0100) by the even clock
+/// t_i = a + b i that they were rounded from, if it is within 0.75 of their resolution of each of
+/// them; returns whether it is. Without this, rounding jitters every derivative by resolution /
 /// interval.
 bool even_clock(std::vector<double>& times);
 

@@ -5,18 +5,18 @@
 //
 //   y = y_model(k, c) + sum_w h_w F_w + noise
 //
-// h_w: response of the channels to a vertical force at the contact patch of wheel w (that to the
-// road under it, noise_spectrum.h, which differs by a factor alone). Bump, road, tires and unsprung
-// masses that are not the model's act on the channels through the F_w. With F_w unknown at every
-// instant, of n channels n - 4 combinations are left: those in which the body's accelerations
-// balance the struts' forces at the deflections that there are. The F_w are taken as noise of a
-// density far above what a wrong bump or tire makes of them, and all of it is weighed by Whittle's
-// likelihood (whitener.h): both sides of the balance go through the same filter, and the noise of
-// the deflections, which a regression on them would take for motion, biases nothing.
+// h_w: response of the channels to a vertical force at the contact patch of wheel w (computed as
+// that to the road under it, noise_spectrum.h, which differs only by a factor). Errors of the
+// model's bump, road, tires and unsprung masses act on the channels only through the F_w. With F_w
+// unknown at every instant, n - 4 combinations of n channels remain: those in which the body's
+// accelerations balance the struts' forces at the measured deflections. The F_w are modeled as
+// noise with a density far above the error of any bump or tire, and the readings are weighted by
+// Whittle's likelihood (whitener.h): both sides of the balance pass through the same filter, and
+// the noise of the deflections, which would bias a regression on them, causes no bias.
 //
-// A wrong vertical force also brings one lengthwise, by the slope of the road, which the arms turn
-// into heave. Bump and tire stiffness are fitted along to have its shape; what is left of it is
-// neglected (docs/diagnosis.md, "Without the road", has the size of both).
+// An error in a vertical force comes with one in the longitudinal force, by the slope of the road,
+// which the arms convert to heave. Bump and tire stiffness are also fitted, to account for its
+// shape; the remainder is neglected (docs/diagnosis.md, "Without the road", has the size of both).
 #pragma once
 
 #include <optional>
@@ -30,21 +30,21 @@ namespace strut {
 struct BalanceParameter {
   std::string name, unit;  // front_stiffness, ...
   double value = 0.0;
-  double sigma = 0.0;  // 1 sigma, infinite where the run does not tell; of what is left, if more
-                       // than noise
+  double sigma = 0.0;  // standard error, widened if the residual exceeds noise; infinite where the
+                       // run does not identify the parameter
 };
 
 struct CarBalance {
-  std::vector<BalanceParameter> parameters;  // stiffness and damping of the front, the rear axle
-  /// Mean square of what is left over that of noise and an unknown road together: at most 1 where
-  /// the struts' law is the model's, whatever tires and road are like.
+  std::vector<BalanceParameter> parameters;  // stiffness and damping of the front and rear axle
+  /// Mean square of the residual relative to that of noise and an unknown road together: at most 1
+  /// where the struts obey the model's law, for any tires and road.
   double chi2_per_reading = 1.0;
 };
 
-/// The balance of one run of a car, about the simulation `at`, which was made with `shared`. Shared
-/// values with a prior, such as a weighed mass, are fitted along; the others stay. Nothing for a
-/// rig, and where the vertical acceleration of the body or the deflection of an axle is not
-/// measured. Throws InputError where the car cannot be simulated.
+/// Calculates the balance of one run of a car, linearized about the simulation `at`, which was made
+/// with `shared`. Shared values with a prior, such as a weighed mass, are also fitted; the others
+/// are fixed. Null for a rig, and where the vertical acceleration of the body or the deflection of
+/// an axle is not measured. Throws InputError where the car cannot be simulated.
 std::optional<CarBalance> calc_car_balance(const CampaignData& data, std::size_t run,
                                            const SharedValues& shared, const RunEvaluation& at,
                                            int threads = 1);

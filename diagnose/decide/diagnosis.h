@@ -88,7 +88,7 @@ struct Diagnosis {
   std::vector<Cause> runners_up;  // other fitted candidates
   double unknown_share = 0.0;     // probability that the cause is none of the catalogue
   Where where;
-  std::optional<UnknownForce> force;  // of the extended model, beside the causes
+  std::optional<UnknownForce> force;  // of the extended model, in addition to the causes
   std::vector<ParameterChange> parameters;
   Improvement improvement;
   std::vector<std::string> not_identifiable;

@@ -1,12 +1,13 @@
 // Probabilities of the candidates of a round.
 //
-// A hypothesis that lets chi2 fall by g has the odds exp(g / (2 t)) against one that lets it stay.
-// The temperature t is 1 for effects that look as the catalogue says; real ones differ from it by
-// some share of themselves, so gains are not known better than that share of the largest:
+// A hypothesis with the delta chi2 g has the odds exp(g / (2 t)) against the model without it. The
+// temperature t is 1 if effects have exactly the form of the catalogue; real ones deviate by a
+// fraction of themselves, which limits the accuracy of every delta chi2 to that fraction of the
+// largest:
 //
 //   t = 1 + kappa g_best
 //
-// kappa, and how much must be left for the cause to be none of the catalogue, are fitted to hidden
+// kappa, and the residual above which the cause is none of the catalogue, are fitted to hidden
 // trials (docs/design).
 #pragma once
 
@@ -18,12 +19,12 @@ namespace strut {
 
 struct ProbabilityOptions {
   double form_error = 0.004;  // kappa
-  double shape_cost = 1.0;    // ln of the odds against each free shape
-  double corner_cost = 1.0;   // ... against one corner of an axle alone
-  double group_odds = 3.0;    // ln of the odds within which hypotheses are not told apart
+  double shape_cost = 1.0;    // log odds against each free shape parameter
+  double corner_cost = 1.0;   // log odds against a single corner of an axle
+  double group_odds = 3.0;    // log odds within which hypotheses are indistinguishable
 };
 
-/// ln of the odds of each candidate of a round, 0 for the best.
+/// Log odds of each candidate of a round relative to the best.
 std::vector<double> calc_log_odds(const SelectRound& round, const ProbabilityOptions& options = {});
 
 }  // namespace strut

@@ -10,7 +10,8 @@ namespace strut {
 /// One or two sentences, from all other parts of the diagnosis.
 std::string write_sentence(const Diagnosis& diagnosis);
 
-/// The name of a place in a sentence: a rig's only strut has none in its file.
+/// The name of a location in a sentence: "strut" for a rig's only strut, which has none in its
+/// file.
 std::string name_strut(const std::string& place);
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// The residual of a fitted model beyond noise: whether there is one, its size, and its place.
+// The residual of a fitted model beyond noise: its significance, size and location.
 #pragma once
 
 #include <string>
@@ -9,38 +9,39 @@
 
 namespace strut {
 
-/// A place whose readings hold what is left, and how well that place alone explains it.
+/// A location, and how well a disturbance there explains the residual.
 struct LeftoverPlace {
   std::string name;  // "front", "rear_left", "body", "road", a channel; "" for a rig's strut
   std::string kind;  // "strut", "body", "sensor"
-  /// chi2 along the responses to whatever acts there, less what as many directions of no meaning
-  /// would hold; and the standard deviation of that where there is nothing but noise.
+  /// chi2 along the responses to any disturbance there, less its expectation along equally many
+  /// arbitrary directions; and the standard deviation of that difference under noise alone.
   double energy = 0.0, sigma = 0.0;
 };
 
 struct Leftover {
-  /// Largest excess of chi2 in standard deviations of noise, the uncertainty of the noise's own
-  /// level taken off: in a band of a run, in a band or a narrow line of all runs, in everything.
+  /// Largest excess of chi2 in standard deviations of noise, less the uncertainty of the noise
+  /// level: in a band of a run, in a band or a narrow line of all runs, or in all readings.
   double significance = 0.0;
-  FrequencyBand band;                 // where that is
-  double energy = 0.0;                // chi2 beyond noise, of all that stands out
+  FrequencyBand band;                 // of the largest excess
+  double energy = 0.0;                // chi2 beyond noise, summed over all significant cells
   std::vector<LeftoverPlace> places;  // best first
 };
 
 struct LeftoverOptions {
-  /// A residual stands out by this many standard deviations ...
+  /// Standard deviations by which a significant residual exceeds the tolerances below.
   double significant = 6.0;
-  /// ... beyond what the noise's own level may be off, relative, of chi2,
+  /// Relative tolerance of chi2 for the level of the noise.
   double noise_tolerance = 0.05;
-  /// and beyond this share of the power of a rough road: records begin and end on it, and the
-  /// response of a nonlinear car to it is not that of a linear one. Measured on hidden trials.
+  /// Tolerance as a fraction of the power of a rough road: records are cut off on it, and the
+  /// response of a car to it is nonlinear. Measured on hidden trials.
   double road_tolerance = 0.1;
 };
 
-/// Power of the road over that of the sensor in a band of a run, mean over the channels.
+/// Ratio of the power of the road to that of the sensors in a band of a run, mean over the
+/// channels.
 double calc_road_ratio(const NoiseSpectrum& spectrum, std::size_t band);
 
-/// Measures the residual of the bench's model. Lists places only where some cell stands out.
+/// Measures the residual of the bench's model. Lists locations only if a cell is significant.
 Leftover measure_leftover(const CampaignData& data, TestBench& bench,
                           const LeftoverOptions& options = {});
 

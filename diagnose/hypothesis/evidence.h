@@ -1,7 +1,7 @@
 // Tests hypotheses on the residuals of a fitted model, to first order: the score test
 // (C. R. Rao, Proc. Camb. Phil. Soc. 44 (1948)) of all at once.
 //
-// With whitened residual r, Jacobian J of what the model may adjust, and the response g of the
+// With whitened residual r, Jacobian J of the adjustable parameters, and the response g of the
 // readings to a hypothesis,
 //
 //   chi2 falls by z' K^-1 z,  z = -g' P r,  K = g' P g,  P = I - J (J'J)^-1 J'
@@ -19,37 +19,37 @@
 
 namespace strut {
 
-/// One beginning of one hypothesis: its columns among all.
+/// One start of one hypothesis, and its columns among all.
 struct HypothesisTrial {
   std::size_t hypothesis = 0, beginning = 0;
-  std::vector<std::size_t> columns;     // one a parameter that switches
-  std::vector<std::size_t> parameters;  // which of the hypothesis'
+  std::vector<std::size_t> columns;     // one per switching parameter
+  std::vector<std::size_t> parameters;  // their indices in Hypothesis::parameters
 };
 
 /// Sums of products over the readings, from which every fit to first order follows.
 struct Evidence {
-  std::size_t shared = 0;  // unknowns that all runs share, in front
+  std::size_t shared = 0;  // number of unknowns that all runs share, which come first
   std::vector<HypothesisTrial> trials;
-  /// By run: products of shared unknowns, columns and residual (in this order), less what the run's
-  /// own unknowns can take; last: of the priors.
+  /// By run: products of shared unknowns, columns and residual (in this order), with the run's own
+  /// unknowns eliminated; last: those of the priors.
   std::vector<Eigen::MatrixXd> products;
 
   std::size_t run_count() const { return products.size() - 1; }
 };
 
-/// After the shared unknowns are adjusted.
+/// The score statistic, with the shared unknowns eliminated.
 struct Score {
   Eigen::MatrixXd covariance;  // K
   Eigen::VectorXd gradient;    // z
   double chi2 = 0.0;           // of the residual
-  Eigen::VectorXd norm;        // K's diagonal before anything was adjusted
+  Eigen::VectorXd norm;        // diagonal of K without elimination
 };
 
-/// The score over the runs, each counted `weight` times.
+/// The score over the runs, run i weighted by `weights[i]`.
 Score calc_score(const Evidence& evidence, const std::vector<double>& weights);
 
-/// The fall of chi2 with these columns; 0 where they point to what cannot be, or change nothing
-/// that the model could not adjust. `amplitude`: the best, in units of the beginning.
+/// The delta chi2 of these columns; 0 where their best amplitude has the wrong sign (`one_sided`),
+/// or the adjustable parameters have the same effect. `amplitude`: the best, in units of the start.
 struct Gain {
   double chi2 = 0.0;
   Eigen::VectorXd amplitude;

@@ -1,5 +1,5 @@
-// Hypotheses about errors of the model: every effect of the catalogue at every place where it may
-// act, with start values that fit the measured motion.
+// Hypotheses about errors of the model: every effect of the catalogue at every location where it
+// may act, with start values that fit the measured motion.
 #pragma once
 
 #include <string>
@@ -14,7 +14,8 @@ namespace strut {
 struct HypothesisParameter {
   std::string name;      // as an unknown: "rear_damper_asymmetry"
   std::string key;       // as in a model file: "asymmetry"
-  bool switches = true;  // the effect vanishes where all such are neutral; else only its shape
+  bool switches = true;  // whether it switches the effect: off if all such parameters are neutral;
+                         // false: it only shapes the effect
 };
 
 /// "damper_asymmetry at rear"; without the place on a rig.
@@ -23,8 +24,8 @@ std::string describe_effect(const std::string& effect, const std::string& place)
 struct Hypothesis {
   std::string effect, place;
   std::vector<HypothesisParameter> parameters;
-  /// Start values of the parameters: small, not neutral. Several, since the shape of an effect
-  /// decides where it is seen.
+  /// Start values of the parameters, small but not neutral. Several, since the shape of an effect
+  /// determines which readings it changes.
   std::vector<std::vector<double>> beginnings;
 
   std::string describe() const;

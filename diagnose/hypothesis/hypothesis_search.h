@@ -1,6 +1,6 @@
-// One hypothesis fitted beside all that a fit adjusts: Gauss-Newton, damped. Sizes are counted as
-// multiples of their beginning, shapes by their logarithm where they are positive, as no shape is
-// known but to a factor; all shapes are held by a prior of 1 about their beginning.
+// Fits one hypothesis together with the unknowns of a fit, by damped Gauss-Newton. Sizes are scaled
+// by their start values; positive shapes are fitted by their logarithm, since they are known only
+// up to a factor. Every shape has a prior with sigma 1 about its start value.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -14,16 +14,16 @@
 
 namespace strut {
 
-/// A fit of a hypothesis together with all that the model may adjust.
+/// The fit of a hypothesis together with the adjustable parameters.
 struct HypothesisFit {
   std::string failure;         // empty: it could be simulated
   std::vector<double> values;  // of the base unknowns, then of the hypothesis' parameters
-  std::vector<double> sigma;   // of the hypothesis' parameters, everything else adjusted
-  double gain = 0.0;           // by which chi2 fell
+  std::vector<double> sigma;   // standard errors of the hypothesis' parameters
+  double gain = 0.0;           // delta chi2
   long simulations = 0;
 };
 
-/// The fit that it starts from. All must outlive the search.
+/// The fit from which a search starts. All references must outlive the search.
 struct SearchGround {
   bool has_inputs = false;
   const std::vector<Unknown>& unknowns;
@@ -31,12 +31,13 @@ struct SearchGround {
   const Whitener& whitener;
   const Eigen::VectorXd& residual;  // whitened, then priors
   const Eigen::MatrixXd& jacobian;  // by unknowns in their scale
-  const Eigen::MatrixXd& normal;    // its products
+  const Eigen::MatrixXd& normal;    // J'J
   const Eigen::LDLT<Eigen::MatrixXd>& regular_normal;
 };
 
-/// `model`: of the ground's unknowns, the hypothesis' `own` behind. Of a car the derivatives by the
-/// ground's unknowns stay those of the ground, of a rig all are computed anew in every step.
+/// `model` has the unknowns of `ground`, followed by the hypothesis' `own`. For a car, the
+/// derivatives with respect to the former stay those of `ground`; for a rig, all are updated in
+/// every step.
 HypothesisFit search_hypothesis(const SearchGround& ground, ReadingModel& model,
                                 const Hypothesis& hypothesis, const std::vector<Unknown>& own,
                                 const std::vector<double>& beginning);

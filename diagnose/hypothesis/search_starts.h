@@ -1,4 +1,4 @@
-// Where the search for an effect's size begins, by how the struts move in the measured runs.
+// Start values for the size of an effect, from the motion of the struts in the measured runs.
 #pragma once
 
 #include <map>
@@ -7,9 +7,9 @@
 
 namespace strut {
 
-/// The motion of the struts at a place, and their spring and damper rates.
+/// The motion of the struts at one location, and their spring and damper rates.
 struct StrutMotion {
-  double compression = 0.0;      // m, the largest
+  double compression = 0.0;      // m, maximum
   double deflection = 0.0;       // m, rms
   double velocity = 0.0;         // m/s, rms
   double stiffness = 0.0;        // N/m
@@ -20,8 +20,8 @@ struct StrutMotion {
   double damper_force() const;  // N, rms
 };
 
-/// Sizes by the names of the effect's parameters, one map for each start; what a map leaves out
-/// begins at its ordinary share. One empty map for an effect without a rule of its own.
+/// Start values by the names of the effect's parameters, one map per start; a parameter that is not
+/// in the map has its default start value. One empty map for an effect without a rule of its own.
 using SearchStarts = std::vector<std::map<std::string, double>>;
 SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& motion);
 

@@ -1,4 +1,4 @@
-// Runs that were kept apart, as the judge of a model.
+// Validates models on the held-out runs.
 #pragma once
 
 #include <string>
@@ -11,22 +11,22 @@ namespace strut {
 struct HoldOutRun {
   std::size_t run = 0;  // of the campaign
   std::string failure;  // empty: it could be simulated
-  double chi2 = 0.0;    // whitened, and of the priors
+  double chi2 = 0.0;    // of the whitened readings and the priors
   double log_likelihood = 0.0;
   std::size_t count = 0;  // of whitened readings
   double expected = 0.0;  // chi2 of a perfect model
 };
 
-/// All models are judged by one noise, that of the model they started from: else one that answers
-/// more to noise would do better by that alone.
+/// Validates all models with the same noise, that of the base model: otherwise a model with a
+/// larger response to noise would have the higher likelihood for that alone.
 class HoldOutJudge {
  public:
-  /// The noise of the runs held out: `base`'s, and what its bands have in excess, mean over the
-  /// runs it was fitted to. `data` must outlive it. Throws InputError where a run cannot be
+  /// Sets the noise of the held-out runs to that of `base`, with the excess of its bands averaged
+  /// over the fitted runs. `data` must outlive it. Throws InputError where a run cannot be
   /// simulated with `base`.
   HoldOutJudge(const CampaignData& data, const WhitenedFit& base, int threads);
 
-  /// Each run that is held out at these shared values, what is unknown about it alone fitted to it.
+  /// Evaluates each held-out run at these shared values; only its own unknowns are fitted to it.
   std::vector<HoldOutRun> judge(const SharedValues& shared) const;
 
   const std::vector<std::size_t>& runs() const { return runs_; }

@@ -1,26 +1,25 @@
-// The noise of all channels of a run together. Sensors are noisy each for itself; the road's
-// roughness, and the noise of what a rig's inputs were measured with, reach all channels at once,
-// through the model.
+// The joint noise of all channels of a run. The noise of the sensors is independent; the road's
+// roughness, and the measurement noise of a rig's inputs, act on all channels through the model.
 //
 //   S(f) = diag(sigma^2) + sum_lm C_lm(f) h_l(f) h_m(f)^*
 //
 // h_l: response of the channels to one source l, as amplitudes of the unitary discrete transform;
-// C: how alike the sources are. Sources of a car: the road under its wheels, with the density
+// C: cross-spectra of the sources. Sources of a car: the road under its wheels, with the density
 //
 //   G(n) = G0 (n / n0)^-2, n0 = 0.1 1/m (ISO 8608)
 //
-// the rear wheels in the tracks of the front ones, a wheelbase later, and the tracks, B apart, as
-// alike as those of an isotropic road with this density (C. J. Dodds, J. D. Robson, J. Sound Vib.
-// 31 (1973)):
+// The rear wheels follow in the tracks of the front ones, delayed by the wheelbase; the tracks, B
+// apart, have the coherence of an isotropic road with this density (C. J. Dodds, J. D. Robson, J.
+// Sound Vib. 31 (1973)):
 //
 //   coherence gamma(n) = x K_1(x), x = 2 pi n B
 //
-// Only 0.9 of either is relied upon, and a delay that is known to 10 ms, no more: no road is
-// isotropic, and no rear wheel runs in the track to the centimeter. Without it long waves would
-// twist the car, which no road does, and the measured level would pay for that. A run is short:
-// what its faded ends spread over neighboring frequencies is in S, too
-// (docs/design/0008-noise-of-a-road.md). Sources of a rig: the white noise of each input. Responses
-// are the model's own, to a pulse so small that it is linear.
+// Both coherences are reduced to 0.9 of this, and the delay is uncertain by 10 ms: no road is
+// isotropic, and no rear wheel follows the track to the centimeter. Without coherence, long waves
+// would twist the car, which no road does, and bias the measured level. A run is short: S includes
+// the leakage of its tapered ends to neighboring frequencies (docs/design/0008-noise-of-a-road.md).
+// Sources of a rig: the white noise of each input. Responses are those of the model to a pulse
+// small enough to be linear.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,45 +32,44 @@
 
 namespace strut {
 
-/// Hz, the upper ends of bands over which what noise models do not know is told apart.
+/// Upper ends of the bands in which excess noise is measured [Hz].
 inline constexpr std::array<double, 7> kNoiseBands = {0.5, 1.0, 3.0, 8.0, 20.0, 50.0, 1e9};
 std::size_t find_noise_band(double frequency);
 
 struct NoiseSpectrum {
-  std::size_t samples = 0;    // of the transform: the first of the run's
-  double interval = 0.0;      // s between them
+  std::size_t samples = 0;    // of the transform, from the start of the run
+  double interval = 0.0;      // s, between samples
   std::vector<double> sigma;  // of each channel's white noise
-  /// By frequency 0, 1, ... / (samples interval), per level: the covariance of the channels by all
-  /// that reaches them at once, in a record that is faded in and out where it is. None beyond the
-  /// end.
+  /// Covariance of the channels by their common sources, per unit of `level`, at the frequencies
+  /// 0, 1, ... / (samples * interval), in a record tapered as `fades` says. Zero at frequencies
+  /// beyond its end.
   std::vector<Eigen::MatrixXcd> common;
   /// Factor on `common`: G0 [m^3] of a car, 1 of a rig.
   double level = 1.0;
-  /// Relative error of the model's responses against those of the car. The linear
-  /// response of a nonlinear car is not exact, and must not be relied on to the last digit.
+  /// Relative error of the model's responses: the linear response of a nonlinear car is only
+  /// approximate.
   double response_error = 0.01;
-  /// A rough road's spectrum is red: a record that is cut off must be faded out.
+  /// Whether the record is tapered, which a cut-off record on a rough road needs: its spectrum is
+  /// red.
   bool fades = false;
-  /// By kNoiseBands: what the variance is to be multiplied by beyond the above, for what the noise
-  /// model does not know (count_excess).
+  /// Factor on the variance by kNoiseBands, for errors of the noise model (count_excess).
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
-/// Factors on the samples of a run: half a period of a cosine over a twentieth of it at either end;
-/// 1 where it is not faded.
+/// Taper of a run's samples: half a period of a cosine over a twentieth of the run at either end; 1
+/// unless it `fades`.
 std::vector<double> make_fade(std::size_t count, bool fades);
 
-/// Variance that `common` gives a channel of a run, at level 1.
+/// Variance of a channel of a run by `common`, at level 1.
 double calc_common_variance(const NoiseSpectrum& spectrum, std::size_t channel);
-/// Variance of the noise of a channel of a run, the sensor's own and what it has in common with
-/// others.
+/// Variance of the noise of a channel of a run, by its sensor and by the common sources.
 double calc_noise_variance(const NoiseSpectrum& spectrum, std::size_t channel);
 
-/// The largest number up to n whose transform is quick: of factors 2, 3, 5.
+/// The largest length up to n with only the factors 2, 3 and 5, for a fast transform.
 std::size_t find_quick_length(std::size_t n);
 
-/// Whether a road goes on before and after a record, or all that it does to a car lies within, as
-/// of a bump.
+/// Whether the road continues before and after a record, or its whole effect on the car lies
+/// within, as that of a bump does.
 enum class RoadRecord { kCutOff, kWithin };
 
 /// Spectra of `runs` at these values of their unknowns (Unknown::run counts within `runs`).

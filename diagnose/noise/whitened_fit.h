@@ -1,4 +1,4 @@
-// The fit of a campaign's model that weighs its readings by all their noise, roads included.
+// Fits a campaign's model with readings weighted by their joint noise, including the road's.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace strut {
 
-/// chi2 per degree of freedom beyond which noise no longer matters.
+/// chi2 per degree of freedom above which the model's error dominates the noise.
 inline constexpr double kDominated = 5.0;
 
 struct WhitenedFit {
@@ -16,19 +16,19 @@ struct WhitenedFit {
   std::vector<NoiseSpectrum> spectra;
   std::size_t shared_count = 0;
   FitResult fit;  // the shared unknowns first, then each run's own
-  /// The linearization of a car at the fit, not whitened; null of a rig.
+  /// The linearization of a car at the fit, not whitened; null for a rig.
   std::shared_ptr<const Linearization> linearization;
-  /// The model's error is far larger than the noise: all of it counts alike, nothing as noise.
+  /// The model's error is far larger than the noise; no part of the residual counts as noise.
   bool is_dominated = false;
 
   SharedValues shared() const;
 };
 
-/// Spectra of the runs with the level of roughness that the residual of `baseline` has.
+/// Measures the spectra of the runs, with the roughness from the residual of `baseline`.
 std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline);
 
-/// Fits `unknowns` (those that all runs share in front) beginning at `start`; of a car again with
-/// what the first fit leaves in each band beyond its noise counted as noise.
+/// Fits `unknowns` (those that all runs share first) from `start`. A car is fitted a second time,
+/// with the excess of the first fit's residual over noise, by band, added to the noise.
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
                          const std::vector<NoiseSpectrum>& spectra,
                          const std::vector<Unknown>& unknowns, const std::vector<double>& start,

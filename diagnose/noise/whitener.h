@@ -1,11 +1,12 @@
-// Readings of all runs as independent numbers of variance 1: transformed by time, and at every
-// frequency divided by the square root of the noise's covariance over the channels.
+// Whitens the readings of all runs to independent numbers of variance 1: a Fourier transform over
+// time, and at every frequency multiplication by the inverse Cholesky factor of the noise's
+// covariance over the channels.
 //
 //   w_k = sqrt(2) C_k^-1 Y_k,  C_k C_k^* = S(f_k),  Y_k: unitary transforms of the channels
 //
-// Motion that roughness causes in all channels alike then weighs little, and motion that it cannot
-// cause weighs as much as the sensors allow: the balance of the body needs no road (Whittle's
-// likelihood, P. Whittle, J. R. Stat. Soc. B 15 (1953)).
+// Joint motion of the channels that roughness can cause has a small weight; motion that it cannot
+// cause has the full weight of the sensors (Whittle's likelihood, P. Whittle, J. R. Stat. Soc. B 15
+// (1953)).
 #pragma once
 
 #include <Eigen/Core>
@@ -18,50 +19,50 @@
 namespace strut {
 
 struct WhitenerOptions {
-  /// Hz; what is faster is left aside: no effect of the catalogue lives there.
+  /// Hz; higher frequencies are ignored, since no effect of the catalogue acts there.
   double highest = 100.0;
-  /// Hz, where runs are faded: what is slower than a record or two is offset, not motion.
+  /// Hz; lower frequencies are ignored in tapered runs, where they are offset, not motion.
   double lowest = 0.6;
 };
 
 class Whitener {
  public:
-  /// Whitens the readings of this model, and as many priors.
+  /// Whitens the readings of `model`; its priors stay as they are.
   Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra,
            const WhitenerOptions& options = {});
 
   /// Columns of readings, in units of each channel's sigma, then priors -> whitened, then priors.
   Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
-  /// Whitens a linearization of a model that could be simulated there.
+  /// Whitens a linearization without failure.
   Linearization apply(const Linearization& at) const;
 
   std::size_t whitened_count() const { return places_.size(); }
-  /// Run, frequency (as `time`) and channel of each whitened number, the channel the last of those
-  /// that it mixes.
+  /// Run, frequency (as `time`) and channel of each whitened number, which combines the channels up
+  /// to this one.
   const std::vector<ReadingPlace>& places() const { return places_; }
   /// First whitened number of each run, and the end.
   const std::vector<std::size_t>& run_begin() const { return run_begin_; }
   double get_frequency(const ReadingPlace& place) const;
-  /// Expected mean square of a run's whitened noise: less than 1 where it is faded or readings are
-  /// missing.
+  /// Expected mean square of a run's whitened noise: less than 1 where it is tapered or readings
+  /// are missing.
   double get_share(std::size_t run) const { return runs_[run].share; }
   const std::vector<NoiseSpectrum>& spectra() const { return spectra_; }
 
-  /// The whitened 1 sigma of one channel alone at one frequency: C_k^-1 e, complex.
+  /// Whitened image of a disturbance of 1 sigma in one channel at one frequency: C_k^-1 e.
   Eigen::VectorXcd get_sensor_direction(const ReadingPlace& place, std::size_t channel) const;
 
-  /// log of the likelihood of whitened readings, up to a constant that does not depend on the
-  /// spectra: -chi2 / 2 - sum log |C_k|, of one run.
+  /// Log likelihood of the whitened readings of one run, -chi2 / 2 - sum log |C_k|, up to a
+  /// constant that does not depend on the spectra.
   double calc_log_likelihood(const Eigen::VectorXd& whitened, std::size_t run) const;
-  /// sum log |C_k| of one run.
+  /// Returns sum log |C_k| for one run.
   double get_log_determinant(std::size_t run) const { return runs_[run].log_determinant; }
 
  private:
   struct Run {
     std::vector<std::vector<std::size_t>> rows;  // [channel][sample]: the reading; kMissing
     std::vector<double> fade;
-    double share = 1.0;                    // mean square of the fade, missing readings as 0
-    Eigen::Index first = 0;                // frequency that is kept
+    double share = 1.0;                    // mean square of the taper, 0 at missing readings
+    Eigen::Index first = 0;                // lowest frequency
     std::vector<Eigen::MatrixXcd> factor;  // [frequency - first]: C_k, lower
     double log_determinant = 0.0;
   };
@@ -75,7 +76,7 @@ class Whitener {
   std::vector<std::size_t> run_begin_;
 };
 
-/// A model seen through a whitener: its readings are the whitened numbers.
+/// A model with whitened readings.
 class WhitenedModel : public ReadingModel {
  public:
   /// Both must outlive it.
@@ -91,20 +92,20 @@ class WhitenedModel : public ReadingModel {
   const Whitener& whitener_;
 };
 
-/// Sets the spectra's excess, by run and kNoiseBands, to the mean square of whitened readings, at
-/// least 1: times the excess that the whitener's spectra have already. Few readings of a run count
-/// with those of all runs.
+/// Sets the excess of `spectra`, by run and kNoiseBands, to that of the whitener's spectra times
+/// the mean square of the whitened readings, at least 1. A band with few readings in a run uses
+/// those of all runs.
 void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
                   std::vector<NoiseSpectrum>& spectra);
 
-/// Roughness as it is seen in residuals.
+/// Roughness estimated from residuals.
 struct Roughness {
   double level = 0.0;           // G0, m^3
   double response_error = 0.0;  // NoiseSpectrum::response_error
 };
 
-/// The roughness under which the whitened residuals of the runs over level ground are most likely.
-/// `residual`: of the model's readings. Levels are tried from 1e-7 to 1e-3 m^3.
+/// Fits the roughness to the residuals of the runs over level ground, by maximum likelihood over
+/// levels from 1e-7 to 1e-3 m^3. `residual`: of the model's readings.
 Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
                         const std::vector<bool>& is_level, const Eigen::VectorXd& residual);
 

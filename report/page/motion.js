@@ -1,12 +1,12 @@
-// The car crossing its bump: a side view that follows it, with a slider over time. What is drawn is
-// written by make_motion() (jobs/simulate/motion.h); z is up, x forward, both in meters.
+// Animation of a car crossing its bump: a side view that moves with the car, with a slider over
+// time. make_motion() (jobs/simulate/motion.h) writes the scene; x forward, z up, in meters.
 "use strict";
 
 const svgSpace = "http://www.w3.org/2000/svg";
 const viewHeight = 2.4;      // m
 const margin = 1.6;          // m ahead of the front and behind the rear wheels
 const coils = 7;
-const dashes = "0.04 0.03";  // of what is on the left, beyond
+const dashes = "0.04 0.03";  // line style of the far (left) side
 
 function addShape(parent, name, attributes) {
   const shape = document.createElementNS(svgSpace, name);
@@ -21,12 +21,12 @@ function setAll(shape, attributes) {
 
 const toPoints = (points) => points.map(([x, z]) => x.toFixed(4) + "," + (-z).toFixed(4)).join(" ");
 
-// A sedan's outline over its wheel base; heights from the ground at rest.
+// A sedan's outline: x as a fraction of the wheelbase from the rear axle, z from the ground at rest.
 function makeOutline(scene) {
   const base = scene.front.wheel[0] - scene.rear.wheel[0];
   const shape = [[-0.33, 0.35], [-0.36, 0.62], [-0.33, 0.92], [-0.1, 0.98], [0.12, 1.38], [0.3, 1.46],
                  [0.52, 1.44], [0.78, 1.02], [1.12, 0.9], [1.28, 0.72], [1.29, 0.35]];
-  return shape.map(([share, z]) => [scene.rear.wheel[0] + share * base, z - scene.nominal_height]);
+  return shape.map(([fraction, z]) => [scene.rear.wheel[0] + fraction * base, z - scene.nominal_height]);
 }
 
 // A zigzag between two points, straight at its ends.
@@ -35,15 +35,15 @@ function makeSpring([x0, z0], [x1, z1]) {
   const across = [-(z1 - z0) / length, (x1 - x0) / length];
   const points = [[x0, z0]];
   for (let i = 0; i <= 2 * coils; ++i) {
-    const share = 0.15 + 0.7 * i / (2 * coils);
+    const along = 0.15 + 0.7 * i / (2 * coils);  // fraction of the length
     const side = i % 2 === 0 ? 0.06 : -0.06;
-    points.push([x0 + share * (x1 - x0) + side * across[0], z0 + share * (z1 - z0) + side * across[1]]);
+    points.push([x0 + along * (x1 - x0) + side * across[0], z0 + along * (z1 - z0) + side * across[1]]);
   }
   points.push([x1, z1]);
   return points;
 }
 
-// Angle that each wheel has turned since the start.
+// Angle that a wheel has turned since the start, by the trapezoidal rule [rad].
 function integrate(time, speed) {
   let angle = 0;
   return speed.map((w, i) => angle += i === 0 ? 0 : 0.5 * (w + speed[i - 1]) * (time[i] - time[i - 1]));
@@ -79,11 +79,11 @@ class MotionView {
     this.marks = addShape(this.svg, "path", {...line, stroke: "var(--soft)"});
     this.body = addShape(this.svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
     this.reference = addShape(this.svg, "circle", {r: 0.03, fill: "var(--ink)"});
-    // Front left, front right, rear left, rear right. Who sees the car drive to the right stands on its
-    // right; wheels of its left are beyond it.
-    const beyond = {"stroke-dasharray": dashes, opacity: 0.5};
+    // Front left, front right, rear left, rear right. The view is from the car's right, so the left
+    // wheels are on the far side.
+    const far = {"stroke-dasharray": dashes, opacity: 0.5};
     this.wheels = [0, 1, 2, 3].map((corner) => {
-      const look = corner % 2 === 0 ? beyond : {};
+      const look = corner % 2 === 0 ? far : {};
       return {rim: addShape(this.svg, "circle", {...line, "stroke-width": 0.03, ...look}),
               spoke: addShape(this.svg, "line", {...line, ...look}),
               spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...look})};
@@ -110,7 +110,7 @@ class MotionView {
     this.stop();
   }
 
-  // The deviation from the first instant, enlarged.
+  // Enlarges the deviation from the first instant.
   enlarge(values, frame) { return values[0] + this.enlarged * (values[frame] - values[0]); }
 
   show(frame) {
@@ -120,7 +120,7 @@ class MotionView {
     const z = this.enlarge(scene.height, frame);
     const pitch = this.enlarge(scene.pitch, frame);
     const [cos, sin] = [Math.cos(pitch), Math.sin(pitch)];
-    // Nose down is positive: forward points go down.
+    // Positive pitch is nose down, so points ahead move down.
     const place = ([px, pz]) => [px * cos + pz * sin - this.view.left, z - px * sin + pz * cos];
     this.body.setAttribute("points", toPoints(this.outline.map(place)));
     const [cx, cz] = place([0, 0]);
@@ -142,10 +142,10 @@ class MotionView {
     const [dx, dy] = [0.8 * scene.radius * Math.cos(angle), 0.8 * scene.radius * Math.sin(angle)];
     setAll(spoke, {x1: cx - dx, y1: cy - dy, x2: cx + dx, y2: cy + dy});
     const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
-    // Enlarged it may be shorter than a spring can be.
-    const share = Math.max(0.15, 1 - this.enlarge(scene.deflection[corner], frame) / length);
-    const end = [axle.upper[0] + share * (axle.lower[0] - axle.upper[0]),
-                 axle.upper[1] + share * (axle.lower[1] - axle.upper[1])];
+    // Enlarged motion may compress the spring beyond its length.
+    const ratio = Math.max(0.15, 1 - this.enlarge(scene.deflection[corner], frame) / length);
+    const end = [axle.upper[0] + ratio * (axle.lower[0] - axle.upper[0]),
+                 axle.upper[1] + ratio * (axle.lower[1] - axle.upper[1])];
     spring.setAttribute("points", toPoints(makeSpring(place(axle.upper), place(end))));
   }
 
@@ -154,7 +154,7 @@ class MotionView {
     const bump = this.scene.road.map(([x, z]) => [x - shift, this.enlarged * z]);
     this.road.setAttribute("points", toPoints([[-1, 0], ...bump.filter(([x]) => x > -1), [this.view.width + 1, 0]]
         .sort((a, b) => a[0] - b[0])));
-    let path = "";  // a mark every meter
+    let path = "";  // one mark per meter
     for (let x = Math.ceil(shift); x < shift + this.view.width; ++x) path += `M${(x - shift).toFixed(3)} 0.05v0.08`;
     this.marks.setAttribute("d", path);
   }
@@ -163,7 +163,7 @@ class MotionView {
     if (this.frame >= this.last) this.frame = 0;
     this.button.textContent = "Pause";
     this.playing = true;
-    const slow = 5;  // a bump is over in a tenth of a second
+    const slow = 5;  // slow motion: the car crosses a bump in a tenth of a second
     const begin = performance.now();
     const from = this.scene.time[this.frame];
     const step = (now) => {
@@ -182,7 +182,8 @@ class MotionView {
   }
 }
 
-// The line in the curves. Drawing them takes longer than a frame, so only the last instant counts.
+// Marks an instant by a line in the charts. Drawing takes longer than a frame, so only the last
+// requested instant is drawn.
 let wantedInstant = null;
 function markInstant(time) {
   const isWaiting = wantedInstant !== null;

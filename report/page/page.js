@@ -1,17 +1,16 @@
-// Draws the charts of a report. Each stands in a div.chart whose script element holds what
-// make_plotly() wrote. When all are drawn, or have failed, the body's data-charts says
-// "drawn/wanted".
+// Draws the charts of a report: each div.chart has a script element with the JSON of make_plotly().
+// Once all charts are drawn or have failed, the body's data-charts is "DRAWN/TOTAL".
 "use strict";
 
 const strutCharts = [];
 const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 
-// What is printed stands on white, also where the screen is dark; while "beforeprint" runs the
+// Colors on paper, which is white even if the screen is dark. During "beforeprint" the computed
 // styles are still those of the screen.
 const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a", "--paper": "#ffffff"};
 const paperWidth = 980;  // px
 const buttonHeight = 30;  // px above the legend
-const leastShare = 0.8;  // of the width that a chart is made for; a narrower page is scrolled
+const minWidthRatio = 0.8;  // to a chart's nominal width; a narrower page scrolls
 let isForPaper = false;
 
 function readColor(name) {
@@ -19,7 +18,7 @@ function readColor(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-// Colors of the page for a chart's axes and texts.
+// Axes and texts of a chart in the colors of the page.
 function makeTemplate() {
   const ink = readColor("--ink");
   const line = readColor("--line");
@@ -32,7 +31,7 @@ function makeTemplate() {
     hoverlabel: {namelength: -1}}};
 }
 
-// A copy of a trace in which the color "ink" is the page's.
+// Copies a trace with the color "ink" replaced by that of the page.
 function paint(value, ink) {
   if (value === "ink") return ink;
   if (Array.isArray(value)) {
@@ -46,17 +45,17 @@ function quoteCsv(text) {
   return '"' + String(text).replaceAll('"', '""') + '"';
 }
 
-// The numbers of a chart as drawn, a line a point; whiskers as what stands below and above y.
+// The numbers of a chart as drawn, one line per point; whiskers as distances below and above y.
 function makeCsv(chart) {
   const lines = ["panel,series,category,x,y,value,below,above"];
   for (const trace of chart.data) {
     const names = chart.layout[trace.xaxis.replace("x", "xaxis")].ticktext;
-    const stands = trace.type !== "scatter" || trace.mode === "markers";  // at a place, or beside it
+    const hasCategory = trace.type !== "scatter" || trace.mode === "markers";
     const values = trace.marker?.showscale && trace.marker.color;
     const columns = [trace.x, trace.y, values, trace.error_y?.arrayminus, trace.error_y?.array];
     trace.x.forEach((x, i) => {
-      const place = stands && names?.[Math.round(x) - 1];
-      const words = [trace.meta, trace.name, place || ""].map(quoteCsv);
+      const category = hasCategory && names?.[Math.round(x) - 1];
+      const words = [trace.meta, trace.name, category || ""].map(quoteCsv);
       lines.push([...words, ...columns.map((column) => column?.[i])].join(","));
     });
   }
@@ -68,14 +67,14 @@ function saveText(name, text) {
   link.href = URL.createObjectURL(new Blob([text], {type: "text/csv"}));
   link.download = name;
   link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);  // some browsers begin to save later
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);  // some browsers start saving late
 }
 
 function makeConfig(chart) {
   const icon = {width: 24, height: 24, path: "M4 3h16v18H4zM4 9h16M4 15h16M12 3v18"};
   return {
     responsive: true, displaylogo: false,
-    showSendToCloud: false, plotlyServerURL: "",  // a report's numbers stay where the report is
+    showSendToCloud: false, plotlyServerURL: "",  // no data leaves the report
     toImageButtonOptions: {format: "svg", filename: chart.name},
     modeBarButtonsToAdd: [{name: "Numbers as CSV", icon: icon,
                            click: () => saveText(chart.name + ".csv", makeCsv(chart))}]};
@@ -92,16 +91,16 @@ function explain(div, text) {
 async function drawChart(div) {
   const chart = JSON.parse(div.querySelector("script").textContent);
   div.style.height = chart.height + buttonHeight + "px";
-  div.style.minWidth = leastShare * chart.width + "px";
+  div.style.minWidth = minWidthRatio * chart.width + "px";
   const margin = {...chart.layout.margin, t: buttonHeight};
-  // A finger that moves a page must not zoom a chart.
+  // On a touch screen, scrolling the page must not zoom a chart.
   const isTouched = window.matchMedia("(pointer: coarse)").matches;
   const layout = {...chart.layout, margin, ...(isTouched && {dragmode: false}), template: makeTemplate()};
   await Plotly.newPlot(div, paint(chart.data, readColor("--ink")), layout, makeConfig(chart));
   strutCharts.push({div, chart});
 }
 
-// Light, dark or paper: the same charts in other colors.
+// Redraws all charts in the colors of the screen, light or dark, or of paper.
 function repaintAll(forPaper) {
   isForPaper = forPaper;
   for (const {div, chart} of strutCharts) {

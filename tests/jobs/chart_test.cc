@@ -363,7 +363,7 @@ TEST_CASE("A run's report replaces no page but an earlier run's", "[io]") {
     const test::Outcome outcome = test::run_program(simulate);
     CHECK(outcome.code == 2);
     CHECK_THAT(outcome.messages, Contains(std::string("holds ") + name) &&
-                                     Contains("not of an earlier simulated run"));
+                                     Contains("which no earlier simulated run wrote"));
     CHECK(test::read_text(folder / name) == "[1, 2]\n");
     fs::remove(folder / name);
   }
