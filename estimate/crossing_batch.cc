@@ -18,7 +18,7 @@
 namespace strut {
 namespace {
 
-/// Channels that any of the runs reads.
+/// Channels that any of the runs compares.
 std::vector<int> list_recorded(const std::vector<MeasuredRun>& runs) {
   std::set<int> channels;
   for (const MeasuredRun& run : runs) {
@@ -45,9 +45,9 @@ std::string explain_failure(const std::string& run, const LaneRun& result) {
       get_name(result.status()));
 }
 
-using PreparedCases = std::vector<std::optional<PreparedCase>>;  // nothing: failed
+using PreparedCases = std::vector<std::optional<PreparedCase>>;  // null: failed
 
-/// Prepares tasks [begin, end); those that cannot be prepared get a failure among `results`.
+/// Prepares tasks [begin, end); sets the failure in `results` of those that cannot be prepared.
 PreparedCases prepare_tasks(const std::vector<MeasuredRun>& runs,
                             const std::vector<CrossingTask>& tasks, std::size_t begin,
                             std::size_t end, int threads, std::vector<CasePreparer>& preparers,
@@ -60,7 +60,7 @@ PreparedCases prepare_tasks(const std::vector<MeasuredRun>& runs,
       results[i].failure = fmt::format("{}: {}", runs[tasks[i].run].name, e.what());
     }
   };
-  // Each run's first is the point that the others are near.
+  // A run's first task is its base point, close to the others.
   std::vector<std::size_t> others;
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t run = tasks[i].run;
@@ -71,14 +71,14 @@ PreparedCases prepare_tasks(const std::vector<MeasuredRun>& runs,
     }
   }
   share_items(threads, others.size(), [&](std::size_t k, int /*thread*/) {
-    // A copy: a changed mechanism must not drive the base point's out of the preparer.
+    // A copy, since a changed mechanism must not replace the base point's in the preparer.
     CasePreparer preparer = preparers[tasks[others[k]].run];
     prepare(others[k], preparer);
   });
   return prepared;
 }
 
-/// Simulates the prepared cases of the tasks from number `begin` on into `results`.
+/// Simulates the prepared cases, the first of which is task number `begin`, into `results`.
 void run_tasks(const std::vector<MeasuredRun>& runs, const std::vector<CrossingTask>& tasks,
                std::size_t begin, PreparedCases prepared, const LinearizeOptions& options,
                std::vector<CrossingResult>& results) {
@@ -113,7 +113,7 @@ std::vector<CrossingResult> simulate_crossings(const std::vector<MeasuredRun>& r
                                                const std::vector<CrossingTask>& tasks,
                                                const LinearizeOptions& options,
                                                std::vector<CasePreparer>& preparers) {
-  // The histories of so many simulations take a few hundred megabytes.
+  // Limits the histories in memory to a few hundred megabytes.
   constexpr std::size_t kAtOnce = 128;
   std::vector<CrossingResult> results(tasks.size());
   for (std::size_t begin = 0; begin < tasks.size(); begin += kAtOnce) {

@@ -11,33 +11,34 @@
 
 namespace strut {
 
-/// A simulation to be made of run number `run`. The sensors' effects are no part of it.
+/// A simulation of run number `run` with another setup. It does not include the effects of the
+/// sensors.
 struct CrossingTask {
   std::size_t run = 0;
   Case setup;
 };
 
-/// One series by channel of the measured run, sample by sample.
+/// Samples of a run's compared channels: [MeasuredRun::channels][sample].
 using SampledRun = std::vector<std::vector<double>>;
 
 struct CrossingResult {
-  std::string failure;         // reason for which there is no simulation; empty: there is one
-  bool was_simulated = false;  // also one that failed on the way
-  SampledRun sampled;          // before the sensors (read_sensors)
+  std::string failure;         // why it could not be simulated to its end; empty: it was
+  bool was_simulated = false;  // also true if the simulation failed on the way
+  SampledRun sampled;          // true values, without sensors (read_sensors)
 };
 
-/// Simulates the tasks in lanes, options.rate samples a second. `preparers`: one by run, at the
-/// mechanism of the run's base point, which a run's first task sets. No result depends on the
-/// number of threads.
+/// Simulates the tasks in lanes, with options.rate samples per second. `preparers`: one per run,
+/// with the mechanism of the run's first task, its base point. Results do not depend on the number
+/// of threads.
 std::vector<CrossingResult> simulate_crossings(const std::vector<MeasuredRun>& runs,
                                                const std::vector<CrossingTask>& tasks,
                                                const LinearizeOptions& options,
                                                std::vector<CasePreparer>& preparers);
 
-/// The car without the effects of its sensors.
+/// Returns the car without the effects of its sensors.
 Case remove_sensors(Case c);
 
-/// The channels as the sensors of `setup` read them; `interval` s between samples.
+/// Applies the effects of the sensors in `setup` to the channels; `interval` s between samples.
 SampledRun read_sensors(const Case& setup, const MeasuredRun& run, double interval,
                         SampledRun sampled);
 

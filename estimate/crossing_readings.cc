@@ -23,13 +23,13 @@ class CrossingReadings final : public ReadingModel {
                    const LinearizeOptions& options);
 
   Linearization linearize(const std::vector<double>& values) override;
-  /// Points whose cars differ in nothing but their sensors share a simulation.
+  /// Points whose cars differ only in their sensors share a simulation.
   using ReadingModel::evaluate;
   std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
   std::vector<double> align(const std::vector<double>& values) override;
 
  private:
-  // Which readings are compared, and for how long is simulated.
+  // Choice of the compared readings and the simulated duration.
   void choose_readings(std::size_t run);
   void align_durations();
 
@@ -95,8 +95,8 @@ void CrossingReadings::choose_readings(std::size_t r) {
       format_number(driven)));
 }
 
-/// Only cases of one duration share lanes: runs nearly as long as the longest are simulated as
-/// long.
+/// Extends runs nearly as long as the longest to its duration, since only cases of equal duration
+/// share lanes.
 void CrossingReadings::align_durations() {
   constexpr double kNearly = 0.7;
   double longest = 0.0;
@@ -109,7 +109,7 @@ void CrossingReadings::align_durations() {
   }
 }
 
-/// The car and maneuver of a run at these values. Throws what the parameters throw.
+/// The car and maneuver of a run at these values. Throws as the parameters do.
 Case CrossingReadings::make_setup(std::size_t run, const std::vector<double>& values) const {
   const Case& known = runs_[run].setup.car();
   Case c = known;
@@ -120,13 +120,13 @@ Case CrossingReadings::make_setup(std::size_t run, const std::vector<double>& va
       add_map_part(c.vehicle.force_maps, *u.part, values[i]);
       continue;
     }
-    // A value that does not change is not set: a corner's neutral effect would replace the axle's.
+    // Skips unchanged values: setting a corner's neutral effect would replace the axle's.
     if (values[i] != parameters_[i]->get(known)) parameters_[i]->set(c, values[i]);
   }
   return c;
 }
 
-/// make_setup into `setup`, or the reason for which there is none.
+/// Calls make_setup and returns why it failed; empty if it did not.
 std::string CrossingReadings::try_setup(std::size_t run, const std::vector<double>& values,
                                         Case& setup) const {
   try {
@@ -146,7 +146,7 @@ std::vector<CrossingResult> CrossingReadings::simulate(const std::vector<Crossin
   return results;
 }
 
-/// Simulates the variants as their sensors read them; returns the reason for which one fails.
+/// Simulates the variants and their sensors; returns why one failed, empty if none did.
 std::string CrossingReadings::sample_variants(const std::vector<double>& values,
                                               const std::vector<RunVariant>& variants,
                                               std::vector<SampledRun>& sampled) {
@@ -188,8 +188,8 @@ void CrossingReadings::fill_hit_time(std::size_t run, const SampledRun& base,
   }
 }
 
-/// Central differences. The step is short, so a column whose second difference is as large as its
-/// first is rounding, and becomes zero.
+/// Fills in a column by central differences. The step is short, so a column whose second difference
+/// is as large as its first is rounding error and becomes zero.
 void CrossingReadings::fill_column(const RunVariant& upper, const RunVariant& lower,
                                    const SampledRun& base, const SampledRun& above_run,
                                    const SampledRun& below_run, const std::vector<double>& values,
@@ -250,7 +250,7 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
     evaluations[i].residual = Eigen::VectorXd::Zero(row_count());
     fill_prior_residuals(points[i], evaluations[i].residual);
   }
-  // The setup of a point in a run, and the number of its car without sensors among `cars`.
+  // The setup of a point in a run, and the index in `cars` of its car without sensors.
   struct PointSetup {
     Case setup;
     std::size_t car = 0;
@@ -286,7 +286,7 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
   return evaluations;
 }
 
-/// Returns `values` as they are where they cannot be simulated.
+/// Returns `values` unchanged if they cannot be simulated.
 std::vector<double> CrossingReadings::align(const std::vector<double>& values) {
   std::vector<SampledRun> bases;
   const std::vector<RunVariant> variants =

@@ -1,4 +1,4 @@
-// Cars that cross a road, against their simulation.
+// Measured readings of cars that cross a road, against their simulation.
 //
 //   residual = (y_sim(t + t0; p) + b - y_measured) / sigma
 //
@@ -13,9 +13,9 @@
 
 namespace strut {
 
-/// Simulates as long as the readings need, at most for the maneuver; leaves out readings that for a
-/// hit time within its bounds would lie outside of the simulation. align() sets the hit time of
-/// each run to the one at which its readings fit best, by one simulation a run. Throws InputError
+/// Simulates as long as the readings need, at most the maneuver's duration; leaves out readings
+/// that would be outside of the simulated time for some hit time within its bounds. align() sets
+/// the hit time of each run to that of the best fit, by one simulation per run. Throws InputError
 /// for unusable runs or unknowns.
 std::unique_ptr<ReadingModel> make_crossing_readings(std::vector<MeasuredRun> runs,
                                                      std::vector<Unknown> unknowns,

@@ -11,13 +11,13 @@
 
 namespace strut {
 
-/// Sets in `base` each axis to its middle; then `at` ("axis=value"), then `settings`
-/// ("parameter=value"). Throws InputError.
+/// Returns `base` with each axis at its middle, then with `at` ("axis=value") and `settings`
+/// ("parameter=value") applied. Throws InputError.
 Case make_base_point(const Case& base, const Grid& grid, const std::vector<std::string>& at,
                      const std::vector<std::string>& settings);
 
-/// The integration that differences need, however coarse the sweep's own: RK4 with Newton closure,
-/// contact events located, and a step of 1 ms or the request's where that is shorter.
+/// Integration accurate enough for differences, independent of how coarse the sweep's own is: RK4
+/// with Newton closure, located contact events, and a step of 1 ms or the request's if shorter.
 SolverOptions make_accurate(const SolverOptions& requested);
 
 struct DesignChoice {
@@ -39,12 +39,13 @@ struct Design {
   std::vector<Bounds> scan;        // every instant alone
   std::vector<DesignChoice> best;  // of 1, 2, 3 instants
   Bounds window;                   // all instants together
-  /// All channels; all but one of them, for each; then with the most useful other sensors at the
-  /// request's instant, added one by one.
+  /// All channels; all but one, for each of them; then all with further sensors, added one by one,
+  /// each the most useful at the request's instant.
   std::vector<SensorSet> sensors;
 };
 
-/// Throws InputError for a channel without noise, and for fewer than three instants.
+/// Calculates the bounds of all designs. Throws InputError for a channel without noise, and for
+/// fewer than three instants.
 Design calc_design(const Sensitivity& s, const std::vector<int>& channels,
                    const SensorNoise& noise);
 

@@ -20,7 +20,7 @@ Eigen::VectorXd calc_scales(const Eigen::MatrixXd& information) {
 }  // namespace
 
 InformationInverse invert_information(const Eigen::MatrixXd& information) {
-  constexpr double kMinPart = 1e-6;  // of a parameter in a free direction, above rounding
+  constexpr double kMinPart = 1e-6;  // min component of a free direction, above rounding error
   const Eigen::Index n = information.rows();
   const Eigen::VectorXd scale = calc_scales(information);
   const Solver solver(scale.asDiagonal() * information * scale.asDiagonal());

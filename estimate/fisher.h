@@ -29,20 +29,20 @@ struct Bounds {
   double weakest_bound = 0.0;   // along it, 1 / sqrt(smallest eigenvalue) [%]; infinite if singular
 };
 
-/// Pseudoinverse of F.
+/// Pseudoinverse of F, the Fisher information.
 struct InformationInverse {
   Eigen::MatrixXd covariance;  // over the resolved directions
-  std::vector<bool> free;      // parameters with a part in a direction that F does not resolve
+  std::vector<bool> free;      // parameters with a component in a direction that F does not resolve
   int rank = 0;                // number of resolved directions
 };
 
-/// F^-1 from the eigenvectors of F scaled to a unit diagonal, D F D = V diag(l) V':
+/// Inverts F by the eigenvectors of F scaled to a unit diagonal, D F D = V diag(l) V':
 /// F^-1 = D V diag(1 / l) V' D, without the directions whose l is below kMinInformation of the
 /// largest. F symmetric positive semidefinite, in any units.
 InformationInverse invert_information(const Eigen::MatrixXd& information);
 
-/// Cramer-Rao bounds of a symmetric positive semidefinite F. The bounds do not depend on the scale
-/// of the parameters; condition and weakest combination do.
+/// Calculates the Cramer-Rao bounds of a symmetric positive semidefinite F. The bounds do not
+/// depend on the scale of the parameters; condition and weakest combination do.
 Bounds calc_bounds(const Eigen::MatrixXd& information);
 
 /// The A-optimal criterion sqrt(trace((F + prior)^-1) / n) [%]. The weak prior (1e4 %) only ranks

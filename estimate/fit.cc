@@ -82,8 +82,9 @@ class FitProblem : public LeastSquaresProblem {
     return point.at.residual.squaredNorm();
   }
 
-  /// Infinite where there is no simulation, or none beside it: such a step is not taken. Trial
-  /// points are linearized at once: most are accepted, and then need their Jacobian.
+  /// Infinite where the point or a neighbor in its differences cannot be simulated, so that the
+  /// step is rejected. Trial points are linearized, since most are accepted and then need their
+  /// Jacobian.
   double calc_loss(const double* weights) override {
     const FitPoint& point = linearize(weights);
     return point.failed() ? kInfinity : point.at.residual.squaredNorm();
@@ -117,8 +118,8 @@ double calc_widening(FitProblem& problem, const double* weights) {
   return point.failed() ? 1.0 : calc_widening(problem.model(), point.at);
 }
 
-/// Moves those weights beyond a bound back to it from which the slope leads inwards; returns
-/// whether there were any.
+/// Moves a weight beyond a bound back to it if chi2 decreases inwards; returns whether there was
+/// one.
 bool release_bounds(FitProblem& problem, std::vector<double>& weights) {
   const FitPoint& point = problem.linearize(weights.data());
   if (point.failed()) return false;
@@ -152,7 +153,7 @@ LevenbergMarquardtOptions make_search_options(int iterations, double first_dampi
 /// When a search stops.
 struct Goal {
   double distance = 0.0;  // from the minimum, in standard deviations
-  bool widened = false;   // which calc_widening widens
+  bool widened = false;   // whether these are widened by calc_widening
   double max_damping = 0.0;
 };
 
@@ -181,9 +182,9 @@ bool approach(FitProblem& problem, const FitOptions& options, const Goal& goal,
   return search.state().stop != StopReason::kDamping;
 }
 
-/// Approaches the minimum; returns whether it ends at a kink. Close to the minimum it gives up
-/// sooner: there the loss has kinks, where a contact event passes a reading, and the last
-/// hundredths of a standard deviation of the linear model may not exist.
+/// Approaches the minimum; returns whether it ends at a kink. The second approach stops at lower
+/// damping: close to the minimum the loss has kinks, where a contact event passes a reading, and
+/// the last hundredths of a standard deviation of the linear model may not exist.
 bool search_minimum(FitProblem& problem, const FitOptions& options, SearchState& state) {
   constexpr int kReleases = 3;
   constexpr Goal kNear{kFitTolerance, true, 1e6}, kNearest{0.01 * kFitTolerance, false, 1e-3};

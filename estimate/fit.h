@@ -16,8 +16,8 @@
 
 namespace strut {
 
-/// Distances from the minimum at which a fit has converged, in standard deviations. An estimate
-/// that is d of them away has a root mean square error sqrt(1 + d^2) times as large: by 0.5 %, at a
+/// Maximum distances from the minimum of a converged fit, in standard deviations. A distance d
+/// enlarges the root mean square error of an estimate by the factor sqrt(1 + d^2): by 0.5 %, at a
 /// kink by 12 %.
 inline constexpr double kFitTolerance = 0.1, kKinkTolerance = 0.5;
 /// Tolerance of chi2 about its expectation, in standard deviations.
@@ -26,7 +26,7 @@ inline constexpr double kFitSigmas = 4.0;
 struct FitOptions {
   LinearizeOptions linearize;
   int iterations = 50;  // max accepted steps
-  /// First mu relative to the diagonal of J'J. Small, since initial guesses are near: worn springs
+  /// First mu relative to the diagonal of J'J. Small, since initial guesses are close: worn springs
   /// and dampers, not other cars.
   double first_damping = 1e-5;
   std::vector<double> start;  // initial guess; empty: the unknowns' own
@@ -36,7 +36,7 @@ struct FitOptions {
 struct ChannelFit {
   int run = 0, channel = 0;  // the latter in ModelInfo::channels
   long count = 0;            // number of readings
-  double chi2 = 0.0;         // their part of chi2
+  double chi2 = 0.0;         // of these readings
   /// Correlation of neighboring residuals. Within 2 / sqrt(count) of 0 if they are white; otherwise
   /// the model lacks something or the noise is not white.
   double neighbor_correlation = 0.0;
@@ -47,11 +47,11 @@ struct FitResult {
   std::vector<double> values;  // in their units
   std::vector<bool> at_bound;  // held by a bound
   Uncertainty uncertainty;     // at `values`
-  /// The uncertainty for a noise as large as the residuals: readings weigh max(1, chi2 / degrees)
-  /// times less, priors as before.
+  /// The uncertainty for noise as large as the residuals: the weight of the readings is divided by
+  /// max(1, chi2 / degrees), that of the priors unchanged.
   Uncertainty widened;
   double chi2 = 0.0;  // of readings and priors
-  long degrees = 0;   // number of readings and priors less rank
+  long degrees = 0;   // of freedom: number of readings and priors less the rank
   std::vector<ChannelFit> channels;
   /// Distance to the minimum of the linear model, in standard deviations (widened by
   /// calc_widening).
@@ -65,9 +65,10 @@ struct FitResult {
   long outside = 0;  // number of readings outside of the simulated time, left out
 
   double chi2_per_degree() const;
-  /// By how many standard deviations chi2 exceeds its expectation, the degrees of freedom.
+  /// Excess of chi2 over its expectation, the degrees of freedom, in standard deviations.
   double calc_excess() const;
-  /// Whether chi2 is no larger than noise alone makes it; and whether it is smaller.
+  /// Whether chi2 is at most that of noise alone; and whether it is smaller, so the assumed noise
+  /// is too large.
   bool is_adequate() const { return calc_excess() <= kFitSigmas; }
   bool is_quiet() const { return calc_excess() < -kFitSigmas; }
 };
@@ -76,7 +77,7 @@ struct FitResult {
 /// where the initial guess cannot be simulated.
 FitResult fit_readings(ReadingModel& model, const FitOptions& options = {});
 
-/// The normal equations without the unknowns at a bound.
+/// Removes the unknowns at a bound from the normal equations.
 NormalEquations free_unknowns(NormalEquations normal, const std::vector<bool>& at_bound);
 
 /// sqrt(g' H^-1 g): distance to the minimum of the linear model, in standard deviations.
@@ -86,13 +87,13 @@ double calc_distance(const NormalEquations& normal);
 /// least 1.
 double calc_widening(const ReadingModel& model, const Linearization& at);
 
-/// The result of a search that ended at `values`, with the linearization there.
+/// Makes the result of a search that ended at `values`, from the linearization there.
 FitResult describe_fit(const ReadingModel& model, const Linearization& at,
                        std::vector<double> values, std::vector<bool> at_bound, bool at_kink);
 
-/// Fits `unknowns` to `runs`. A step to where a simulation fails is not taken. Deterministic for
-/// any number of threads. Throws InputError for unusable runs or unknowns, and where the initial
-/// guess cannot be simulated.
+/// Fits `unknowns` to `runs`. A step to a point that cannot be simulated is rejected. Deterministic
+/// for any number of threads. Throws InputError for unusable runs or unknowns, and where the
+/// initial guess cannot be simulated.
 FitResult fit_simulation(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& unknowns,
                          const FitOptions& options = {});
 

@@ -7,13 +7,13 @@
 namespace strut {
 namespace {
 
-/// Interval of the hit times that are tried; a wheel is on the flank of a bump for about ten of
-/// them.
+/// Interval of the grid of hit times; a wheel is on the flank of a bump for about ten of them.
 constexpr double kAlignStep = 1e-3;  // s
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A Gaussian prior of a channel's bias in sigmas of its noise; infinite information: no unknown.
+/// A Gaussian prior of a channel's bias in sigmas of its noise; infinite information: not an
+/// unknown.
 struct BiasPrior {
   double mean = 0.0, information = kInfinity;
 };
@@ -79,7 +79,7 @@ double find_best_hit_time(const std::vector<Unknown>& unknowns, const MeasuredRu
                           std::span<const ReadingPlace> readings, const SampledRun& base,
                           double start, double step) {
   const Unknown& u = unknowns[find_hit_time(unknowns, readings.front().run)];
-  // On a bound a search would be held there.
+  // Excludes the bounds, where a search would be held.
   const auto first = static_cast<int>(std::floor((u.low - start) / kAlignStep)) + 1;
   const auto last = static_cast<int>(std::ceil((u.high - start) / kAlignStep)) - 1;
   double best = start, min_chi2 = kInfinity;

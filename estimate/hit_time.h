@@ -1,4 +1,4 @@
-// Hit times: simulated time less the time of the measuring clock, of cars that cross a road.
+// Hit times of cars that cross a road: simulated time less the time of the measuring clock.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +22,10 @@ double get_hit_time(const std::vector<Unknown>& unknowns, const std::vector<doub
 CurvePoint read_curve(const MeasuredRun& run, const SampledRun& sampled, const ReadingPlace& place,
                       double hit_time, double step);
 
-/// The hit time within its bounds at which `base`, shifted in time and with the best bias of each
-/// channel, comes nearest to the readings; tried in steps of 1 ms from `start`. A search that
-/// starts a flank of the bump away from the truth can end in another local minimum; trying all hit
-/// times costs no simulation. The run has a hit time. `readings`: those of this run.
+/// Returns the hit time within its bounds that minimizes chi2 of `base`, shifted in time and with
+/// the best bias of each channel, on a grid of 1 ms from `start`. A search that starts a flank of
+/// the bump away from the truth can end in another local minimum; trying all hit times costs no
+/// simulation. Requires that the run has a hit time. `readings`: those of this run.
 double find_best_hit_time(const std::vector<Unknown>& unknowns, const MeasuredRun& run,
                           std::span<const ReadingPlace> readings, const SampledRun& base,
                           double start, double step);

@@ -25,10 +25,10 @@ std::size_t find_best(const std::vector<Eigen::MatrixXd>& informations, const Ei
   return best;
 }
 
-/// Exchanges one instant of a choice for a better one, if there is one; returns whether it did.
+/// Exchanges one instant of a choice for a better one, if any; returns whether it did.
 bool exchange(const std::vector<Eigen::MatrixXd>& informations, std::size_t slot,
               SpreadCriterion& criterion, InstantChoice& choice) {
-  constexpr double kMaxRatio = 1.0 - 1e-9;  // beyond is rounding, and might go round in circles
+  constexpr double kMaxRatio = 1.0 - 1e-9;  // above, improvements are rounding and could cycle
   std::vector<std::size_t> others = choice.instants;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(slot));
   Eigen::MatrixXd rest =

@@ -24,18 +24,18 @@ std::vector<Eigen::MatrixXd> calc_informations(const Sensitivity& s,
 Eigen::MatrixXd sum_informations(const std::vector<Eigen::MatrixXd>& informations);
 
 struct InstantChoice {
-  std::vector<std::size_t> instants;  // ascending, all different
-  Eigen::MatrixXd information;        // sum over them
+  std::vector<std::size_t> instants;  // distinct, ascending
+  Eigen::MatrixXd information;        // their sum
 };
 
-/// The `count` instants with the minimum mean square bound (A-optimal). One is searched
-/// exhaustively; more are added greedily and exchanged one by one until no exchange helps, from
+/// Chooses the `count` instants with the minimum mean square bound (A-optimal). One is searched
+/// exhaustively; more are added greedily and exchanged one by one until no exchange improves, from
 /// several starts (V. V. Fedorov, Theory of Optimal Experiments, 1972). A local optimum,
 /// deterministic.
 InstantChoice choose_instants(const std::vector<Eigen::MatrixXd>& informations, int count);
 
-/// The channel of `candidates` outside of `channels` whose reading at `instant` lowers the mean
-/// square bound most; -1 where there is none.
+/// Returns the channel of `candidates`, but not of `channels`, whose reading at `instant` lowers
+/// the mean square bound most; -1 where there is none.
 int choose_sensor(const Sensitivity& s, const Instant& instant, const std::vector<int>& channels,
                   const std::vector<int>& candidates, const SensorNoise& noise);
 

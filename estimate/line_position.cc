@@ -30,7 +30,7 @@ RearWheel make_rear_wheel(const PreparedCase& c, int corner) {
 /// method from `q`.
 double solve_coordinate(const RearWheel& wheel, double deflection, double q) {
   constexpr int kIterations = 6;
-  constexpr double kTolerance = 1e-12;  // m, far below what moves an instant
+  constexpr double kTolerance = 1e-12;  // m, far below any effect on an instant
   double length = 0.0, slope = 0.0;
   double* const none = nullptr;
   for (int i = 0; i < kIterations; ++i) {
@@ -63,7 +63,7 @@ double calc_world_x(double yaw, double pitch, double roll, const Vec3<double>& r
   return std::cos(yaw) * (std::cos(pitch) * r.x + std::sin(pitch) * up) - std::sin(yaw) * side;
 }
 
-/// The rear wheels on the bump; both where both or none are.
+/// The rear wheels that cross the bump; both where both or neither do.
 std::vector<int> list_trigger_corners(const PreparedCase& c) {
   const auto& on_bump = c.vehicle.layout.on_bump;
   if (on_bump[kRearLeft] == on_bump[kRearRight]) return {kRearLeft, kRearRight};
@@ -78,7 +78,7 @@ std::vector<double> calc_line_positions(const PreparedCase& c, const LaneResults
   std::vector<RearWheel> wheels;
   for (const int corner : list_trigger_corners(c)) wheels.push_back(make_rear_wheel(c, corner));
 
-  std::vector<double> coordinates(wheels.size(), 0.0);  // the last sample's, for the next
+  std::vector<double> coordinates(wheels.size(), 0.0);  // initial guesses: the last sample's
   std::vector<double> positions(at(results.sample_count));
   double yaw = 0.0, last_rate = 0.0, last_time = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {

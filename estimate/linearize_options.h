@@ -6,8 +6,8 @@
 namespace strut {
 
 /// RK4 with steps of 1 ms, 4 ms away from the bump, and located contact events. Corners are
-/// tabulated: that takes half the time of closing loops, moves no estimate by 1e-6 sigma, and lets
-/// cases with different hardpoints share lanes.
+/// tabulated, which takes half the time of closing the loops, changes estimates by less than
+/// 1e-6 sigma, and lets cases with different hardpoints share lanes.
 inline SolverOptions make_fit_integration() {
   SolverOptions request;
   request.options.closure = Closure::kTable;
@@ -18,16 +18,16 @@ inline SolverOptions make_fit_integration() {
 struct LinearizeOptions {
   /// Integration of a car on a road.
   SolverOptions integrate = make_fit_integration();
-  /// 1/s, rate of the samples of a car's simulation, between which readings are interpolated. At
-  /// 1000 the interpolation over a bump at 20 m/s errs by a tenth of a standard deviation of MEMS
-  /// sensors, at 2000 by 3 % of one.
+  /// Sampling rate of a car's simulation [1/s], between whose samples readings are interpolated.
+  /// The interpolation error over a bump at 20 m/s is a tenth of a standard deviation of MEMS
+  /// sensors at 1000/s, 3 % of one at 2000/s.
   double rate = 2000.0;
-  /// s, maximum step of a run that recorded inputs drive; a step is also at most a tenth of a
-  /// radian of the fastest natural mode, where RK4 errs by 1e-6 of a phase.
+  /// Maximum step of a run that recorded inputs drive [s]. A step is also at most a tenth of a
+  /// radian of the fastest natural mode, where the phase error of RK4 is 1e-6.
   double longest_step = 2e-3;
-  /// h of the central differences as a fraction of the scale. Short, since readings near a contact
-  /// event are kinked in the unknowns: at 1e-4 the speed moves an event across them. Rounding is
-  /// 1e-7.
+  /// Step h of the central differences as a fraction of the scale. Short, since readings near a
+  /// contact event are kinked in the unknowns: at 1e-4 the speed moves an event across them. The
+  /// rounding error is 1e-7.
   double relative_step = 1e-5;
   int threads = 1;  // results do not depend on it
 };

@@ -38,7 +38,7 @@ void check_channel(const MeasuredRun& run, const MeasuredChannel& c) {
                                  format_number(c.sigma)));
   }
   if (c.values.size() != run.times.size()) {
-    throw InputError(fmt::format("{}: {} has {} readings at {} times; must be one at each",
+    throw InputError(fmt::format("{}: {} has {} readings for {} times; must have one for each",
                                  run.name, name, c.values.size(), run.times.size()));
   }
   const auto bad = std::find_if_not(c.values.begin(), c.values.end(), [&](double v) {

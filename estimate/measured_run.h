@@ -1,5 +1,5 @@
-// One measured run: readings of some channels over the sensor's own clock, and the model with its
-// known or supposed setup and inputs.
+// One measured run: readings of channels over the clock of the measurement, and the model with its
+// known or assumed setup and inputs.
 #pragma once
 
 #include <cstddef>
@@ -26,23 +26,23 @@ struct InputNoise {
 
 struct MeasuredRun {
   std::string name;           // the file, for messages
-  Model setup;                // known or supposed; fits replace a maneuver's duration
+  Model setup;                // known or assumed; fits replace a maneuver's duration
   std::vector<double> times;  // s, ascending
   std::vector<MeasuredChannel> channels;
-  bool may_miss = false;                  // readings may be NaN: missing
+  bool may_miss = false;                  // whether readings may be missing (NaN)
   std::vector<InputNoise> input_noise{};  // by recorded input
 };
 
 /// Keeps the readings in [from, to] s.
 void cut_window(MeasuredRun& run, double from, double to);
 
-/// Throws InputError, with the run and the sample, unless the run has times that ascend and
-/// channels, each once, with a positive sigma and as many readings as times, all finite (or
-/// missing, where they may be).
+/// Throws InputError, with the run and the sample, unless the run has ascending times and channels,
+/// each once, with a positive sigma and one reading per time, all finite (or missing if
+/// `may_miss`).
 void check_measured_run(const MeasuredRun& run);
 
-/// A planned measurement, for bounds: the channels that have a sensor, every 1 / rate s from `from`
-/// to `to`, with readings of zero.
+/// Makes a planned measurement, for bounds: the channels that have a sensor, every 1 / rate s from
+/// `from` to `to`, with readings of zero.
 MeasuredRun make_planned_run(const Case& setup, const SensorNoise& noise, double rate, double from,
                              double to);
 

@@ -30,7 +30,7 @@ void add_crossing(const std::vector<MeasuredRun>& runs, std::size_t r, const Nui
 
 // --- runs that recorded inputs drive ---------------------------------------------------------
 
-/// The first reading of a position less that of the ground; 0 where it is not measured.
+/// The first reading of a position relative to the ground [m]; 0 where it is not measured.
 double read_first_offset(const MeasuredRun& run, int position) {
   for (const MeasuredChannel& c : run.channels) {
     if (c.channel != position) continue;
@@ -65,7 +65,7 @@ Unknown make_initial_state(const MeasuredRun& run, int index, const RunCurves& c
   const double spread = curves.failure.empty() ? calc_spread(curves.channel[at]) : 0.0;
   u.start = is_rate ? 0.0 : read_first_offset(run, channel);
   u.scale = std::max(spread, std::abs(u.start));
-  if (u.scale == 0.0) u.scale = 1e-3;  // nothing moves; any small number
+  if (u.scale == 0.0) u.scale = 1e-3;  // nothing moves, so any small number will do
   u.prior = {u.start, u.scale};
   u.low = u.start - 100.0 * u.scale;
   u.high = u.start + 100.0 * u.scale;

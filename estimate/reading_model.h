@@ -1,4 +1,4 @@
-// Readings of one or several runs against their simulation: the model that a fit adjusts.
+// Readings of one or several runs against their simulation: the model of a fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,14 +14,14 @@ namespace strut {
 
 /// Residuals and their derivatives at one point.
 struct Linearization {
-  std::string failure;  // reason for which a run cannot be simulated here; empty: none
+  std::string failure;  // why a run cannot be simulated here; empty: all can
   /// (y_sim(t + hit_time) + bias - y_measured) / sigma by run, time and channel; then
   /// (value - mean) / sigma of every prior.
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;  // by unknowns, in units of their scale
 };
 
-/// Residuals alone, at one of several points; as in Linearization.
+/// Failure and residuals of a Linearization.
 struct Evaluation {
   std::string failure;
   Eigen::VectorXd residual;
@@ -38,10 +38,10 @@ inline constexpr std::size_t kNoUnknown = static_cast<std::size_t>(-1);
 struct RunVariant {
   std::size_t run = 0;
   std::size_t unknown = kNoUnknown;  // kNoUnknown: the base point
-  double value = 0.0;                // that unknown's
+  double value = 0.0;                // of that unknown
 };
 
-/// `values` with the variant's unknown at the variant's value.
+/// Returns `values` with the variant's unknown at the variant's value.
 std::vector<double> set_variant(std::vector<double> values, const RunVariant& variant);
 
 /// Lists by run: the base point, then the upper and the lower side of each unknown that its
@@ -68,7 +68,7 @@ class ReadingModel {
   Evaluation evaluate(const std::vector<double>& values) {
     return evaluate(std::vector<std::vector<double>>{values}).front();
   }
-  /// `values` with those unknowns improved that need no search, such as the hit times.
+  /// Returns `values` with unknowns improved that need no search, such as the hit times.
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
@@ -100,13 +100,13 @@ class ReadingModel {
   Eigen::Index row_count() const {
     return static_cast<Eigen::Index>(reading_count() + prior_count_);
   }
-  /// First row of a run's readings; of one past the last run, their end.
+  /// First row of a run's readings; for the number of runs, the end of all.
   std::size_t begin_row(std::size_t run) const { return begin_[run]; }
   const MeasuredChannel& get_channel(const ReadingPlace& place) const {
     return runs_[place.run].channels[place.channel];
   }
 
-  /// A Linearization of zeros, or one that failed.
+  /// Makes a linearization of zeros or, with a `failure`, one that failed.
   Linearization make_linearization(std::string failure) const;
   /// Fills in the residuals of a run from its simulated readings, to which it adds the biases.
   void fill_residual(std::size_t run, const std::vector<double>& values,
@@ -144,8 +144,8 @@ void ReadingModel::add_readings(std::size_t run, const IsInside& is_inside) {
   begin_.push_back(readings_.size());
 }
 
-/// J'J and J'r of a linearization. Unknowns of one run meet only that run's readings, which saves
-/// most of the work.
+/// J'J and J'r of a linearization. Readings depend only on their own run's unknowns and the shared
+/// ones, which saves most of the work.
 struct NormalEquations {
   Eigen::MatrixXd information, of_priors;  // the latter: the part of the former from the priors
   Eigen::VectorXd gradient;

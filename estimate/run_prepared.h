@@ -1,4 +1,4 @@
-// Simulates prepared cases in lockstep lanes or by CVODE, for comparisons of runs with each other.
+// Simulates prepared cases in lockstep lanes or by CVODE, for differences between runs.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ struct LaneRun {
 };
 
 /// Runs all cases and returns them in the same order; results do not depend on the number of
-/// threads. A single case runs in a lane, too: lanes agree with each other to the bit, with plain
-/// double only to 1e-9, which a difference would magnify. A failed run reports its status.
+/// threads. A single case also runs in a lane: lanes agree with each other bit by bit, with double
+/// only to 1e-9, which a difference would magnify. A failed run reports its status.
 std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,
                                   const SolverOptions& integrate, const SamplePlan& plan,
                                   int threads = 1);

@@ -25,7 +25,7 @@ std::vector<double> draw(const std::vector<Unknown>& unknowns, std::uint64_t num
     const bool is_gain = u.kind == UnknownKind::kInputGain;
     if (number > 0 && (is_gain || u.kind == UnknownKind::kParameter)) {
       const double exponent = 2.0 * calc_uniform(kSeed, i, 2 * number) - 1.0;
-      // A value with a narrow prior is drawn within it.
+      // With a narrow prior, within two of its standard deviations.
       const double known = u.prior.informs() ? 2.0 * u.prior.sigma / u.scale : 1e9;
       const double factor = std::pow(reach, exponent);
       value = u.start + std::clamp(u.scale * (factor - 1.0), -known * u.scale, known * u.scale);

@@ -26,7 +26,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// Minimum rate at which runs are sampled, so that interpolation between samples is exact enough.
 constexpr double kMinRate = 1000.0;  // 1/s
 
-/// One simulation, to be read at any position.
+/// One simulation with its position at every sample.
 struct Trajectory : LaneRun {
   std::vector<double> offsets;  // ascending
 };
@@ -100,15 +100,15 @@ void check_run(const Trajectory& run, const std::string& label) {
   }
 }
 
-/// Drops all positions from where the wheels first stand still or roll back.
+/// Drops all positions from the first standstill or rollback of the wheels on.
 void keep_ascending(std::vector<double>& offsets) {
   const auto end = std::adjacent_find(offsets.begin(), offsets.end(),
                                       [](double a, double b) { return !(b > a); });
   if (end != offsets.end()) offsets.erase(end + 1, offsets.end());
 }
 
-/// Channels where the run passes `offset`: the cubic through the four nearest samples, over the
-/// position.
+/// Interpolates the channels at the position `offset`, by the cubic through the four nearest
+/// samples.
 void sample_at(const Trajectory& run, double offset, Channels& out) {
   constexpr std::size_t kNodes = 4;
   const auto above = std::upper_bound(run.offsets.begin(), run.offsets.end(), offset);
@@ -181,7 +181,7 @@ struct ErrorSums {
 
 /// Fills in Sensitivity::error and sets curves that are rounding error to zero.
 void fill_errors(const ErrorSums& sums, Sensitivity& s) {
-  constexpr double kRounding = 0.5;  // of a curve's rms: h and h/2 have nothing in common
+  constexpr double kRounding = 0.5;  // difference between h and h/2 relative to the curve's rms
   s.error.assign(sums.size.size(), 0.0);
   for (std::size_t i = 0; i < s.error.size(); ++i) {
     const double ratio = std::sqrt(sums.difference[i] / sums.size[i]);

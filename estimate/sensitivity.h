@@ -1,5 +1,5 @@
-// Derivatives of every channel with respect to the parameters of a grid, along the whole way across
-// the bump.
+// Derivatives of every channel with respect to the parameters of a grid, along the whole crossing
+// of the bump.
 //
 // Central differences of simulations in lockstep lanes: base, base +/- h and base +/- h/2 in each
 // parameter. The instants are positions, not times: the rear wheels' mean forward position ahead of
@@ -35,8 +35,8 @@ struct Instant {
 struct Sensitivity {
   std::vector<SensitivityParameter> parameters;
   Instant snapshot;               // at the request's offset, from the integrator's own event
-  std::vector<Instant> instants;  // one per sample of the base run whose position every run passes
-  double rate = 0.0;              // 1/s, of the samples
+  std::vector<Instant> instants;  // samples of the base run at positions that every run passes
+  double rate = 0.0;              // 1/s, of the instants
   /// [channel][parameter]: rms over the instants of 4/3 (J(h) - J(h/2)), the leading error of J(h),
   /// relative to the rms of J(h). Zero for a curve of zeros.
   std::vector<double> error;
@@ -54,9 +54,9 @@ struct SensitivityOptions {
   SolverOptions integrate;  // default: RK4 1 ms, Newton closure, contact events located
 };
 
-/// The Jacobian of all car channels at `base` with respect to the axes' parameters. A curve that is
-/// rounding error (its half-step error exceeds half of its size) is set to zero. Throws InputError
-/// where a run is infeasible, fails, or never reaches the snapshot's line.
+/// Calculates the Jacobian of all car channels at `base` with respect to the axes' parameters. A
+/// curve that is rounding error (its half-step error exceeds half of its size) is set to zero.
+/// Throws InputError where a run is infeasible, fails, or never reaches the snapshot's line.
 Sensitivity calc_sensitivity(const Case& base, const std::vector<Axis>& axes, double offset,
                              const SensitivityOptions& options);
 

@@ -41,7 +41,7 @@ void read_history(const LaneRun& simulated, const EffectSettings& effects,
   }
 }
 
-/// The car of the run, in a maneuver as long as the readings need.
+/// The car of the run, with the duration that the readings need.
 Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                const std::vector<double>& values, double hit_time) {
   Case c = set_unknowns({run.name, run.setup, {}, {}}, unknowns, values, 0).setup.car();

@@ -13,8 +13,8 @@ struct RunCurves {
   std::vector<std::vector<double>> channel;  // [channel of the model][time]; NaN: not simulated
 };
 
-/// Simulates `run` at those `values` whose Unknown::run is kEveryRun or 0; biases are added to
-/// their channels. Throws InputError where a value is out of its range.
+/// Simulates `run` with the unknowns that all runs share or that belong to run 0 set to `values`,
+/// and adds the biases to their channels. Throws InputError where a value is out of its range.
 RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                        const std::vector<double>& values);
 

@@ -20,20 +20,20 @@ struct Uncertainty {
   /// (J'J)^-1 in the unknowns' own units; zero rows for unknowns without information.
   Eigen::MatrixXd covariance;
   std::vector<double> sigma;                   // sqrt of its diagonal; infinite without information
-  std::vector<bool> identifiable;              // sigma within the unknown's own size
-  int rank = 0;                                // number of unknowns less that of null directions
+  std::vector<bool> identifiable;              // sigma at most the unknown's scale
+  int rank = 0;                                // number of unknowns less null directions
   std::vector<NullDirection> null_directions;  // sigma above 100 %, worst first
 
   double calc_correlation(std::size_t i, std::size_t j) const;
 };
 
-/// The uncertainty of unknowns whose scaled Jacobian (reading_model.h) has the information J'J.
-/// Independent Gaussian noise; at the true values the Cramer-Rao bound (S. M. Kay, Estimation
+/// Calculates the uncertainty from the information J'J of the scaled Jacobian (reading_model.h),
+/// for independent Gaussian noise; at the true values the Cramer-Rao bound (S. M. Kay, Estimation
 /// Theory, 1993, eq. 3.31; with priors the Bayesian one of H. L. Van Trees, 1968, section 2.4.3).
 Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
                              const std::vector<Unknown>& unknowns);
 
-/// "front_stiffness - 0.98 rear_stiffness": the parts above 0.1.
+/// "front_stiffness - 0.98 rear_stiffness": the components above 0.1.
 std::string describe_direction(const NullDirection& direction,
                                const std::vector<Unknown>& unknowns);
 

@@ -20,8 +20,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr char kGainSuffix[] = "_gain", kBiasSuffix[] = "_bias";
 
-/// In scales: distance of the lower bound from an open end of the allowed range, and the farthest
-/// upper bound.
+/// In units of the scale: distance of the lower bound from an open end of the allowed range, and
+/// largest upper bound.
 constexpr double kAboveLow = 1e-4, kReach = 1e4;
 
 std::string describe_run(const Unknown& u) {
@@ -211,7 +211,7 @@ void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count)
     };
     const std::string name = u.name + describe_run(u);
     if (std::count_if(unknowns.begin(), unknowns.end(), same) > 1) {
-      throw InputError(name + ": free twice; allowed: once");
+      throw InputError(name + ": listed twice as free; must be listed once");
     }
     if (u.run != kEveryRun && (u.run < 0 || static_cast<std::size_t>(u.run) >= run_count)) {
       throw InputError(fmt::format("{}: there are only {} runs", name, run_count));

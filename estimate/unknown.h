@@ -1,4 +1,4 @@
-// The unknowns of a fit: parameters of the model, and the nuisances of every measurement.
+// The unknowns of a fit: parameters of the model, and nuisances of each run.
 #pragma once
 
 #include <limits>
@@ -45,59 +45,61 @@ struct Unknown {
   std::shared_ptr<const ForceMap> part{};  // kForceMap: the map that the factor multiplies
 };
 
-/// Whether an unknown belongs to run number `run`: to it alone, or to every run.
+/// Whether an unknown belongs to run number `run`, alone or as one of all runs.
 inline bool belongs(const Unknown& u, std::size_t run) {
   return u.run == kEveryRun || static_cast<std::size_t>(u.run) == run;
 }
 
-/// Whether the simulation depends on an unknown. Hit times and biases change only how a simulation
-/// is read.
+/// Whether the simulation depends on an unknown: not on hit times and biases, which only affect the
+/// readings.
 inline bool is_simulated(const Unknown& u) {
   return u.kind != UnknownKind::kHitTime && u.kind != UnknownKind::kBias;
 }
 
-/// A parameter within its plausible range, starting at its value in the run's setup (kEveryRun: in
-/// the first run's). Throws InputError with the nearest known name, or where it cannot be fitted.
+/// Makes a parameter within its plausible range, with its value in the run's setup as initial guess
+/// (kEveryRun: in the first run's). Throws InputError with the nearest known name, or where it
+/// cannot be fitted.
 Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name,
                        int run = kEveryRun);
 
-/// An unknown that all runs share, by its name: a parameter, INPUT_gain, or CHANNEL_bias of a
+/// Makes an unknown that all runs share, by its name: a parameter, INPUT_gain, or CHANNEL_bias of a
 /// channel of runs.front(). Throws InputError with the nearest known name.
 Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::string& name);
 
-/// A hit time, bounded by mean +/- kHitTimeReach sigma. sigma > 0.
+/// Makes a hit time, bounded by mean +/- kHitTimeReach sigma. sigma > 0.
 Unknown make_hit_time(int run, const Prior& prior);
 inline constexpr double kHitTimeReach = 5.0;
 inline constexpr char kHitTimeName[] = "hit_time";
 
-/// The bias of a channel, without bounds. sigma > 0, may be infinite.
+/// Makes the bias of a channel, without bounds. sigma > 0, may be infinite.
 Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);
 
-/// The factor on a part of the force map at the part's place: starts at prior.mean, no bounds.
+/// Makes the factor on a part of the force map at the part's location; starts at prior.mean,
+/// without bounds.
 Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
                          const Prior& prior);
 
-/// Adds `factor` times a part to the map at its place, which it creates where there is none. Throws
+/// Adds `factor` times a part to the map at its location, which is created if missing. Throws
 /// ModelError where the map there has a different grid.
 void add_map_part(ForceMaps& maps, const ForceMap& part, double factor);
 
-/// Whether an unknown of this name is listed, of any run.
+/// Whether the list has an unknown of this name, for any run.
 bool is_among(const std::vector<Unknown>& unknowns, const std::string& name);
 
 /// The initial guess of every unknown.
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
 
-/// Returns the run with those unknowns set that belong to every run or to run number `run`:
-/// parameters, force maps, gains of inputs (which scale the input's noise, too) and initial states,
-/// but not hit times and biases. Throws what set_parameter throws.
+/// Returns the run with the unknowns set that belong to every run or to run number `run`:
+/// parameters, force maps, gains of inputs (which also scale the input's noise) and initial states,
+/// but not hit times and biases. Throws as set_parameter does.
 MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unknowns,
                          const std::vector<double>& values, int run = kEveryRun);
 
 /// Sets an initial state of a rig; `state` as in Unknown::state.
 void set_initial_state(RigSpec& rig, int state, double value);
 
-/// Throws InputError where an unknown is listed twice, belongs to no run, starts outside of its
-/// bounds, or has a prior whose sigma is not positive.
+/// Throws InputError where an unknown is listed twice, belongs to a run that does not exist, starts
+/// outside of its bounds, or has a prior whose sigma is not positive.
 void check_unknowns(const std::vector<Unknown>& unknowns, std::size_t run_count);
 
 }  // namespace strut
