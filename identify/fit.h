@@ -9,25 +9,24 @@
 
 namespace strut {
 
-/// The parameters that a fit identifies without further choice: stiffness and damping of both
-/// axles.
+/// Lists the parameters that a fit identifies by default: stiffness and damping of both axles.
 const std::vector<std::string>& list_default_free_parameters();
 
-/// The unknowns of the parameters in `names`; the speed has one value per run, other parameters one
-/// for all runs. Throws InputError where a name is unknown or given twice.
+/// Makes the unknowns of the parameters in `names`; the speed has one value per run, other
+/// parameters one for all runs. Throws InputError where a name is unknown or given twice.
 std::vector<Unknown> make_free_unknowns(const std::vector<MeasuredRun>& runs,
                                         const std::vector<std::string>& names);
 
-/// Sets the prior of the unknowns called `name`, and starts the search at its mean as far as bounds
-/// allow. Throws InputError where there is no such unknown.
+/// Sets the prior of the unknowns called `name`, and their initial guess to its mean within the
+/// bounds. Throws InputError where there is no such unknown.
 void set_prior(const ModelInfo& model, const std::string& name, const Prior& prior,
                std::vector<Unknown>& unknowns);
 
-/// The estimate of unknown `i`: half width 1.96 sigma, infinite where it is not identifiable; not
-/// in range where it is not identifiable or held by a bound.
+/// Makes the estimate of unknown `i`: half width 1.96 sigma, infinite where it is not identifiable;
+/// not in range where it is not identifiable or held by a bound.
 IdentifiedParameter make_estimate(const FitResult& fit, std::size_t i);
 
-/// The estimates of the first `parameter_count` unknowns, which precede the nuisances.
+/// Makes the estimates of the first `parameter_count` unknowns, which precede the nuisances.
 IdentifiedRow make_fit_row(const FitResult& fit, std::size_t parameter_count);
 
 }  // namespace strut

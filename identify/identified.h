@@ -13,13 +13,13 @@ struct IdentifiedParameter {
   std::string name, unit;
   double value = std::numeric_limits<double>::quiet_NaN();
   double half_width = std::numeric_limits<double>::quiet_NaN();  // of the 95 % interval
-  bool in_range = true;  // false: outside of the range that the model knows
+  bool in_range = true;  // false: outside of the model's range, or not determined by a fit
 
   double low() const { return value - half_width; }
   double high() const { return value + half_width; }
 };
 
-/// A measured channel outside of the range that a model was trained on.
+/// A measured channel outside of the training range of a model.
 struct OutsideChannel {
   std::string name, unit;
   double value = 0.0, low = 0.0, high = 0.0;

@@ -1,4 +1,4 @@
-// A measured time history on the sample times of a model's window.
+// Resamples a measured time history to the sample times of a model's window.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct MeasuredRecord {
 };
 
 /// Reads the column `time` and the window's channels of a file onto a grid of the window's
-/// interval: unchanged where they were sampled on it, else by Lagrange's polynomials through the
+/// interval: unchanged if they were sampled on it, otherwise by Lagrange polynomials through the
 /// six samples around each instant. A window that is not aligned is cut at its own times. Throws
 /// InputError that names the file, and the row where times do not ascend or samples lie too far
 /// apart; also where the rate is below the model's, a unit differs, or the record is too short.

@@ -14,7 +14,7 @@ namespace strut {
 
 struct SnapshotOptions {
   std::vector<double> noise;  // 1 sigma of each of the model's inputs, in its unit; 0: exact
-  bool extrapolate = false;   // also give values outside of the range trained on
+  bool extrapolate = false;   // also give values outside of the training range
 };
 
 /// Snapshots, one value for each of a model's inputs.
@@ -31,9 +31,9 @@ Snapshots read_snapshots(const TrainedModel& model, const std::vector<std::files
 
 /// Identifies the parameters from one snapshot; `inputs` holds one value for each of the model's.
 ///
-/// An input is outside where it lies beyond the range trained on by more than 1.96 sigma of its
-/// noise; values are then given with `extrapolate` only, and intervals never. A parameter is
-/// outside as is_parameter_in_range defines it. The half width is, to first order,
+/// An input is outside if it exceeds the training range by more than 1.96 sigma of its noise;
+/// values are then given only with `extrapolate`, and intervals never. A parameter is outside as
+/// is_parameter_in_range defines it. The half width is, to first order,
 ///
 ///   sqrt(ci95^2 + 1.96^2 sum_i (d parameter / d input_i  sigma_i)^2)
 ///

@@ -9,8 +9,8 @@
 namespace strut {
 namespace {
 
-/// Standard deviations by which the part of a record outside the model's directions may exceed its
-/// mean.
+/// Maximum excess of a record's residual outside of the model's directions over its mean, in
+/// standard deviations.
 constexpr double kMaxResidualDeviations = 5.0;
 
 std::vector<OutsideChannel> list_outside(const TrainedModel& model, const MeasuredRecord& record,
@@ -26,7 +26,7 @@ std::vector<OutsideChannel> list_outside(const TrainedModel& model, const Measur
   if (!reading.alignment.found) {
     const double begin = record.begin + reading.alignment.begin * window.grid.interval;
     outside.push_back({"alignment", "s", begin, std::nan(""), std::nan(""), 0.0});
-    return outside;  // the components of a misplaced window mean nothing
+    return outside;  // the components of a misaligned window are meaningless
   }
   const double limit = window.residual_mean + kMaxResidualDeviations * window.residual_deviation;
   check("leftover", "1", reading.residual, 0.0, limit, 0.0);

@@ -7,10 +7,10 @@
 
 namespace strut {
 
-/// Identifies the parameters from a record. Outside of the range trained on are a component beyond
-/// its range by more than the noise, a record that the directions of the training do not span
-/// ("leftover"), and one that agrees with the reference only at its end ("alignment"). Values are
-/// then given with `extrapolate` only.
+/// Identifies the parameters from a record. It is outside of the training range if a component
+/// exceeds its range by more than the noise, if the directions of the training do not span it
+/// ("leftover"), or if it aligns with the reference only at an end of the allowed shifts
+/// ("alignment"). Values are then given only with `extrapolate`.
 IdentifiedRow identify_record(const TrainedModel& model, const Identifier& identifier,
                               const MeasuredRecord& record, bool extrapolate);
 

@@ -76,9 +76,9 @@ void check_same(const StudyFolder& folder, const StudyRequest& request) {
   const StudyRequest there = open_study_folder(folder);
   const auto changes = compare_facts(list_study_facts(there), list_study_facts(request));
   if (changes.empty()) return;
-  std::string text =
-      fmt::format("{}: holds another study than {}; use another folder, or undo the changes:",
-                  folder.root.string(), request.path.string());
+  std::string text = fmt::format(
+      "{}: already holds a different study than {}; use another folder, or undo the changes:",
+      folder.root.string(), request.path.string());
   for (const std::string& line : changes) text += "\n  " + line;
   throw InputError(text);
 }
@@ -157,8 +157,8 @@ fs::path make_window_request(const StudyFolder& folder, const StudyRequest& requ
   return made;
 }
 
-/// Opens the plan of `sweep`, made from the request that `make` writes where there is none. Throws
-/// InputError where the sweep's folder in the study is a link.
+/// Opens the plan of `sweep`; if there is none, makes it from the request that `make` writes.
+/// Throws InputError where the sweep's folder in the study is a link.
 template <class Make>
 Plan plan_once(const StudyFolder& folder, const SweepFolder& sweep, const Make& make) {
   Folder(folder.root)

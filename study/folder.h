@@ -34,8 +34,8 @@ struct StudyFolder {
 };
 
 /// Makes the folder of a study with copies of every file it names, study.toml last. Making the same
-/// study again changes nothing. Throws InputError where `root` holds another study (it lists what
-/// changed) or other files, EnvironmentError where it cannot be written.
+/// study again changes nothing. Throws InputError where `root` holds a different study (the message
+/// lists the changes) or other files, EnvironmentError where it cannot be written.
 StudyFolder make_study_folder(const std::filesystem::path& root, const StudyRequest& request);
 
 /// Reads the study of a folder. Throws InputError where the folder holds none.
@@ -48,7 +48,7 @@ Plan plan_study_sweep(const StudyFolder& folder, const StudyRequest& request,
 
 /// The sweep of the noise section's windows, with the last of the preloads.
 SweepFolder get_window_sweep(const StudyFolder& folder, const StudyRequest& request);
-/// Plans it, or opens its plan.
+/// Plans the sweep of get_window_sweep, or opens its plan.
 Plan plan_window_sweep(const StudyFolder& folder, const StudyRequest& request);
 
 /// Names of all sweeps, each with the first cell that needs it, in the order of the cells.

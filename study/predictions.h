@@ -1,4 +1,4 @@
-// A trained network of a study beside the truth, case by case.
+// Predictions of a study's trained network and the true values, case by case.
 #pragma once
 
 #include <vector>

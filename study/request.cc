@@ -143,8 +143,8 @@ void read_training(const Table& table, StudyRequest& request) {
   throw table.error("train", "train + validate must be below 1, so that cases remain to test");
 }
 
-/// Checks what the plans and splits would refuse later, before a folder is made: after a correction
-/// of the file the same folder can be used.
+/// Makes the checks of the plans and splits before a folder is made, so that the same folder can be
+/// used after a correction of the file.
 void check_samples(const Table& root, const StudyRequest& request, SweepRequest sweep) {
   check_different(root, "samples", request.samples);
   for (const std::int64_t samples : request.samples) {

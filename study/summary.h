@@ -1,4 +1,4 @@
-// A study beside its aim: how many of its errors are within it, and which are the largest.
+// Compares a study with its aim: the number of errors within it, and the largest errors.
 #pragma once
 
 #include <string>

@@ -70,8 +70,8 @@ Prior read_known(const Table& table, const std::string& key) {
   }
 }
 
-/// Reads what is known of an input. An actuator's command differs from its action in scale and
-/// sign, unless the campaign gives its gain.
+/// Reads the gain and smoothing of an input. The gain of an actuator's command is unknown unless
+/// the campaign gives it.
 void read_input(const Table& table, const ModelInfo& model, CampaignColumn& c) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   const auto input = static_cast<std::size_t>(find_input(model, c.channel));

@@ -117,7 +117,8 @@ Where find_where(const CampaignData& data, const Diagnosis& diagnosis) {
   return where;
 }
 
-/// Whether a calibration that has not converged misses only a small part of the causes' delta chi2.
+/// Whether a calibration that has not converged is close to its minimum compared with the causes'
+/// delta chi2.
 bool is_near(const FitResult& calibration, const Selection& selection) {
   constexpr double kSmall = 0.05;
   const double taken = std::accumulate(selection.gains.begin(), selection.gains.end(), 0.0);

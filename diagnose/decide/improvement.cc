@@ -70,8 +70,8 @@ ChannelImprovement make_channel(const CampaignData& data, const ChannelSums& s) 
   return c;
 }
 
-/// Relative tolerance of a perfect model's channel over its floor: the noise's level is known to
-/// `noise.uncertainty`, a record has only so many readings of it, and every road is different.
+/// Relative tolerance of a channel's rms over its floor for a perfect model: the level of the noise
+/// is uncertain by `noise.uncertainty`, the number of readings is finite, and roads differ.
 double calc_floor_tolerance(const ChannelSums& s, const NoiseEstimate& noise) {
   constexpr double kRoad = 0.1;
   const double sensor_variance = noise.sigma * noise.sigma;

@@ -71,8 +71,8 @@ std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
   return motions;
 }
 
-/// Whether the model has this parameter itself: a quarter car's tire stiffness is that of the
-/// effect.
+/// Whether the parameter is the model's own, not an effect's, such as a quarter car's tire
+/// stiffness.
 bool is_own_parameter(const CampaignData& data, const std::string& name) {
   const auto parameters = list_parameters(data.model());
   return std::any_of(parameters.begin(), parameters.end(),

@@ -51,7 +51,7 @@ CsvTable read_table(const std::filesystem::path& file) {
   CsvTable table = read_csv(file);
   if (table.row_count() > 0) return table;
   throw InputError(
-      fmt::format("{}: no rows; remove it, and `strut study` computes it anew", file.string()));
+      fmt::format("{}: no rows; remove it, and `strut study` recomputes it", file.string()));
 }
 
 BoundedCase read_case(const CsvTable& table, const std::vector<std::string>& parameters,
