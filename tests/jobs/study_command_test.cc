@@ -194,8 +194,8 @@ TEST_CASE("A folder of another study or of none is refused", "[io][slow]") {
   const auto before = read_folder(files / "made");
   const Outcome other = files.run_file(files.change("epochs = 12", "epochs = 13"), "made");
   CHECK(other.code == 2);
-  CHECK_THAT(other.messages,
-             Contains("already holds a different study") && Contains("training.epochs: was 12, is 13"));
+  CHECK_THAT(other.messages, Contains("already holds a different study") &&
+                                 Contains("training.epochs: was 12, is 13"));
   CHECK(read_folder(files / "made") == before);
   fs::create_directory(files / "full");
   std::ofstream(files / "full" / "letter.txt") << "dear";
