@@ -15,6 +15,7 @@
 #include "base/least_squares/damped_system.h"
 #include "benchmarks/cpu_time.h"
 #include "benchmarks/lm_peers.h"
+#include "jobs/cli/clock.h"
 #include "jobs/cli/machine.h"
 #include "tests/train/lm_study_problem.h"
 #include "train/network/growing_sample.h"

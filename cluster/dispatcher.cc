@@ -20,8 +20,8 @@ using Maker = std::unique_ptr<Dispatcher> (*)();
 
 const std::map<std::string, Maker>& get_makers() {
   static const std::map<std::string, Maker> makers = {
-      {LocalDispatcher().name(), &make<LocalDispatcher>},
-      {SlurmDispatcher().name(), &make<SlurmDispatcher>}};
+      {LocalDispatcher::kName, &make<LocalDispatcher>},
+      {SlurmDispatcher::kName, &make<SlurmDispatcher>}};
   return makers;
 }
 
@@ -48,7 +48,7 @@ std::vector<std::string> list_dispatchers() {
 }
 
 std::string find_dispatcher() {
-  return SlurmDispatcher::is_available() ? SlurmDispatcher().name() : LocalDispatcher().name();
+  return SlurmDispatcher::is_available() ? SlurmDispatcher::kName : LocalDispatcher::kName;
 }
 
 std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name) {

@@ -11,7 +11,8 @@ namespace strut {
 /// bears the job's mark.
 class LocalDispatcher : public Dispatcher {
  public:
-  std::string name() const override { return "local"; }
+  static constexpr const char* kName = "local";
+  std::string name() const override { return kName; }
   std::string find_cluster_name() const override { return ""; }
   SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
   Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;

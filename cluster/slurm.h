@@ -12,7 +12,8 @@ class SlurmDispatcher : public Dispatcher {
   /// Returns whether Slurm's commands are in PATH.
   static bool is_available();
 
-  std::string name() const override { return "slurm"; }
+  static constexpr const char* kName = "slurm";
+  std::string name() const override { return kName; }
   std::string find_cluster_name() const override;
   SiteLimits check(const Resources& resources, const std::filesystem::path& folder) const override;
   Findings examine(const Resources& resources, const std::filesystem::path& folder) const override;

@@ -1,5 +1,7 @@
 #include "jobs/commands.h"
 
+#include <fmt/format.h>
+
 #include "base/text/nearest_name.h"
 #include "jobs/bench.h"
 #include "jobs/cancel.h"
@@ -26,44 +28,56 @@
 
 namespace strut {
 
-const std::vector<Command>& list_commands() {
-  static const std::vector<Command> commands = {
-      {"simulate", "run a car through a maneuver, or write its suspension's kinematics",
+namespace {
+
+/// Commands that print the table itself get it passed in: they are below it.
+int list(const Arguments& arguments) { return run_list(arguments, list_commands()); }
+int complete(const Arguments& arguments) { return run_completion(arguments, list_commands()); }
+int print_manual(const Arguments& arguments) { return run_man_page(arguments, list_commands()); }
+
+}  // namespace
+
+const CommandTable& list_commands() {
+  static const CommandTable commands = {
+      {"simulate", "drive a car through a maneuver, or write its suspension kinematics",
        &describe_simulate, &run_simulate},
-      {"plan", "make the folder of a sweep: which cases, in which shards", &describe_plan,
+      {"plan", "create the folder of a sweep: its cases, divided into shards", &describe_plan,
        &run_plan},
-      {"run", "simulate what a sweep still lacks", &describe_run, &run_run},
-      {"resume", "the same, and try again what failed", &describe_resume, &run_resume},
-      {"status", "how far a sweep has come", &describe_status, &run_status},
-      {"submit", "a sweep as Slurm jobs, or in the background here", &describe_submit, &run_submit},
-      {"cancel", "take back what submit queued", &describe_cancel, &run_cancel},
-      {"doctor", "can this file system and scheduler keep what a sweep promises?", &describe_doctor,
-       &run_doctor},
-      {"verify", "check every byte of a sweep, simulate some of it again", &describe_verify,
-       &run_verify},
-      {"merge", "one HDF5 file of all shards", &describe_merge, &run_merge},
-      {"train", "a network that identifies parameters, from a sweep's cases", &describe_train,
+      {"run", "simulate the missing cases of a sweep", &describe_run, &run_run},
+      {"resume", "the same, and retry failed cases", &describe_resume, &run_resume},
+      {"status", "show the progress of a sweep", &describe_status, &run_status},
+      {"submit", "queue a sweep as Slurm jobs, or as background jobs on this machine",
+       &describe_submit, &run_submit},
+      {"cancel", "cancel queued jobs", &describe_cancel, &run_cancel},
+      {"doctor", "check whether a sweep can rely on this file system and scheduler",
+       &describe_doctor, &run_doctor},
+      {"verify", "check every byte of a sweep, and simulate some of its cases again",
+       &describe_verify, &run_verify},
+      {"merge", "write all shards into one HDF5 file", &describe_merge, &run_merge},
+      {"train", "train a network that identifies parameters on a sweep's cases", &describe_train,
        &run_train},
-      {"evaluate", "how well a trained network identifies them", &describe_evaluate, &run_evaluate},
-      {"identify", "parameters with intervals, from measured data", &describe_identify,
+      {"evaluate", "measure how accurately a trained network identifies parameters",
+       &describe_evaluate, &run_evaluate},
+      {"identify", "identify parameters, with intervals, from measured data", &describe_identify,
        &run_identify},
-      {"compare", "measured against simulated: what the simulation gets wrong", &describe_compare,
-       &run_compare},
-      {"diagnose", "name the cause, extend the model, measure the gain", &describe_diagnose,
-       &run_diagnose},
-      {"export", "a trained network as ONNX or C source", &describe_export, &run_export},
-      {"design", "which instant, window and sensors identify a sweep's parameters best",
+      {"compare", "compare measured runs with simulations: residuals and their significance",
+       &describe_compare, &run_compare},
+      {"diagnose", "name the cause of a misfit, extend the model, measure the improvement",
+       &describe_diagnose, &run_diagnose},
+      {"export", "write a trained network as ONNX or C source", &describe_export, &run_export},
+      {"design", "find the instant, window and sensors that identify parameters best",
        &describe_design, &run_design},
-      {"study", "a table of trainings beside published numbers, with figures and a report",
+      {"study", "run a table of trainings beside published numbers, with figures and a report",
        &describe_study, &run_study},
-      {"report", "one HTML file about a study, sweep, comparison, diagnosis or run",
+      {"report", "write one HTML page about a study, sweep, comparison, diagnosis or run",
        &describe_report, &run_report},
-      {"list", "what can be set, recorded and switched on", &describe_list, &run_list},
-      {"bench", "measure how fast this machine simulates, and how exactly", &describe_bench,
+      {"list", "list the parameters, channels and effects of a model, or the commands",
+       &describe_list, &list},
+      {"bench", "measure the speed and accuracy of simulations on this machine", &describe_bench,
        &run_bench},
-      {"completion", "what makes a shell complete these commands and their options",
-       &describe_completion, &run_completion},
-      {"man", "this program's manual page", &describe_man_page, &run_man_page},
+      {"completion", "print a completion script for bash, zsh or fish", &describe_completion,
+       &complete},
+      {"man", "print the manual page", &describe_man_page, &print_manual},
   };
   return commands;
 }
@@ -74,20 +88,8 @@ const Command& find_command(const std::string& name) {
     if (name == command.name) return command;
     names.emplace_back(command.name);
   }
-  throw InputError("unknown command '" + name + "'" + suggest_name(name, names) +
-                   "; commands: " + join_names(names) + "; see strut --help");
-}
-
-const std::vector<ExitMeaning>& list_exit_meanings() {
-  static const std::vector<ExitMeaning> meanings = {
-      {"0", "done"},
-      {"1", "ran, and the answer is no"},
-      {"2", "the input is wrong"},
-      {"3", "the environment failed; what was written is whole"},
-      {"70", "a bug in strut; the message says what to report"},
-      {"130, 143", "interrupted; what was written is whole"},
-  };
-  return meanings;
+  throw InputError(fmt::format("unknown command '{}'{}; commands: {}; see strut --help", name,
+                               suggest_name(name, names), join_names(names)));
 }
 
 }  // namespace strut

@@ -1,23 +1,15 @@
-// The table of the program's commands, from which main, help, completion and man page are made.
+// The table of the program's commands.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "jobs/cli/command.h"
 
 namespace strut {
 
-const std::vector<Command>& list_commands();
+const CommandTable& list_commands();
 
-/// Throws InputError with the nearest name where there is none.
+/// Throws InputError with the nearest name if there is no such command.
 const Command& find_command(const std::string& name);
-
-struct ExitMeaning {
-  const char* code;
-  const char* meaning;
-};
-
-const std::vector<ExitMeaning>& list_exit_meanings();
 
 }  // namespace strut

@@ -1,16 +1,11 @@
-// strut completion: what makes a shell complete commands, options and values.
+// strut completion: a script that makes a shell complete commands, options and values.
 #pragma once
 
-#include <string>
-
-#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
 
 namespace strut {
 
 Arguments describe_completion();
-int run_completion(const Arguments& arguments);
-
-/// For bash, of every command's table.
-std::string make_bash_completion();
+int run_completion(const Arguments& arguments, const CommandTable& commands);
 
 }  // namespace strut

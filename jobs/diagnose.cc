@@ -9,9 +9,9 @@
 
 #include "io/file/atomic_file.h"
 #include "jobs/cli/arguments.h"
+#include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
-#include "jobs/cli/machine.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"

@@ -1,13 +1,13 @@
 #include "jobs/doctor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <set>
-#include <sstream>
 
-#include "base/text/nearest_name.h"
-#include "cluster/dispatcher.h"
+#include "cluster/slurm.h"
 #include "io/format/json.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/command.h"
@@ -22,53 +22,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of what a planned sweep still lacks; none for another folder.
+/// The needs of the missing shards of a planned sweep; none for any other folder.
 SpaceNeeds calc_needs(const fs::path& root) {
   const SweepFolder folder{root};
   if (!fs::exists(folder.plan())) return {};
   const Plan plan = open_sweep_folder(folder);
   const std::int64_t present = static_cast<std::int64_t>(list_shards(folder).size());
-  const double share = 1.0 - static_cast<double>(present) / static_cast<double>(plan.shard_count());
-  return {share * static_cast<double>(plan.case_count()) * calc_row_bytes(plan.make_schema()),
+  const double missing =
+      1.0 - static_cast<double>(present) / static_cast<double>(plan.shard_count());
+  return {missing * static_cast<double>(plan.case_count()) * calc_row_bytes(plan.make_schema()),
           plan.shard_count() - present};
 }
 
-/// All alike: the same bits everywhere.
+/// Nodes with the same widest instruction set compute the same bits.
 Finding compare_nodes(const std::vector<NodeInstructionSets>& nodes) {
   std::set<std::string> widest;
   std::string text;
   for (const NodeInstructionSets& node : nodes) {
     const std::string first = node.sets.substr(0, node.sets.find(' '));
     widest.insert(first);
-    text += (text.empty() ? "" : ", ") + node.name + ": " + first;
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", node.name, first);
   }
   if (nodes.empty()) {
     return {"instruction sets of the nodes", Health::kWarning, "no node answered",
-            "ask again when one is idle"};
+            "try again when a node is idle"};
   }
   const bool alike = widest.size() == 1;
   return {"instruction sets of the nodes", alike ? Health::kGood : Health::kWarning, text,
           alike ? "the same bits on all of them"
-                : "results differ by rounding; --constraint picks nodes that are alike"};
+                : "results differ by rounding; use --constraint to select equal nodes"};
 }
 
-std::string find_isa() {
-  std::string names;
-  for (const Kernel& kernel : list_kernels())
-    names += (names.empty() ? "" : " ") + std::string(kernel.isa);
-  return names;
+std::string list_isas() {
+  std::vector<std::string> names;
+  for (const Kernel& kernel : list_kernels()) names.emplace_back(kernel.isa);
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// The scheduler that --to names, or that is here.
+/// The scheduler of --to; by default the one found on this machine.
 std::string choose_dispatcher(const Arguments& arguments) {
   if (!arguments.has("to")) return find_dispatcher();
   return list_dispatchers()[static_cast<std::size_t>(arguments.choice_or("to", 0))];
 }
 
 Findings examine(const Arguments& arguments, const fs::path& root) {
-  const ProgressLine line("trying the file system and the scheduler");
+  const ProgressLine line("testing the file system and the scheduler");
   Findings findings = check_file_system(root, calc_needs(root));
-  findings.push_back({"instruction sets here", Health::kGood, find_isa(), ""});
+  findings.push_back({"instruction sets here", Health::kGood, list_isas(), ""});
   const auto dispatcher = make_dispatcher(choose_dispatcher(arguments));
   Resources resources;
   if (arguments.has("partition")) resources.partition = arguments.text("partition");
@@ -77,7 +77,7 @@ Findings examine(const Arguments& arguments, const fs::path& root) {
   try {
     findings.push_back(compare_nodes(dispatcher->list_node_instruction_sets(resources)));
   } catch (const std::runtime_error& e) {
-    findings.push_back({"instruction sets of the nodes", Health::kWarning, e.what(), "ask again"});
+    findings.push_back({"instruction sets of the nodes", Health::kWarning, e.what(), "try again"});
   }
   return findings;
 }
@@ -97,19 +97,19 @@ void print_text(const Findings& findings) {
   for (const Finding& f : findings) {
     const std::string health = get_name(f.health);
     f.health == Health::kBad ? print_styled(health, Style::kRed) : void(std::cout << health);
-    std::cout << std::string(9 - health.size(), ' ') << f.check << ": " << f.found
-              << (f.meaning.empty() ? "" : "; " + f.meaning) << "\n";
+    std::cout << fmt::format("{:{}}{}: {}{}{}\n", "", 9 - health.size(), f.check, f.found,
+                             f.meaning.empty() ? "" : "; ", f.meaning);
   }
 }
 
 void suggest_next_step(const Arguments& arguments, bool holds) {
   const std::string root = arguments.positional().front();
   if (!holds) {
-    suggest_again(arguments, "once what is bad above is mended");
+    suggest_again(arguments, "once the bad findings above are fixed");
   } else if (!fs::exists(SweepFolder{root}.plan())) {
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", root});
-  } else if (choose_dispatcher(arguments) == "slurm") {
-    suggest_next({"strut", "submit", root, "--to", "slurm"});
+  } else if (choose_dispatcher(arguments) == SlurmDispatcher::kName) {
+    suggest_next({"strut", "submit", root, "--to", SlurmDispatcher::kName});
   } else {
     suggest_next({"strut", "run", root});
   }
@@ -120,17 +120,16 @@ void suggest_next_step(const Arguments& arguments, bool holds) {
 Arguments describe_doctor() {
   Arguments arguments(
       "strut doctor DIR [OPTIONS]",
-      "Tries what a sweep in DIR (a planned one, or any folder that shall hold some) relies upon: "
-      "the file\n"
-      "system, the scheduler, and with --nodes the processors of its nodes, which a job of a "
-      "second "
-      "asks.\n"
-      "Says which promises hold. Ends with code 1 where one does not.",
+      "Tests what a sweep in DIR (a planned sweep, or a folder for sweeps) relies on: the file "
+      "system,\n"
+      "the scheduler and, with --nodes, the processors of its nodes, by a job of about a second "
+      "each.\n"
+      "Reports which promises hold. The exit code is 1 if one does not.",
       "  strut doctor cars\n  strut doctor cars --to slurm --partition short --nodes");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("to", ArgumentValue::one_of(list_dispatchers()),
-                       "scheduler (default: slurm where it is there)");
-  arguments.add_option("partition", "P", "of the cluster (default: the site's)");
+                       "scheduler (default: slurm if available)");
+  arguments.add_option("partition", "P", "partition of the cluster (default: the site's)");
   arguments.add_switch("nodes", "ask every idle node for its instruction sets");
   arguments.add_switch("json", "print JSON");
   return arguments;
@@ -138,12 +137,12 @@ Arguments describe_doctor() {
 
 int run_doctor(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
-                                " arguments; expected DIR, a folder");
+    throw arguments.usage_error(
+        fmt::format("{} arguments; expected DIR, a folder", arguments.positional().size()));
   }
   const fs::path root = arguments.positional().front();
   if (!fs::is_directory(root))
-    throw InputError(root.string() + ": must be a folder; one that shall hold a sweep will do");
+    throw InputError(root.string() + ": must be a folder, of a sweep or for one");
   const Findings findings = examine(arguments, fs::canonical(root));
   if (arguments.is_on("json")) {
     std::cout << format_json(make_json(findings)) << "\n";

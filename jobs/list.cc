@@ -1,14 +1,16 @@
 #include "jobs/list.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 
 #include "base/text/format_number.h"
+#include "base/text/nearest_name.h"
 #include "base/text/range.h"
 #include "io/format/json.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
-#include "jobs/commands.h"
 #include "model/effects/catalogue.h"
 #include "model_files/model_tables.h"
 
@@ -17,25 +19,23 @@ namespace {
 
 const std::vector<std::string> kTopics = {"parameters", "channels", "effects", "commands"};
 
-/// Rows of texts as columns, the first row as heads, the last column as long as it is.
+/// Prints rows of text in aligned columns, the header first; the last column is not padded.
 void print_columns(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
   }
   for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      line += row[c];
-      if (c + 1 < row.size()) line.append(widths[c] + 2 - row[c].size(), ' ');
+    for (std::size_t c = 0; c + 1 < row.size(); ++c) {
+      std::cout << fmt::format("{:<{}}", row[c], widths[c] + 2);
     }
-    std::cout << line << "\n";
+    std::cout << row.back() << "\n";
   }
 }
 
 std::string format_bounds(const Range& range) {
-  return (range.open_low ? "(" : "[") + format_number(range.low) + ", " +
-         format_number(range.high) + "]";
+  return fmt::format("{}{}, {}]", range.open_low ? "(" : "[", format_number(range.low),
+                     format_number(range.high));
 }
 
 std::string format_optional(const std::optional<double>& value) {
@@ -96,7 +96,7 @@ void print_channels(const ModelTables& model) {
     rows.push_back({c.name, c.unit, c.description});
   for (const InputInfo& i : model.model->inputs) {
     rows.push_back(
-        {i.name, i.unit, std::string(i.required ? "input: " : "optional input: ") + i.description});
+        {i.name, i.unit, fmt::format("{}input: {}", i.required ? "" : "optional ", i.description)});
   }
   print_columns(rows);
 }
@@ -119,7 +119,7 @@ Json make_channels_json(const ModelTables& model) {
 
 // --- effects ---------------------------------------------------------------------------------
 
-/// Effects with a parameter in this kind of model.
+/// The effects that have a parameter in this kind of model.
 std::vector<const EffectInfo*> list_effects_of(const ModelInfo& model) {
   std::vector<const EffectInfo*> effects;
   for (const EffectInfo& effect : list_effects()) {
@@ -130,12 +130,12 @@ std::vector<const EffectInfo*> list_effects_of(const ModelInfo& model) {
 
 void print_effects(const ModelInfo& model) {
   for (const EffectInfo* effect : list_effects_of(model)) {
-    std::cout << effect->name << ": " << effect->description << "\n    " << effect->equation
-              << "\n    source: " << effect->source << "\n";
+    std::cout << fmt::format("{}: {}\n    {}\n    source: {}\n", effect->name, effect->description,
+                             effect->equation, effect->source);
     for (const EffectParameter* p : list_effect_parameters(*effect, model)) {
-      std::cout << "    " << p->name << " [" << p->unit << "] = " << format_number(p->neutral)
-                << ", in [" << format_number(p->low) << ", " << format_number(p->high)
-                << "]: " << p->description << "\n";
+      std::cout << fmt::format("    {} [{}] = {}, in {}: {}\n", p->name, p->unit,
+                               format_number(p->neutral), format_bounds(between(p->low, p->high)),
+                               p->description);
     }
   }
 }
@@ -167,15 +167,15 @@ Json make_effects_json(const ModelInfo& model) {
 
 // --- commands --------------------------------------------------------------------------------
 
-void print_commands() {
+void print_commands(const CommandTable& commands) {
   std::vector<std::vector<std::string>> rows = {{"NAME", "MEANING"}};
-  for (const Command& command : list_commands()) rows.push_back({command.name, command.purpose});
+  for (const Command& command : commands) rows.push_back({command.name, command.purpose});
   print_columns(rows);
 }
 
-Json make_commands_json() {
+Json make_commands_json(const CommandTable& commands) {
   Json list = Json::array();
-  for (const Command& command : list_commands()) {
+  for (const Command& command : commands) {
     Json json = Json::object();
     json["name"] = command.name;
     json["meaning"] = command.purpose;
@@ -189,12 +189,12 @@ Json make_commands_json() {
 Arguments describe_list() {
   Arguments arguments(
       "strut list TOPIC [MODEL] [OPTIONS]",
-      "Lists what a model has: parameters (for --set, the axes of a sweep, unknowns of a fit), "
-      "channels\n"
-      "(for snapshots, histories, measured columns), effects, or the commands of this program. "
-      "MODEL:\n"
-      "the file of a vehicle or rig, whose own values are shown, or a kind of model; default:\n"
-      "full_vehicle.",
+      "Lists the parameters of a model (for --set, the axes of a sweep, the unknowns of a fit), "
+      "its\n"
+      "channels (for snapshots, histories, measured columns) or its effects, or the commands of "
+      "this\n"
+      "program. MODEL: the file of a vehicle or rig, whose values are then listed, or a kind of\n"
+      "model; default: full_vehicle.",
       "  strut list parameters\n"
       "  strut list channels quarter_car --json");
   arguments.add_operand(ArgumentValue::one_of("TOPIC", kTopics));
@@ -203,16 +203,16 @@ Arguments describe_list() {
   return arguments;
 }
 
-int run_list(const Arguments& arguments) {
+int run_list(const Arguments& arguments, const CommandTable& commands) {
   const std::vector<std::string>& words = arguments.positional();
   const auto topic =
       words.empty() ? kTopics.end() : std::find(kTopics.begin(), kTopics.end(), words.front());
   if (topic == kTopics.end() || words.size() > 2) {
     throw arguments.usage_error(
-        "expected parameters, channels, effects or commands, and at most one model");
+        fmt::format("expected one of {}, and at most one model", join_names(kTopics)));
   }
   if (words.size() > 1 && *topic == "commands") {
-    throw arguments.usage_error("commands are not of a model");
+    throw arguments.usage_error("the list of commands takes no model");
   }
   const ModelTables model = make_model_tables(words.size() > 1 ? words[1] : "full_vehicle");
   const bool as_json = arguments.is_on("json");
@@ -228,7 +228,7 @@ int run_list(const Arguments& arguments) {
   if (*topic == "effects") {
     print(make_effects_json(*model.model), [&] { print_effects(*model.model); });
   }
-  if (*topic == "commands") print(make_commands_json(), print_commands);
+  if (*topic == "commands") print(make_commands_json(commands), [&] { print_commands(commands); });
   return kExitDone;
 }
 

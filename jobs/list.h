@@ -1,11 +1,11 @@
-// strut list: what can be set, recorded, switched on and called.
+// strut list: parameters, channels and effects of a model; commands.
 #pragma once
 
-#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
 
 namespace strut {
 
 Arguments describe_list();
-int run_list(const Arguments& arguments);
+int run_list(const Arguments& arguments, const CommandTable& commands);
 
 }  // namespace strut

@@ -1,6 +1,6 @@
-// The program `strut`: the command that is named, and the one place where exceptions become exit
-// codes.
+// The program `strut`: runs the named command; the one place where exceptions become exit codes.
 
+#include <fmt/format.h>
 #include <sundials/sundials_version.h>
 
 #include <algorithm>
@@ -30,32 +30,29 @@ using strut::Command;
 void print_help() {
   std::cout << "Usage: strut COMMAND [ARGUMENTS]\n\nCommands:\n";
   for (const Command& command : strut::list_commands()) {
-    const std::string name = command.name;
-    std::cout << "  " << name << std::string(12 - name.size(), ' ') << command.purpose << "\n";
+    std::cout << fmt::format("  {:<12}{}\n", command.name, command.purpose);
   }
   std::cout << "\n`strut COMMAND --help` or `strut help COMMAND` explains a command; "
-               "`strut --version` says what\nthis is. --quiet and --verbose are options of all.\n"
+               "`strut --version` prints the\nversion. Every command has --quiet and --verbose.\n"
                "\nExit codes:\n";
   for (const strut::ExitMeaning& exit : strut::list_exit_meanings()) {
-    const std::string code = exit.code;
-    std::cout << "  " << code << std::string(12 - code.size(), ' ') << exit.meaning << "\n";
+    std::cout << fmt::format("  {:<12}{}\n", exit.code, exit.meaning);
   }
 }
 
 void print_version() {
   const strut::BuildInfo& build = strut::get_build_info();
-  std::cout << "strut " << build.version << " (" << build.commit
-            << ")\ncompiler: " << build.compiler << ", " << build.build_type
-            << "\ninstruction sets:";
+  std::cout << fmt::format("strut {} ({})\ncompiler: {}, {}\ninstruction sets:", build.version,
+                           build.commit, build.compiler, build.build_type);
   for (const strut::Kernel& kernel : strut::list_kernels()) {
-    std::cout << ' ' << kernel.isa << " (" << kernel.lanes << " lanes)";
+    std::cout << fmt::format(" {} ({} lanes)", kernel.isa, kernel.lanes);
   }
   char sundials[32] = "";
   SUNDIALSGetVersion(sundials, sizeof sundials);
-  std::cout << "\nHDF5: " << strut::hdf5_version() << "\nSUNDIALS: " << sundials << "\n";
+  std::cout << fmt::format("\nHDF5: {}\nSUNDIALS: {}\n", strut::hdf5_version(), sundials);
 }
 
-/// The path of an example file; where there is none, as it lies in the sources.
+/// The path of an example file; if it is not found, its path in the sources.
 std::string name_example(const std::string& name) {
   try {
     const std::filesystem::path found = strut::find_example(name);
@@ -66,17 +63,17 @@ std::string name_example(const std::string& name) {
   }
 }
 
-/// What `strut` alone answers: three commands to begin with.
-int show_beginning() {
-  strut::print_error("which command? `strut --help` lists them all; to begin with:");
+/// For `strut` without a command: suggests three to start with.
+int suggest_first_commands() {
+  strut::print_error("no command given; `strut --help` lists all commands; to start with:");
   strut::suggest_next({"strut", "simulate", name_example("vehicles/paper_sedan.toml"),
                        name_example("maneuvers/bump_20mps.toml"), "-o", "run.csv"},
                       "one car over one bump");
   strut::suggest_next({"strut", "plan", name_example("sweeps/paper_fast.toml"), "-o", "cars"},
-                      "many cars, to train a network on");
+                      "many cars, as training data of a network");
   strut::suggest_next(
       {"strut", "compare", name_example("extended_loop/campaign.toml"), "-o", "comparison"},
-      "measured runs against simulated ones: docs/diagnosis.md");
+      "measured runs against simulated runs; docs/diagnosis.md");
   return strut::kExitInput;
 }
 
@@ -87,21 +84,21 @@ int run_command(const Command& command, const std::vector<std::string>& words) {
   if (arguments.is_on("verbose")) set_verbosity(strut::Verbosity::kVerbose);
   strut::prepare_interrupt(arguments);
   const strut::BuildInfo& build = strut::get_build_info();
-  strut::print_detail("version " + std::string(build.version) + " (" + build.commit +
-                      "), instruction set " + strut::list_kernels().front().isa);
+  strut::print_detail(fmt::format("version {} ({}), instruction set {}", build.version,
+                                  build.commit, strut::list_kernels().front().isa));
   const strut::Stage stage("all of " + arguments.command());
   return command.run(arguments);
 }
 
-/// Of what `strut help` and `strut --version` take.
-void refuse_words_after(const std::vector<std::string>& words, std::size_t most) {
-  if (words.size() <= most) return;
-  throw strut::InputError("'" + words[most] + "' after '" + words[most - 1] +
-                          "': one word too many; see strut --help");
+/// Refuses more than `max` words after `strut`.
+void check_word_count(const std::vector<std::string>& words, std::size_t max) {
+  if (words.size() <= max) return;
+  throw strut::InputError(fmt::format("'{}' after '{}': one word too many; see strut --help",
+                                      words[max], words[max - 1]));
 }
 
 int show_help(const std::vector<std::string>& words) {
-  refuse_words_after(words, 2);
+  check_word_count(words, 2);
   if (words.size() > 1 && words[1] != "help") {
     return run_command(strut::find_command(words[1]), {"--help"});
   }
@@ -119,17 +116,17 @@ int show_help(const std::vector<std::string>& words) {
   const bool is_common = std::find(common.begin(), common.end(), word) != common.end();
   std::vector<std::string> all = {"--version"};
   all.insert(all.end(), common.begin(), common.end());
-  throw strut::InputError(
-      "option '" + word + "' before the command: options follow it, as in strut COMMAND " +
-      (is_common ? word : "--quiet" + strut::suggest_name(word, all)) + "; see strut --help");
+  throw strut::InputError(fmt::format(
+      "option '{}' before the command: options follow it, as in strut COMMAND {}; see strut --help",
+      word, is_common ? word : "--quiet" + strut::suggest_name(word, all)));
 }
 
 int run(const std::vector<std::string>& words) {
-  if (words.empty()) return show_beginning();
+  if (words.empty()) return suggest_first_commands();
   const std::string& first = words.front();
   if (first == "--help" || first == "-h" || first == "help") return show_help(words);
   if (first == "--version") {
-    refuse_words_after(words, 1);
+    check_word_count(words, 1);
     print_version();
     return strut::kExitDone;
   }
@@ -141,7 +138,7 @@ int run_and_flush(const std::vector<std::string>& words) {
   const int code = run(words);
   if (!std::cout.flush()) {
     throw strut::EnvironmentError(
-        "standard output: cannot be written; is its disk full, or what reads it gone?");
+        "standard output: cannot be written; is the disk full, or has the reader exited?");
   }
   strut::print_suggestions();
   return code;
@@ -152,14 +149,14 @@ int fail(strut::ExitCode code, const std::string& text) {
   return code;
 }
 
-/// What the file system refuses where a command has no message of its own.
+/// For errors of the file system for which a command has no message of its own.
 int fail_on_file(const std::filesystem::filesystem_error& error) {
   const std::string what = error.path1().string() + ": " + error.code().message();
   switch (error.code().value()) {
     case ENAMETOOLONG:
       return fail(strut::kExitInput, what + "; name another file or folder");
     case ELOOP:
-      return fail(strut::kExitInput, what + "; its symbolic links lead in a circle");
+      return fail(strut::kExitInput, what + "; its symbolic links form a circle");
     case ENOTDIR:
       return fail(strut::kExitInput, what + "; a file stands where a folder must be");
     case EACCES:
@@ -172,22 +169,23 @@ int fail_on_file(const std::filesystem::filesystem_error& error) {
 
 int fail_on_system(const std::system_error& error) {
   const bool no_threads = error.code().value() == EAGAIN;
-  const std::string remedy =
-      "; fewer --threads or a higher limit of processes (ulimit -u) may help";
+  const std::string remedy = "; fewer --threads or a higher process limit (ulimit -u) may help";
   return fail(strut::kExitEnvironment, error.what() + (no_threads ? remedy : ""));
 }
 
 int fail_on_bug(const std::string& what) {
-  return fail(strut::kExitBug, "a bug in strut: " + what +
-                                   "; please report this message, the command line and what "
-                                   "`strut --version` prints");
+  return fail(
+      strut::kExitBug,
+      fmt::format("a bug in strut: {}; please report this message, the command line and the "
+                  "output of `strut --version`",
+                  what));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   strut::end_on_interrupt();
-  // A write beyond a limit of file size fails, as on a full disk, and does not end the program.
+  // A write beyond a file size limit fails as on a full disk instead of ending the program.
   std::signal(SIGXFSZ, SIG_IGN);
   const strut::StandardOutput output;
   const std::vector<std::string> words(argv + 1, argv + argc);

@@ -1,5 +1,6 @@
 #include "jobs/man_page.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <iostream>
@@ -7,25 +8,38 @@
 
 #include "base/text/build_info.h"
 #include "jobs/cli/messages.h"
-#include "jobs/commands.h"
 
 namespace strut {
 namespace {
 
-/// As text of a line: neither an escape nor a request; dashes stay those of a keyboard.
+/// Escapes text for troff: no escape sequence, no request; dashes stay ASCII minus signs.
 std::string escape(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
-    if (c == '\\') {
-      escaped += "\\e";
-    } else if (c == '-' || c == '\'' || c == '`' || c == '^' || c == '~') {
-      escaped += c == '-'    ? "\\-"
-                 : c == '\'' ? "\\(aq"
-                 : c == '`'  ? "\\(ga"
-                 : c == '^'  ? "\\(ha"
-                             : "\\(ti";
-    } else {
-      escaped += c == '\n' ? ' ' : c;
+    switch (c) {
+      case '\\':
+        escaped += "\\e";
+        break;
+      case '-':
+        escaped += "\\-";
+        break;
+      case '\'':
+        escaped += "\\(aq";
+        break;
+      case '`':
+        escaped += "\\(ga";
+        break;
+      case '^':
+        escaped += "\\(ha";
+        break;
+      case '~':
+        escaped += "\\(ti";
+        break;
+      case '\n':
+        escaped += ' ';
+        break;
+      default:
+        escaped += c;
     }
   }
   return (escaped.starts_with('.') ? "\\&" : "") + escaped;
@@ -36,7 +50,7 @@ std::string italic(const std::string& text) { return "\\fI" + escape(text) + "\\
 
 std::string make_section(const std::string& title) { return ".SH " + title + "\n"; }
 
-/// Lines as they are.
+/// Lines without filling.
 std::string make_verbatim(const std::string& text) {
   std::string page = ".PP\n.nf\n";
   std::istringstream lines(text);
@@ -44,7 +58,7 @@ std::string make_verbatim(const std::string& text) {
   return page + ".fi\n";
 }
 
-/// A paragraph; lines that begin with a blank are a list and stay as they are.
+/// Paragraphs; lines that begin with a blank are a list and are not filled.
 std::string make_text(const std::string& text) {
   std::string page, paragraph, list;
   const auto flush = [&page](std::string& part, const auto& make) {
@@ -67,7 +81,7 @@ std::string make_text(const std::string& text) {
   return page;
 }
 
-/// Several ways to call a command stand below each other in the help.
+/// The forms of a command, one a line.
 std::string make_synopsis(const std::string& synopsis) {
   std::string page = ".PP\n.nf\n";
   std::istringstream lines(synopsis);
@@ -78,7 +92,7 @@ std::string make_synopsis(const std::string& synopsis) {
 }
 
 std::string make_item(const std::string& label, const std::string& text) {
-  return ".TP\n" + label + "\n" + escape(text) + "\n";
+  return fmt::format(".TP\n{}\n{}\n", label, escape(text));
 }
 
 std::string make_option(const ArgumentOption& option) {
@@ -96,10 +110,10 @@ std::string make_options(const std::vector<ArgumentOption>& options) {
 
 std::string make_command(const Command& command) {
   const Arguments arguments = command.describe();
-  return ".SS strut " + std::string(command.name) + "\n" + make_text(command.purpose) +
-         make_synopsis(arguments.synopsis()) + make_text(arguments.description()) +
-         make_options(arguments.options()) + ".PP\nExamples:\n" +
-         make_verbatim(arguments.examples());
+  return fmt::format(".SS strut {}\n{}{}{}{}.PP\nExamples:\n{}", command.name,
+                     make_text(command.purpose), make_synopsis(arguments.synopsis()),
+                     make_text(arguments.description()), make_options(arguments.options()),
+                     make_verbatim(arguments.examples()));
 }
 
 std::string make_exit_codes() {
@@ -111,12 +125,12 @@ std::string make_exit_codes() {
 }
 
 constexpr const char* kDescription =
-    "Simulates cars over bumps by the thousand, trains networks on the results that tell a car's "
-    "springs and dampers from how its body moves, and compares measured runs with the simulation: "
-    "what it gets wrong, why, and what mending it gains. Data goes to standard output or the named "
-    "file, messages to standard error.";
+    "Simulates cars that cross bumps, thousands of them in a sweep; trains networks on the results "
+    "that identify a car's springs and dampers from the motion of its body; compares measured runs "
+    "with simulations, names the cause of a misfit and measures the improvement of the extended "
+    "model. Data goes to standard output or the named file, messages to standard error.";
 
-constexpr const char* kWay =
+constexpr const char* kExample =
     "  strut plan examples/sweeps/paper.toml -o cars\n"
     "  strut run cars\n"
     "  strut verify cars\n"
@@ -127,36 +141,36 @@ constexpr const char* kWay =
 
 Arguments describe_man_page() {
   return {"strut man",
-          "Prints the manual page strut(1) in troff's man macros. An installed strut brings it "
-          "along.",
+          "Prints the manual page strut(1) in troff's man macros. An installed strut includes it.",
           "  strut man | man -l -"};
 }
 
-int run_man_page(const Arguments& arguments) {
+int run_man_page(const Arguments& arguments, const CommandTable& commands) {
   if (!arguments.positional().empty()) throw arguments.usage_error("expected no arguments");
-  std::cout << make_man_page();
+  std::cout << make_man_page(commands);
   if (isatty(STDOUT_FILENO) == 1) suggest_next_line("strut man | man -l -");
   return kExitDone;
 }
 
-std::string make_man_page() {
-  std::string page =
-      ".TH STRUT 1 \"\" \"strut " + escape(get_build_info().version) + "\" \"User Commands\"\n" +
-      make_section("NAME") + "strut \\- simulate suspensions, identify and diagnose them\n" +
-      make_section("SYNOPSIS") +
-      make_verbatim(
-          "strut COMMAND [ARGUMENTS]\n"
-          "strut help COMMAND\n"
-          "strut --version") +
-      make_section("DESCRIPTION") + make_text(kDescription) + make_section("COMMANDS");
-  for (const Command& command : list_commands()) page += make_command(command);
-  return page + make_section("OPTIONS OF EVERY COMMAND") +
-         make_options(Arguments::common_options()) + make_section("EXIT STATUS") +
-         make_exit_codes() + make_section("ENVIRONMENT") +
-         make_item(bold("NO_COLOR"), "set and not empty: no colors on a terminal") +
-         make_item(bold("TERM"), "dumb: neither colors nor lines that change in place") +
-         make_section("EXAMPLES") + make_text("From a sweep to what a car has:") +
-         make_verbatim(kWay) + make_section("SEE ALSO") +
+std::string make_man_page(const CommandTable& commands) {
+  std::string page = fmt::format(".TH STRUT 1 \"\" \"strut {}\" \"User Commands\"\n",
+                                 escape(get_build_info().version));
+  page += make_section("NAME") + "strut \\- simulate suspensions, identify and diagnose them\n";
+  page += make_section("SYNOPSIS") + make_verbatim(
+                                         "strut COMMAND [ARGUMENTS]\n"
+                                         "strut help COMMAND\n"
+                                         "strut --version");
+  page += make_section("DESCRIPTION") + make_text(kDescription);
+  page += make_section("COMMANDS");
+  for (const Command& command : commands) page += make_command(command);
+  page += make_section("OPTIONS OF EVERY COMMAND") + make_options(Arguments::common_options());
+  page += make_section("EXIT STATUS") + make_exit_codes();
+  page += make_section("ENVIRONMENT");
+  page += make_item(bold("NO_COLOR"), "set and not empty: no colors on a terminal");
+  page += make_item(bold("TERM"), "dumb: neither colors nor lines rewritten in place");
+  page += make_section("EXAMPLES") +
+          make_text("From a sweep to the parameters of a measured car:") + make_verbatim(kExample);
+  return page + make_section("SEE ALSO") +
          make_text("The documents in the folder docs of the sources.");
 }
 

@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "jobs/cli/arguments.h"
+#include "jobs/cli/command.h"
 
 namespace strut {
 
 Arguments describe_man_page();
-int run_man_page(const Arguments& arguments);
+int run_man_page(const Arguments& arguments, const CommandTable& commands);
 
-/// strut(1) in troff's man macros, of every command's table.
-std::string make_man_page();
+/// Returns strut(1) in troff's man macros, generated from the commands' tables of arguments.
+std::string make_man_page(const CommandTable& commands);
 
 }  // namespace strut

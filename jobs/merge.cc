@@ -6,9 +6,9 @@
 
 #include "base/text/build_info.h"
 #include "io/format/json.h"
+#include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
-#include "jobs/cli/machine.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/output_file.h"

@@ -4,15 +4,14 @@
 
 #include <iostream>
 
+#include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
-#include "jobs/cli/machine.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/provenance.h"
-#include "jobs/run.h"
 #include "jobs/study/noise_report.h"
 #include "jobs/study/report.h"
 #include "jobs/study/tables.h"

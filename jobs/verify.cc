@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "io/format/json.h"
+#include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
-#include "jobs/cli/machine.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"

@@ -1,7 +1,8 @@
 # The installed files, for use outside of the build folder: docs/api.md, docs/install.md.
 #
 #   bin/strut                        the program
-#   share/man, share/bash-completion the manual page, and command completion (jobs/)
+#   share/man                        the manual page (jobs/)
+#   share/bash-completion, zsh, fish completion scripts (jobs/)
 #   share/strut/examples             called examples/ in the documentation
 #   share/doc/strut                  the documentation
 #   include/strut, lib, lib/cmake    the rooms as libraries: find_package(strut)

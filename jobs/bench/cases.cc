@@ -1,18 +1,20 @@
 #include "jobs/bench/cases.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/text/format_number.h"
-#include "jobs/case/run_file.h"
-#include "jobs/cli/machine.h"
+#include "jobs/cli/clock.h"
 #include "model_files/parameters.h"
+#include "sweep/choices.h"
 
 namespace strut {
 namespace {
 
-/// The paper's grid, from new to most degraded.
+/// The axes of the paper's grid, from new to most degraded.
 struct Axis {
   const char* name;
   double from, to;
@@ -21,7 +23,7 @@ constexpr Axis kAxes[] = {{"front_stiffness", 40000.0, 35500.0},
                           {"front_damping", 1980.0, 1800.0},
                           {"rear_stiffness", 35000.0, 30500.0},
                           {"rear_damping", 1980.0, 1800.0}};
-/// Additive recurrence with irrational steps: every case differs in every parameter.
+/// Steps of an additive recurrence; as they are irrational, every case differs in every parameter.
 constexpr double kSteps[] = {0.8566748838545029, 0.7338918566271260, 0.6287067210378087,
                              0.5385972572236101};
 
@@ -31,7 +33,7 @@ SamplePlan make_reference_plan() {
   return plan;
 }
 
-/// The body's acceleration in one lane, every 1 / kBenchRate.
+/// Acceleration of the body in one lane [m/s^2], sampled at kBenchRate.
 std::vector<double> get_acceleration(const LaneResults& results, std::size_t lane) {
   std::vector<double> values;
   const auto lanes = static_cast<std::size_t>(results.lanes);
@@ -53,19 +55,33 @@ double calc_relative_error(const std::vector<double>& values,
   return std::sqrt(difference / size);
 }
 
+/// "rk4 1 ms, newton, exponential spin, events located"
+std::string describe(const IntegrateOptions& options) {
+  const StepOptions& step = options.step;
+  const std::string coarse =
+      step.coarse_step > 0.0
+          ? fmt::format(" ({} ms off the bump)", format_number(1e3 * step.coarse_step))
+          : "";
+  return fmt::format("{} {} ms{}, {}, {} spin, events {}", get_name(step.stepper),
+                     format_number(1e3 * step.step), coarse,
+                     kClosures[static_cast<std::size_t>(options.closure)],
+                     kSpins[static_cast<std::size_t>(options.spin)],
+                     step.locate_events ? "located" : "not located");
+}
+
 }  // namespace
 
 BenchCases make_bench_cases(const CaseSource& source, int count) {
   BenchCases bench;
   Case c = load_case(source);
   bench.duration = c.maneuver.duration;
-  CasePreparer preparer;  // makes the mechanism once, as a sweep does
+  CasePreparer preparer;  // prepares the mechanism once, as in a sweep
   bench.cases.push_back(prepare_case(source, c, preparer));
   const double start = now();
   for (int i = 1; i < count; ++i) {
     for (std::size_t p = 0; p < std::size(kAxes); ++p) {
-      const double share = std::fmod(i * kSteps[p], 1.0);
-      set_parameter(c, kAxes[p].name, kAxes[p].from + share * (kAxes[p].to - kAxes[p].from));
+      const double fraction = std::fmod(i * kSteps[p], 1.0);
+      set_parameter(c, kAxes[p].name, kAxes[p].from + fraction * (kAxes[p].to - kAxes[p].from));
     }
     bench.cases.push_back(prepare_case(source, c, preparer));
   }
@@ -96,7 +112,7 @@ double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchS
   for (std::size_t lane = 0; lane < count; ++lane) {
     const double error =
         calc_relative_error(get_acceleration(results, lane), bench.acceleration[lane]);
-    // A NaN counts as worse, and stays, since no comparison with it is true.
+    // A NaN counts as the worst and is kept, since every comparison with it is false.
     if (std::isnan(error) || error > worst) worst = error;
   }
   return worst;
@@ -106,10 +122,9 @@ std::vector<BenchSetting> list_standard_settings() {
   IntegrateOptions newton, table;
   newton.step.step = table.step.step = 1e-3;
   table.closure = Closure::kTable;
-  const std::string rest = ", exponential spin, events located";
-  return {{"double", "rk4 1 ms, newton" + rest, newton, false},
-          {"lanes", "rk4 1 ms, newton" + rest, newton},
-          {"lanes_tabulated", "rk4 1 ms, table" + rest, table}};
+  return {{"double", describe(newton), newton, false},
+          {"lanes", describe(newton), newton},
+          {"lanes_tabulated", describe(table), table}};
 }
 
 std::vector<BenchSetting> list_fast_settings(bool quick) {
@@ -124,12 +139,7 @@ std::vector<BenchSetting> list_fast_settings(bool quick) {
           IntegrateOptions options;
           options.step = {stepper, step, events, coarse};
           options.closure = Closure::kTable;
-          std::string text = std::string(stepper == Stepper::kRk4 ? "rk4 " : "abm4 ") +
-                             format_number(1e3 * step) + " ms";
-          if (coarse > 0.0) text += " (" + format_number(1e3 * coarse) + " ms off the bump)";
-          text += std::string(", table, exponential spin, ") +
-                  (events ? "events located" : "events not located");
-          settings.push_back({"candidate", text, options});
+          settings.push_back({"candidate", describe(options), options});
         }
       }
     }

@@ -1,4 +1,4 @@
-// What `strut bench` runs: the paper's maneuver, a little different in every lane.
+// The cases of `strut bench`: one maneuver, with different springs and dampers in each lane.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace strut {
 
-/// A way to run cases.
+/// Integrator settings with which cases are run.
 struct BenchSetting {
   std::string label;  // "lanes"
   std::string text;   // "rk4 1 ms, ..."
@@ -16,29 +16,29 @@ struct BenchSetting {
   bool in_lanes = true;
 };
 
-/// Prepared cases that differ in springs and dampers over the paper's ranges, the nominal one
+/// Prepared cases whose springs and dampers vary over the ranges of the paper; the nominal one
 /// first.
 struct BenchCases {
   std::vector<PreparedCase> cases;
   double duration = 0.0;            // s
   double seconds_to_prepare = 0.0;  // s a case
-  /// m/s^2, each case's body by CVODE, sampled at kBenchRate.
+  /// Reference of each case: acceleration of the body by CVODE [m/s^2], sampled at kBenchRate.
   std::vector<std::vector<double>> acceleration;
 };
 inline constexpr double kBenchRate = 1000.0;  // Hz
 
-/// Reads, prepares and integrates the references. Throws InputError.
+/// Reads the files, prepares `count` cases and integrates their references. Throws InputError.
 BenchCases make_bench_cases(const CaseSource& source, int count);
 
-/// Runs all cases once in lanes; in the scalar setting the nominal case alone.
+/// Runs all cases once in lanes, or, with a scalar setting, only the nominal case.
 LaneResults run_cases(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting,
                       const SamplePlan& plan);
 
-/// rms of a case's body acceleration minus its reference's, over the reference's rms: the worst of
-/// the cases that run_cases runs. Infinite where one fails.
+/// Error of the body acceleration: rms of its difference to the reference, relative to the rms of
+/// the reference; maximum over the cases that run_cases() runs. Infinite if one fails.
 double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting);
 
-/// The single-core figures other than the fastest: double, lanes, lanes_tabulated.
+/// The fixed settings: double, lanes, lanes_tabulated.
 std::vector<BenchSetting> list_standard_settings();
 
 /// Candidates for the fastest setting.

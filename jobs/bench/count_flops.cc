@@ -4,7 +4,7 @@
 
 namespace strut {
 
-/// A double that counts what is done to it.
+/// A double whose operations are counted.
 struct Counted {
   using Mask = bool;
   static constexpr int kWidth = 1;
@@ -16,7 +16,7 @@ struct Counted {
 
 namespace {
 
-/// Operators have no argument to carry a counter in; the model keeps none.
+/// Global, since operators have no argument that could carry a counter.
 thread_local FlopCount counter;
 
 double arithmetic(double result) {
@@ -35,7 +35,7 @@ Result comparison(Result result) {
 
 }  // namespace
 
-// In strut, where argument-dependent lookup from the physics finds them.
+// In namespace strut, where argument-dependent lookup finds them from the model's templates.
 inline Counted operator+(Counted a, Counted b) { return arithmetic(a.v + b.v); }
 inline Counted operator-(Counted a, Counted b) { return arithmetic(a.v - b.v); }
 inline Counted operator*(Counted a, Counted b) { return arithmetic(a.v * b.v); }

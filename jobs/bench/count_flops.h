@@ -1,4 +1,4 @@
-// How many floating-point operations one right-hand side takes, counted by running it.
+// Counts the floating-point operations of one right-hand side by evaluating it.
 #pragma once
 
 #include "model/kernel/simulation.h"
@@ -6,12 +6,12 @@
 namespace strut {
 
 struct FlopCount {
-  long arithmetic = 0;      // + - * / sqrt, one each
+  long arithmetic = 0;      // flops: + - * / sqrt, one each
   long transcendental = 0;  // calls of sin, cos, atan, exp
-  long comparison = 0;      // < min max abs select floor: not counted as operations
+  long comparison = 0;      // < min max abs select floor; not flops
 };
 
-/// Counts one evaluation of the right-hand side of `c` at its start.
+/// Counts one evaluation of the right-hand side of `c` at its start state.
 FlopCount count_flops(const PreparedCase& c, Closure closure);
 
 }  // namespace strut

@@ -1,45 +1,21 @@
 #include "jobs/bench/pipeline.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <ostream>
 
+#include "jobs/cli/clock.h"
 #include "jobs/cli/machine.h"
+#include "jobs/cli/scratch_folder.h"
 #include "sweep/run.h"
 
 namespace strut {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that goes with its owner.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const fs::path& parent) {
-    std::string name = (parent / "strut_bench_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw EnvironmentError(parent.string() + ": no folder can be made: " + std::strerror(errno));
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 struct SweepTime {
   RunSummary summary;
@@ -61,16 +37,17 @@ double read_peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// The first `result.cases` cases of the plan in a fresh folder, the spin control beside it.
+/// Runs the first `result.cases` cases of the plan in a new folder, and the spin control before and
+/// after.
 PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, double best_spin,
                        const fs::path& scratch, std::atomic<bool>& halt, PipelineResult& result) {
   RunOptions options;
   options.kernel = &kernel;
   options.threads = threads;
   options.end_shard = (result.cases - 1) / plan.request().shard_cases + 1;
-  const ScratchFolder place(scratch);
+  const ScratchFolder temporary(scratch, "strut_bench");
   const double start = now();
-  const SweepFolder folder = make_sweep_folder(place.path() / "sweep", plan);
+  const SweepFolder folder = make_sweep_folder(temporary.path() / "sweep", plan);
   result.plan_seconds = now() - start;
   const double before = measure_spins(threads);
   const SweepTime time = time_sweep(folder, plan, options, halt);
@@ -123,7 +100,7 @@ Json make_json(const PipelineResult& result) {
                                       {"integrate", result.integrate},
                                       {"compress", result.compress},
                                       {"write", result.write}}},
-              {"output_share", result.output_share()},
+              {"output_share", result.output_fraction()},
               {"bytes_per_case", result.bytes_per_case},
               {"plan_seconds", result.plan_seconds},
               {"resume_seconds", result.resume_seconds},
@@ -131,30 +108,23 @@ Json make_json(const PipelineResult& result) {
 }
 
 void print_pipeline(std::ostream& stream, const PipelineResult& result) {
-  char line[256];
-  std::snprintf(line, sizeof line, "\nsweep of %ld cases (%s), plan to shards\n",
-                static_cast<long>(result.cases), result.sweep.c_str());
-  stream << line;
-  std::snprintf(line, sizeof line, "%-16s %6s %8s %10s %19s\n", "instruction set", "lanes",
-                "threads", "runs/s", "spin of one thread");
-  stream << line;
+  stream << fmt::format("\nsweep of {} cases ({}), plan to shards\n", result.cases, result.sweep);
+  stream << fmt::format("{:<16} {:>6} {:>8} {:>10} {:>19}\n", "instruction set", "lanes", "threads",
+                        "runs/s", "spin of one thread");
   for (const PipelineFigure& f : result.figures) {
-    std::snprintf(line, sizeof line, "%-16s %6d %8d %10.1f %19.2f\n", f.isa.c_str(), f.lanes,
-                  f.threads, f.runs_per_s, f.spin_control);
-    stream << line;
+    stream << fmt::format("{:<16} {:>6} {:>8} {:>10.1f} {:>19.2f}\n", f.isa, f.lanes, f.threads,
+                          f.runs_per_s, f.spin_control);
   }
   const double all = result.prepare + result.integrate + result.compress + result.write;
-  std::snprintf(line, sizeof line,
-                "of the last: prepare %.1f %%, integrate %.1f %%, compress %.2f %%, write %.2f "
-                "%%; %lld bytes a case\n",
-                100.0 * result.prepare / all, 100.0 * result.integrate / all,
-                100.0 * result.compress / all, 100.0 * result.write / all,
-                static_cast<long long>(result.bytes_per_case));
-  stream << line;
-  std::snprintf(line, sizeof line,
-                "planning %.0f ms, running the finished sweep again %.0f ms, peak memory %.0f MB\n",
-                1e3 * result.plan_seconds, 1e3 * result.resume_seconds, 1e-6 * result.peak_memory);
-  stream << line;
+  stream << fmt::format(
+      "last run: prepare {:.1f} %, integrate {:.1f} %, compress {:.2f} %, write {:.2f} %; {} bytes "
+      "a "
+      "case\n",
+      100.0 * result.prepare / all, 100.0 * result.integrate / all, 100.0 * result.compress / all,
+      100.0 * result.write / all, result.bytes_per_case);
+  stream << fmt::format(
+      "planning {:.0f} ms, running the finished sweep again {:.0f} ms, peak memory {:.0f} MB\n",
+      1e3 * result.plan_seconds, 1e3 * result.resume_seconds, 1e-6 * result.peak_memory);
 }
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// What `strut bench` found, as a table, as JSON, and against an earlier one.
+// Results of `strut bench` as a table and as JSON, and their ratios to an earlier result.
 #pragma once
 
 #include <algorithm>
@@ -19,24 +19,25 @@ struct Figure {
   BenchSetting setting;
   double runs_per_s = 0.0;
   double real_time_factor = 0.0;
-  double error = 0.0;         // body acceleration rms, relative to CVODE at 1e-12, worst lane
-  double spin_control = 0.0;  // during the best repeat, 1: machine undisturbed
-  double rhs_per_s = 0.0;     // right-hand sides a second, of one case each
+  double error = 0.0;         // measure_error()
+  double spin_control = 0.0;  // during the best repeat; 1: undisturbed machine
+  double rhs_per_s = 0.0;     // right-hand sides of single cases per second
 };
 
 struct ThreadFigure {
   int threads = 1;
   double runs_per_s = 0.0;
-  double spin_control = 0.0;  // spins of all threads at once over those of one alone
+  double spin_control =
+      0.0;  // spin rate of all threads together, relative to one undisturbed thread
 };
 
 struct BenchResult {
   std::vector<Figure> single_core;
   std::vector<ThreadFigure> threads;
   FlopCount newton, table;
-  double peak = 0.0;  // flop/s of one core
+  double peak = 0.0;  // of one core [flop/s]
   double seconds_to_prepare = 0.0;
-  std::optional<PipelineResult> pipeline;  // none where there is no sweep to run
+  std::optional<PipelineResult> pipeline;  // empty: no sweep was run
   Machine machine;
 
   const Figure& figure(const std::string& name) const {
@@ -46,7 +47,7 @@ struct BenchResult {
   double speedup_over_double(const Figure& f) const {
     return f.runs_per_s / figure("double").runs_per_s;
   }
-  double share_of_peak(const Figure& f) const {
+  double fraction_of_peak(const Figure& f) const {
     const FlopCount& flops = f.setting.options.closure == Closure::kNewton ? newton : table;
     return static_cast<double>(flops.arithmetic) * f.rhs_per_s / peak;
   }
@@ -55,7 +56,7 @@ struct BenchResult {
 /// The output of an earlier `strut bench --json`.
 using Baseline = Json;
 
-/// Throws InputError where the file is none.
+/// Throws InputError if the file is not such an output.
 Baseline read_baseline(const std::string& path);
 
 /// new / old of one figure.
@@ -64,7 +65,7 @@ struct FigureRatio {
   double ratio = 0.0;
 };
 
-/// The ratios of all figures that both have.
+/// The ratios of all figures that both results have.
 std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& baseline);
 
 /// `ratios` may be empty.

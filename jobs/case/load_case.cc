@@ -1,5 +1,7 @@
 #include "jobs/case/load_case.h"
 
+#include <fmt/format.h>
+
 #include "base/error/input_error.h"
 #include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"
@@ -9,11 +11,8 @@ namespace strut {
 namespace {
 
 std::string describe_settings(const CaseSource& source) {
-  std::string text;
-  for (const std::string& setting : source.settings) {
-    text += (text.empty() ? " (with --set " : " --set ") + setting;
-  }
-  return text.empty() ? text : text + ")";
+  if (source.settings.empty()) return "";
+  return fmt::format(" (with --set {})", fmt::join(source.settings, " --set "));
 }
 
 template <class Function>
@@ -23,7 +22,7 @@ auto call_model(const CaseSource& source, const Function& function) {
   } catch (const ModelError& e) {
     const bool is_road = e.fault() == ModelFault::kRoad && !source.maneuver.empty();
     const auto& file = is_road ? source.maneuver : source.vehicle;
-    throw InputError(file.string() + describe_settings(source) + ": " + e.what());
+    throw InputError(fmt::format("{}{}: {}", file.string(), describe_settings(source), e.what()));
   }
 }
 
@@ -37,7 +36,7 @@ Case load_case(const CaseSource& source) {
     try {
       apply_setting(c, setting);
     } catch (const InputError& e) {
-      throw InputError(std::string("--set ") + e.what());
+      throw InputError(fmt::format("--set {}", e.what()));
     }
   }
   return c;

@@ -1,4 +1,4 @@
-// From the files and settings on a command line to a case that can run.
+// Makes a case from the files and settings on a command line.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace strut {
 
-/// What the user named, to be named again in messages.
+/// The files and settings that the user named; messages repeat them.
 struct CaseSource {
   std::filesystem::path vehicle;
-  std::filesystem::path maneuver;     // empty: none, as for kinematics
+  std::filesystem::path maneuver;     // empty: none (kinematics)
   std::vector<std::string> settings;  // "name=value"
 };
 
 /// Reads the files and applies the settings. Throws InputError.
 Case load_case(const CaseSource& source);
 
-/// Calls a function of the model on `source`; what the model finds impossible becomes an InputError
-/// that names the file and the settings.
+/// Functions of the model; a ModelError becomes an InputError that names file and settings of
+/// `source`.
 PreparedCase prepare_case(const CaseSource& source, const Case& c);
 PreparedCase prepare_case(const CaseSource& source, const Case& c, CasePreparer& preparer);
 AssembledVehicle assemble_case(const CaseSource& source, const Case& c);

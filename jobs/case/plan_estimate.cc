@@ -1,5 +1,6 @@
 #include "jobs/case/plan_estimate.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -9,27 +10,28 @@
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "jobs/case/load_case.h"
-#include "jobs/case/step_check.h"
 #include "model/error/model_error.h"
 #include "sweep/choices.h"
 #include "sweep/simulate_cases.h"
+#include "sweep/step_stability.h"
 
 namespace strut {
 namespace {
 
 /// case_id, layer, status, attempt, event_time, failure_time
 constexpr double kFixedRowBytes = 8.0 + 3.0 * 4.0 + 2.0 * 8.0;
-/// A batch that takes less is measured once more [s].
-constexpr double kShort = 0.2;
+/// A batch that takes less time is measured again [s].
+constexpr double kMinMeasured = 0.2;
 
 void check_step(const Plan& plan, const PreparedCase& c, const std::string& which, const char* key,
                 double step) {
   const IntegrateOptions& options = plan.request().integrate.options;
   const auto fault = find_step_fault(c, options, step);
   if (!fault) return;
-  throw InputError(plan.request().path.string() + ": integrate." + key + " = " +
-                   format_number(step) + " s: unstable (" + fault->how + ") with " +
-                   get_name(options.step.stepper) + " for " + which + "; " + fault->allowed);
+  throw InputError(fmt::format("{}: integrate.{} = {} s: unstable ({}) with {} for {}; {}",
+                               plan.request().path.string(), key, format_number(step),
+                               fault->reason, get_name(options.step.stepper), which,
+                               fault->allowed));
 }
 
 void check_steps(const Plan& plan, const PreparedCase& c, const std::string& which) {
@@ -39,7 +41,7 @@ void check_steps(const Plan& plan, const PreparedCase& c, const std::string& whi
   if (step.coarse_step > 0.0) check_step(plan, c, which, "coarse_step", step.coarse_step);
 }
 
-/// The same for a point of the grid; one that cannot even be prepared is a result of the sweep.
+/// The same for a point of the grid; a case that the model rejects is a result of the sweep.
 void check_point(const Plan& plan, CasePreparer& preparer, std::int64_t id) {
   try {
     check_steps(plan, preparer.prepare(plan.make_case(id)), "case " + std::to_string(id));
@@ -53,8 +55,7 @@ void check_plan(const Plan& plan) {
   const SweepRequest& request = plan.request();
   CasePreparer preparer;
   const CaseSource source{request.vehicle, request.maneuver, {}};
-  check_steps(plan, prepare_case(source, request.base, preparer),
-              "the car and maneuver as they stand");
+  check_steps(plan, prepare_case(source, request.base, preparer), "the base car and maneuver");
   check_point(plan, preparer, 0);
   check_point(plan, preparer, plan.point_count() - 1);
 }
@@ -81,13 +82,13 @@ SweepEstimate estimate_sweep(const Plan& plan, const Kernel& kernel) {
   ShardRows rows = ShardRows::make(schema, cases.size());
   const std::atomic<bool> never{false};
   const auto measure = [&] {
-    const std::clock_t start = std::clock();  // of the processor: others may be busy here now
+    const std::clock_t start = std::clock();  // processor time: other programs may be running
     simulator.simulate(cases, rows, 0, never);
     return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   };
   double seconds = measure();
-  // The first time the mechanism is made, which others will share.
-  if (seconds < kShort) seconds = measure();
+  // The first batch also prepares the mechanism, which later batches share.
+  if (seconds < kMinMeasured) seconds = measure();
   estimate.measured = static_cast<int>(cases.size());
   for (const std::int32_t status : rows.status) {
     const bool no_event = status == static_cast<std::int32_t>(RunStatus::kNoEvent);

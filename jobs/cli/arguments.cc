@@ -1,5 +1,7 @@
 #include "jobs/cli/arguments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iostream>
 #include <set>
@@ -37,12 +39,6 @@ void add_to(po::options_description& all, const ArgumentOption& option) {
 /// NAME of "NAME=VALUE".
 std::string cut_name(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 
-std::string join_words(const std::vector<std::string>& words) {
-  std::string joined;
-  for (const std::string& word : words) joined += (joined.empty() ? "" : "|") + word;
-  return joined;
-}
-
 }  // namespace
 
 ArgumentValue ArgumentValue::file(const char* name, std::vector<std::string> endings) {
@@ -71,7 +67,7 @@ ArgumentValue ArgumentValue::setting() {
 }
 
 ArgumentValue ArgumentValue::one_of(std::vector<std::string> words) {
-  const std::string name = join_words(words);
+  const std::string name = fmt::format("{}", fmt::join(words, "|"));
   return one_of(name.c_str(), std::move(words));
 }
 
@@ -113,15 +109,15 @@ void Arguments::add_list(const std::string& name, ArgumentValue value, const std
   add(name, {"", "", false, true, std::move(value), help});
 }
 
-void Arguments::add_removed(const std::string& name, const std::string& why) {
-  removed_[name] = why;
+void Arguments::add_removed(const std::string& name, const std::string& remedy) {
+  removed_[name] = remedy;
 }
 
 const std::vector<ArgumentOption>& Arguments::common_options() {
   static const std::vector<ArgumentOption> options = {
-      {"quiet", "q", true, false, "", "say nothing on standard error but errors"},
-      {"verbose", "v", true, false, "", "say more there: settings, files, seconds"},
-      {"help", "h", true, false, "", "show this text"}};
+      {"quiet", "q", true, false, "", "print only errors on standard error"},
+      {"verbose", "v", true, false, "", "print more there: settings, files, durations"},
+      {"help", "h", true, false, "", "print this text"}};
   return options;
 }
 
@@ -141,25 +137,26 @@ bool Arguments::parse(const std::vector<std::string>& words) {
   words_ = words;
   po::options_description all = describe_options();
   all.add_options()(kPositional, po::value<std::vector<std::string>>());
-  po::positional_options_description places;
-  places.add(kPositional, -1);
+  po::positional_options_description positions;
+  positions.add(kPositional, -1);
   using po::command_line_style::allow_guessing;
   using po::command_line_style::unix_style;
   try {
     po::store(po::command_line_parser(words)
                   .options(all)
-                  .positional(places)
+                  .positional(positions)
                   .style(unix_style & ~allow_guessing)
                   .run(),
               values_);
   } catch (const po::unknown_option& e) {
     const std::string name = strip_dashes(e.get_option_name());
     if (const auto removed = removed_.find(name); removed != removed_.end()) {
-      throw InputError("--" + name + ": no longer an option: " + removed->second);
+      throw InputError(fmt::format("--{}: no longer an option: {}", name, removed->second));
     }
-    std::string suggestion = nearest_name(name, known_options());
-    if (!suggestion.empty()) suggestion = "; did you mean '--" + suggestion + "'?";
-    throw usage_error("unknown option '" + e.get_option_name() + "'" + suggestion);
+    const std::string nearest = nearest_name(name, list_option_names());
+    throw usage_error(
+        fmt::format("unknown option '{}'{}", e.get_option_name(),
+                    nearest.empty() ? "" : fmt::format("; did you mean '--{}'?", nearest)));
   } catch (const po::error& e) {
     throw usage_error(e.what());
   }
@@ -171,27 +168,27 @@ bool Arguments::parse(const std::vector<std::string>& words) {
     return false;
   }
   if (is_on("quiet") && is_on("verbose")) {
-    throw InputError("--quiet, --verbose: must not both be given");
+    throw InputError("--quiet, --verbose: mutually exclusive; give one of them");
   }
-  refuse_doubled_names();
+  check_repeated_names();
   return true;
 }
 
 void Arguments::print_help() const {
   print_styled("Usage:", Style::kBold);
-  std::cout << " " << synopsis_ << "\n\n" << description_ << "\n\n";
+  std::cout << fmt::format(" {}\n\n{}\n\n", synopsis_, description_);
   print_styled("Options:", Style::kBold);
   std::cout << "\n" << describe_options() << "\n";
   print_styled("Examples:", Style::kBold);
-  std::cout << "\n" << examples_ << "\n";
+  std::cout << fmt::format("\n{}\n", examples_);
 }
 
 InputError Arguments::usage_error(const std::string& what) const {
-  return InputError(what + "\nUsage: " + synopsis_ + "\n`strut " + command() +
-                    " --help` explains it");
+  return InputError(
+      fmt::format("{}\nUsage: {}\nSee `strut {} --help`", what, synopsis_, command()));
 }
 
-std::vector<std::string> Arguments::known_options() const {
+std::vector<std::string> Arguments::list_option_names() const {
   std::vector<std::string> names;
   for (const ArgumentOption& option : options_) names.push_back(option.name);
   for (const ArgumentOption& option : common_options()) names.push_back(option.name);
@@ -216,14 +213,14 @@ std::vector<std::string> Arguments::words_with_setting(const std::string& settin
   return words;
 }
 
-void Arguments::refuse_doubled_names() const {
+void Arguments::check_repeated_names() const {
   for (const ArgumentOption& option : options_) {
     if (!option.repeats || option.value.name.find('=') == std::string::npos) continue;
     std::set<std::string> names;
     for (const std::string& setting : list(option.name)) {
       const std::string name = cut_name(setting);
       if (!names.insert(name).second) {
-        throw InputError("--" + option.name + ": '" + name + "' twice; allowed: once");
+        throw InputError(fmt::format("--{}: '{}' given twice; allowed: once", option.name, name));
       }
     }
   }
@@ -247,7 +244,7 @@ double Arguments::number_or(const std::string& name, double fallback, const Rang
   const std::string digits = text(name);
   const auto value = parse_number<double>(digits);
   if (value && allowed.contains(*value)) return *value;
-  throw InputError("--" + name + " = " + digits + ": " + allowed.describe());
+  throw InputError(fmt::format("--{} = {}: {}", name, digits, allowed.describe()));
 }
 
 std::int64_t Arguments::integer_or(const std::string& name, std::int64_t fallback, std::int64_t low,
@@ -256,8 +253,8 @@ std::int64_t Arguments::integer_or(const std::string& name, std::int64_t fallbac
   const std::string digits = text(name);
   const auto value = parse_number<std::int64_t>(digits);
   if (value && *value >= low && *value <= high) return *value;
-  throw InputError("--" + name + " = " + digits + ": must be a whole number in [" +
-                   std::to_string(low) + ", " + std::to_string(high) + "]");
+  throw InputError(
+      fmt::format("--{} = {}: must be a whole number in [{}, {}]", name, digits, low, high));
 }
 
 int Arguments::choice_or(const std::string& name, int fallback) const {
@@ -270,8 +267,8 @@ int Arguments::choice_or(const std::string& name, int fallback) const {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == value) return static_cast<int>(i);
   }
-  throw InputError("--" + name + " = " + value + ": must be one of " + join_names(words) +
-                   suggest_name(value, words));
+  throw InputError(fmt::format("--{} = {}: must be one of {}{}", name, value, join_names(words),
+                               suggest_name(value, words)));
 }
 
 }  // namespace strut

@@ -1,5 +1,5 @@
-// The arguments of one command, a table: from it options are parsed by Boost.Program_options, and
-// help, completion, man page and the messages about wrong values are made.
+// The arguments of one command as a table, from which the command line is parsed (by
+// Boost.Program_options) and help, shell completion, manual page and error messages are generated.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -12,77 +12,76 @@
 
 namespace strut {
 
-/// What stands on a command line where the help says FILE, NAME or the like.
+/// The value of an operand or option: its placeholder in the help (FILE, NAME) and what it accepts.
 struct ArgumentValue {
   enum class Kind { kText, kChoice, kFile, kFolder, kPath, kSetting };
 
-  ArgumentValue(const char* text_name) : name(text_name) {}  // NOLINT: most values are plain text
-  /// A file; `endings`: "toml", as far as one is expected.
+  ArgumentValue(const char* text_name) : name(text_name) {}  // NOLINT: implicit for plain text
+  /// A file with one of `endings` ("toml"), which only completion uses; none: any file.
   static ArgumentValue file(const char* name, std::vector<std::string> endings = {});
   static ArgumentValue folder(const char* name);
-  /// Either.
+  /// A file or a folder.
   static ArgumentValue path(const char* name, std::vector<std::string> endings = {});
-  /// "NAME=VALUE" of a parameter.
+  /// "NAME=VALUE", the name being that of a parameter.
   static ArgumentValue setting();
-  /// One of `words`, which are its name in the help.
+  /// One of `words`; the placeholder in the help is "WORD|WORD|...".
   static ArgumentValue one_of(std::vector<std::string> words);
-  /// The same under another name, for words that differ between machines.
+  /// The same with a placeholder of its own, for words that differ between machines.
   static ArgumentValue one_of(const char* name, std::vector<std::string> words);
 
   std::string name;
   Kind kind = Kind::kText;
-  std::vector<std::string> words;    // of a choice
-  std::vector<std::string> endings;  // of a file, without the dot
+  std::vector<std::string> words;    // allowed values; kChoice only
+  std::vector<std::string> endings;  // expected endings without the dot; kFile and kPath only
 };
 
 struct ArgumentOption {
   std::string name;    // without dashes
-  std::string letter;  // the short name, or nothing
+  std::string letter;  // short name without dash; empty: none
   bool is_switch = false, repeats = false;
-  ArgumentValue value;  // nameless for a switch
+  ArgumentValue value;  // unused for a switch
   std::string help;
 };
 
 class Arguments {
  public:
-  /// `synopsis`: "strut simulate VEHICLE ...". `description` stands below it in the help,
-  /// `examples` at the end.
+  /// `synopsis` starts with the program and the command: "strut simulate VEHICLE ...".
   Arguments(std::string synopsis, std::string description, std::string examples);
 
-  /// What the command takes beside options, in its order.
+  /// Adds the next positional argument.
   void add_operand(ArgumentValue value);
-  /// The last of them, which may be given more than once.
+  /// Adds the last positional argument, which may be given more than once.
   void add_operands(ArgumentValue value);
-  /// A switch, or an option with a value; `name`: "output,o" with its letter.
+  /// Adds a switch, or an option with a value; `name` may include the letter: "output,o".
   void add_switch(const std::string& name, const std::string& help);
   void add_option(const std::string& name, ArgumentValue value, const std::string& help);
-  /// As add_option; may be given more than once, of NAME=VALUE once for each NAME.
+  /// Adds an option that may be given more than once; one of NAME=VALUE, once for each NAME.
   void add_list(const std::string& name, ArgumentValue value, const std::string& help);
 
-  /// An option that earlier versions had; `why` says what to do instead.
-  void add_removed(const std::string& name, const std::string& why);
+  /// Adds an option of earlier versions, which is refused; `remedy` says what to do instead.
+  void add_removed(const std::string& name, const std::string& remedy);
 
   const std::string& synopsis() const { return synopsis_; }
   const std::string& description() const { return description_; }
   const std::string& examples() const { return examples_; }
   const std::vector<ArgumentValue>& operands() const { return operands_; }
   bool last_operand_repeats() const { return last_operand_repeats_; }
-  /// The command's own.
+  /// The options of this command alone.
   const std::vector<ArgumentOption>& options() const { return options_; }
-  /// Those of every command: --help, --quiet, --verbose.
+  /// The options of every command: --quiet, --verbose, --help.
   static const std::vector<ArgumentOption>& common_options();
-  /// "simulate", of the synopsis.
+  /// The name of the command, from the synopsis: "simulate".
   std::string command() const;
 
-  /// False where --help was asked for and printed. Throws InputError.
+  /// Parses a command line. Returns false if --help was given and printed. Throws InputError.
   bool parse(const std::vector<std::string>& words);
 
-  /// What was parsed.
+  /// The words that were parsed.
   const std::vector<std::string>& words() const { return words_; }
-  /// The same with `NAME=VALUE` of --set in place of what they set NAME to, if anything.
+  /// The words that were parsed, with --set `setting` ("NAME=VALUE") replacing any --set of NAME.
   std::vector<std::string> words_with_setting(const std::string& setting) const;
   const std::vector<std::string>& positional() const { return positional_; }
-  /// InputError that shows how to call the command.
+  /// An InputError that adds the synopsis to `what`.
   InputError usage_error(const std::string& what) const;
 
   bool has(const std::string& name) const { return values_.count(name) > 0; }
@@ -91,25 +90,25 @@ class Arguments {
   std::string text_or(const std::string& name, const std::string& fallback) const;
   std::vector<std::string> list(const std::string& name) const;
   double number_or(const std::string& name, double fallback, const Range& allowed) const;
-  /// Of [low, high].
+  /// An integer in [low, high].
   std::int64_t integer_or(const std::string& name, std::int64_t fallback, std::int64_t low,
                           std::int64_t high) const;
-  /// Position of the option's value among its words.
+  /// Index of the option's value among its words.
   int choice_or(const std::string& name, int fallback) const;
 
  private:
   void add(const std::string& name, ArgumentOption option);
   boost::program_options::options_description describe_options() const;
-  std::vector<std::string> known_options() const;
-  /// In each list of NAME=VALUE. Throws InputError.
-  void refuse_doubled_names() const;
+  std::vector<std::string> list_option_names() const;
+  /// Throws InputError if an option of NAME=VALUE sets a NAME twice.
+  void check_repeated_names() const;
   void print_help() const;
 
   std::string synopsis_, description_, examples_;
   std::vector<ArgumentValue> operands_;
   bool last_operand_repeats_ = false;
   std::vector<ArgumentOption> options_;
-  std::map<std::string, std::string> removed_;  // name -> what to do instead
+  std::map<std::string, std::string> removed_;  // name -> remedy
   std::vector<std::string> words_;
   boost::program_options::variables_map values_;
   std::vector<std::string> positional_;

@@ -13,23 +13,23 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// How long work may take to stop after the first signal.
+/// Maximum time that work may take to stop after the first signal.
 constexpr std::chrono::milliseconds kPatience{1500};
-/// A signal to a process and one to its group, as timeout(1) sends them, are one.
+/// Signals closer together count as one: timeout(1) signals a process and then its group.
 constexpr std::chrono::milliseconds kEcho{100};
 
-/// Set before a signal can come: a handler must neither allocate nor lock.
-std::array<char, 4000> last_words;
-std::atomic<std::size_t> last_words_size{0};
+/// Filled beforehand, since a signal handler must neither allocate nor lock.
+std::array<char, 4000> message;
+std::atomic<std::size_t> message_size{0};
 
-/// Nothing is half done outside of an InterruptGuard, so there is nothing to clean up.
+/// Needs no cleanup: outside of an InterruptGuard no file is incomplete.
 extern "C" [[noreturn]] void end_now(int signal) {
-  if (write(STDERR_FILENO, last_words.data(), last_words_size) < 0) _exit(128 + signal);
+  if (write(STDERR_FILENO, message.data(), message_size) < 0) _exit(128 + signal);
   _exit(128 + signal);
 }
 
-/// As nohup and `trap '' INT` ask for. A signal that is blocked would come to sigtimedwait all the
-/// same.
+/// Whether the program was started to ignore the signal, as by nohup or `trap '' INT`; sigtimedwait
+/// would receive it all the same.
 bool is_ignored(int signal) {
   struct sigaction action {};
   return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
@@ -53,11 +53,11 @@ void end_on_interrupt() {
   }
 }
 
-void set_last_words(const std::string& text) {
-  last_words_size = 0;
-  const std::size_t size = std::min(text.size(), last_words.size());
-  std::copy_n(text.begin(), size, last_words.begin());
-  last_words_size = size;
+void set_interrupt_message(const std::string& text) {
+  message_size = 0;
+  const std::size_t size = std::min(text.size(), message.size());
+  std::copy_n(text.begin(), size, message.begin());
+  message_size = size;
 }
 
 InterruptGuard::InterruptGuard() {

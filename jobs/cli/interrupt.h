@@ -1,4 +1,4 @@
-// A clean end on SIGINT and SIGTERM, and SIGUSR1 as a scheduler's warning of its time limit.
+// Clean termination on SIGINT and SIGTERM; SIGUSR1 is a scheduler's warning of its time limit.
 #pragma once
 
 #include <atomic>
@@ -8,14 +8,14 @@
 
 namespace strut {
 
-/// From now on SIGINT and SIGTERM end the program with code 128 + signal. One that was ignored
-/// before stays so, here and below.
+/// From now on SIGINT and SIGTERM end the program with code 128 + signal. A signal that the program
+/// was started to ignore stays ignored, here and below.
 void end_on_interrupt();
 
-/// What is then said to standard error, as far as 4000 bytes go.
-void set_last_words(const std::string& text);
+/// Sets the message that is then printed to standard error; at most 4000 bytes of it.
+void set_interrupt_message(const std::string& text);
 
-/// Holds those signals, and SIGUSR1, back while it lives, so that a file is finished or cleaned up
+/// Blocks those signals, and SIGUSR1, during its lifetime, so that a file is finished or removed
 /// first.
 class InterruptGuard {
  public:
@@ -28,10 +28,10 @@ class InterruptGuard {
   sigset_t before_;
 };
 
-/// Turns the first of those signals into a flag, so that long work stops where it is whole. A
-/// second signal more than 0.1 s later, or work that has not ended 1.5 s after the first, ends the
-/// program at once, with the last words: for work that survives SIGKILL. To be made before other
-/// threads are.
+/// Turns the first of those signals into a flag, so that long work stops at a consistent point. A
+/// second signal more than 0.1 s later, or work still going on 1.5 s after the first, ends the
+/// program at once, with the interrupt message: only for work that survives SIGKILL. Must be
+/// created before any other thread.
 class InterruptWatcher {
  public:
   InterruptWatcher();
@@ -39,12 +39,12 @@ class InterruptWatcher {
   InterruptWatcher(const InterruptWatcher&) = delete;
   InterruptWatcher& operator=(const InterruptWatcher&) = delete;
 
-  /// True once a signal came. Others may set it too, to stop the same work.
+  /// True once a signal has arrived. Other code may set it too, to stop the same work.
   std::atomic<bool>& halt() { return halt_; }
-  /// True once SIGUSR1 came: work that lasts is to end where it is whole, in its own time. What
-  /// does not look at this goes on.
+  /// True once SIGUSR1 has arrived: long work should end at the next consistent point. Work that
+  /// does not check this flag continues.
   const std::atomic<bool>& warned() const { return warned_; }
-  /// The signal that stops; 0: none came.
+  /// The signal that arrived first; 0: none.
   int signal() const { return signal_; }
 
  private:

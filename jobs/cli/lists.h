@@ -6,7 +6,7 @@
 
 namespace strut {
 
-/// What stands between the commas, without blanks around it.
+/// Returns the parts between the commas, without surrounding blanks.
 std::vector<std::string> split_list(const std::string& text);
 
 }  // namespace strut

@@ -3,11 +3,11 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 
 #include "base/parallel/team.h"
 #include "base/text/build_info.h"
+#include "jobs/cli/clock.h"
 
 namespace strut {
 namespace {
@@ -21,7 +21,7 @@ std::string read_cpu_name() {
   return "unknown";
 }
 
-/// Keeps a result alive in the eyes of the compiler.
+/// Keeps the compiler from removing the computation of `value`.
 void keep(const double& value) { asm volatile("" : : "m"(value)); }
 
 }  // namespace
@@ -37,10 +37,6 @@ Json make_json(const Machine& machine) {
               {"isa", machine.isa},
               {"compiler", machine.compiler},
               {"commit", machine.commit}};
-}
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 double measure_spin() {

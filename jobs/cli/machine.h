@@ -1,4 +1,5 @@
-// The machine under a measurement: what it is, what it could do, and how busy others keep it.
+// The machine on which a benchmark runs: its description, its peak performance, and how much of it
+// is available.
 #pragma once
 
 #include <string>
@@ -10,28 +11,25 @@ namespace strut {
 
 struct Machine {
   std::string cpu;
-  int cores = 1;  // that this process may use
+  int cores = 1;  // available to this process
   std::string isa, compiler, commit;
 };
 
 Machine read_machine(const Kernel& kernel);
 Json make_json(const Machine& machine);
 
-/// Time since some fixed moment [s].
-double now();
-
-/// Spin control: rate [1/s] of a fixed chain of dependent multiplications and additions, over some
-/// 5 ms. It needs no memory, so whatever slows it (a lower clock, a neighbor on the core) slows
-/// what is measured beside it by at least the same factor.
+/// Spin control: rate [1/s] of a fixed chain of dependent multiplications and additions, measured
+/// for about 5 ms. It uses no memory, so anything that slows it (a lower clock, a neighbor on the
+/// core) slows the code measured at the same time by at least the same factor.
 double measure_spin();
 
-/// Sum of the rates of `threads` threads that spin at once.
+/// Sum of the spin rates [1/s] of `threads` threads that spin at the same time.
 double measure_spins(int threads);
 
-/// The best of many spins: this machine undisturbed.
+/// Maximum of many spin rates [1/s]: that of the undisturbed machine.
 double calibrate_spin();
 
-/// Largest number of floating-point operations a second that one core reaches in registers.
+/// Peak rate of one core [flop/s], operands in registers.
 double measure_peak(const Kernel& kernel);
 
 }  // namespace strut

@@ -1,5 +1,6 @@
 #include "jobs/cli/messages.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 #include "base/text/quote_word.h"
 #include "base/text/shorten.h"
 #include "base/text/utf8.h"
+#include "jobs/cli/clock.h"
 #include "jobs/cli/interrupt.h"
-#include "jobs/cli/machine.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/terminal.h"
 
@@ -23,51 +24,50 @@ namespace {
 constexpr const char* kEraseLine = "\r\033[K";
 
 std::atomic<Verbosity> verbosity{Verbosity::kNormal};
-/// Of standard error; what it holds back is the line shown there last.
-std::mutex mutex;
-std::string live_line;
-std::vector<std::string> next_lines;
+std::mutex mutex;       // guards standard error and the variables below
+std::string live_line;  // the text on the terminal's live line; empty: none
+std::vector<std::string> suggestions;
 
-/// Most of a message: a file whose content it quotes may hold anything.
+/// Bounds of a message, which may quote a file of any content.
 constexpr std::size_t kMaxBytes = 8000, kMaxLineBytes = 4000, kMaxLines = 24;
 
-/// `text`, which may quote files and names that others made, as a terminal may show it: bounded,
-/// without control characters.
-std::string make_shown(const std::string& text) {
-  std::string shown;
+/// Makes untrusted `text`, which may quote files and names, safe for a terminal: bounded, without
+/// control characters.
+std::string make_safe(const std::string& text) {
+  std::string safe;
   const std::string escaped = escape_controls(shorten(text, kMaxBytes));
   std::size_t begin = 0, lines = 0;
   for (; begin <= escaped.size() && lines < kMaxLines; ++lines) {
     const std::size_t end = std::min(escaped.find('\n', begin), escaped.size());
     const std::string_view line = std::string_view(escaped).substr(begin, end - begin);
-    shown += (lines == 0 ? "" : "\n") + shorten(line, kMaxLineBytes);
+    safe += (lines == 0 ? "" : "\n") + shorten(line, kMaxLineBytes);
     begin = end + 1;
   }
-  if (begin <= escaped.size()) shown += "\n...";
-  return shorten(shown, kMaxBytes);
+  if (begin <= escaped.size()) safe += "\n...";
+  return shorten(safe, kMaxBytes);
 }
 
 std::string paint(const std::string& text, Style style) {
-  const std::string shown = make_shown(text);
-  return shows_colors(STDERR_FILENO) ? get_sequence(style) + shown + kPlainSequence : shown;
+  const std::string safe = make_safe(text);
+  return shows_colors(STDERR_FILENO) ? get_sequence(style) + safe + kPlainSequence : safe;
 }
 
 std::string make_next_line(const std::string& line, const std::string& why) {
-  return paint("next:", Style::kBold) + " " + make_shown(line) +
+  return paint("next:", Style::kBold) + " " + make_safe(line) +
          (why.empty() ? "" : paint("  # " + why, Style::kDim));
 }
 
 std::string make_error(const std::string& text) {
-  return paint("strut:", Style::kRed) + " " + make_shown(text);
+  return paint("strut:", Style::kRed) + " " + make_safe(text);
 }
 
 std::string join_quoted(const std::vector<std::string>& words) {
-  std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + quote_if_needed(word);
-  return line;
+  std::vector<std::string> quoted;
+  for (const std::string& word : words) quoted.push_back(quote_if_needed(word));
+  return fmt::format("{}", fmt::join(quoted, " "));
 }
 
-/// A command line of the command under way.
+/// The words of a command line of the current command.
 std::vector<std::string> name_command(const Arguments& arguments,
                                       const std::vector<std::string>& words) {
   std::vector<std::string> line = {"strut", arguments.command()};
@@ -75,9 +75,9 @@ std::vector<std::string> name_command(const Arguments& arguments,
   return line;
 }
 
-/// `line`: made of texts that may be shown.
-void say(const std::string& line) {
-  // Data before the message, though one stream is buffered and the other is not.
+/// Prints a line of safe text above the live line.
+void print_line(const std::string& line) {
+  // Data precedes the message, although only one of the streams is buffered.
   std::cout.flush();
   const std::lock_guard lock(mutex);
   std::cerr << (live_line.empty() ? "" : kEraseLine) << line << "\n" << live_line << std::flush;
@@ -89,10 +89,10 @@ void set_verbosity(Verbosity value) { verbosity = value; }
 
 Verbosity get_verbosity() { return verbosity; }
 
-void print_error(const std::string& text) { say(make_error(text)); }
+void print_error(const std::string& text) { print_line(make_error(text)); }
 
 void print_note(const std::string& text) {
-  if (verbosity != Verbosity::kQuiet) say("strut: " + make_shown(text));
+  if (verbosity != Verbosity::kQuiet) print_line("strut: " + make_safe(text));
 }
 
 void print_notes(const std::vector<std::string>& texts) {
@@ -100,22 +100,22 @@ void print_notes(const std::vector<std::string>& texts) {
 }
 
 void print_detail(const std::string& text) {
-  if (verbosity == Verbosity::kVerbose) say(paint("strut: " + text, Style::kDim));
+  if (verbosity == Verbosity::kVerbose) print_line(paint("strut: " + text, Style::kDim));
 }
 
 void suggest_next_line(const std::string& line, const std::string& why) {
   if (verbosity == Verbosity::kQuiet) return;
   const std::lock_guard lock(mutex);
-  next_lines.push_back(make_next_line(line, why));
+  suggestions.push_back(make_next_line(line, why));
 }
 
 void print_suggestions() {
   std::vector<std::string> lines;
   {
     const std::lock_guard lock(mutex);
-    lines.swap(next_lines);
+    lines.swap(suggestions);
   }
-  for (const std::string& line : lines) say(line);
+  for (const std::string& line : lines) print_line(line);
 }
 
 void suggest_next(const std::vector<std::string>& words, const std::string& why) {
@@ -136,8 +136,8 @@ void suggest_again_with_setting(const Arguments& arguments, const std::string& s
 
 void suggest_next_after_failures(const std::string& root, std::int64_t failed) {
   suggest_next({"strut", "verify", root},
-               format_count(failed) + (failed == 1 ? " case stays failed" : " cases stay failed") +
-                   "; strut train leaves out what failed");
+               fmt::format("{} {} failed; strut train leaves them out", format_count(failed),
+                           failed == 1 ? "case remains" : "cases remain"));
 }
 
 void suggest_page(const std::string& file) { suggest_next({"xdg-open", file}); }
@@ -149,18 +149,18 @@ void prepare_interrupt(const Arguments& arguments, const std::string& what) {
     const std::vector<std::string> line = name_command(arguments, arguments.words());
     text += make_next_line(join_quoted(line), what) + "\n";
   }
-  set_last_words(text);
+  set_interrupt_message(text);
 }
 
 Stage::Stage(std::string name) : name_(std::move(name)), start_(now()) {}
 
-Stage::~Stage() { print_detail(name_ + ": " + format_duration(now() - start_)); }
+Stage::~Stage() { print_detail(fmt::format("{}: {}", name_, format_duration(now() - start_))); }
 
-void show_line(const std::string& text) { say(make_shown(text)); }
+void show_line(const std::string& text) { print_line(make_safe(text)); }
 
 void show_live_line(const std::string& text) {
   const std::lock_guard lock(mutex);
-  live_line = make_shown(text);
+  live_line = make_safe(text);
   std::cerr << kEraseLine << live_line << std::flush;
 }
 

@@ -1,5 +1,6 @@
 #include "jobs/cli/open_sweep.h"
 
+#include <fmt/format.h>
 #include <omp.h>
 
 #include "jobs/cli/unsealed.h"
@@ -9,9 +10,9 @@ namespace strut {
 OpenSweep open_sweep(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
-    throw arguments.usage_error(
-        std::to_string(names.size()) +
-        " arguments; expected DIR, a folder made by `strut plan SWEEP.toml -o DIR`");
+    throw arguments.usage_error(fmt::format(
+        "{} arguments; expected DIR, a folder created by `strut plan SWEEP.toml -o DIR`",
+        names.size()));
   }
   SweepFolder folder{names.front()};
   Plan plan = open_sweep_folder(folder);
@@ -31,8 +32,8 @@ const Kernel& find_kernel(const Arguments& arguments) {
 }
 
 int find_threads(const Arguments& arguments) {
-  constexpr int kMost = 4096;
-  return static_cast<int>(arguments.integer_or("threads", omp_get_num_procs(), 1, kMost));
+  constexpr int kMaxThreads = 4096;
+  return static_cast<int>(arguments.integer_or("threads", omp_get_num_procs(), 1, kMaxThreads));
 }
 
 }  // namespace strut

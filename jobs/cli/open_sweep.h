@@ -1,4 +1,4 @@
-// The sweep folder that a command names.
+// The sweep folder, kernel and number of threads that the arguments of a command name.
 #pragma once
 
 #include "jobs/cli/arguments.h"
@@ -11,16 +11,16 @@ struct OpenSweep {
   Plan plan;
 };
 
-/// The one positional argument as a planned folder. Throws InputError.
+/// Opens the planned folder that is the only positional argument. Throws InputError.
 OpenSweep open_sweep(const Arguments& arguments);
 
-/// The instruction sets that this machine has, for `--isa NAME`.
+/// The value of `--isa NAME`: an instruction set of this machine.
 ArgumentValue isa_value();
 
-/// The kernel of `--isa NAME`, the widest without.
+/// The kernel of `--isa NAME`; by default the one with the widest lanes.
 const Kernel& find_kernel(const Arguments& arguments);
 
-/// `--threads N`, without it one for each processor this process may use.
+/// `--threads N`; by default one thread for each processor available to this process.
 int find_threads(const Arguments& arguments);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "jobs/cli/output_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <system_error>
@@ -22,14 +24,14 @@ bool is_one_of(const fs::path& file, const std::vector<fs::path>& files) {
   });
 }
 
-/// The sweep folder of which `path` is a file, or in whose subfolders it lies; symbolic links are
-/// followed. Empty: none.
+/// Returns the sweep folder of which `path` is a file or in whose subfolders it lies; symbolic
+/// links are followed. Empty: none.
 fs::path find_sweep_of(const fs::path& path) {
   const SweepFolder names;
   const std::set<fs::path> files = {names.plan(), names.request(), names.journal()};
   const std::set<fs::path> folders = {names.inputs(),     names.shards(), names.retries(),
                                       names.claims(),     names.logs(),   names.temporary(),
-                                      names.quarantine(), "jobs"};  // of dispatch/submission.cc
+                                      names.quarantine(), "jobs"};  // cluster/submission.cc
   fs::path inside = fs::weakly_canonical(fs::absolute(path));
   for (bool is_last = true; inside.has_relative_path(); is_last = false) {
     const fs::path name = inside.filename();
@@ -40,12 +42,17 @@ fs::path find_sweep_of(const fs::path& path) {
   return {};
 }
 
-/// `shown`: what the option was given.
-void refuse_sweep_files(const std::string& option, const fs::path& shown, const fs::path& output) {
+/// The start of every message: "--output = FILE: ".
+std::string name_option(const std::string& option, const fs::path& value) {
+  return fmt::format("--{} = {}: ", option, value.string());
+}
+
+/// Refuses an `output` inside a sweep; `value`: the option's value.
+void refuse_sweep_files(const std::string& option, const fs::path& value, const fs::path& output) {
   const fs::path sweep = find_sweep_of(output);
   if (sweep.empty()) return;
-  throw InputError("--" + option + " = " + shown.string() + ": belongs to the sweep in " +
-                   sweep.string() + "; must be another file or folder");
+  throw InputError(fmt::format("{}part of the sweep in {}; name another file or folder",
+                               name_option(option, value), sweep.string()));
 }
 
 }  // namespace
@@ -53,27 +60,29 @@ void refuse_sweep_files(const std::string& option, const fs::path& shown, const 
 void check_output_folder(const std::string& option, const fs::path& folder) {
   refuse_sweep_files(option, folder, folder / "file");
   if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw InputError("--" + option + " = " + folder.string() + ": is a file; must be a folder");
+    throw InputError(name_option(option, folder) + "is a file; must be a folder");
   }
 }
 
 void check_output_file(const std::string& option, const fs::path& output,
                        const std::vector<fs::path>& inputs, bool may_replace,
                        const std::string& remedy) {
-  const std::string start = "--" + option + " = " + output.string() + ": ";
-  if (fs::is_directory(output)) throw InputError(start + "a folder; must be a file");
+  const std::string start = name_option(option, output);
+  if (fs::is_directory(output)) throw InputError(start + "is a folder; must be a file");
   if (fs::exists(output) && !fs::is_regular_file(output)) {
-    throw InputError(start + "not a regular file; must be another file");
+    throw InputError(start + "not a regular file; name another file");
   }
   refuse_sweep_files(option, output, output);
   if (is_one_of(output, inputs)) {
-    throw InputError(start + "is what is read; must be another file");
+    throw InputError(start + "is an input of this command; name another file");
   }
   const fs::path folder = fs::absolute(output).parent_path();
   if (!fs::is_directory(folder)) {
-    throw EnvironmentError(start + "there is no folder " + folder.string() + "; mkdir -p makes it");
+    throw EnvironmentError(
+        fmt::format("{}there is no folder {}; create it with mkdir -p", start, folder.string()));
   }
-  if (!may_replace && fs::exists(output)) throw InputError(start + "exists; " + remedy);
+  if (!may_replace && fs::exists(output))
+    throw InputError(fmt::format("{}exists; {}", start, remedy));
 }
 
 std::vector<fs::path> list_files_read(const std::vector<fs::path>& toml_files) {
@@ -104,16 +113,17 @@ fs::path find_output_folder(const Arguments& arguments, const FolderContent& con
   if (!arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
   fs::path folder = fs::path(arguments.text("output")).lexically_normal();
-  const std::string start = "--output = " + folder.string() + ": ";
+  const std::string start = name_option("output", folder);
   check_output_folder("output", folder);
   if (fs::exists(folder / content.file) && !arguments.is_on("force")) {
-    throw InputError(start + "holds a " + content.name + "; --force replaces it");
+    throw InputError(fmt::format("{}holds a {}; --force replaces it", start, content.name));
   }
   std::vector<fs::path> written;
   for (const std::string& file : files) {
     written.push_back(folder / file);
     if (is_one_of(written.back(), inputs)) {
-      throw InputError(start + "holds " + file + ", which is read; must be another folder");
+      throw InputError(
+          fmt::format("{}holds {}, an input of this command; name another folder", start, file));
     }
   }
   check_page_folder("output", {folder}, content, written);

@@ -10,33 +10,33 @@
 
 namespace strut {
 
-/// The rule for every file that a command writes: refuses one that could not be written, or must
-/// not be, before the work is done. Throws InputError, which names the option, where `output` is a
-/// folder or device, part of a sweep, one of `inputs`, which the command reads, or exists and
-/// `may_replace` is false: then `remedy` says what to do. EnvironmentError where its folder is
-/// missing.
+/// Checks, before any work is done, that a command can and may write `output`. Throws InputError,
+/// which names the option, if `output` is a folder or device, part of a sweep, or one of `inputs`
+/// (the files that the command reads), or if it exists and `may_replace` is false; the message then
+/// ends with `remedy`. Throws EnvironmentError if its folder is missing.
 void check_output_file(const std::string& option, const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs, bool may_replace,
                        const std::string& remedy = "--force replaces it");
 
-/// The rule for a folder into which a command writes, which may be missing. Throws InputError,
-/// which names the option, where it is a file, or lies in a subfolder of a sweep.
+/// Checks a folder, which may be missing, into which a command writes. Throws InputError, which
+/// names the option, if it is a file or lies in a subfolder of a sweep.
 void check_output_folder(const std::string& option, const std::filesystem::path& folder);
 
-/// TOML files and the files that they name: what a command that reads them must not write.
+/// Lists TOML files and the files that they name, none of which a command may overwrite.
 std::vector<std::filesystem::path> list_files_read(
     const std::vector<std::filesystem::path>& toml_files);
 
-/// The value of --output, which --force lets replace a file; `inputs`: what the command reads,
-/// besides the files that those of them in TOML name. Throws InputError where it is missing, and as
-/// check_output_file does.
+/// Returns the value of --output, which may be an existing file with --force. `inputs`: the files
+/// that the command reads, without those that the TOML files among them name. Throws InputError if
+/// the option is missing, and as check_output_file does.
 std::filesystem::path find_output_file(const Arguments& arguments,
                                        const std::vector<std::string>& inputs);
 
-/// The folder of --output, made where it is missing, into which a page goes, `files` beside it.
-/// Throws InputError where it is missing, a file, part of a sweep, or holds `content` of before and
-/// --force is not given; where one of the files is one of `inputs`, what the command reads, or not
-/// of an earlier page of that content; EnvironmentError where it cannot be made.
+/// Returns the folder of --output, created if missing, for a page and `files` beside it. Throws
+/// InputError if the option is missing; if the folder is a file, part of a sweep, or already
+/// contains `content` and --force is not given; if one of the files is one of `inputs` (the files
+/// that the command reads) or does not belong to an earlier page of that content. Throws
+/// EnvironmentError if the folder cannot be created.
 std::filesystem::path find_output_folder(const Arguments& arguments, const FolderContent& content,
                                          const std::vector<std::string>& files,
                                          const std::vector<std::filesystem::path>& inputs);

@@ -1,15 +1,15 @@
 #include "jobs/cli/progress.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "jobs/cli/clock.h"
 #include "jobs/cli/interrupt.h"
-#include "jobs/cli/machine.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/terminal.h"
 
@@ -17,7 +17,9 @@ namespace strut {
 namespace {
 
 std::function<std::string()> describe_elapsed(const std::string& doing) {
-  return [doing, start = now()] { return doing + ", " + format_duration(now() - start); };
+  return [doing, start = now()] {
+    return fmt::format("{}, {}", doing, format_duration(now() - start));
+  };
 }
 
 }  // namespace
@@ -25,7 +27,7 @@ std::function<std::string()> describe_elapsed(const std::string& doing) {
 ProgressLine::ProgressLine(std::function<std::string()> line)
     : line_(std::move(line)), live_(is_live_terminal(STDERR_FILENO)) {
   if (get_verbosity() == Verbosity::kQuiet) return;
-  // A signal is for the threads that work: this one would end the program amid what they guard.
+  // Signals must go to the working threads: this one would end the program amid guarded work.
   const InterruptGuard guard;
   thread_ = std::thread([this] { work(); });
 }
@@ -53,12 +55,10 @@ void ProgressLine::work() {
 
 std::string format_progress(std::int64_t done, std::int64_t total, const std::string& what,
                             double seconds) {
-  std::string line = format_count(done) + "/" + format_count(total) + " " + what;
-  if (done > 0 && done < total) {
-    const double left = static_cast<double>(total - done) / static_cast<double>(done);
-    line += ", " + format_duration(left * seconds) + " to go";
-  }
-  return line;
+  const std::string line = fmt::format("{}/{} {}", format_count(done), format_count(total), what);
+  if (done <= 0 || done >= total) return line;
+  const double remaining = static_cast<double>(total - done) / static_cast<double>(done);
+  return fmt::format("{}, {} to go", line, format_duration(remaining * seconds));
 }
 
 std::string format_duration(double seconds) {
@@ -72,21 +72,18 @@ std::string format_duration(double seconds) {
   for (std::size_t i = 0; i + 1 < kUnits.size(); ++i) {
     const Unit &large = kUnits[i], &small = kUnits[i + 1];
     if (whole < large.seconds) continue;
-    return std::to_string(whole / large.seconds) + " " + large.name + " " +
-           std::to_string(whole % large.seconds / small.seconds) + " " + small.name;
+    return fmt::format("{} {} {} {}", whole / large.seconds, large.name,
+                       whole % large.seconds / small.seconds, small.name);
   }
-  char text[32];
-  std::snprintf(text, sizeof text, seconds < 10.0 ? "%.2g s" : "%.0f s", seconds);
-  return text;
+  return seconds < 10.0 ? fmt::format("{:.2g} s", seconds) : fmt::format("{:.0f} s", seconds);
 }
 
 std::string format_bytes(double bytes) {
   constexpr std::array<const char*, 5> kNames = {"B", "kB", "MB", "GB", "TB"};
   std::size_t unit = 0;
   while (bytes >= 999.5 && unit + 1 < kNames.size()) bytes /= 1000.0, ++unit;
-  char text[32];
-  std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.3g %s", bytes, kNames[unit]);
-  return text;
+  return unit == 0 ? fmt::format("{:.0f} {}", bytes, kNames[unit])
+                   : fmt::format("{:.3g} {}", bytes, kNames[unit]);
 }
 
 std::string format_count(std::int64_t count) {

@@ -1,4 +1,4 @@
-// A line that tells how far long work has come: live on a terminal, now and then elsewhere.
+// Progress of long work: a line rewritten in place on a terminal, printed now and then elsewhere.
 #pragma once
 
 #include <condition_variable>
@@ -10,12 +10,12 @@
 
 namespace strut {
 
-/// Prints `line()` to standard error from a thread of its own: on a terminal five times a second in
-/// place, elsewhere every ten seconds, with --quiet never. The destructor erases the live line.
+/// Prints `line()` to standard error from a thread of its own: on a terminal in place, five times a
+/// second; elsewhere every ten seconds; with --quiet never. The destructor erases the live line.
 class ProgressLine {
  public:
   explicit ProgressLine(std::function<std::string()> line);
-  /// Of work whose share done cannot be told: "DOING, 12 s".
+  /// For work whose completed fraction is unknown: "DOING, 12 s".
   explicit ProgressLine(const std::string& doing);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
@@ -32,11 +32,11 @@ class ProgressLine {
   std::thread thread_;
 };
 
-/// "1,200/4,800 cases verified, 12 s to go" where `seconds` were spent on those done.
+/// "1,200/4,800 cases verified, 12 s to go"; `seconds`: time spent on the `done` ones.
 std::string format_progress(std::int64_t done, std::int64_t total, const std::string& what,
                             double seconds);
 
-/// "12 s", "3 min 20 s", "5 h 12 min", "9 d 4 h"; "unknown" where not finite.
+/// "12 s", "3 min 20 s", "5 h 12 min", "9 d 4 h"; "unknown" if not finite.
 std::string format_duration(double seconds);
 
 /// "512 B", "12.3 kB", "4.56 GB"

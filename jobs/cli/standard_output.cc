@@ -12,7 +12,7 @@
 namespace strut {
 namespace {
 
-/// Collects lines, so that no character arrives here in two pieces and is taken for bytes.
+/// Buffers whole lines, so that no multi-byte character is split and then escaped byte by byte.
 class EscapingBuffer : public std::streambuf {
  public:
   std::streambuf* target = nullptr;
@@ -56,7 +56,7 @@ class EscapingBuffer : public std::streambuf {
   }
 
   std::string pending_;
-  bool is_good_ = true;  // nothing is lost so far
+  bool is_good_ = true;  // all output so far was written
 };
 
 EscapingBuffer& get_buffer() {

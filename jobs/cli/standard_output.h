@@ -1,4 +1,4 @@
-// Standard output: data for people and programs, some of it from files that others wrote.
+// Standard output: data for people and programs, parts of it from untrusted files.
 #pragma once
 
 #include <streambuf>
@@ -8,8 +8,8 @@
 
 namespace strut {
 
-/// While it lives, std::cout shows control characters as escape_controls() does, whatever a command
-/// prints; only print_control() and print_styled() reach the terminal as they are.
+/// During its lifetime std::cout escapes control characters, as escape_controls() does, in
+/// everything a command prints; only print_control() and print_styled() write them to the terminal.
 class StandardOutput {
  public:
   StandardOutput();
@@ -22,10 +22,10 @@ class StandardOutput {
   std::streambuf* before_;
 };
 
-/// A sequence of the terminal's own.
+/// Prints a control sequence of the terminal.
 void print_control(const std::string& sequence);
 
-/// `text` in that style where standard output shows colors.
+/// Prints `text`, in that style if standard output shows colors.
 void print_styled(const std::string& text, Style style);
 
 /// std::printf to std::cout.

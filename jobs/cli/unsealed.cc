@@ -1,5 +1,7 @@
 #include "jobs/cli/unsealed.h"
 
+#include <fmt/format.h>
+
 #include <set>
 
 #include "io/store/sweep_folder.h"
@@ -10,12 +12,11 @@ namespace strut {
 namespace fs = std::filesystem;
 
 void note_unsealed(const fs::path& file, const SealKind& kind) {
-  static std::set<fs::path> told;
-  if (is_sealed(file) || !told.insert(file).second) return;
-  print_note(file.string() +
-             ": has no seal, as an earlier version wrote it: not every damage to it "
-             "can be found; " +
-             kind.sealing);
+  static std::set<fs::path> noted;
+  if (is_sealed(file) || !noted.insert(file).second) return;
+  print_note(fmt::format(
+      "{}: written without a seal by an earlier version: not all damage can be detected; {}",
+      file.string(), kind.sealing));
 }
 
 void note_unsealed_data(const std::vector<std::string>& paths) {

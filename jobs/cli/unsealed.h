@@ -1,4 +1,4 @@
-// Files that an earlier version wrote without a seal.
+// Notes about files that an earlier version of strut wrote without a seal.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace strut {
 
-/// Notes, once for each file, that `file` has no seal and how to get one that has.
+/// Prints a note, once for each file, if `file` has no seal, and how to get a sealed one.
 void note_unsealed(const std::filesystem::path& file, const SealKind& kind);
-/// The same of the plans of sweep folders and of merged files among the data of a command.
+/// The same for `paths` of sweep folders (their plans) and merged files.
 void note_unsealed_data(const std::vector<std::string>& paths);
-/// read_model, and the note.
+/// Reads a trained model and calls note_unsealed().
 TrainedModel load_model(const std::filesystem::path& file);
 
 }  // namespace strut

@@ -1,4 +1,4 @@
-// Can a file system keep what a sweep folder promises?
+// Tests whether a file system has the properties that a sweep folder relies on.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,13 @@
 
 namespace strut {
 
-/// What a sweep still needs.
+/// Space for the missing shards of a sweep.
 struct SpaceNeeds {
   double bytes = 0.0;
   std::int64_t files = 0;
 };
 
-/// Tries everything in a subfolder of its own, which it removes again. Throws EnvironmentError
-/// where nothing can be written at all.
+/// Runs all tests in a temporary subfolder. Throws EnvironmentError if nothing can be written.
 Findings check_file_system(const std::filesystem::path& folder, const SpaceNeeds& needs);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "jobs/simulate/kinematics.h"
 
+#include <fmt/format.h>
+
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "io/file/atomic_file.h"
@@ -10,7 +12,7 @@ namespace strut {
 namespace {
 
 constexpr int kHalfCount = 40;
-constexpr double kPerMeter = 400.0;  // travels a meter; a division gives the shortest decimals
+constexpr double kPerMeter = 400.0;  // points per meter; dividing by it gives the shortest decimals
 
 std::vector<double> list_travels() {
   std::vector<double> travels;
@@ -36,7 +38,7 @@ void write_kinematics(const CaseSource& source, const std::filesystem::path& out
     front = calc_kinematics(car, kFrontLeft, travels);
     rear = calc_kinematics(car, kRearLeft, travels);
   } catch (const ModelError& e) {
-    throw InputError(source.vehicle.string() + ": " + e.what());
+    throw InputError(fmt::format("{}: {}", source.vehicle.string(), e.what()));
   }
 
   std::string text =

@@ -1,4 +1,4 @@
-// `strut simulate --kinematics`: suspension curves with the chassis held.
+// `strut simulate --kinematics`: suspension curves with the chassis fixed.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,8 @@
 
 namespace strut {
 
-/// Writes the curves of the front-left and rear-left corner, -100 to +100 mm in 2.5 mm, as CSV.
+/// Writes the curves of the front-left and rear-left corner, wheel travel -100 to +100 mm in steps
+/// of 2.5 mm, as CSV.
 /// Throws InputError, EnvironmentError.
 void write_kinematics(const CaseSource& source, const std::filesystem::path& output);
 

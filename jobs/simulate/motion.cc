@@ -1,8 +1,9 @@
 #include "jobs/simulate/motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 
 #include "model/car/assemble.h"
@@ -12,7 +13,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMostFrames = 1200;
+constexpr std::size_t kMaxFrames = 1200;
 constexpr std::size_t kRoadPoints = 200;
 
 std::vector<double> get_channel(const LaneResults& results, std::size_t channel) {
@@ -23,8 +24,8 @@ double calc_bump_center(const Case& c) {
   return c.vehicle.whole.centroid_to_front + c.maneuver.bump_distance;
 }
 
-/// Samples to be shown: about the bump, where all happens in a tenth of a second, up to kMostFrames
-/// of them, and as many elsewhere.
+/// Samples to be shown: up to kMaxFrames near the bump, which is crossed in a tenth of a second,
+/// and as many elsewhere.
 std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) {
   constexpr double kBefore = 1.0, kAfter = 4.0;  // m between an axle and the bump's ends
   const WholeCarSpec& whole = c.vehicle.whole;
@@ -43,7 +44,7 @@ std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) 
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < forward.size(); ++i) {
     const std::size_t part = get_part(i);
-    const std::size_t stride = (count[part] + kMostFrames - 1) / kMostFrames;
+    const std::size_t stride = (count[part] + kMaxFrames - 1) / kMaxFrames;
     if (seen[part]++ % stride == 0 || i + 1 == forward.size()) frames.push_back(i);
   }
   return frames;
@@ -54,18 +55,16 @@ std::size_t get_corner_channel(int corner, int channel) {
   return static_cast<std::size_t>(first) + static_cast<std::size_t>(channel);
 }
 
-/// Five digits after the point of a meter are more than a screen shows.
+/// Six significant digits, more than a screen can show.
 Json make_numbers(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double value : values) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    list.push_back(std::strtod(text, nullptr));
+    list.push_back(std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr));
   }
   return list;
 }
 
-/// The values of some samples.
+/// The values at the samples `frames`.
 Json make_values(const std::vector<double>& all, const std::vector<std::size_t>& frames) {
   std::vector<double> values;
   values.reserve(frames.size());
@@ -88,7 +87,7 @@ Json make_point(double x, double z) {
   return point;
 }
 
-/// Wheel center and ends of the spring, from the body's reference point.
+/// Wheel center and ends of the spring, relative to the reference point of the body.
 Json make_axle(const Case& c, int axle) {
   const SuspensionSpec& suspension = c.vehicle.suspension[static_cast<std::size_t>(axle)];
   const Vec3<double> wheel = calc_wheel_reference(c.vehicle, c.maneuver.gravity, 2 * axle);
@@ -122,7 +121,7 @@ const char* get_name(BumpSide side) {
 
 struct CurvePanel {
   const char* label;
-  int channel;  // of the body; -1: `corner` of every corner
+  int channel;  // a channel of the body; -1: the channel `corner` of each corner
   int corner = 0;
 };
 
@@ -137,8 +136,8 @@ std::vector<std::array<double, 2>> list_profile(const RoadSpec& road) {
   for (std::size_t i = 0; i < pieces; ++i) {
     const double begin = profile.ends[i], end = profile.ends[i + 1];
     for (std::size_t k = 0; k < count; ++k) {
-      const double share = static_cast<double>(k) / static_cast<double>(count);
-      const double x = begin + share * (end - begin);
+      const double fraction = static_cast<double>(k) / static_cast<double>(count);
+      const double x = begin + fraction * (end - begin);
       points.push_back({x, profile.calc(i, x).value});
     }
   }
@@ -184,9 +183,10 @@ Chart make_motion_curves(const LaneResults& results) {
   chart.width = 620;
   chart.shares_x = true;
   chart.caption =
-      "Body, suspension and tires over time; right wheels solid, left dashed. Compression counts "
-      "from nominal trim; damper forces are positive in compression. The line stands at the "
-      "slider's instant.";
+      "Body, suspension and tires over time; right wheels solid, left dashed. Compression is "
+      "relative to nominal trim; damper forces are positive in compression. The vertical line "
+      "marks "
+      "the instant of the slider.";
   const std::vector<double> time = get_channel(results, CarChannel::kTime);
   for (const CurvePanel& curves : kPanels) {
     ChartPanel panel{{&curves == &kPanels.back() ? "time [s]" : ""}, {curves.label}, {}};
@@ -201,7 +201,7 @@ Chart make_motion_curves(const LaneResults& results) {
           is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine, 1 + axle_of(corner),
           get_corner_channel(corner, curves.corner));
     }
-    panel.about = std::string(curves.label) + " over time [s]";
+    panel.about = fmt::format("{} over time [s]", curves.label);
     chart.panels.push_back(std::move(panel));
   }
   return chart;

@@ -1,13 +1,13 @@
 #include "jobs/simulate/rig.h"
 
-#include <chrono>
-#include <cstdio>
+#include <fmt/format.h>
 
 #include "base/text/format_number.h"
-#include "jobs/case/run_file.h"
+#include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
+#include "jobs/simulate/run_file.h"
 #include "model/rig/rig_system.h"
 #include "model/sensor/read_out.h"
 #include "model_files/parameters.h"
@@ -25,22 +25,26 @@ RigSpec load_rig(const CaseSource& source) {
   return rig;
 }
 
-/// Its step, if a shorter one gets through; else exit code 1 is the answer.
+/// Reports a failed run: throws InputError if a shorter step succeeds; otherwise prints the cause
+/// and returns exit code 1.
 int explain_failure(const Arguments& arguments, const SimulateOptions& options, const RigSpec& rig,
                     const RigManeuver& maneuver, const SamplePlan& plan, double failure_time) {
   const std::string at = format_number(failure_time) + " s";
   StepOptions shorter = options.integrate.step;
   shorter.step *= kRetryFraction;
   if (simulate_rig(rig, maneuver.inputs, shorter, plan).status[0] == 0) {
-    throw InputError("--step = " + format_number(options.integrate.step.step) +
-                     " s: " + options.source.vehicle.string() + " in " +
-                     options.source.maneuver.string() + " diverged at t = " + at + "; a step of " +
-                     format_number(shorter.step) + " s runs through");
+    throw InputError(
+        fmt::format("--step = {} s: {} in {} diverged at t = {}; a step of {} s succeeds",
+                    format_number(options.integrate.step.step), options.source.vehicle.string(),
+                    options.source.maneuver.string(), at, format_number(shorter.step)));
   }
-  print_error("the run failed at t = " + at +
-              ": the motion is no longer finite, nor with a step of " +
-              format_number(shorter.step) + " s; nothing was written");
-  suggest_again_with_setting(arguments, "NAME=VALUE", "with a parameter nearer to a rig's");
+  print_error(
+      fmt::format("the run failed at t = {}: the motion is no longer finite, even with a step of "
+                  "{} s; nothing was "
+                  "written",
+                  at, format_number(shorter.step)));
+  suggest_again_with_setting(arguments, "NAME=VALUE",
+                             "with a parameter closer to that of a real rig");
   return kExitNegative;
 }
 
@@ -62,7 +66,7 @@ void describe_run(const SimulateOptions& options, const RigSpec& rig, RunRecord&
 
 int run_rig(const Arguments& arguments, const SimulateOptions& options) {
   if (options.integrator == kIntegratorCvode) {
-    throw InputError("--integrator = cvode: drives cars only; allowed for a rig: rk4, abm4");
+    throw InputError("--integrator = cvode: for cars only; must be rk4 or abm4 for a rig");
   }
   const RigSpec rig = load_rig(options.source);
   const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, rig.kind);
@@ -76,7 +80,7 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options) {
 
   RunRecord run;
   run.channels = &get_rig_info(rig.kind).channels;
-  const auto start = std::chrono::steady_clock::now();
+  const double start = now();
   const ReadOut out(*run.channels, {&rig.effects});
   {
     const ProgressLine line("simulating " + format_duration(maneuver.duration));
@@ -84,19 +88,17 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options) {
       return simulate_rig(rig, maneuver.inputs, options.integrate.step, record);
     });
   }
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = now() - start;
   if (run.results.status[0] != 0) {
     return explain_failure(arguments, options, rig, maneuver, plan, run.results.failure_time[0]);
   }
   describe_run(options, rig, run);
   write_run(options.output, format, run);
-  char line[160];
-  std::snprintf(line, sizeof line, ": %d samples of %zu channels; %.4g s simulated in %.3g s",
-                run.results.sample_count, run.channels->size(), maneuver.duration, seconds);
-  print_note(options.output.string() + line);
+  print_note(fmt::format("{}: {} samples of {} channels; {:.4g} s simulated in {:.3g} s",
+                         options.output.string(), run.results.sample_count, run.channels->size(),
+                         maneuver.duration, seconds));
   suggest_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
-               "measured runs against this rig");
+               "to compare measured runs with this rig");
   return kExitDone;
 }
 

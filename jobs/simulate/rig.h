@@ -1,13 +1,13 @@
-// `strut simulate` on a rig instead of a car: same files out, no snapshot.
+// `strut simulate` on a rig: writes the same files as for a car, prints no snapshot.
 #pragma once
 
-#include "jobs/case/options.h"
 #include "jobs/cli/arguments.h"
+#include "jobs/simulate/options.h"
 #include "model/rig/rigs.h"
 
 namespace strut {
 
-/// Exit code. Throws InputError, EnvironmentError.
+/// Simulates and writes the output. Returns an exit code. Throws InputError, EnvironmentError.
 int run_rig(const Arguments& arguments, const SimulateOptions& options);
 
 }  // namespace strut

@@ -1,5 +1,7 @@
 #include "jobs/simulate/run_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "jobs/simulate/motion.h"
@@ -10,7 +12,7 @@ namespace strut {
 namespace {
 
 ReportTable make_parameter_table(const RunRecord& run) {
-  ReportTable table{"Parameters", {"name", "what", "value", "unit"}, {}, {}, 2};
+  ReportTable table{"Parameters", {"name", "description", "value", "unit"}, {}, {}, 2};
   for (const RunParameter& p : run.parameters) {
     table.rows.push_back({p.name, p.description, format_short(p.value), p.unit});
   }
@@ -18,7 +20,7 @@ ReportTable make_parameter_table(const RunRecord& run) {
 }
 
 ReportTable make_source_table(const RunRecord& run) {
-  ReportTable table{"How it was made", {"what", "value"}, {}, {}, 2};
+  ReportTable table{"Provenance", {"name", "value"}, {}, {}, 2};
   for (const auto& [name, value] : run.provenance) table.rows.push_back({name, value});
   return table;
 }
@@ -31,11 +33,12 @@ std::string describe_road(const RoadSpec& road) {
     high = std::max(high, z);
   }
   std::string text;
-  constexpr double kHole = 5e-5;  // m; less is how a table's spline swings about its points
-  if (high > 0.0 || low > -kHole) text = "a bump of " + format_short(1e3 * high) + " mm";
-  if (low <= -kHole) {
-    text += (text.empty() ? "" : " and ") + std::string("a hole of ") + format_short(-1e3 * low) +
-            " mm";
+  constexpr double kMinHole = 5e-5;  // m; the spline of a table overshoots its points by less
+  if (high > 0.0 || low > -kMinHole) {
+    text = fmt::format("a bump of {} mm", format_short(1e3 * high));
+  }
+  if (low <= -kMinHole) {
+    text += fmt::format("{}a hole of {} mm", text.empty() ? "" : " and ", format_short(-1e3 * low));
   }
   if (road.side == BumpSide::kLeft) text += " under the left wheels";
   if (road.side == BumpSide::kRight) text += " under the right wheels";
@@ -44,9 +47,9 @@ std::string describe_road(const RoadSpec& road) {
 
 std::string describe(const Case& c) {
   const RoadSpec& road = c.maneuver.road;
-  const std::string text = c.vehicle.name + " at " + format_short(c.maneuver.speed) + " m/s ";
-  if (road.shape == BumpShape::kNone) return text + "on a flat road.";
-  return text + "over " + describe_road(road) + ".";
+  const std::string where =
+      road.shape == BumpShape::kNone ? "on a flat road" : "over " + describe_road(road);
+  return fmt::format("{} at {} m/s {}.", c.vehicle.name, format_short(c.maneuver.speed), where);
 }
 
 }  // namespace
@@ -57,11 +60,12 @@ void write_run_report(const std::filesystem::path& folder, const CaseSource& sou
   clear_page_folder(out, out.page());
   const FigureDrawer drawer(out.make());
   ReportSection motion{"Motion"};
-  motion.motions = {drawer.draw_motion(
-      make_motion(c, run.results), "motion",
-      "The car drives to the right; wheels of its right side solid, of its left side, beyond, "
-      "dashed. Springs are as long as they were simulated; their mounts stand where they are at "
-      "nominal trim.")};
+  motion.motions = {drawer.draw_motion(make_motion(c, run.results), "motion",
+                                       "The car drives to the right; the wheels of its right side "
+                                       "are solid, those of its left side, "
+                                       "which is farther away, dashed. Springs have their "
+                                       "simulated length; their mounts are drawn at "
+                                       "their positions at nominal trim.")};
   drawer.draw_all({make_motion_curves(run.results)}, motion);
   ReportPage page{
       "Run of " + source.vehicle.filename().string(),

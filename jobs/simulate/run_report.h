@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "jobs/case/run_file.h"
+#include "jobs/simulate/run_file.h"
 #include "model/car/case.h"
 
 namespace strut {
 
-/// Writes FOLDER/report.html and what it is made of. Throws EnvironmentError.
+/// Writes FOLDER/report.html and its figures. Throws EnvironmentError.
 void write_run_report(const std::filesystem::path& folder, const CaseSource& source, const Case& c,
                       const RunRecord& run);
 

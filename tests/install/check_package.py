@@ -42,6 +42,7 @@ def check_control(control, version):
 
 def check_files(package, root, build):
     for name in ("bin/strut", "share/man/man1/strut.1", "share/bash-completion/completions/strut",
+                 "share/zsh/site-functions/_strut", "share/fish/vendor_completions.d/strut.fish",
                  "share/doc/strut/LICENSE", "share/doc/strut/examples/vehicles/paper_sedan.toml",
                  "share/doc/strut/copyright", "share/doc/strut/README.md",
                  "share/doc/strut/docs/theory.md", "share/strut/examples/sweeps/paper.toml",

@@ -349,7 +349,7 @@ TEST_CASE("A file that is read is not written", "[io]") {
     const std::string before = read_text(file);
     const Outcome refused = run(command + file);
     CHECK(refused.code == 2);
-    CHECK_THAT(refused.messages, Contains(file + ": is what is read"));
+    CHECK_THAT(refused.messages, Contains(file + ": is an input of this command"));
     CHECK(read_text(file) == before);
     const Outcome allowed = run(command + (folder / "other.csv").string());
     INFO(allowed.messages);

@@ -334,7 +334,7 @@ TEST_CASE("diagnose does not write over the model that it reads", "[io]") {
   const auto campaign = test::write_campaign(folder, text);
   const test::Outcome outcome = run_program(diagnose(campaign, folder / ""));
   CHECK(outcome.code == 2);
-  CHECK_THAT(outcome.messages, Contains("holds extended.toml, which is read"));
+  CHECK_THAT(outcome.messages, Contains("holds extended.toml, an input of this command"));
   CHECK(test::read_text(folder / "extended.toml") == model);
 }
 

@@ -52,7 +52,7 @@ TEST_CASE("export writes what the file's name asks for, and nothing over another
   check_refused("-o " + desk.file("y.h") + " --name 'a b'", "--name = a b");
   check_refused("-o " + desk.file("y.h") + " --float", "--float: only for .onnx");
   check_refused("-o " + desk.file("y.onnx") + " --name a", "--name: only for .h and .c");
-  check_refused("-o " + desk.file("m.h5") + " --force", "is what is read");
+  check_refused("-o " + desk.file("m.h5") + " --force", "is an input of this command");
   CHECK(desk.export_to("-o " + desk.file("none/y.h")).code == 3);  // no such folder
   CHECK(run_program("export -o " + desk.file("y.h")).code == 2);
   CHECK(!fs::exists(desk.file("y.h")));

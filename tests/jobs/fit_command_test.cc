@@ -105,10 +105,10 @@ TEST_CASE("identify by a fit refuses wrong input", "[io]") {
       {fit(late), "time runs from 100.5 to 101 s, the maneuver from 0 to 3 s"},
       {fit(unit), "unit.csv: imu_acceleration_z is in g; must be in m/s^2"},
       {fit(clock), "clock.csv: time is in ms; must be in s"},
-      {fit(good) + " -o " + good + " --force", "is what is read"},
+      {fit(good) + " -o " + good + " --force", "is an input of this command"},
       {fit(good) + " -o " + taken, "taken.csv: exists; --force replaces it"},
       {"identify " + kVehicle + " " + good + " --maneuver " + other + " --force -o " + other,
-       "is what is read"},
+       "is an input of this command"},
       {fit(good) + " --set front_stiffness=1000", "cannot carry the car"},
       {fit(good + " " + good) + " --maneuver " + kManeuver + " --maneuver " + kManeuver,
        "one for all, or one for each"}};

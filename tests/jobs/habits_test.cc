@@ -1,15 +1,12 @@
-// What every command has: one table of arguments for help, completion and manual, --quiet and
-// --verbose, and a next command.
+// Conventions of all commands: one table of arguments for help and manual page, --quiet and
+// --verbose, and a suggested next command.
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <set>
 
 #include "base/text/quote_word.h"
 #include "jobs/cli/progress.h"
 #include "jobs/commands.h"
-#include "jobs/completion.h"
 #include "jobs/man_page.h"
-#include "model_files/parameters.h"
 #include "tests/jobs/check_hint.h"
 #include "tests/jobs/program_sweep.h"
 #include "tests/jobs/run_program.h"
@@ -40,7 +37,7 @@ std::vector<ArgumentOption> list_all_options(const Arguments& arguments) {
   return all;
 }
 
-TEST_CASE("Every command is in the help, and explains itself by its table", "[io]") {
+TEST_CASE("The help lists every command, and each command prints its own help", "[io]") {
   const std::string all = run_program("--help").out;
   for (const Command& command : list_commands()) {
     INFO(command.name);
@@ -62,7 +59,7 @@ TEST_CASE("Every command is in the help, and explains itself by its table", "[io
   CHECK_THAT(run_program("help simulat").messages, Contains("did you mean 'simulate'?"));
 }
 
-TEST_CASE("Without a command three are named to begin with", "[unit][io]") {
+TEST_CASE("Without a command, three are suggested to start with", "[unit][io]") {
   const Outcome outcome = run_program("");
   CHECK(outcome.code == 2);
   CHECK(outcome.out.empty());
@@ -76,7 +73,7 @@ TEST_CASE("Without a command three are named to begin with", "[unit][io]") {
   }
 }
 
-TEST_CASE("A choice that is refused names those of the table", "[io]") {
+TEST_CASE("An invalid choice is refused with the allowed words", "[io]") {
   for (const Command& command : list_commands()) {
     const Arguments table = command.describe();
     for (const ArgumentOption& option : table.options()) {
@@ -95,120 +92,9 @@ TEST_CASE("A choice that is refused names those of the table", "[io]") {
   }
 }
 
-/// What bash offers for the last of the words, by the script in `folder`.
-std::set<std::string> complete(const TemporaryFolder& folder,
-                               const std::vector<std::string>& words) {
-  std::string line = "cd " + quote_word(folder / "files") + "; source " +
-                     quote_word(folder / "strut.bash") + "; COMP_WORDS=(strut";
-  for (const std::string& word : words) line += " " + quote_word(word);
-  line += "); COMP_CWORD=" + std::to_string(words.size()) +
-          "; _strut; ((${#COMPREPLY[@]} == 0)) || printf '%s\\n' \"${COMPREPLY[@]}\"";
-  const Outcome outcome = run_shell("bash --norc -c " + quote_word(line));
-  INFO(outcome.messages);
-  REQUIRE(outcome.code == 0);
-  CHECK(outcome.messages.empty());
-  const std::vector<std::string> lines = split_lines(outcome.out);
-  return {lines.begin(), lines.end()};
-}
-
-using Words = std::set<std::string>;
-
-/// The script, and a folder of files to be offered.
-void make_completion_files(const TemporaryFolder& folder) {
-  folder.write("strut.bash", make_bash_completion());
-  fs::create_directories(folder / "files/a folder");
-  for (const char* name : {"car.toml", "run.csv", "model.h5", "notes.txt"}) {
-    folder.write(std::string("files/") + name, "");
-  }
-}
-
-/// The files of make_completion_files that such a value takes.
-Words list_offers(const ArgumentValue& value) {
-  if (value.kind == ArgumentValue::Kind::kText) return {};
-  if (value.kind == ArgumentValue::Kind::kChoice) return {value.words.begin(), value.words.end()};
-  if (value.kind == ArgumentValue::Kind::kSetting) {
-    Words settings;
-    for (const ParameterInfo& parameter : list_parameters()) settings.insert(parameter.name + "=");
-    return settings;
-  }
-  Words offers = {"a folder"};
-  if (value.kind == ArgumentValue::Kind::kFolder) return offers;
-  for (const std::string name : {"car.toml", "run.csv", "model.h5", "notes.txt"}) {
-    bool fits = value.endings.empty();
-    for (const std::string& ending : value.endings) fits |= name.ends_with("." + ending);
-    if (fits) offers.insert(name);
-  }
-  return offers;
-}
-
-TEST_CASE("Bash completes commands and the options of each", "[io]") {
+TEST_CASE("The manual page has every command and option, and groff reports no problem", "[io]") {
   const TemporaryFolder folder;
-  make_completion_files(folder);
-  Words names = {"help", "--help", "--version"};
-  for (const Command& command : list_commands()) names.insert(command.name);
-  CHECK(complete(folder, {""}) == names);
-  CHECK(complete(folder, {"sim"}) == Words{"simulate"});
-  CHECK(complete(folder, {"help", "sim"}) == Words{"simulate"});
-  for (const Command& command : list_commands()) {
-    INFO(command.name);
-    Words options;
-    for (const ArgumentOption& option : list_all_options(command.describe())) {
-      options.insert("--" + option.name);
-    }
-    CHECK(complete(folder, {command.name, "--"}) == options);
-    CHECK(complete(folder, {command.name, "--verb"}) == Words{"--verbose"});
-  }
-}
-
-TEST_CASE("Bash completes what the options of each command take", "[io]") {
-  const TemporaryFolder folder;
-  make_completion_files(folder);
-  for (const Command& command : list_commands()) {
-    const Arguments table = command.describe();
-    for (const ArgumentOption& option : table.options()) {
-      if (option.is_switch || option.value.kind == ArgumentValue::Kind::kText) continue;
-      INFO(command.name << " --" << option.name);
-      CHECK(complete(folder, {command.name, "--" + option.name, ""}) == list_offers(option.value));
-      if (option.letter.empty()) continue;
-      CHECK(complete(folder, {command.name, "-" + option.letter, ""}) == list_offers(option.value));
-    }
-  }
-}
-
-TEST_CASE("Bash completes what each command takes beside options", "[io]") {
-  const TemporaryFolder folder;
-  make_completion_files(folder);
-  for (const Command& command : list_commands()) {
-    const Arguments arguments = command.describe();
-    std::vector<std::string> words = {command.name};
-    for (const ArgumentValue& operand : arguments.operands()) {
-      INFO(command.name << " " << operand.name);
-      words.emplace_back("");
-      CHECK(complete(folder, words) == list_offers(operand));
-      words.back() = "given";
-    }
-    words.emplace_back("");
-    CHECK(complete(folder, words) ==
-          (arguments.last_operand_repeats() ? list_offers(arguments.operands().back()) : Words{}));
-  }
-}
-
-TEST_CASE("Completion sees words as bash breaks them", "[io]") {
-  const TemporaryFolder folder;
-  make_completion_files(folder);
-  CHECK(complete(folder, {"simulate", "--integrator", "=", "ab"}) == Words{"abm4"});
-  CHECK(complete(folder, {"simulate", "--integrator", "="}) == Words{"abm4", "cvode", "rk4"});
-  // The values of options are no operands: SWEEP.toml is still to come, MANEUVER.toml too.
-  CHECK(complete(folder, {"plan", "-o", "sweep", "c"}) == Words{"car.toml"});
-  CHECK(complete(folder, {"simulate", "car.toml", "--set", "mass", "=", "1", "c"}) ==
-        Words{"car.toml"});
-  CHECK(complete(folder, {"design", "car.toml", "--csv", "="}) == Words{"a folder", "run.csv"});
-  CHECK(complete(folder, {"nonsense", ""}).empty());
-}
-
-TEST_CASE("The manual page has every command and every option, and groff nothing to say", "[io]") {
-  const TemporaryFolder folder;
-  const std::string file = folder.write("strut.1", make_man_page());
+  const std::string file = folder.write("strut.1", make_man_page(list_commands()));
   CHECK(run_program("man").out == read_text(file));
   const Outcome outcome = run_shell("groff -man -Tascii -P-cbou -ww -rLL=200n " + file);
   if (outcome.code != 0 || outcome.out.empty()) FAIL("no groff: " + outcome.messages);
@@ -238,7 +124,7 @@ TEST_CASE("The manual page has every command and every option, and groff nothing
 struct HintCase {
   std::string command;  // after "strut "
   int code;
-  std::string hint;  // its first words
+  std::string hint;  // first words of the suggestion
 };
 
 std::string join(const std::vector<std::string>& words) {
@@ -254,7 +140,7 @@ void check_case(const HintCase& c) {
   CHECK_THAT(join(check_hint(outcome.messages)), Catch::Matchers::StartsWith(c.hint));
 }
 
-/// The hint is these words and no more. Returns the messages.
+/// Checks that the suggestion is exactly `c.hint`. Returns the messages.
 std::string check_whole_hint(const HintCase& c) {
   INFO(c.command);
   const Outcome outcome = run_program(c.command);
@@ -263,7 +149,7 @@ std::string check_whole_hint(const HintCase& c) {
   return outcome.messages;
 }
 
-/// Planned in `folder`, as "sweep".
+/// Plans a sweep in the folder "sweep" of `folder`.
 std::string plan_sweep(const TemporaryFolder& folder, const std::string& text) {
   std::string sweep = folder / "sweep";
   REQUIRE(run_program("plan " + folder.write("sweep.toml", text).string() + " -o " + sweep).code ==
@@ -271,7 +157,7 @@ std::string plan_sweep(const TemporaryFolder& folder, const std::string& text) {
   return sweep;
 }
 
-/// Half of its 32 cases leave the travel of their suspension, with any step.
+/// A sweep of 32 cases of which half exceed the travel of their suspension, with any step.
 std::string make_rough_sweep() {
   std::string text = test::make_coarse_sweep(16);
   const std::string axis = "rear_damping    = { from = 1980,  to = 1800,  step = -90 }";
@@ -279,7 +165,7 @@ std::string make_rough_sweep() {
   return text;
 }
 
-TEST_CASE("Every command of a sweep names the next one, to the network in use", "[io]") {
+TEST_CASE("Commands of a sweep suggest the next one, up to the use of the network", "[io]") {
   const TemporaryFolder folder;
   const std::string text = test::make_coarse_sweep(12);
   const std::string file = folder.write("sweep.toml", text);
@@ -312,13 +198,13 @@ TEST_CASE("Every command of a sweep names the next one, to the network in use", 
   for (const HintCase& c : cases) check_case(c);
 }
 
-TEST_CASE("Cases that fail, and damage, are followed by what mends them", "[io]") {
+TEST_CASE("After failed cases and damage, the command that repairs them is suggested", "[io]") {
   const TemporaryFolder folder;
   const std::string sweep = plan_sweep(folder, make_rough_sweep());
   const std::string verify = "strut verify " + sweep;
   check_whole_hint({"run " + sweep, 1, "strut resume " + sweep});
   check_whole_hint({"status " + sweep, 1, "strut resume " + sweep});
-  CHECK_THAT(check_whole_hint({"resume " + sweep, 1, verify}), Contains("16 cases stay failed"));
+  CHECK_THAT(check_whole_hint({"resume " + sweep, 1, verify}), Contains("16 cases remain failed"));
   check_whole_hint({"status " + sweep, 1, verify});
   check_whole_hint({"run " + sweep, 1, verify});
   check_case({"verify " + sweep, 0, "strut train " + sweep});
@@ -327,7 +213,7 @@ TEST_CASE("Cases that fail, and damage, are followed by what mends them", "[io]"
   check_case({"verify " + sweep + " --quarantine", 1, "strut run " + sweep});
 }
 
-/// The commands that hints name one after the other, from `command` to the network.
+/// Follows the suggestions from `command` on and returns the names of the commands, up to train.
 std::vector<std::string> follow_hints(std::string command) {
   std::vector<std::string> names;
   while (names.size() < 8) {
@@ -340,7 +226,7 @@ std::vector<std::string> follow_hints(std::string command) {
   return names;
 }
 
-TEST_CASE("Hints lead from a sweep to the network, whatever fails or is damaged", "[io]") {
+TEST_CASE("Suggestions lead from a sweep to the network, whatever fails or is damaged", "[io]") {
   using Names = std::vector<std::string>;
   const TemporaryFolder folder;
   const std::string sweep = plan_sweep(folder, make_rough_sweep());
@@ -354,15 +240,15 @@ TEST_CASE("Hints lead from a sweep to the network, whatever fails or is damaged"
   CHECK(follow_hints("status " + sweep) == Names{"verify", "run", "resume", "verify", "train"});
 }
 
-TEST_CASE("Where a smaller step mends nothing no resume is named", "[io]") {
+TEST_CASE("No resume is suggested if a smaller step repairs nothing", "[io]") {
   const TemporaryFolder folder;
   const std::string sweep = plan_sweep(folder, test::make_failing_sweep());
   CHECK_THAT(check_whole_hint({"run " + sweep, 1, "strut verify " + sweep}),
-             Contains("stay failed; strut train leaves out what failed"));
+             Contains("remain failed; strut train leaves them out"));
   check_whole_hint({"status " + sweep, 1, "strut verify " + sweep});
 }
 
-TEST_CASE("Files that are no shards of a sweep are followed by what removes them", "[io]") {
+TEST_CASE("For files that are not shards of a sweep, their removal is suggested", "[io]") {
   const TemporaryFolder folder;
   const std::string sweep = plan_sweep(folder, test::make_coarse_sweep(24));
   const std::string verify = "strut verify " + sweep;
@@ -381,18 +267,18 @@ TEST_CASE("Files that are no shards of a sweep are followed by what removes them
   check_whole_hint({"status " + sweep, 0, verify});
 }
 
-TEST_CASE("An interrupted sweep says once how it goes on", "[io]") {
+TEST_CASE("An interrupted sweep suggests once how to continue", "[io]") {
   const TemporaryFolder folder;
   const std::string sweep = plan_sweep(folder, test::make_coarse_sweep(8, "", "1e-4"));
   const Outcome outcome = run_shell(
       "timeout --preserve-status -s INT 0.4 " STRUT_PROGRAM " resume --threads 1 " + sweep);
   CHECK(outcome.code == 130);
-  CHECK_THAT(outcome.messages, Contains("what is written is whole\n") && !Contains("strut run"));
+  CHECK_THAT(outcome.messages,
+             Contains("files written so far are complete\n") && !Contains("strut run"));
   CHECK(join(check_hint(outcome.messages)) == "strut resume --threads 1 " + sweep);
 }
 
-TEST_CASE("A run that failed is named again with all of its words but the value to change",
-          "[io]") {
+TEST_CASE("A failed run is suggested again with all its words but the value to change", "[io]") {
   const TemporaryFolder folder;
   const std::string file = folder / "run.csv", report = folder / "report";
   const std::string rest = "simulate " + kSedan + " " + kBump + " -o " + file +
@@ -406,7 +292,7 @@ TEST_CASE("A run that failed is named again with all of its words but the value 
   check_whole_hint({rig, 1, "strut " + rig + " --set NAME=VALUE"});
 }
 
-TEST_CASE("A setting takes the place of what was set before", "[unit]") {
+TEST_CASE("A setting replaces earlier settings of the same name", "[unit]") {
   Arguments arguments = find_command("simulate").describe();
   REQUIRE(arguments.parse({"a.toml", "--set", "mass=1", "--set=speed=3", "--set", "speeds=4"}));
   CHECK(join(arguments.words_with_setting("speed=5")) ==
@@ -415,7 +301,7 @@ TEST_CASE("A setting takes the place of what was set before", "[unit]") {
         "a.toml --set=speed=3 --set speeds=4 --set mass=2");
 }
 
-TEST_CASE("A name is set once by any option of names and values", "[unit]") {
+TEST_CASE("Options of names and values set each name at most once", "[unit]") {
   int lists = 0;
   for (const Command& command : list_commands()) {
     const Arguments table = command.describe();
@@ -425,7 +311,7 @@ TEST_CASE("A name is set once by any option of names and values", "[unit]") {
       const std::string word = "--" + option.name;
       Arguments doubled = command.describe(), different = command.describe();
       CHECK_THROWS_WITH(doubled.parse({word, "a=1", word, "b=1", word + "=a=2"}),
-                        "--" + option.name + ": 'a' twice; allowed: once");
+                        "--" + option.name + ": 'a' given twice; allowed: once");
       CHECK(different.parse({word, "a=1", word, "b=1"}));
       ++lists;
     }
@@ -433,7 +319,7 @@ TEST_CASE("A name is set once by any option of names and values", "[unit]") {
   CHECK(lists >= 7);
 }
 
-TEST_CASE("Words before a command and after help and version are told", "[unit][io]") {
+TEST_CASE("Words before a command, and after help and version, are refused", "[unit][io]") {
   const std::string overview = run_program("--help").out;
   CHECK(run_program("help help").out == overview);
   CHECK(run_program("help help").code == 0);
@@ -455,7 +341,7 @@ TEST_CASE("Words before a command and after help and version are told", "[unit][
   }
 }
 
-TEST_CASE("Single runs name the next command", "[io]") {
+TEST_CASE("Single runs suggest the next command", "[io]") {
   const TemporaryFolder folder;
   const std::string file = folder / "run.csv", curves = folder / "curves.csv";
   const std::string design = folder.write("sweep.toml", test::make_coarse_sweep(12));
@@ -470,7 +356,7 @@ TEST_CASE("Single runs name the next command", "[io]") {
   check_case({"design " + design + " --rate 100", 0, "strut plan " + design});
 }
 
-TEST_CASE("Quiet says nothing but errors, verbose says more, data stays", "[io]") {
+TEST_CASE("Quiet prints only errors, verbose prints more, data is the same", "[io]") {
   const TemporaryFolder folder;
   const std::string run =
       "simulate " + kSedan + " " + kBump + " --force -o " + (folder / "run.csv").string();
@@ -492,7 +378,7 @@ TEST_CASE("Quiet says nothing but errors, verbose says more, data stays", "[io]"
   CHECK(run_program(run + " -q -v").code == 2);
 }
 
-TEST_CASE("Quiet keeps every command of a sweep from saying more than its errors", "[io]") {
+TEST_CASE("With quiet, commands of a sweep print only errors", "[io]") {
   const TemporaryFolder folder;
   const std::string file = folder.write("sweep.toml", test::make_coarse_sweep(12));
   const std::string sweep = folder / "sweep", model = folder / "model.h5";
@@ -526,9 +412,9 @@ TEST_CASE("Quiet keeps every command of a sweep from saying more than its errors
   CHECK(split_lines(wrong.messages).size() == 1);
 }
 
-TEST_CASE("A command that a signal ended is named again", "[io]") {
+TEST_CASE("A command that a signal ended is suggested again", "[io]") {
   const TemporaryFolder folder;
-  // An hour of driving takes a minute.
+  // One hour of driving takes about a minute to simulate.
   const std::string file = folder / "a run.csv";
   const Outcome outcome =
       run_shell("timeout --preserve-status -s INT 0.5 " STRUT_PROGRAM " simulate " + kSedan + " " +
@@ -540,13 +426,13 @@ TEST_CASE("A command that a signal ended is named again", "[io]") {
   CHECK(words.back() == file);
 }
 
-TEST_CASE("Progress tells the share done and the time to go once that is known", "[unit]") {
+TEST_CASE("Progress includes the time to go once that is known", "[unit]") {
   CHECK(format_progress(0, 5000, "cases", 3.0) == "0/5,000 cases");
   CHECK(format_progress(1250, 5000, "cases", 100.0) == "1,250/5,000 cases, 5 min 0 s to go");
   CHECK(format_progress(5000, 5000, "cases", 100.0) == "5,000/5,000 cases");
 }
 
-TEST_CASE("Words are quoted for a shell where they must be", "[unit]") {
+TEST_CASE("Words are quoted for a shell only if necessary", "[unit]") {
   CHECK(quote_if_needed("sweeps/paper-2.toml") == "sweeps/paper-2.toml");
   CHECK(quote_if_needed("mass=1.5") == "mass=1.5");
   CHECK(quote_if_needed("a sweep") == "'a sweep'");

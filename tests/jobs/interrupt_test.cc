@@ -35,7 +35,7 @@ Outcome interrupt_stubborn_work(int signals) {
   REQUIRE(child >= 0);
   if (child == 0) {
     ::dup2(pipe[1], STDERR_FILENO);
-    set_last_words("the last words\n");
+    set_interrupt_message("the last words\n");
     const InterruptWatcher watcher;
     if (::write(pipe[1], "!", 1) == 1) sleep_for(20.0);
     ::_exit(0);

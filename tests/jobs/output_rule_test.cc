@@ -106,7 +106,7 @@ TEST_CASE("Devices and pipes are no output", "[io]") {
   REQUIRE(test::run_shell("mkfifo " + std::string(folder / "pipe.csv")).code == 0);
   for (const std::string& file : {std::string("/dev/null"), std::string(folder / "pipe.csv")}) {
     CHECK_THROWS_WITH(check_output_file("output", file, {}, true),
-                      "--output = " + file + ": not a regular file; must be another file");
+                      "--output = " + file + ": not a regular file; name another file");
   }
 }
 

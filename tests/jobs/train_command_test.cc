@@ -217,14 +217,14 @@ TEST_CASE("Nothing is overwritten without --force", "[io]") {
   CHECK(read_trained_model(model).sizes == std::vector<int>{4, 6, 4, 2});
   const fs::path shard = get_sweep() / "shards/000000.h5";
   const auto before = read_bytes(shard);
-  CHECK_THAT(train(shard, shard, "--force").messages, Contains("belongs to the sweep in"));
+  CHECK_THAT(train(shard, shard, "--force").messages, Contains("part of the sweep in"));
   CHECK_THAT(train(shard, folder / "n.h5", "--force --checkpoint " + shard.string()).messages,
-             Contains("belongs to the sweep in"));
+             Contains("part of the sweep in"));
   const fs::path copy = folder / "copy.h5";
   fs::copy_file(shard, copy);
-  CHECK_THAT(train(copy, copy, "--force").messages, Contains("is what is read"));
+  CHECK_THAT(train(copy, copy, "--force").messages, Contains("is an input of this command"));
   CHECK_THAT(train(copy, folder / "n.h5", "--force --checkpoint " + copy.string()).messages,
-             Contains("is what is read"));
+             Contains("is an input of this command"));
   CHECK_THAT(train(copy, folder / "n.h5", "--checkpoint " + (folder / "n.h5").string()).messages,
              Contains("is the model of --output"));
   CHECK(read_bytes(shard) == before);

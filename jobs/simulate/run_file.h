@@ -1,4 +1,4 @@
-// What `strut simulate` writes: all channels over time, the snapshot, and where they come from.
+// The output file of `strut simulate`: all channels over time, the snapshot, and their provenance.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@ namespace strut {
 
 enum class RunFormat { kCsv, kHdf5 };
 
-/// By the name's end: .csv, .h5 or .hdf5. Throws InputError.
+/// Finds the format by the ending of the name: .csv, .h5 or .hdf5. Throws InputError.
 RunFormat find_run_format(const std::filesystem::path& path);
 
-/// A number that went into a run.
+/// A parameter of a run, SI units.
 struct RunParameter {
   std::string name, unit, description;
   double value;
@@ -26,7 +26,7 @@ struct RunRecord {
   const std::vector<ChannelInfo>* channels = nullptr;
   LaneResults results;  // one lane, with history of all channels
   std::vector<RunParameter> parameters;
-  /// How it was made, as (name, text) in the order of the file.
+  /// Provenance as (name, text), in the order of the file.
   std::vector<std::pair<std::string, std::string>> provenance;
 };
 
@@ -34,7 +34,7 @@ struct RunRecord {
 std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source);
 
 /// CSV: one column a channel. HDF5: datasets /history/CHANNEL, /snapshot/CHANNEL (one value each,
-/// none where the snapshot's line was not reached), /snapshot/event_time, /parameters/NAME, and the
+/// none if the snapshot's line was not reached), /snapshot/event_time, /parameters/NAME, and the
 /// provenance as attributes of the file. The file appears whole or not at all. Throws
 /// EnvironmentError.
 void write_run(const std::filesystem::path& path, RunFormat format, const RunRecord& run);

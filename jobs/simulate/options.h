@@ -2,28 +2,30 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "jobs/case/load_case.h"
-#include "jobs/case/run_file.h"
+#include "jobs/cli/arguments.h"
+#include "jobs/simulate/run_file.h"
 #include "sweep/choices.h"
 
 namespace strut {
 
-/// Share of --step with which a failed run is tried once more, to tell whether the step is to
-/// blame.
+/// Step of the retry of a failed run, as a fraction of --step: the retry tells whether the step was
+/// too long.
 inline constexpr double kRetryFraction = 0.125;
 
 struct SimulateOptions {
   CaseSource source;
   std::filesystem::path output;
   std::filesystem::path report;  // folder; empty: none
-  int integrator = 0;            // of kIntegrators
+  int integrator = 0;            // index into kIntegrators
   IntegrateOptions integrate;
   double rate = 1000.0;  // Hz
   bool kinematics = false, json = false;
-  bool force = false;  // may replace the output
+  bool force = false;  // the output may be replaced
 
   const std::string& integrator_name() const {
     return kIntegrators[static_cast<std::size_t>(integrator)];
@@ -34,15 +36,21 @@ struct SimulateOptions {
   const std::string& spin_name() const { return kSpins[static_cast<std::size_t>(integrate.spin)]; }
 };
 
-/// Refuses a rate [Hz] at which the history of `duration` [s] would not fit into memory. Throws
+/// Reads and checks all options but those that depend on the car and the maneuver. Throws
 /// InputError.
+SimulateOptions read_simulate_options(const Arguments& arguments);
+
+/// Throws InputError if one of the options `names` is given; `reason` says why they have no effect.
+void refuse_options(const Arguments& arguments, std::initializer_list<const char*> names,
+                    const std::string& reason);
+
+/// Throws InputError if the history of `duration` [s] at `rate` [Hz] would not fit into memory.
 void check_rate(double rate, double duration);
 
-/// Refuses a step so short that a run of `duration` [s] would not end. Throws InputError.
+/// Throws InputError if a run of `duration` [s] would take too many steps.
 void check_step_count(const SimulateOptions& options, double duration);
 
-/// The format of the output, which check_output_file() has let pass. Throws InputError,
-/// EnvironmentError.
+/// Checks the output file and returns its format. Throws InputError, EnvironmentError.
 RunFormat check_output(const SimulateOptions& options);
 
 }  // namespace strut

@@ -1,4 +1,6 @@
-#include "jobs/case/run_file.h"
+#include "jobs/simulate/run_file.h"
+
+#include <fmt/format.h>
 
 #include "base/text/build_info.h"
 #include "io/format/csv.h"
@@ -52,20 +54,19 @@ RunFormat find_run_format(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   if (extension == ".csv") return RunFormat::kCsv;
   if (extension == ".h5" || extension == ".hdf5") return RunFormat::kHdf5;
-  throw InputError("--output = " + path.string() + ": the name must end in .csv, .h5 or .hdf5");
+  throw InputError(
+      fmt::format("--output = {}: the name must end in .csv, .h5 or .hdf5", path.string()));
 }
 
 std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source) {
   const BuildInfo& build = get_build_info();
-  std::string settings;
-  for (const std::string& s : source.settings) settings += (settings.empty() ? "" : " ") + s;
   return {{"strut_version", build.version},
           {"commit", build.commit},
           {"compiler", build.compiler},
           {"instruction_set", list_kernels().front().isa},
           {"vehicle", source.vehicle.string()},
           {"maneuver", source.maneuver.string()},
-          {"settings", settings}};
+          {"settings", fmt::format("{}", fmt::join(source.settings, " "))}};
 }
 
 void write_run(const std::filesystem::path& path, RunFormat format, const RunRecord& run) {

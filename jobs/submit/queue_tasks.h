@@ -1,0 +1,33 @@
+// Queues the tasks of a submission, or prints what would be queued.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cluster/scripts.h"
+#include "jobs/submit/task_plan.h"
+
+namespace strut {
+
+/// The submission of `plan`; it has no folder yet.
+Submission make_submission_request(const OpenSweep& sweep, const TaskPlan& plan,
+                                   const MissingWork& work, const SubmitRequest& request,
+                                   const Dispatcher& dispatcher);
+
+/// A submission whose parts are queued; `jobs`: one for each of submission.list_parts().
+struct QueuedSubmission {
+  Submission submission;
+  std::vector<std::string> jobs;
+};
+
+/// Gives the submission its folder and queues all parts. Throws InputError if links stand in place
+/// of files that the tasks will write, EnvironmentError if the dispatcher refuses a part or the
+/// submission is cancelled meanwhile.
+QueuedSubmission queue_tasks(const OpenSweep& sweep, Submission submission,
+                             const ScriptOptions& options, const Dispatcher& dispatcher);
+
+/// Prints scripts, commands and dependencies of the parts.
+void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOptions& options,
+                 const Dispatcher& dispatcher);
+
+}  // namespace strut

@@ -1,0 +1,28 @@
+// What the command line of `strut submit` asks for.
+#pragma once
+
+#include <filesystem>
+
+#include "cluster/dispatcher.h"
+#include "jobs/cli/arguments.h"
+
+namespace strut {
+
+struct SubmitRequest {
+  Resources resources;  // of one task; seconds 0: chosen by plan_tasks()
+  std::int64_t max_tasks = 1;
+  double task_seconds = 600.0;   // target duration of a task
+  std::int64_t at_once = 0;      // tasks of an array that run at once; 0: no limit
+  std::string scratch;           // node-local folder; empty: none
+  bool retries = false;          // --retry
+  bool merges = false;           // --merge
+  bool ignores_unknown = false;  // --again
+};
+
+/// The dispatcher of --to. Throws InputError.
+std::unique_ptr<Dispatcher> read_dispatcher(const Arguments& arguments);
+
+/// Reads all other options. Throws InputError.
+SubmitRequest read_submit_request(const Arguments& arguments, const Dispatcher& dispatcher);
+
+}  // namespace strut
