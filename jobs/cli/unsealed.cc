@@ -15,7 +15,7 @@ void note_unsealed(const fs::path& file, const SealKind& kind) {
   static std::set<fs::path> noted;
   if (is_sealed(file) || !noted.insert(file).second) return;
   print_note(fmt::format(
-      "{}: written without a seal by an earlier version: not all damage can be detected; {}",
+      "{}: has no seal, as written by an earlier version, so not all damage can be detected; {}",
       file.string(), kind.sealing));
 }
 

@@ -42,7 +42,7 @@ void check_report(const SimulateOptions& options) {
   if (std::filesystem::equivalent(std::filesystem::absolute(options.output).parent_path(),
                                   folder.figures(), ignored)) {
     throw InputError(
-        fmt::format("--output = {}: in the figures folder of --report; name another folder",
+        fmt::format("--output = {}: among the figures of --report; name another folder",
                     options.output.string()));
   }
 }

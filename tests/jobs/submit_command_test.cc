@@ -87,7 +87,7 @@ TEST_CASE("Failed cases are retried after the arrays", "[io]") {
   CHECK_THAT(plain.out, Contains("nothing to submit") && Contains("--retry"));
   const Outcome outcome = run_sweep_command("submit", sweep, "--to local --retry --merge");
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.out, Contains("one task for") && Contains("retry: local"));
+  CHECK_THAT(outcome.out, Contains("one task that retries") && Contains("retry: local"));
   wait_for_end(sweep);
   // No smaller step helps these cases, but they were tried, after no array and before the merge.
   std::string told;
@@ -117,7 +117,7 @@ TEST_CASE("A sweep warned of its time limit finishes the current shard", "[io]")
       " --threads 1 --json & pid=$!; while [ -z \"$(ls " + (sweep / "shards").string() +
       ")\" ]; do sleep 0.01; done; kill -USR1 $pid; wait $pid)");
   CHECK(outcome.code == 138);
-  CHECK_THAT(outcome.messages, Contains("time limit") && Contains("goes on from here"));
+  CHECK_THAT(outcome.messages, Contains("time limit") && Contains("continues from here"));
   const auto json = test::parse_json(outcome.out);
   CHECK(json.get<int>("written") < 48);
   // The shard in progress was finished: no simulated case is lost.
