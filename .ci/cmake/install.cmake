@@ -29,7 +29,7 @@ install(CODE "file(CREATE_LINK ${strut_examples_link}
 set(strut_inner_headers
   base/math/matrix_map base/math/xsimd_backend base/parallel/team model/kernel/run_cases
   model/integrate/sundials train/network/block_layers io/format/hdf5_calls io/format/json io/format/parse_toml
-  io/format/read_json)
+  io/format/read_json io/format/toml_source)
 list(JOIN strut_inner_headers "|" strut_inner_headers)
 set(strut_rooms base model kernel io model_files estimate sweep train diagnose)
 foreach(room IN LISTS strut_rooms)

@@ -248,7 +248,7 @@ TEST_CASE("What would not finish is refused at once", "[io]") {
   CHECK_THAT(plan({{"step    = 1e-3", "step = 1e-9"}}),
              Contains("integrate.step = 1e-09: a run of 3 s would take 3e+09 steps"));
   CHECK_THAT(plan({{"to = 35500, step = -500", "to = 35500, count = 3000000000000"}}),
-             Contains("shards; at most 10000000 can be run"));
+             Contains("shards; at most 10000000 are allowed"));
   CHECK_THAT(plan({{"strata = 10", "strata = 1000000000"}}), Contains("must lie in [1, 100000]"));
   for (const std::string& command : {"simulate " + kSedan + " " + kBump + " --step 1e-9",
                                      std::string("simulate ") + STRUT_SOURCE_DIR
