@@ -10,8 +10,8 @@ namespace strut {
 struct CholeskyKernel {
   const char* isa;  // "baseline", "avx2", "avx512"
 
-  /// Factors A = L L' in place, lower triangle by columns that are `lead` numbers apart; false
-  /// where A is not positive definite.
+  /// Factors A = L L' in place, lower triangle by columns with leading dimension `lead`; returns
+  /// false if A is not positive definite.
   bool (*factor_diagonal)(double* a, std::size_t n, std::size_t lead);
   /// b = b L^-T with b of rows x n.
   void (*solve_panel)(const double* l, std::size_t n, double* b, std::size_t rows,

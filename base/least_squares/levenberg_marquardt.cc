@@ -13,7 +13,7 @@ namespace {
 
 /// Minimum of mu, below which damping has no effect; the same as trainlm's.
 constexpr double kMinDamping = 1e-20;
-/// Default of the first mu, by rule.
+/// Default initial mu of each rule.
 constexpr double kGainRatioDamping = 0.1, kTrainlmDamping = 1e-3;
 
 double get_seconds() {

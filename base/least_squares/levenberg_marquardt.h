@@ -21,8 +21,7 @@ enum class DampingRule {
   /// IMM-REP-1999-05, Technical University of Denmark.
   kGainRatio,
   /// As MATLAB documents for trainlm: mu is multiplied by damping_increase until the loss falls,
-  /// then
-  /// by damping_decrease.
+  /// then by damping_decrease.
   kTrainlm,
 };
 
@@ -37,16 +36,16 @@ struct LevenbergMarquardtOptions {
   DampingScale scale = DampingScale::kIdentity;
 
   /// Adds the second-order term of the path (M. K. Transtrum, J. P. Sethna, arXiv 1201.5885) to a
-  /// step where the problem has second derivatives: half the iterations for one more back
-  /// substitution and one pass. Only with kGainRatio; trainlm has no such term.
+  /// step where the problem has second derivatives. Each step costs one more back substitution and
+  /// one more pass over the residuals. Only with kGainRatio; trainlm has no such term.
   bool accelerate = true;
   /// Maximum of 2 |a| / |v| for a step v + a, by Transtrum and Sethna; longer corrections are
   /// rejected untried.
   double max_acceleration = 0.75;
 
-  /// First mu; 0: the default of the rule. kGainRatio: relative to the largest element of diag(H)
-  /// (to D with the other scales), default 0.1, within Nielsen's 1e-3 to 1 for uncertain starts.
-  /// kTrainlm: absolute, default 1e-3 as in trainlm.
+  /// Initial mu; 0 selects the default of the rule. kGainRatio: relative to the largest element of
+  /// diag(H) (to D with the other scales); default 0.1, within the 1e-3 to 1 that Nielsen advises
+  /// for uncertain starts. kTrainlm: absolute; default 1e-3 as in trainlm.
   double first_damping = 0.0;
   double damping_increase = 10.0;  // kTrainlm only, its default
   double damping_decrease = 0.1;   // kTrainlm only, its default

@@ -1,10 +1,10 @@
 // Sine, cosine and arctangent for arguments whose bounds are known.
 //
 // The tire evaluates about twenty of them per wheel. The general functions of a vector library
-// reduce large arguments and take up to three divisions each; here it is one division for the
-// arctangent and none for sine and cosine. Polynomials: interpolation of atan(sqrt z)/sqrt z on [0,
-// 1] and of sin(sqrt z)/sqrt z on [0, (pi/2)^2] at the Chebyshev nodes in 50 digits, truncation
-// errors 1.3e-15 and 3e-19; Taylor series for small arguments.
+// reduce large arguments and take up to three divisions each; here the arctangent takes one
+// division, sine and cosine none. The polynomials interpolate atan(sqrt z)/sqrt z on [0, 1] and
+// sin(sqrt z)/sqrt z on [0, (pi/2)^2] at the Chebyshev nodes, computed in 50 digits; truncation
+// errors are 1.3e-15 and 3e-19. Small arguments use Taylor series.
 #pragma once
 
 #include <array>
@@ -38,8 +38,8 @@ inline constexpr std::array<double, 8> kAtanSmall = {1.0,     -1.0 / 3,  1.0 / 5
 inline constexpr std::array<double, 6> kCosSmall = {1.0,        -1.0 / 2,    1.0 / 24,
                                                     -1.0 / 720, 1.0 / 40320, -1.0 / 3628800};
 
-/// sum over k of c[k] z^k: the even and the odd terms by Horner's rule side by side, which halves
-/// the chain of operations that wait for each other.
+/// sum over k of c[k] z^k. Even and odd terms are evaluated by separate Horner schemes, which
+/// halves the chain of dependent operations.
 template <class T, std::size_t N>
 [[gnu::always_inline]] inline T calc_polynomial(const std::array<double, N>& c, const T& z) {
   constexpr std::size_t kLastEven = (N - 1) / 2 * 2;

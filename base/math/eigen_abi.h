@@ -1,6 +1,6 @@
-// Compile-time check for users of an installed strut: their Eigen must align memory as that of the
-// installed libraries does. Matrices are allocated by one and freed by the other, and Eigen chooses
-// the alignment of heap memory and of matrices in structs by the instruction set (-march, -mavx).
+// Compile-time check for programs that use an installed strut: Eigen must align memory there as in
+// the installed libraries, because matrices are allocated in one and freed in the other. Eigen
+// chooses the alignment of the heap and of matrices in structs by instruction set (-march, -mavx).
 #pragma once
 
 #include <Eigen/Core>

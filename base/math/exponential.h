@@ -11,8 +11,8 @@ struct PhiFunctions {
   T exponential, phi1, phi2, phi3, phi4;
 };
 
-/// For |z| < 1 the Taylor series of phi_4 and the downward recurrence; beyond, the definition,
-/// which loses no more than a few units in the last place there.
+/// For |z| < 1, Taylor series of phi_4 and downward recurrence; for larger |z|, the definition,
+/// which loses only a few units in the last place there.
 template <class T>
 PhiFunctions<T> calc_phi(const T& z) {
   constexpr int kTerms = 17;

@@ -9,8 +9,8 @@
 namespace strut {
 namespace {
 
-/// Four rounds suffice against an observer of few values (M. Luby, C. Rackoff, 1988); the rest is
-/// margin.
+/// Four rounds look random to an observer of few values (M. Luby, C. Rackoff, 1988); the other four
+/// are margin.
 constexpr int kRounds = 8;
 constexpr int kMinHalfBits = 4;
 constexpr std::int64_t kMaxSize = std::int64_t{1} << 62;

@@ -39,8 +39,7 @@ inline void check_team(int threads) {
 }
 
 /// Calls `work()` on each of `threads` threads. The first exception sets `halt` and is rethrown
-/// when all threads have returned. Throws std::system_error where so many threads cannot be
-/// started.
+/// when all threads have returned. Throws std::system_error if the threads cannot be started.
 template <class Work>
 void run_team(int threads, std::atomic<bool>& halt, const Work& work) {
   check_team(threads);

@@ -19,8 +19,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// "; did you mean 'x'?" for `nearest_name`, or "".
 std::string suggest_name(std::string_view name, const std::vector<std::string>& known);
 
-/// "a, b, c"; of more than 200 names the first 200 and the number of the others. Long names are
-/// shortened.
+/// "a, b, c"; names beyond the first 200 are only counted ("and 7 more"). Long names are shortened.
 std::string join_names(const std::vector<std::string>& names);
 
 }  // namespace strut

@@ -6,7 +6,7 @@
 
 namespace strut {
 
-/// Allowed interval of a number; the bounds are included, the lower one only without `open_low`.
+/// Allowed interval of a number; the bounds are included, except that `open_low` excludes `low`.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
