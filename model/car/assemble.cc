@@ -163,7 +163,7 @@ void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneu
   for (int c = 0; c < kCorners; ++c) {
     const SuspensionSpec& suspension = spec.suspension[axle_of(c)];
     const StrutSpec& strut = suspension.strut[is_right(c) ? 1 : 0];
-    // With a fixed free length, which the new spring had, a worn spring sags.
+    // A worn spring keeps the free length of the new one, so the car sags.
     const bool keeps_free_length =
         spec.preload == PreloadKind::kFreeLength && strut.nominal_stiffness > 0.0;
     const double rate = keeps_free_length ? strut.nominal_stiffness : strut.stiffness;

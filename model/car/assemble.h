@@ -50,8 +50,8 @@ Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 /// chassis origin starts at x = 0.
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver);
 
-/// Fills the lists of spring, damper and effect elements from the vehicle's parameters, and that of
-/// force maps from those of each lane.
+/// Fills the lists of spring, damper and effect elements from the vehicle's parameters, and the
+/// list of force maps from the maps of each lane.
 template <class T>
 void fill_strut_elements(Vehicle<T>& vehicle, const CornerForceMaps* const* maps = nullptr) {
   static_assert(kCorners <= kMaxElements, "each corner adds at most one element of a kind");

@@ -10,11 +10,12 @@ namespace strut {
 
 /// Maximum residual loop error of a step [m].
 inline constexpr double kClosureTolerance = 1e-10;
-/// Steps remain fine for this long behind the bump [s], until lifted wheels are back on the road
+/// Time for which steps remain fine after the bump [s], until lifted wheels are back on the road
 /// and their hop has faded (docs/design/0004-integrators.md).
 inline constexpr double kSettlingTime = 0.2;
 
-/// Integration of the wheel spin against slip: by the exponential formulas, or as all other states.
+/// Integration of the wheel spin against slip: by the exponential formulas, or like all other
+/// states.
 enum class SpinTreatment { kExponential, kExplicit };
 
 /// The closure is called through function pointers, so that integrators are compiled once for all
@@ -77,8 +78,8 @@ class CarSystem {
                           workspace_.angular_acceleration.y)) |
               (workspace_.closure_error > T(kClosureTolerance)) |
               (workspace_.travel_excess > T(0.0)) |
-              (abs(x[StateIndex::kVelocity]) > T(kAbsurdSpeed)) |
-              (abs(x[StateIndex::kVelocity + 2]) > T(kAbsurdSpeed));
+              (abs(x[StateIndex::kVelocity]) > T(kDivergenceSpeed)) |
+              (abs(x[StateIndex::kVelocity + 2]) > T(kDivergenceSpeed));
     largest_loop_error_ = max(largest_loop_error_, workspace_.closure_error);
     update_trigger(x);
     for (int c = 0; has_kinks_ && c < kCorners; ++c) kink_x_[c] = calc_wheel_x(x, c);
@@ -108,8 +109,8 @@ class CarSystem {
     return true;
   }
 
-  /// True on the bump, less than one and a half coarse steps ahead of it, and for kSettlingTime
-  /// behind it.
+  /// True on the bump, within one and a half coarse steps before it, and for kSettlingTime after
+  /// it.
   Mask wants_fine_step(const T* x, const T& coarse_step) const {
     const T& speed = x[StateIndex::kVelocity];
     const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;

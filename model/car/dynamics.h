@@ -147,8 +147,8 @@ void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle
   split_pair(slip, ws.slip[left], ws.slip[right]);
 }
 
-/// Minimum relaxation length [m]; relaxation lengths vanish with the load, as of a tire off the
-/// road.
+/// Minimum relaxation length [m]; relaxation lengths vanish with the load, for example when a tire
+/// leaves the road.
 inline constexpr double kMinRelaxation = 0.05;
 
 /// First-order slip: length * d(slip)/dt = speed * (steady slip - slip).
@@ -291,7 +291,7 @@ void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
   const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
   set_vec3(dx, I::kPosition, ws.rotation * v);
   const Quaternion<T> e = get_quaternion(x);
-  // This term vanishes at unit length and bounds the drift of the length by integration.
+  // This term vanishes at unit length and bounds the drift of the length due to integration errors.
   const T pull = T(1.0) - (e.w * e.w + e.x * e.x + e.y * e.y + e.z * e.z);
   dx[I::kQuaternion] = T(-0.5) * (e.x * w.x + e.y * w.y + e.z * w.z) + pull * e.w;
   dx[I::kQuaternion + 1] = T(0.5) * (e.w * w.x + e.y * w.z - e.z * w.y) + pull * e.x;

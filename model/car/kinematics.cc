@@ -9,7 +9,7 @@ namespace strut {
 namespace {
 
 constexpr int kLoopIterations = 12;         // five suffice from a neighbor 2.5 mm away
-constexpr int kTravelIterations = 12;       // the same
+constexpr int kTravelIterations = 12;       // likewise
 constexpr double kTravelTolerance = 1e-13;  // m
 constexpr double kLoopTolerance = 1e-12;    // m
 

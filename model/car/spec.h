@@ -33,7 +33,7 @@ struct RodSpec {
   Vec3<double> chassis{};          // m
   Vec3<double> upright{};          // m
   double mass = 0.0;               // kg
-  double center_fraction = 0.5;    // center of mass as a fraction of the way chassis -> upright
+  double center_fraction = 0.5;    // center of mass: 0 at the chassis end, 1 at the upright end
   double transverse_inertia = -1;  // kg m^2 about the center of mass; < 0: uniform, m L^2 / 12
   bool operator==(const RodSpec&) const = default;
 };

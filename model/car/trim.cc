@@ -18,8 +18,8 @@ namespace {
 
 using I = StateIndex;
 
-/// Unknowns u of a trim, and its equations r: the acceleration of each unknown. Rest has those
-/// before kSpinSlip only.
+/// Unknowns u of a trim, and its equations r: the acceleration of each unknown. At rest the
+/// unknowns from kSpinSlip on do not exist.
 enum Unknown : int {
   kHeight = 0,
   kRoll = 1,
@@ -33,7 +33,7 @@ enum Unknown : int {
 constexpr double kLengthUnit = 1e-2;  // m
 constexpr double kAngleUnit = 1e-2;   // rad
 constexpr double kSlipUnit = 1e-2;    // relative to the speed of free rolling
-/// Weights of the corner and spin accelerations beside those of the chassis.
+/// Weights of the corner and spin accelerations relative to those of the chassis.
 constexpr double kCornerWeight = 0.1;
 constexpr double kSpinWeight = 1e-3;
 
@@ -156,8 +156,7 @@ TrimResult solve(TrimProblem p) {
   if (finite && result.residual < kMaxResidual && !(p.workspace.travel_excess > 0.0)) return result;
   throw ModelError(fmt::format(
       "the car has no equilibrium {} within +/-{:g} mm of travel (residual {:g} m/s^2): a spring "
-      "is "
-      "too soft for its load, or another parameter is far from plausible",
+      "is too soft for its load, or another parameter is far from plausible",
       p.rolling ? "rolling" : "at rest", 1e3 * p.closure.tables->half_travel, result.residual));
 }
 

@@ -27,7 +27,7 @@ enum EffectPlaces : unsigned {
 
 struct EffectParameter {
   std::string name, unit, description;  // unit "1" if none
-  double neutral;                       // value of a setting without it
+  double neutral;                       // value where a setting does not give one
   bool switches;     // the effect vanishes where all such parameters are neutral; others shape it
   double low, high;  // the plausible range; a value outside of it is an input error
   double typical;    // typical magnitude in a car, the start value of searches

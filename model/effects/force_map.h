@@ -13,7 +13,7 @@
 
 namespace strut {
 
-/// F(d, v) = sum_ij coefficient_ij B_i(d) B_j(v), parallel to the damper and, as its force,
+/// F(d, v) = sum_ij coefficient_ij B_i(d) B_j(v), parallel to the damper and, like its force,
 /// positive in compression; deflection d from nominal trim (on a rig from rest) and v = dd/dt,
 /// positive in compression. B: uniform cubic B-splines, `count` of them over a range; outside the
 /// range the argument is clamped to its end. A count of 1: the force does not depend on that

@@ -12,7 +12,7 @@ EffectInfo make_damper_asymmetry() {
           "F = c (1 - a sgn v) v",
           "Dixon, The Shock Absorber Handbook, 2nd ed.; 0.2 to 0.5 in passenger cars",
           kOnStrut,
-          {make_switch("asymmetry", "1", "a: share moved from compression to rebound", -0.9, 0.9,
+          {make_switch("asymmetry", "1", "a: fraction moved from compression to rebound", -0.9, 0.9,
                        0.3)}};
 }
 
@@ -23,7 +23,7 @@ EffectInfo make_damper_blow_off() {
           "smooth form of two straight lines that meet at v_b; Dixon: v_b 0.05 to 0.2 m/s, "
           "r 0.3 to 0.7",
           kOnStrut,
-          {make_switch("loss", "1", "r: share of the rate lost far above the knee; < 0: gained",
+          {make_switch("loss", "1", "r: fraction of the rate lost far above the knee; < 0: gained",
                        -10.0, 0.98, 0.3),
            make_shape("knee", "m/s", "v_b: speed of the knee", 0.1, 0.005, 2.0, 0.1)}};
 }
@@ -57,7 +57,7 @@ EffectInfo make_damper_fade() {
       "F = c (1 - l) v; on a strut_rig F = c exp(-b (T - 293.15 K)) v",
       "Dixon, The Shock Absorber Handbook, 2nd ed.: 0.2 to 2 %/K",
       kOnStrut,
-      {make_switch("loss", "1", "l: share of the rate lost; < 0: gained, cold oil", -2.0, 0.95,
+      {make_switch("loss", "1", "l: fraction of the rate lost; < 0: gained, cold oil", -2.0, 0.95,
                    0.1),
        make_switch("rate", "1/K", "b: relative loss of rate per kelvin", -0.1, 0.1, 5e-3)}};
   fade.parameters[0].without = kHasDamperTemperature;

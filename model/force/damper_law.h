@@ -25,10 +25,11 @@ struct DamperLaw {
   }
 };
 
-/// Stiffness of the contact at the end of a lost stroke: it yields within kContactTime [s]; at
-/// kJointSpeed [m/s] by at most the play, so that it vanishes with the play. This is as stiff as
-/// RK4 with 1 ms steps allows: the error is 1 % of the effect of 1 to 30 mm of play on the body
-/// acceleration of a quarter car (3 to 17 % with half the time), and 1 to 10 % of that of 0.3 mm.
+/// Contact at the end of a lost stroke: it yields within kContactTime [s], and at kJointSpeed [m/s]
+/// by at most the play, so that it vanishes with the play. It is as stiff as RK4 with 1 ms steps
+/// allows: the integration error is 1 % of the effect that 1 to 30 mm of play have on the body
+/// acceleration of a quarter car (3 to 17 % at half of kContactTime), and 1 to 10 % of the effect
+/// of 0.3 mm.
 inline constexpr double kContactTime = 1e-3, kJointSpeed = 0.5;
 
 /// Rate at which a contact of a joint with play > 0 yields [1/s].

@@ -341,7 +341,7 @@ T calc_rolling_resistance(const Pac2002<C>& p, const LoadPoint<T>& at, const Tir
 /// Force and moment of the road on a tire. Zero load gives exactly zero. No `if` depends on the
 /// state; `parts` is common to a batch.
 ///
-/// `flatten`: without calls, independent chains of operations overlap.
+/// The attribute `flatten` inlines all calls, so that independent chains of operations overlap.
 ///
 /// @param side +1 left tire, the side of the coefficients; -1 right tire, its mirror image: camber
 ///   and alpha are given in the same W axes on both sides, f(alpha, camber) becomes f(-alpha,

@@ -12,8 +12,8 @@ namespace strut {
   X("VERTICAL", BREFF, 0.0, "1", "rolling radius: slope at low load")                              \
   X("VERTICAL", DREFF, 0.0, "1", "rolling radius: peak value")                                     \
   X("VERTICAL", FREFF, 0.0, "1", "rolling radius: slope at high load")                             \
-  X("VERTICAL_FORCE_RANGE", FZMIN, 0.0, "N", "lowest load the coefficients hold for")              \
-  X("VERTICAL_FORCE_RANGE", FZMAX, 1e9, "N", "highest load the coefficients hold for")             \
+  X("VERTICAL_FORCE_RANGE", FZMIN, 0.0, "N", "minimum load at which the coefficients hold")        \
+  X("VERTICAL_FORCE_RANGE", FZMAX, 1e9, "N", "maximum load at which the coefficients hold")        \
   X("SCALING_COEFFICIENTS", LFZO, 1.0, "1", "scale of the nominal load")                           \
   X("SCALING_COEFFICIENTS", LCX, 1.0, "1", "scale of the shape factor of Fx")                      \
   X("SCALING_COEFFICIENTS", LMUX, 1.0, "1", "scale of the peak friction of Fx")                    \
@@ -76,8 +76,8 @@ namespace strut {
   X("LATERAL_COEFFICIENTS", PEY2, 0.0, "1", "curvature with load")                                 \
   X("LATERAL_COEFFICIENTS", PEY3, 0.0, "1", "curvature with the sign of alpha")                    \
   X("LATERAL_COEFFICIENTS", PEY4, 0.0, "1/rad", "curvature with camber and the sign of alpha")     \
-  X("LATERAL_COEFFICIENTS", PKY1, -10.0, "1/rad", "greatest cornering stiffness / Fz0")            \
-  X("LATERAL_COEFFICIENTS", PKY2, 1.0, "1", "load / Fz0 of the greatest cornering stiffness")      \
+  X("LATERAL_COEFFICIENTS", PKY1, -10.0, "1/rad", "maximum cornering stiffness / Fz0")             \
+  X("LATERAL_COEFFICIENTS", PKY2, 1.0, "1", "load / Fz0 of the maximum cornering stiffness")       \
   X("LATERAL_COEFFICIENTS", PKY3, 0.0, "1/rad", "cornering stiffness with camber")                 \
   X("LATERAL_COEFFICIENTS", PHY1, 0.0, "rad", "horizontal shift at nominal load")                  \
   X("LATERAL_COEFFICIENTS", PHY2, 0.0, "rad", "horizontal shift with load")                        \
@@ -100,8 +100,8 @@ namespace strut {
   X("LATERAL_COEFFICIENTS", RVY4, 0.0, "1/rad", "side force of kappa with alpha")                  \
   X("LATERAL_COEFFICIENTS", RVY5, 0.0, "1", "side force of kappa: shape factor")                   \
   X("LATERAL_COEFFICIENTS", RVY6, 0.0, "1", "side force of kappa: slope")                          \
-  X("LATERAL_COEFFICIENTS", PTY1, 0.0, "1", "greatest relaxation length / R0")                     \
-  X("LATERAL_COEFFICIENTS", PTY2, 1.0, "1", "load / Fz0 of the greatest relaxation length")        \
+  X("LATERAL_COEFFICIENTS", PTY1, 0.0, "1", "maximum relaxation length / R0")                      \
+  X("LATERAL_COEFFICIENTS", PTY2, 1.0, "1", "load / Fz0 of the maximum relaxation length")         \
   X("ROLLING_COEFFICIENTS", QSY1, 0.0, "1", "rolling resistance")                                  \
   X("ROLLING_COEFFICIENTS", QSY2, 0.0, "1", "rolling resistance with Fx")                          \
   X("ROLLING_COEFFICIENTS", QSY3, 0.0, "1", "rolling resistance with speed")                       \

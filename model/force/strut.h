@@ -50,8 +50,8 @@ struct LinearDamper {
 /// Maximum number of elements of one kind: at most one per corner.
 inline constexpr int kMaxElements = 6;
 
-/// The elements of one kind, each at its corner. The list is common to a batch and has no effects
-/// that are off.
+/// The elements of one kind, each at its corner. The list is common to a batch and contains only
+/// effects that are on.
 template <class Element, int Capacity = kMaxElements>
 struct ElementList {
   std::array<Element, Capacity> element;

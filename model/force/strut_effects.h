@@ -45,7 +45,7 @@ struct BumpStop {
   }
 };
 
-/// tanh(x), to one unit in the last place of 1.
+/// tanh(x); absolute error: one unit in the last place of 1.
 template <class T>
 T calc_tanh(const T& x) {
   const T e = exp(T(-2.0) * abs(x));

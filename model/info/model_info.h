@@ -23,7 +23,7 @@ enum ModelPart : unsigned {
 struct InputInfo {
   std::string name, unit, description;
   bool required = false;
-  bool moves = true;        // the model responds in proportion; false for a temperature
+  bool moves = true;        // it excites motion that scales with it; false: a temperature
   bool is_ground = false;   // the position above which the masses rest
   bool is_command = false;  // the actual quantity may differ from it in size or sign
 };

@@ -25,7 +25,7 @@ struct SamplePlan {
   double interval = 0.0;  // s between history samples from t = 0; 0: no history
   bool snapshot = true;
   int channel_count = 0;
-  int parts = 1;  // samples per interval; every parts-th has the bits of a plan with one part
+  int parts = 1;  // samples per interval; every parts-th equals that of parts = 1 bit for bit
   std::vector<int> recorded = {};  // channels of the history, in this order; empty: all
 
   int recorded_count() const {
@@ -50,7 +50,7 @@ T calc_sample_time(const SamplePlan& plan, const T& sample) {
 }
 
 /// Speed above which an integration counts as diverged [m/s].
-inline constexpr double kAbsurdSpeed = 500.0;
+inline constexpr double kDivergenceSpeed = 500.0;
 
 /// Results of all lanes. The lane is the fastest index of every array; the accessors know the
 /// layout.

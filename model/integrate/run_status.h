@@ -9,7 +9,7 @@ namespace strut {
 
 enum class RunStatus : std::int32_t {
   kDone = 0,
-  kDiverged = 1,       // a state is not finite or exceeds kAbsurdSpeed
+  kDiverged = 1,       // a state is not finite or exceeds kDivergenceSpeed
   kOutOfTravel = 2,    // a corner left the travel for which its loops close
   kStalled = 3,        // too many steps, shortened by successive contact events
   kNoEquilibrium = 4,  // loops that do not close, springs that cannot carry the car

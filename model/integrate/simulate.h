@@ -7,12 +7,11 @@
 // Besides the functions of steppers.h a system offers, all after calc_derivative at the same state:
 //   int guard_count() const;  void get_guards(T* g) const;
 //   T get_trigger() const;                         its sign change is the snapshot
-//   MaskOf<T> has_failed() const;                  closure or finiteness lost
+//   MaskOf<T> has_failed() const;                  loops not closed, or state not finite
 //   void observe(const T& t, const T* x, T* out);  channels
 // and at any state
 //   void calc_guards(const T& t, const T* x, T* g);
-//   bool cross(int guard, MaskOf<T> lanes);        these lanes passed it; true: f must be
-//   reevaluated
+//   bool cross(int guard, MaskOf<T> lanes);        lanes that passed it; true: reevaluate f
 // and, if it supports long steps (StepOptions::coarse_step),
 //   MaskOf<T> wants_fine_step(const T* x, const T& coarse_step) const;
 #pragma once
@@ -113,8 +112,8 @@ class Simulation {
     retire_failed();
     if (plan_.snapshot) locate_trigger();
     if (results_.sample_count > 0) record_samples();
-    // The right-hand side changes sides after the samples: the step just taken belongs to the old
-    // side.
+    // The right-hand side switches after the samples are recorded, because the step just taken
+    // belongs to the old side.
     const Mask restarted = landed > T(-0.5);
     const bool guarded = system_.guard_count() > 0;
     if (any(restarted) || (guarded && !options_.locate_events)) pass_guards(restarted, landed);

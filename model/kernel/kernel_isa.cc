@@ -41,8 +41,8 @@ LaneResults run_rigs(const RigSpec* const* specs, int count, const std::vector<I
   return strut::simulate_rigs<NativeLanes>(padded, inputs, options, plan);
 }
 
-/// Twelve chains hide the latency of two units of four cycles each, and with the two factors fit
-/// into the sixteen registers of AVX2.
+/// Twelve independent chains hide the latency of two multiply-add units of four cycles each; with
+/// the two factors they fit into the sixteen registers of AVX2.
 double run_peak_loop(long rounds, double& sink) {
   using Vector = xsimd::batch<double, xsimd::default_arch>;
   constexpr std::size_t kChains = 12;

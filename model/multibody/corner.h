@@ -129,7 +129,7 @@ struct RodInertia {
 
 template <class T>
 struct CornerInertia {
-  std::array<RigidBody<T>, kMaxBodies> body;  // the upright's holds the wheel, its spin left out
+  std::array<RigidBody<T>, kMaxBodies> body;  // the upright's includes the wheel, not its spin
   std::array<RodInertia<T>, kMaxRods> rod;
   T spin_inertia;  // kg m^2, wheel about its axis
 };
@@ -140,11 +140,10 @@ struct CornerInertia {
 /// excludes the wheel's spin about its axis (see dynamics.h).
 template <class T>
 struct CornerMotion {
-  Vec3<T> moment, moment_q, moment_qq;  // first moment sum m r; moment_q is also the linear
-                                        // momentum per unit q_dot
+  Vec3<T> moment, moment_q, moment_qq;  // first moment sum m r; moment_q: momentum per unit q_dot
   Sym3<T> inertia, inertia_q;           // about the chassis origin
   Vec3<T> coupling, coupling_q;         // angular momentum per unit q_dot
-  T mass, mass_q;                       // q_dot^2 mass: 2 kinetic energy / q_dot^2
+  T mass, mass_q;                       // generalized mass: 2 kinetic energy / q_dot^2
   Vec3<T> center, center_q, center_qq;  // wheel center
   Vec3<T> axis, axis_q;                 // spin axis
   Vec3<T> upright_rate;                 // angular velocity of the upright per unit q_dot

@@ -89,7 +89,7 @@ class RigSystem {
     for (int i = 0; i < count_; ++i) {
       dx[i] = x[count_ + i];
       dx[count_ + i] = ws_.acceleration[at(i)];
-      failed_ = failed_ | (!is_finite(dx[count_ + i])) | (abs(dx[i]) > T(kAbsurdSpeed));
+      failed_ = failed_ | (!is_finite(dx[count_ + i])) | (abs(dx[i]) > T(kDivergenceSpeed));
     }
     for (int i = 0; i < stiff_count(); ++i) decay[i] = ws_.strut_decay[at(i)];
   }

@@ -43,8 +43,8 @@ RigSpec apply_mass_effects(const RigSpec& spec) {
       has_body_mass ? E::kUnsprungMass : E::kPayload));
 }
 
-/// At rest the line has length zero and the spring carries the weight on it less the force of a
-/// map.
+/// At rest the line has length zero, and the spring carries the weight above it less the force of
+/// the map.
 LinearSpring<double> make_spring(const RigSpec& spec) {
   const bool carries_mass = !get_rig_info(spec.kind).masses.empty();
   double load = carries_mass ? spec.sprung_mass * spec.gravity : 0.0;

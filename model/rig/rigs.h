@@ -4,8 +4,8 @@
 // Positions are displacements from the rest position, up positive: from the static equilibrium
 // under gravity at ground position zero (masses), or from the relaxed spring (strut_rig, whose
 // displacement is positive in compression). Forces are total and include the static load. Forces of
-// strut and actuator are positive where they push their two ends apart. So with gravity = 0, and
-// for every rig whose tire cannot lift off, the motion is that of the deviations from rest.
+// strut and actuator are positive where they push their two ends apart. With gravity = 0, and for
+// any rig whose tire cannot lift off, the motion is therefore that of the deviations from rest.
 //
 //   quarter_car  m_u a_u = F_t - F_s - F_a - m_u g,   m_s a_s = F_s + F_a - m_s g
 //   single_mass  m a = F + F_s - m g
@@ -66,8 +66,8 @@ struct Rig {
   StrutEffects<T> effects{};
 };
 
-/// The strut of a rig on a stand that moves it (strut_rig), with its effects: those that have the
-/// same parameters there.
+/// The strut of `rig` mounted in a strut_rig, with those of its effects that have the same
+/// parameters there.
 RigSpec take_strut(const RigSpec& rig);
 
 /// Numbers of a rig at its rest position. Throws ModelError as validate does.

@@ -62,7 +62,7 @@ struct SignalPoint {
   T value, rate, second_rate;  // [u], [u/s], [u/s^2] in the signal's unit u
 };
 
-/// The signal at t [s]; at a sample that of the interval after it.
+/// The signal at t [s]; at a sample, the piece of the interval that begins there.
 template <class T>
 SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
   constexpr double kStride = 5.0;

@@ -46,14 +46,14 @@ void validate_table_point(const RoadSpec& spec, std::size_t i) {
 void validate_table(const RoadSpec& spec) {
   const std::vector<double>&x = spec.table_x, &z = spec.table_z;
   require(x.size() >= 3, "road.table_x, number of points", static_cast<double>(x.size()),
-          "a profile needs at least 3");
+          "a profile must have at least 3");
   require(z.size() == x.size(), "road.table_z, number of points", static_cast<double>(z.size()),
           fmt::format("must equal the {} of road.table_x", x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) validate_table_point(spec, i);
   require(std::fabs(z.front()) <= 1e-6, "road.table_z[0]", z.front(),
-          "a profile starts at the flat road, within 1e-6 m of 0");
+          "a profile must start on the flat road, within 1e-6 m of 0");
   require(std::fabs(z.back()) <= 1e-6, "road.table_z, last", z.back(),
-          "a profile ends at the flat road, within 1e-6 m of 0");
+          "a profile must end on the flat road, within 1e-6 m of 0");
 }
 
 // --- segments of a surface ------------------------------------------------------------------
@@ -150,7 +150,8 @@ void validate(const RoadSpec& spec) {
   require_range("road.height", spec.height, 0.0, 0.5);
   if (spec.shape == BumpShape::kArc) {
     require(spec.height <= 0.5 * spec.length, "road.height", spec.height,
-            fmt::format("an arc is at most half as high as long, {:f} m", 0.5 * spec.length));
+            fmt::format("the height of an arc must be at most half its length, {:f} m",
+                        0.5 * spec.length));
   }
   if (spec.shape == BumpShape::kTrapezoid) {
     require_range("road.ramp", spec.ramp, 1e-4, 0.5 * spec.length);
@@ -180,7 +181,7 @@ Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact) {
   if (contact.kind == ContactKind::kPoint) {
     const bool upright = spec.shape == BumpShape::kArc && spec.height > 0.45 * spec.length;
     require(!upright, "road.height", spec.height,
-            "with point contact the height of an arc is at most 0.45 times its length");
+            "with point contact the height of an arc must be at most 0.45 times its length");
     return make_kinked_surface(make_point_branches(profile));
   }
   const std::vector<Branch> branches = make_disc_envelope(profile, contact.radius);
