@@ -129,7 +129,9 @@ InputSignal read_shape(const Table& table, const std::string& channel, Shape sha
 InputSignal read_input(const Table& table, const std::string& channel, double duration) {
   const auto shape = static_cast<Shape>(table.choice("shape", list_names(kShapes)));
   if (shape != kFile && duration == 0.0) {
-    throw table.error("shape", "needs the maneuver's `duration`, which only files determine");
+    throw table.error(
+        "shape",
+        "needs the maneuver's `duration`, which may be missing only where all inputs are files");
   }
   try {
     return read_shape(table, channel, shape, duration);

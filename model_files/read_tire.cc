@@ -352,7 +352,7 @@ TireData read_tire(const std::filesystem::path& path) {
   check_units(file);
   check_once(file);
   check_tables(file);
-  for (const auto& [section, key] : kRequired) require(file, section, key, "the tire needs it");
+  for (const auto& [section, key] : kRequired) require(file, section, key, "every tire needs it");
   TireData tire;
   for (const TirEntry& entry : file.entries) read_entry(file, entry, tire.pacejka);
   check_together(file, tire.pacejka);
