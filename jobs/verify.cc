@@ -23,7 +23,7 @@ Json make_json(const VerifyReport& report) {
   json["data_digest"] = report.data_digest;
   json["cases"] = report.cases;
   json["missing"] = report.missing;
-  json["double"] = report.twice;
+  json["double"] = report.misplaced;
   json["foreign"] = report.foreign;
   json["damaged"] = report.damaged;
   json["shards"] = report.shards;
@@ -39,7 +39,7 @@ void print_text(const VerifyReport& report) {
     std::cout << "differs when simulated again: " << what << "\n";
   }
   std::cout << format_count(report.cases) << " cases: " << format_count(report.missing)
-            << " missing, " << format_count(report.twice) << " double, "
+            << " missing, " << format_count(report.misplaced) << " double, "
             << format_count(report.foreign) << " foreign; " << format_count(report.shards)
             << " sound shards\n";
   if (report.resimulated > 0) {

@@ -4,10 +4,9 @@
 // latin_hypercube  each axis is divided into `count` cells; a keyed permutation per axis assigns a
 //                  cell to each sample, a random number its offset in the cell (M. D. McKay, R. J.
 //                  Beckman, W. J. Conover, Technometrics 21, 1979)
-// sobol            Boost's Sobol sequence, its first point, zero, included; every axis is xored
-// with
-//                  random bits (digital shift), which keeps the sequence even and moves its first
-//                  point off the corner
+// sobol            Boost's Sobol sequence, including its first point, zero; every axis is XORed
+//                  with random bits (digital shift), which keeps the sequence even and moves its
+//                  first point off the corner
 #pragma once
 
 #include <cstdint>

@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// To be raised with every change of this program after which the same request gives other numbers.
+/// Increment it with every change after which the same request yields different numbers.
 inline constexpr int kResultsVersion = 1;
 
 /// The (name, value) pairs that the plan's hash covers, in order.

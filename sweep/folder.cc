@@ -116,10 +116,10 @@ Plan open_sweep_folder(const SweepFolder& folder) {
   const PlanRecord record = read_plan(folder.plan());
   Plan plan(read_request(folder.request()));
   if (record.extent.plan_hash != plan.hash()) {
-    throw InputError(fmt::format(
-        "{}: no longer what was planned; allowed: the planned request, or another folder. "
-        "Differences:{}",
-        folder.request().string(), list_changes(record.facts, plan.facts())));
+    throw InputError(
+        fmt::format("{}: does not match its plan; allowed: the planned request, or another folder. "
+                    "Differences:{}",
+                    folder.request().string(), list_changes(record.facts, plan.facts())));
   }
   require_same_plan(folder.plan(), record, plan);
   return plan;

@@ -93,7 +93,7 @@ void check_independence(const Table& grid, const std::vector<Axis>& axes, const 
       const ParameterInfo& parameter = find_parameter(first.name);
       parameter.set(c, first.from);
       const double before = parameter.get(c);
-      // An unlikely value, so that setting it shows.
+      // Differs from any likely current value, so that the effect of setting it is visible.
       find_parameter(second.name).set(c, 0.5 * second.from + 0.125);
       if (parameter.get(c) == before) continue;
       throw grid.error(

@@ -1,8 +1,7 @@
 // The strata of a sweep: their bounds, their sizes and the stratum of each case.
 //
 // by a parameter   grid: level i of n is in stratum floor(i strata / n); samples: equal parts of
-// the
-//                  axis
+//                  the axis
 // by degradation   the mean over the axes of |1 - value / from|; strata of equal size, the cases
 //                  sorted by degradation, ties by case id. Losses are summed as integers, so that
 //                  equal degradations tie exactly.

@@ -125,7 +125,7 @@ std::int64_t check_rows(const VerifyInput& input, std::int64_t shard, const Shar
     if (position < last && id == input.plan.calc_case_id(position)) {
       ++(matches_plan(input, rows, row) ? valid : report.foreign);
     } else {
-      ++(input.plan.find_position(id) >= 0 ? report.twice : report.foreign);
+      ++(input.plan.find_position(id) >= 0 ? report.misplaced : report.foreign);
     }
   }
   const std::int64_t wrong = static_cast<std::int64_t>(rows.size()) - valid;

@@ -23,7 +23,7 @@ struct VerifyOptions {
 struct VerifyReport {
   std::int64_t cases = 0;            // in the plan
   std::int64_t missing = 0;          // cases of the plan that no valid shard holds
-  std::int64_t twice = 0;            // rows of cases that belong elsewhere in the plan
+  std::int64_t misplaced = 0;        // rows of cases that belong elsewhere in the plan
   std::int64_t foreign = 0;          // rows that do not match the plan
   std::int64_t shards = 0;           // shards read
   std::vector<std::string> damaged;  // "file: error"
@@ -33,7 +33,7 @@ struct VerifyReport {
   std::vector<std::string> differing;      // resimulated cases with other results
 
   bool ok() const {
-    return missing == 0 && twice == 0 && foreign == 0 && damaged.empty() && differing.empty();
+    return missing == 0 && misplaced == 0 && foreign == 0 && damaged.empty() && differing.empty();
   }
 };
 
