@@ -50,7 +50,7 @@ NamedTexts describe_window(const WindowTransform& window) {
           {"window_lags", std::to_string(grid.lags)}};
 }
 
-/// Exact training is training on a sample that starts with all rows.
+/// Without a growing sample, the first sample holds all rows, which makes the training exact.
 GrowingSampleOptions choose_sample(const TrainingRequest& request, const TrainingRows& data) {
   if (request.growing) return *request.growing;
   GrowingSampleOptions all;

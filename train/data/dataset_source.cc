@@ -42,8 +42,7 @@ void require_spread(const Normalizer& map, const std::vector<ColumnInfo>& column
   if (at == columns.size()) return;
   throw InputError(
       fmt::format("{} '{}' is constant, {} {}, in all {} training rows: nothing can be learned "
-                  "from it; leave it "
-                  "out",
+                  "from it; leave it out",
                   kind, columns[at].name, format_number(map.low()[at]), columns[at].unit, rows));
 }
 

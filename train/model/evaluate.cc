@@ -26,8 +26,7 @@ void require_trained_on(const TrainedModel& model, const Dataset& dataset, const
   if (dataset.plan_hash() != model.plan_hash) {
     throw InputError(
         "the model was trained on data of another plan, so these data have no test part; --part "
-        "all "
-        "takes all cases");
+        "all takes all cases");
   }
   const auto rows = static_cast<std::int64_t>(usable.row_count());
   if (rows != model.usable) {

@@ -33,8 +33,8 @@ class Identifier {
 double calc_excess(double x, double low, double high);
 
 /// Distance by which a parameter may lie beyond its training range, in addition to its interval, as
-/// a fraction of the range: cars in new condition are at the end of a range, and the discrepancy of
-/// simulations exceeds that of a network.
+/// a fraction of the range: a car in new condition is at the end of a range, and the error of the
+/// simulation exceeds that of the network.
 inline constexpr double kParameterMargin = 0.01;
 
 /// False if the whole interval value ± half_width lies outside of the range of target `t`, extended

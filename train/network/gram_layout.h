@@ -3,8 +3,8 @@
 // The row of J for sample n and output k is, in layer l, delta_l^k (x) [a_(l-1); 1]. So
 //   H(l, l') = sum_n (sum_k delta_l^k delta_l'^k') (x) (a a')
 // is one matrix product U' V per pair of layers, with U_n = vec(sum_k delta delta') and
-// V_n = vec(a a'): the outputs are summed before, not after. In a pair of a layer with itself both
-// factors are symmetric and only i >= j and p >= q are computed.
+// V_n = vec(a a'): the sum over the outputs precedes the product. For a layer paired with itself,
+// both factors are symmetric and only i >= j and p >= q are computed.
 // Prior art: B. M. Wilamowski, H. Yu, IEEE Trans. Neural Networks 21 (2010) 930 (J'J without J);
 // M. Fairbank, E. Alonso, Neural Computation 24 (2012) 607 (a factor of the number of outputs).
 #pragma once

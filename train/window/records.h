@@ -16,7 +16,7 @@ namespace strut {
 struct WindowChoice {
   double from = 0.0, to = 0.0;  // s, on the time axis of the simulations
   /// Maximum shift of a record to agree with the reference, either way [s]; 0: not aligned. 50 ms
-  /// cover 6 sigma of the hit time, and 2.5 % of speed change over 10 m of approach.
+  /// cover 6 sigma of a hit time of sigma 5 ms, and 2.5 % of speed change over 10 m at 20 m/s.
   double reach = 0.05;
   /// Maximum number of directions, the inputs of the network.
   int components = 24;
