@@ -36,7 +36,8 @@ std::string make_job_mark(const std::filesystem::path& sweep, const std::string&
 
 std::string describe_foreign(const std::string& job, const std::string& name) {
   return fmt::format(
-      "{} runs, but is not proved to be job {} of this folder: the folder was copied, renamed or "
+      "{} runs, but cannot be proved to be job {} of this folder: the folder was copied, renamed "
+      "or "
       "reached by another path, or the job belongs to an earlier build",
       job, name);
 }

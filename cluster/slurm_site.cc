@@ -64,10 +64,8 @@ void check_folder(const std::string& partition, const fs::path& folder) {
   if (others.empty()) return;
   throw InputError(fmt::format(
       "{}: lies on a file system of this machine only ({}); the nodes of partition {} ({}{}) "
-      "cannot "
-      "see it; put the sweep into a folder that all see, such as your home, or add --shared if "
-      "they "
-      "do see it",
+      "cannot see it; put the sweep into a folder that all see, such as your home, or add --shared "
+      "if they do see it",
       folder.string(), kind, partition, *others.begin(), others.size() > 1 ? ", ..." : ""));
 }
 
@@ -175,7 +173,8 @@ Findings examine_site(const Resources& resources, const fs::path& folder) {
     const Partition partition = find_partition(resources.partition);
     findings.push_back(examine_partition(partition));
     check_folder(partition.name, folder);
-    findings.push_back({"folder on the nodes", Health::kGood, "may be seen", ""});
+    findings.push_back(
+        {"folder on the nodes", Health::kGood, "not on a disk of this machine only", ""});
   } catch (const InputError& e) {
     findings.push_back({"partition", Health::kBad, e.what(), "nothing can run there"});
   }

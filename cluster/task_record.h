@@ -48,9 +48,8 @@ enum class TaskFate {
 
 const char* get_name(TaskFate fate);
 
-/// Judges a task that is not queued any more. `scheduler_state`: its end as the scheduler remembers
-/// it;
-/// "" if it does not.
+/// Judges a task that is no longer queued. `scheduler_state`: its final state as the scheduler
+/// remembers it; "" if it does not.
 TaskFate judge_task(const std::vector<TaskAttempt>& attempts, bool cancelled,
                     const std::string& scheduler_state = "");
 

@@ -162,7 +162,7 @@ TEST_CASE("cancel stops only processes that bear the mark of the job", "[io]") {
     Bystander bystander(other);
     const JobRecord record = bystander.make_record(mark);
     CHECK_THROWS_WITH(dispatcher.cancel({record}),
-                      Contains("not proved to be job") && Contains("nothing is stopped"));
+                      Contains("cannot be proved to be job") && Contains("nothing is stopped"));
     CHECK_THAT(dispatcher.query({record}).failure, Contains("copied"));
     CHECK(bystander.lives());
   }
