@@ -45,9 +45,8 @@ struct TirFile {
   const TirEntry* find(std::string_view key) const;
 };
 
-/// Reads the file at `path`. Throws InputError if it is missing or larger than 4 MiB, or
-/// "PATH:LINE:
-/// ..." if a line is none of the above; EnvironmentError if it cannot be read.
+/// Reads the file at `path`. Throws InputError if it is missing or larger than 4 MiB, or, with path
+/// and line, if a line is none of the above; EnvironmentError if it cannot be read.
 TirFile read_tir(const std::filesystem::path& path);
 
 /// Parses the content of a file that messages call `path`.
