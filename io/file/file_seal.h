@@ -98,8 +98,9 @@ SealedBytes read_sealed(const std::filesystem::path& path, const SealKind& kind)
 /// Returns the kind of the seal that a file begins with; empty if it does not begin with a seal.
 std::string find_seal_kind(const std::filesystem::path& path);
 
-/// Returns false for an HDF5 file without a seal: earlier versions of strut wrote plans, models,
-/// checkpoints and merged files so. Throws InputError if the file cannot be read.
+/// Returns false for an HDF5 file without a seal, as earlier versions of strut wrote plans, models,
+/// checkpoints and merged files; true for any other file, even one whose seal is invalid. Throws
+/// InputError if the file cannot be read.
 bool is_sealed(const std::filesystem::path& path);
 
 /// Throws InputError if an HDF5 file without a seal has a global heap. strut writes global heaps

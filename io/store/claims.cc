@@ -236,9 +236,9 @@ bool Claims::State::acquire(const std::string& claim) {
   return stale && take_over(claim, *holder);
 }
 
-// Of several runners that find the claim of `holder` stale, only the one that holds the claim
-// "CLAIM~NONCE of the holder" may replace it; that is an ordinary claim, which can be taken over
-// itself. A runner that gets it later finds another holder named and leaves the claim alone.
+// If several runners find the claim of `holder` stale, only the runner that holds the claim
+// "CLAIM~NONCE", NONCE of the holder, may replace it. That right is an ordinary claim, which can be
+// taken over itself. A runner that gets it later finds another holder and leaves the claim alone.
 bool Claims::State::take_over(const std::string& claim, const std::string& holder) {
   const std::string right = claim + kTakeoverMark + get_nonce(holder);
   if (!acquire(right)) return false;

@@ -212,8 +212,8 @@ void Dataset::check_same(const fs::path& path, const std::string& plan_hash,
                          const ShardSchema& schema) {
   const fs::path& other = folder_ ? folder_->plan() : first_file_;
   if (!plan_hash_.empty() && plan_hash != plan_hash_) {
-    throw path_error(path, fmt::format("of another plan ({:.12}...) than {} ({:.12}...)", plan_hash,
-                                       other.string(), plan_hash_));
+    throw path_error(path, fmt::format("belongs to plan {:.12}..., but {} to plan {:.12}...",
+                                       plan_hash, other.string(), plan_hash_));
   }
   if (!first_file_.empty() && schema != schema_) {
     throw path_error(path,

@@ -183,7 +183,7 @@ TEST_CASE("Training names a constant input, a shard of another plan and missing 
   check_refused(write("flat.h5"), "", {"input 'body_velocity_z' is constant", "0.5"});
   shard.provenance.plan_hash = std::string(64, 'b');
   check_refused(sweep + "/shards/000001.h5 " + write("foreign.h5"), "",
-                {"foreign.h5: of another plan", "bbbb"});
+                {"foreign.h5: belongs to plan", "bbbb"});
   fs::copy(sweep, folder / "lacking", fs::copy_options::recursive);
   fs::remove(folder / "lacking/shards/000002.h5");
   check_refused(folder / "lacking", "", {"60 of 200 cases are missing", "--partial"});

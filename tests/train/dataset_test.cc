@@ -94,7 +94,7 @@ TEST_CASE("Files of another plan, of other columns, or given twice are refused b
   const ShardRows rows = test::make_example_rows(schema, 5);
   const fs::path foreign =
       write_shard(folder / "foreign.h5", 3, schema, rows, std::string(64, 'b'));
-  CHECK_THROWS_WITH(Dataset({one, foreign}), Contains("foreign.h5: of another plan") &&
+  CHECK_THROWS_WITH(Dataset({one, foreign}), Contains("foreign.h5: belongs to plan") &&
                                                  Contains("1.h5") && Contains("bbbb"));
   ShardSchema other = schema;
   other.parameters[0].unit = "kN/m";
