@@ -42,7 +42,8 @@ bool is_close(double a, double b, double tolerance) {
   return std::abs(a - b) <= tolerance * std::max({1.0, std::abs(a), std::abs(b)});
 }
 
-/// True if row `a` of `x` agrees with row `b` of `y` to `tolerance`, relative.
+/// True if status, event time, snapshot and histories of row `a` of `x` and row `b` of `y` agree to
+/// `tolerance`, relative or, below 1, absolute.
 bool is_close(const ShardRows& x, std::size_t a, const ShardRows& y, std::size_t b,
               double tolerance) {
   const auto close = [&](double p, double q) { return is_close(p, q, tolerance); };
@@ -250,7 +251,7 @@ void simulate_again(const VerifyInput& input, const VerifyOptions& options, Veri
       const Shard mended = read_shard_with_retries(input.folder, input.extent, shard);
       for (const std::size_t row : rows) compare_row(input, options, mended, row, report);
     } catch (const InputError&) {
-      // Missing or damaged, and already reported.
+      // The shard is missing or damaged, which check_all_shards has reported.
     }
   }
 }

@@ -15,7 +15,7 @@ struct VerifyOptions {
   std::int64_t sample = 0;  // number of cases to simulate again
   std::uint64_t seed = 1;   // of the random choice of these cases
   /// Kernel for shards whose own instruction set this machine lacks. Its results are compared to
-  /// `tolerance`, relative, instead of bit for bit.
+  /// `tolerance`, relative or, below 1, absolute, instead of bit for bit.
   const Kernel* fallback = nullptr;
   double tolerance = 1e-9;
 };
