@@ -193,7 +193,7 @@ class Simulation {
       gb = select(mine, guard1_[g], gb);
     }
     constexpr int kIterations = 8;
-    T theta = T(1.0), kept = T(0.0);  // the end kept in the last iteration: -1 a, +1 b
+    T theta = T(1.0), kept = T(0.0);  // end kept in the last iteration: -1 for a, +1 for b
     std::array<T, kMaxGuards> g_now;
     for (int i = 0; i < kIterations; ++i) {
       theta = select(crossing, (a * gb - b * ga) / (gb - ga), T(1.0));
@@ -409,7 +409,7 @@ class Simulation {
   StepOptions options_;
   SamplePlan plan_;
   LaneResults results_;
-  // Ring of the last step ends: the current one at head_, the next behind it, the past before it.
+  // Ring of the last step ends: the current one at head_, the next after it, the past before it.
   static constexpr int kRing = 5;
   std::array<Vector, kRing> x_ring_{}, f_ring_{};
   int head_ = 0;

@@ -15,8 +15,8 @@ std::vector<double> list_sample_times(const SamplePlan& plan, int count) {
   return times;
 }
 
-/// Readings of one channel and lane at `times`: those of its samples, in steps of `interval`, and
-/// behind them, where `times` has one more, that of its snapshot.
+/// Readings of one channel and lane at `times`: those of its samples, in steps of `interval`, then,
+/// if `times` has one more, that of its snapshot.
 std::vector<double> make_readings(const LaneResults& run, int channel, int lane,
                                   const ChannelSensor& sensor, double interval,
                                   const std::vector<double>& times) {
