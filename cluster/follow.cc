@@ -9,9 +9,15 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "base/names/name_table.h"
 
 namespace strut {
 namespace {
+
+constexpr std::array<Named<QueueState>, 3> kQueueStates = {{{QueueState::kQueued, "queued"},
+                                                            {QueueState::kEnded, "ended"},
+                                                            {QueueState::kUnknown, "unknown"}}};
+static_assert(names_all(kQueueStates, QueueState::kUnknown));
 
 /// Tasks that wait or run, as the scheduler numbers them.
 struct QueuedIds {
@@ -147,10 +153,7 @@ void judge_tasks(const Submission& submission, const QueuedIds& queued, Submissi
 
 }  // namespace
 
-const char* get_name(QueueState state) {
-  constexpr std::array<const char*, 3> kNames = {"queued", "ended", "unknown"};
-  return kNames[static_cast<std::size_t>(state)];
-}
+const char* get_name(QueueState state) { return find_name(kQueueStates, state); }
 
 std::vector<JobRecord> find_jobs(const Submission& submission, const Dispatcher& dispatcher) {
   std::vector<JobRecord> jobs;

@@ -5,27 +5,33 @@
 #include <array>
 #include <sstream>
 
+#include "base/names/name_table.h"
 #include "cluster/record_file.h"
 #include "io/file/atomic_file.h"
 
 namespace strut {
 namespace {
 
-constexpr std::array<const char*, 5> kOutcomes = {"done", "failed", "drained", "stopped", "error"};
+constexpr std::array<Named<TaskOutcome>, 5> kOutcomes = {{{TaskOutcome::kDone, "done"},
+                                                          {TaskOutcome::kFailed, "failed"},
+                                                          {TaskOutcome::kDrained, "drained"},
+                                                          {TaskOutcome::kStopped, "stopped"},
+                                                          {TaskOutcome::kError, "error"}}};
+static_assert(names_all(kOutcomes, TaskOutcome::kError));
 /// In place of an outcome, while a task runs.
 constexpr char kBegun[] = "begun";
-constexpr std::array<const char*, 9> kFates = {"never begun", "done",    "failed",
-                                               "drained",     "timeout", "preempted",
-                                               "cancelled",   "error",   "lost"};
+constexpr std::array<Named<TaskFate>, 9> kFates = {{{TaskFate::kNeverStarted, "never begun"},
+                                                    {TaskFate::kDone, "done"},
+                                                    {TaskFate::kFailed, "failed"},
+                                                    {TaskFate::kDrained, "drained"},
+                                                    {TaskFate::kTimeout, "timeout"},
+                                                    {TaskFate::kPreempted, "preempted"},
+                                                    {TaskFate::kCancelled, "cancelled"},
+                                                    {TaskFate::kError, "error"},
+                                                    {TaskFate::kLost, "lost"}}};
+static_assert(names_all(kFates, TaskFate::kLost));
 /// A task that is stopped this close to the end of its time limit was stopped by it [s].
 constexpr std::int64_t kTimeoutMargin = 5;
-
-std::optional<TaskOutcome> find_outcome(const std::string& name) {
-  for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
-    if (name == kOutcomes[i]) return static_cast<TaskOutcome>(i);
-  }
-  return std::nullopt;
-}
 
 std::optional<TaskFate> find_fate(const std::string& scheduler_state) {
   if (scheduler_state == "TIMEOUT" || scheduler_state == "DEADLINE") return TaskFate::kTimeout;
@@ -36,8 +42,8 @@ std::optional<TaskFate> find_fate(const std::string& scheduler_state) {
 
 }  // namespace
 
-const char* get_name(TaskOutcome outcome) { return kOutcomes[static_cast<std::size_t>(outcome)]; }
-const char* get_name(TaskFate fate) { return kFates[static_cast<std::size_t>(fate)]; }
+const char* get_name(TaskOutcome outcome) { return find_name(kOutcomes, outcome); }
+const char* get_name(TaskFate fate) { return find_name(kFates, fate); }
 
 TaskFate judge_task(const std::vector<TaskAttempt>& attempts, bool cancelled,
                     const std::string& scheduler_state) {
@@ -71,7 +77,7 @@ std::vector<TaskAttempt> read_task_attempts(const Folder& array, const std::stri
                                    array.path_of(task).string(), attempts.size() + 1,
                                    kRecordRemedy));
     }
-    attempt.outcome = find_outcome(outcome);
+    attempt.outcome = find_value(kOutcomes, outcome);
     attempts.push_back(attempt);
   }
   return attempts;

@@ -141,14 +141,16 @@ DrivenResult::DrivenResult(const DrivenTask& task, const LaneResults& results, i
       sampling_(task.sampling),
       channels_(task.run->setup.info().channels.size()),
       count_(static_cast<std::size_t>(results.sample_count)) {
-  const auto at = static_cast<std::size_t>(lane), lanes = static_cast<std::size_t>(results.lanes);
-  if (results.status[at] != 0) {
+  if (!results.is_done(lane)) {
     failure_ = fmt::format("{}: the simulation ends at t = {} s: the motion is not finite",
-                           run_->name, format_rounded(results.failure_time[at]));
+                           run_->name, format_rounded(results.get_failure_time(lane)));
     return;
   }
   history_.resize(count_ * channels_);
-  for (std::size_t i = 0; i < history_.size(); ++i) history_[i] = results.history[i * lanes + at];
+  for (std::size_t i = 0; i < history_.size(); ++i) {
+    history_[i] =
+        results.get_sample(static_cast<int>(i / channels_), static_cast<int>(i % channels_), lane);
+  }
   read_sensors(task.variant.rig);
 }
 

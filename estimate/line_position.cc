@@ -74,16 +74,14 @@ std::vector<int> list_trigger_corners(const PreparedCase& c) {
 
 std::vector<double> calc_line_positions(const PreparedCase& c, const LaneResults& results,
                                         int lane) {
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
   std::vector<RearWheel> wheels;
   for (const int corner : list_trigger_corners(c)) wheels.push_back(make_rear_wheel(c, corner));
 
   std::vector<double> coordinates(wheels.size(), 0.0);  // initial guesses: the last sample's
-  std::vector<double> positions(at(results.sample_count));
+  std::vector<double> positions;
   double yaw = 0.0, last_rate = 0.0, last_time = 0.0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const double* row = results.history.data() + i * C::kCount * at(results.lanes);
-    const auto get = [&](int channel) { return row[at(channel) * at(results.lanes) + at(lane)]; };
+  for (int i = 0; i < results.sample_count; ++i) {
+    const auto get = [&](int channel) { return results.get_sample(i, channel, lane); };
     const double pitch = get(C::kPitchAngle), roll = get(C::kRollAngle), time = get(C::kTime);
     const double rate = calc_yaw_rate(pitch, roll, get(C::kImuRateY), get(C::kImuRateZ));
     yaw += 0.5 * (rate + last_rate) * (time - last_time);
@@ -96,8 +94,8 @@ std::vector<double> calc_line_positions(const PreparedCase& c, const LaneResults
       coordinates[w] = solve_coordinate(wheels[w], get(channel), coordinates[w]);
       sum += calc_world_x(yaw, pitch, roll, calc_center(wheels[w], coordinates[w]));
     }
-    positions[i] =
-        get(C::kForwardPosition) + sum / static_cast<double>(wheels.size()) - c.bump_center;
+    positions.push_back(get(C::kForwardPosition) + sum / static_cast<double>(wheels.size()) -
+                        c.bump_center);
   }
   return positions;
 }

@@ -44,19 +44,10 @@ LaneResults run_group(const std::vector<PreparedCase>& cases, const Group& group
 
 std::vector<double> LaneRun::get_series(int channel) const {
   const std::vector<int>& recorded = results->recorded;
-  const auto lanes = static_cast<std::size_t>(results->lanes);
-  std::size_t row = CarChannel::kCount, column = static_cast<std::size_t>(channel);
-  if (!recorded.empty()) {
-    row = recorded.size();
-    column = static_cast<std::size_t>(std::find(recorded.begin(), recorded.end(), channel) -
-                                      recorded.begin());
-    STRUT_CHECK(column != row, "history: the channel was not recorded");
-  }
-  std::vector<double> series(static_cast<std::size_t>(results->sample_count));
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    series[i] = results->history[(i * row + column) * lanes + static_cast<std::size_t>(lane)];
-  }
-  return series;
+  if (recorded.empty()) return results->get_history(channel, lane);
+  const auto column = std::find(recorded.begin(), recorded.end(), channel);
+  STRUT_CHECK(column != recorded.end(), "history: the channel was not recorded");
+  return results->get_history(static_cast<int>(column - recorded.begin()), lane);
 }
 
 std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,

@@ -14,14 +14,10 @@ struct LaneRun {
   std::shared_ptr<const LaneResults> results;
   int lane = 0;
 
-  RunStatus status() const {
-    return static_cast<RunStatus>(results->status[static_cast<std::size_t>(lane)]);
-  }
+  RunStatus status() const { return results->get_status(lane); }
   /// A car channel of a history sample; for plans that record all channels.
   double get(std::size_t sample, std::size_t channel) const {
-    const auto lanes = static_cast<std::size_t>(results->lanes);
-    return results
-        ->history[(sample * CarChannel::kCount + channel) * lanes + static_cast<std::size_t>(lane)];
+    return results->get_sample(static_cast<int>(sample), static_cast<int>(channel), lane);
   }
   /// The history of a car channel; for plans that record it.
   std::vector<double> get_series(int channel) const;

@@ -90,9 +90,9 @@ void check_run(const Trajectory& run, const std::string& label) {
   if (run.status() != RunStatus::kDone) {
     throw InputError(fmt::format(
         "the run at {} failed at t = {} s; a design needs complete runs: choose another base point",
-        label, format_number(r.failure_time[at(run.lane)])));
+        label, format_number(r.get_failure_time(run.lane))));
   }
-  if (std::isnan(r.event_time[at(run.lane)])) {
+  if (!r.has_snapshot(run.lane)) {
     throw InputError(
         fmt::format("the run at {} never meets the snapshot's line; choose a longer "
                     "duration or another offset",

@@ -175,33 +175,28 @@ std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& ro
 void CaseSimulator::record(const LaneResults& results, int lane, ShardRows& rows,
                            std::size_t row) const {
   const SweepRequest& request = plan_.request();
-  const auto in_lane = static_cast<std::size_t>(lane);
-  const auto lanes = static_cast<std::size_t>(results.lanes);
-  if (results.status[in_lane] != static_cast<int>(RunStatus::kDone)) {
-    const auto status = static_cast<RunStatus>(results.status[in_lane]);
-    fail(rows, row, status, results.failure_time[in_lane],
+  if (!results.is_done(lane)) {
+    const RunStatus status = results.get_status(lane);
+    fail(rows, row, status, results.get_failure_time(lane),
          kRunStatuses[static_cast<std::size_t>(status)].reason);
     return;
   }
   const std::vector<int>& kept = request.history.channels;
   for (std::size_t h = 0; h < rows.history.size(); ++h) {
-    const auto samples = static_cast<std::size_t>(results.sample_count);
-    for (std::size_t i = 0; i < samples; ++i) {
-      const std::size_t sample = i * CarChannel::kCount + static_cast<std::size_t>(kept[h]);
-      rows.history[h][row * samples + i] = results.history[sample * lanes + in_lane];
-    }
+    const std::vector<double> samples = results.get_history(kept[h], lane);
+    std::copy(samples.begin(), samples.end(),
+              rows.history[h].begin() + static_cast<std::ptrdiff_t>(row * samples.size()));
   }
   if (!request.snapshot.on) return;
-  rows.event_time[row] = results.event_time[in_lane];
-  if (std::isnan(rows.event_time[row])) {
+  rows.event_time[row] = results.get_event_time(lane);
+  if (!results.has_snapshot(lane)) {
     fail(rows, row, RunStatus::kNoEvent, plan_.make_case(rows.case_id[row]).maneuver.duration,
          kRunStatuses[static_cast<std::size_t>(RunStatus::kNoEvent)].reason);
     return;
   }
   const std::vector<int>& channels = request.snapshot.channels;
   for (std::size_t s = 0; s < channels.size(); ++s) {
-    rows.snapshot[row * channels.size() + s] =
-        results.snapshot[static_cast<std::size_t>(channels[s]) * lanes + in_lane];
+    rows.snapshot[row * channels.size() + s] = results.get_snapshot(channels[s], lane);
   }
 }
 

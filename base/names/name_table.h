@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace strut {
@@ -27,6 +29,16 @@ constexpr bool names_all(const std::array<Named<Enum>, N>& table, Enum last) {
 template <class Enum, std::size_t N>
 constexpr const char* find_name(const std::array<Named<Enum>, N>& table, Enum value) {
   return table[static_cast<std::size_t>(value)].name;
+}
+
+/// The value of this name; null where no entry has it.
+template <class Enum, std::size_t N>
+constexpr std::optional<Enum> find_value(const std::array<Named<Enum>, N>& table,
+                                         std::string_view name) {
+  for (const Named<Enum>& entry : table) {
+    if (name == entry.name) return entry.value;
+  }
+  return std::nullopt;
 }
 
 /// The names in the order of their values.

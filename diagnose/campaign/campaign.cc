@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "base/error/input_error.h"
+#include "base/names/name_table.h"
 #include "base/text/nearest_name.h"
 #include "base/text/range.h"
 #include "diagnose/campaign/units.h"
@@ -15,8 +17,12 @@
 namespace strut {
 namespace {
 
-const std::vector<std::string> kRoles = {"input", "output"};  // ColumnRole
-const std::vector<std::string> kUses = {"fit", "hold_out"};   // RunUse
+constexpr std::array<Named<ColumnRole>, 2> kRoles = {
+    {{ColumnRole::kInput, "input"}, {ColumnRole::kOutput, "output"}}};
+static_assert(names_all(kRoles, ColumnRole::kOutput));
+constexpr std::array<Named<RunUse>, 2> kUses = {
+    {{RunUse::kFit, "fit"}, {RunUse::kHoldOut, "hold_out"}}};
+static_assert(names_all(kUses, RunUse::kHoldOut));
 constexpr char kTime[] = "time";
 
 /// Keys by which a run changes its maneuver.
@@ -37,7 +43,8 @@ const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& mode
 
 ColumnRole read_role(const Table& table, const ModelInfo& model, const std::string& channel) {
   const bool drives = find_input(model, channel) >= 0;
-  const auto role = static_cast<ColumnRole>(table.choice_or("role", drives ? 0 : 1, kRoles));
+  const auto role =
+      static_cast<ColumnRole>(table.choice_or("role", drives ? 0 : 1, list_names(kRoles)));
   if (role == ColumnRole::kInput && !drives) {
     std::vector<std::string> names;
     for (const InputInfo& input : model.inputs) names.push_back(input.name);
@@ -147,7 +154,7 @@ CampaignRun read_run(const Table& table, const Campaign& campaign) {
   CampaignRun run;
   run.name = table.text("file");
   run.file = table.file("file");
-  run.use = static_cast<RunUse>(table.choice("use", kUses));
+  run.use = static_cast<RunUse>(table.choice("use", list_names(kUses)));
   if (!campaign.info->is_driven_by_inputs()) {
     run.maneuver = table.file("maneuver");
     for (const std::string& key : kManeuverKeys) {
@@ -187,7 +194,7 @@ void read_runs(const Table& root, Campaign& campaign) {
 
 }  // namespace
 
-const char* get_name(RunUse use) { return kUses[static_cast<std::size_t>(use)].c_str(); }
+const char* get_name(RunUse use) { return find_name(kUses, use); }
 
 std::size_t Campaign::count(RunUse use) const {
   return static_cast<std::size_t>(std::count_if(

@@ -1,12 +1,20 @@
 // Estimates the noise of a sensor from its own record.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
+
+#include "base/names/name_table.h"
 
 namespace strut {
 
 enum class NoiseSource { kGiven, kEstimated, kQuantized };
+inline constexpr std::array<Named<NoiseSource>, 3> kNoiseSources = {
+    {{NoiseSource::kGiven, "given"},
+     {NoiseSource::kEstimated, "estimated"},
+     {NoiseSource::kQuantized, "quantized"}}};
+static_assert(names_all(kNoiseSources, NoiseSource::kQuantized));
 
 struct NoiseEstimate {
   double sigma = 0.0;    // standard deviation of white noise per sample

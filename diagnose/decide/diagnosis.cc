@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "base/math/normal.h"
+#include "base/names/name_table.h"
 #include "base/text/format_number.h"
 #include "diagnose/decide/improvement.h"
 #include "diagnose/decide/name_causes.h"
@@ -16,6 +18,14 @@
 
 namespace strut {
 namespace {
+
+constexpr std::array<Named<VerdictKind>, 5> kVerdicts = {
+    {{VerdictKind::kAdequate, "adequate"},
+     {VerdictKind::kNamed, "named"},
+     {VerdictKind::kGroup, "group"},
+     {VerdictKind::kFormIncomplete, "form_incomplete"},
+     {VerdictKind::kUnknown, "unknown"}}};
+static_assert(names_all(kVerdicts, VerdictKind::kUnknown));
 
 /// Fits a force map if the remaining residual may be a force in a strut. The extended model then
 /// has the map beside the causes or, if it does better without them, instead.
@@ -154,21 +164,7 @@ void check_results(Diagnosis& diagnosis) {
 
 }  // namespace
 
-const char* get_name(VerdictKind kind) {
-  switch (kind) {
-    case VerdictKind::kAdequate:
-      return "adequate";
-    case VerdictKind::kNamed:
-      return "named";
-    case VerdictKind::kGroup:
-      return "group";
-    case VerdictKind::kFormIncomplete:
-      return "form_incomplete";
-    case VerdictKind::kUnknown:
-      break;
-  }
-  return "unknown";
-}
+const char* get_name(VerdictKind kind) { return find_name(kVerdicts, kind); }
 
 bool is_same(const Cause& a, const Cause& b) { return a.effect == b.effect && a.place == b.place; }
 

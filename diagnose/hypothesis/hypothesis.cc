@@ -8,6 +8,7 @@
 #include "base/names/corners.h"
 #include "diagnose/baseline/model_states.h"
 #include "diagnose/hypothesis/search_starts.h"
+#include "model/effects/names.h"
 #include "model_files/read_model.h"
 
 namespace strut {
@@ -155,7 +156,8 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
   const ModelInfo& model = data.model();
   std::vector<Hypothesis> list;
   for (const EffectInfo& effect : list_effects()) {
-    if (effect.name == "sensor_bias") continue;  // a bias of every run and channel is always free
+    if (effect.name == EffectName::kSensorBias)
+      continue;  // a bias of every run and channel is always free
     const auto parameters = list_effect_parameters(effect, model);
     for (const std::string& place : list_effect_places(effect, model)) {
       const bool is_on =

@@ -5,6 +5,7 @@
 
 #include "base/error/check.h"
 #include "model/effects/catalogue.h"
+#include "model/effects/names.h"
 
 namespace strut {
 namespace {
@@ -75,58 +76,58 @@ Rules check_rules(Rules rules) {
 /// By effect. Small sizes that the motion shows, so that a search begins where the effect is seen.
 const Rules& list_rules() {
   static const Rules rules =
-      check_rules({{"damper_asymmetry",
+      check_rules({{EffectName::kDamperAsymmetry,
                     [](Motion) -> Starts {
                       return {{{"asymmetry", 0.1}}};
                     }},
-                   {"damper_blow_off", start_blow_off},
-                   {"damper_hysteresis",
+                   {EffectName::kDamperBlowOff, start_blow_off},
+                   {EffectName::kDamperHysteresis,
                     [](Motion m) -> Starts {
                       return {{{"lag", 0.05 / m.frequency()}}};
                     }},
-                   {"damper_leak",
+                   {EffectName::kDamperLeak,
                     [](Motion m) -> Starts {
                       return {{{"stroke", 0.02 * m.deflection}}};
                     }},
-                   {"damper_fade",
+                   {EffectName::kDamperFade,
                     [](Motion) -> Starts {
                       return {{{"loss", 0.005}, {"rate", 0.005}}};
                     }},
-                   {"strut_friction", start_friction},
-                   {"progressive_spring", start_progressive_spring},
-                   {"bump_stop", start_bump_stop},
-                   {"top_mount_compliance", start_top_mount},
-                   {"joint_play",
+                   {EffectName::kStrutFriction, start_friction},
+                   {EffectName::kProgressiveSpring, start_progressive_spring},
+                   {EffectName::kBumpStop, start_bump_stop},
+                   {EffectName::kTopMountCompliance, start_top_mount},
+                   {EffectName::kJointPlay,
                     [](Motion m) -> Starts {
                       return {{{"play", 0.02 * m.deflection}}};
                     }},
-                   {"gas_force",
+                   {EffectName::kGasForce,
                     [](Motion m) -> Starts {
                       return {{{"force", 0.05 * m.stiffness * m.deflection}}};
                     }},
-                   {"anti_roll_bar",
+                   {EffectName::kAntiRollBar,
                     [](Motion m) -> Starts {
                       return {{{"stiffness", 0.05 * m.stiffness}}};
                     }},
-                   {"tire_progressive",
+                   {EffectName::kTireProgressive,
                     [](Motion m) -> Starts {
                       return {{{"progression", 0.05 / m.tire_deflection}}};
                     }},
-                   {"tire_damping",
+                   {EffectName::kTireDamping,
                     [](Motion m) -> Starts {
                       return {{{"rate", 0.1 * m.damping}}};
                     }},
-                   {"payload", start_payload},
-                   {"wheel_runout", start_runout},
-                   {"sensor_gain",
+                   {EffectName::kPayload, start_payload},
+                   {EffectName::kWheelRunout, start_runout},
+                   {EffectName::kSensorGain,
                     [](Motion) -> Starts {
                       return {{{"gain", 0.01}}};
                     }},
-                   {"sensor_delay",
+                   {EffectName::kSensorDelay,
                     [](Motion) -> Starts {
                       return {{{"delay", 5e-4}}};
                     }},
-                   {"sensor_lowpass", [](Motion) -> Starts {
+                   {EffectName::kSensorLowpass, [](Motion) -> Starts {
                       return {{{"time", 5e-4}}};
                     }}});
   return rules;

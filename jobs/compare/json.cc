@@ -143,18 +143,6 @@ Json make_runs(const CampaignData& data, const Comparison& comparison) {
   return runs;
 }
 
-const char* get_name(NoiseSource source) {
-  switch (source) {
-    case NoiseSource::kGiven:
-      return "given";
-    case NoiseSource::kEstimated:
-      return "estimated";
-    case NoiseSource::kQuantized:
-      break;
-  }
-  return "quantized";
-}
-
 Json make_noise(const CampaignData& data) {
   Json json = Json::object();
   for (std::size_t i = 0; i < data.noise.size(); ++i) {
@@ -163,7 +151,7 @@ Json make_noise(const CampaignData& data) {
     json[c.channel] = Json{{"sigma", data.noise[i].sigma},
                            {"unit", c.si},
                            {"quantum", data.noise[i].quantum},
-                           {"source", get_name(data.noise[i].source)}};
+                           {"source", find_name(kNoiseSources, data.noise[i].source)}};
   }
   return json;
 }

@@ -96,6 +96,7 @@ struct LaneResults {
   /// All samples of one recorded channel.
   std::vector<double> get_history(int column, int lane = 0) const {
     std::vector<double> samples;
+    samples.reserve(at(sample_count));
     for (int i = 0; i < sample_count; ++i) samples.push_back(get_sample(i, column, lane));
     return samples;
   }
