@@ -20,7 +20,8 @@ std::string escape(const std::string& text, std::string_view characters) {
   return escaped;
 }
 
-/// The part of a specification for _arguments that completes a value: ":FILE:_strut_files csv".
+/// The part of a specification for _arguments that completes a value: ":FILE: _strut_files csv".
+/// Behind a space, zsh calls a function with these words alone; else it adds options of its own.
 std::string make_action(const ArgumentValue& value) {
   const std::string message = escape(value.name, ":\\");
   switch (value.kind) {
@@ -29,14 +30,14 @@ std::string make_action(const ArgumentValue& value) {
     case ArgumentValue::Kind::kChoice:
       return fmt::format(":{}:({})", message, fmt::join(value.words, " "));
     case ArgumentValue::Kind::kSetting:
-      return fmt::format(":{}:_strut_settings", message);
+      return fmt::format(":{}: _strut_settings", message);
     case ArgumentValue::Kind::kFolder:
       return fmt::format(":{}:_files -/", message);
     case ArgumentValue::Kind::kFile:
     case ArgumentValue::Kind::kPath:
       break;
   }
-  return fmt::format(":{}:_strut_files {}", message, fmt::join(value.endings, " "));
+  return fmt::format(":{}: _strut_files {}", message, fmt::join(value.endings, " "));
 }
 
 /// Specifications for _arguments, one for each spelling; a spelling excludes the others, unless the

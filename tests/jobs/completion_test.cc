@@ -218,10 +218,11 @@ void check_in_fish(const Queries& queries) {
   const TemporaryFolder folder;
   make_files(folder);
   folder.write("strut.fish", make_fish_completion(list_commands()));
-  const std::string script = "source " + (folder / "strut.fish").string() + "; cd " +
-                             (folder / "files").string() + "; while read -l line; complete -C " +
-                             "$line | string split -f 1 \\t | string join \\t; or echo; end < " +
-                             (folder / "lines").string();
+  const std::string script =
+      "source " + (folder / "strut.fish").string() + "; cd " + (folder / "files").string() +
+      "; while read -l line; set -l offers (complete " +
+      "-C $line | string split -f 1 \\t); echo (string join \\t -- $offers); end < " +
+      (folder / "lines").string();
   const std::vector<Words> all =
       complete_all(folder, queries, "fish --no-config -c " + quote_word(script));
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -269,10 +270,10 @@ TEST_CASE("A shell that strut cannot complete for is refused with those that it 
   for (const char* shell : {"bash", "zsh", "fish"}) {
     CHECK(run_program("completion " + std::string(shell)).code == 0);
   }
-  const Outcome wrong = run_program("completion fsh");
+  const Outcome wrong = run_program("completion fishy");
   CHECK(wrong.code == 2);
   CHECK(wrong.out.empty());
-  CHECK_THAT(wrong.messages, Contains("unknown shell 'fsh'; must be one of bash, zsh, fish") &&
+  CHECK_THAT(wrong.messages, Contains("unknown shell 'fishy'; must be one of bash, zsh, fish") &&
                                  Contains("did you mean 'fish'?"));
   for (const char* words : {"", " bash zsh"}) {
     const Outcome outcome = run_program("completion" + std::string(words));

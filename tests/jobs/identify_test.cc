@@ -190,7 +190,7 @@ TEST_CASE("identify refuses what it cannot read, and says what is allowed", "[io
   check_refused("--set pitch_angle=1", {"missing body_position_z, body_velocity_z"});
   check_refused("--set pitch_angle=nan", {"not finite"});
   check_refused("--set pitch_angle=x", {"must be a number"});
-  check_refused("--set pitch_angle=1 --set pitch_angle=2", {"'pitch_angle' twice"});
+  check_refused("--set pitch_angle=1 --set pitch_angle=2", {"'pitch_angle' given twice"});
   check_refused(desk.set(x) + " --noise pitch_angle=-1", {"--noise", "0 and above"});
   check_refused(desk.set(x) + " --noise roll_rate=1", {"--noise: 'roll_rate' is not an input"});
   check_refused("/nowhere.csv", {"/nowhere.csv: file not found"});

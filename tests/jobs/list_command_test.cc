@@ -100,10 +100,10 @@ TEST_CASE("list refuses what it cannot list and says what it can", "[io]") {
     CHECK(outcome.out.empty());
     CHECK_THAT(outcome.messages, Contains(says));
   };
-  check("", "parameters, channels, effects or commands");
-  check("parameter", "parameters, channels, effects or commands");
+  check("", "parameters, channels, effects, commands");
+  check("parameter", "parameters, channels, effects, commands");
   check("parameters quarter_car more", "at most one model");
-  check("commands quarter_car", "not of a model");
+  check("commands quarter_car", "takes no model");
   check("parameters quartr_car", "quarter_car");
   check("parameters " + kExamples + "sweeps/paper.toml", "paper.toml");
   check("parameters " + kExamples, "examples");
