@@ -21,8 +21,6 @@ namespace {
 using C = CarChannel;
 using Channels = std::array<double, static_cast<std::size_t>(C::kCount)>;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// Minimum rate at which runs are sampled, so that interpolation between samples is exact enough.
 constexpr double kMinRate = 1000.0;  // 1/s
 
@@ -127,9 +125,8 @@ void sample_at(const Trajectory& run, double offset, Channels& out) {
 }
 
 void get_snapshot(const Trajectory& run, Channels& out) {
-  const auto lanes = at(run.results->lanes);
   for (std::size_t c = 0; c < out.size(); ++c) {
-    out[c] = run.results->snapshot[c * lanes + at(run.lane)];
+    out[c] = run.results->get_snapshot(static_cast<int>(c), run.lane);
   }
 }
 

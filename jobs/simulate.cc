@@ -50,16 +50,16 @@ Arguments describe_simulate() {
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"csv", "h5", "hdf5"}),
                        "file to write: .csv, .h5 or .hdf5");
   arguments.add_option(
-      "integrator", ArgumentValue::one_of(kIntegrators),
+      "integrator", ArgumentValue::one_of(list_names(kIntegrators)),
       "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, tolerance 1e-12");
   arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
   arguments.add_option(
       "coarse-step", "S",
       "longer step [s], from --step to 0.02, away from the bump (default: --step)");
-  arguments.add_option("closure", ArgumentValue::one_of(kClosures),
+  arguments.add_option("closure", ArgumentValue::one_of(list_names(kClosures)),
                        "newton (default): closes the loops in every step; table: corner kinematics "
                        "tabulated over their coordinate");
-  arguments.add_option("spin", ArgumentValue::one_of(kSpins),
+  arguments.add_option("spin", ArgumentValue::one_of(list_names(kSpins)),
                        "wheel spin: exponential (default), stable at any speed; or explicit");
   arguments.add_switch("no-events", "do not end steps at events (lift-off, kinks)");
   arguments.add_option("rate", "HZ", "samples per second in FILE [Hz] (default 1000)");
@@ -76,7 +76,7 @@ Arguments describe_simulate() {
 int run_simulate(const Arguments& arguments) {
   const SimulateOptions options = read_simulate_options(arguments);
   if (options.kinematics) return run_kinematics(options);
-  print_detail("integrator " + options.integrator_name());
+  print_detail(fmt::format("integrator {}", options.integrator_name()));
   if (read_model_info(options.source.vehicle).is_driven_by_inputs()) {
     refuse_options(arguments, {"coarse-step", "closure", "spin", "report"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");

@@ -18,7 +18,7 @@ constexpr char kAbsent[] = "absent";
 
 void add_sample(const SweepRequest& request, Facts& facts) {
   const SampleRequest& sample = request.sample;
-  facts.emplace_back("sample.method", kSampleMethods[static_cast<std::size_t>(sample.method)]);
+  facts.emplace_back("sample.method", find_name(kSampleMethods, sample.method));
   facts.emplace_back("sample.strata", std::to_string(sample.strata));
   facts.emplace_back("sample.by", sample.by);
   facts.emplace_back("sample.count", sample.count < 0 ? "all" : std::to_string(sample.count));
@@ -36,9 +36,8 @@ void add_grid(const SweepRequest& request, Facts& facts) {
 }
 
 void add_integrate(const SolverOptions& request, Facts& facts) {
-  const auto closure = static_cast<std::size_t>(request.options.closure);
   if (request.solver == Solver::kCvode) {
-    facts.emplace_back("integrate.method", kIntegrators[kIntegratorCvode]);
+    facts.emplace_back("integrate.method", find_name(kIntegrators, Integrator::kCvode));
     facts.emplace_back("integrate.relative_tolerance",
                        format_number(request.reference.relative_tolerance));
     facts.emplace_back("integrate.absolute_tolerance",
@@ -49,9 +48,9 @@ void add_integrate(const SolverOptions& request, Facts& facts) {
     facts.emplace_back("integrate.step", format_number(step.step));
     facts.emplace_back("integrate.coarse_step", format_number(step.coarse_step));
     facts.emplace_back("integrate.locate_events", step.locate_events ? "true" : "false");
-    facts.emplace_back("integrate.spin", kSpins[static_cast<std::size_t>(request.options.spin)]);
+    facts.emplace_back("integrate.spin", find_name(kSpins, request.options.spin));
   }
-  facts.emplace_back("integrate.closure", kClosures[closure]);
+  facts.emplace_back("integrate.closure", find_name(kClosures, request.options.closure));
 }
 
 std::string list_channels(const std::vector<int>& channels) {

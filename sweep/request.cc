@@ -29,7 +29,8 @@ constexpr double kMaxShardBytes = 64e6;
 SampleRequest read_sample(const std::optional<Table>& table) {
   SampleRequest sample;
   if (!table) return sample;
-  sample.method = static_cast<SampleMethod>(table->choice_or("method", 0, kSampleMethods));
+  sample.method =
+      static_cast<SampleMethod>(table->choice_or("method", 0, list_names(kSampleMethods)));
   sample.strata = static_cast<int>(table->integer_or("strata", sample.strata, 1, kMaxStrata));
   const std::int64_t max = std::numeric_limits<std::int64_t>::max();
   sample.seed = static_cast<std::uint64_t>(table->integer_or("seed", 1, 0, max));
@@ -87,10 +88,11 @@ double find_longest_duration(const SweepRequest& request) {
 SolverOptions read_integrate(const std::optional<Table>& table, double longest_duration) {
   SolverOptions request;
   if (!table) return request;
-  const int method = table->choice_or("method", 0, kIntegrators);
-  const auto closure = static_cast<Closure>(table->choice_or("closure", 0, kClosures));
+  const auto method =
+      static_cast<Integrator>(table->choice_or("method", 0, list_names(kIntegrators)));
+  const auto closure = static_cast<Closure>(table->choice_or("closure", 0, list_names(kClosures)));
   request.options.closure = request.reference.closure = closure;
-  if (method == kIntegratorCvode) {
+  if (method == Integrator::kCvode) {
     request.solver = Solver::kCvode;
     for (const char* key : {"step", "coarse_step", "locate_events"}) {
       if (table->has(key))
@@ -100,7 +102,7 @@ SolverOptions read_integrate(const std::optional<Table>& table, double longest_d
     return request;
   }
   StepOptions& step = request.options.step;
-  step.stepper = method == kIntegratorAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.stepper = method == Integrator::kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.step = table->number_or("step", step.step,
                                {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   const std::string fault = find_step_count_fault(longest_duration, step.step);

@@ -1,8 +1,6 @@
 // Simulates a single case: what `strut simulate` runs.
 #pragma once
 
-#include <vector>
-
 #include "sweep/request.h"
 
 namespace strut {
@@ -13,12 +11,5 @@ namespace strut {
 /// `failure_time` is when it failed.
 LaneResults simulate_case(const PreparedCase& c, const SolverOptions& integrate = {},
                           double interval = 0.0);
-
-/// True if the car reached the snapshot's line.
-bool has_snapshot(const LaneResults& results);
-
-/// Returns one channel of a one-lane history of `channels` channels.
-std::vector<double> get_history(const LaneResults& results, std::size_t channels,
-                                std::size_t channel);
 
 }  // namespace strut

@@ -16,16 +16,16 @@ int simulate(const char* vehicle, const char* maneuver) {
   // The car trimmed on its springs, its linkages ready to move.
   const strut::PreparedCase prepared = strut::CasePreparer().prepare(worn);
   const strut::LaneResults run = strut::simulate_case(prepared);
-  if (run.status[0] != 0) {
-    std::fprintf(stderr, "the run failed at %g s\n", run.failure_time[0]);
+  if (!run.is_done()) {
+    std::fprintf(stderr, "the run failed at %g s\n", run.get_failure_time());
     return 1;
   }
-  if (!strut::has_snapshot(run)) {
+  if (!run.has_snapshot()) {
     std::fprintf(stderr, "the rear wheels do not reach the bump\n");
     return 1;
   }
 
-  std::printf("event_time %.17g s\n", run.event_time[0]);
+  std::printf("event_time %.17g s\n", run.get_event_time());
   const auto& channels = strut::list_car_channels();
   for (std::size_t c = 0; c < channels.size(); ++c) {
     std::printf("%s %.17g %s\n", channels[c].name.c_str(), run.snapshot[c],

@@ -35,13 +35,7 @@ SamplePlan make_reference_plan() {
 
 /// Acceleration of the body in one lane [m/s^2], sampled at kBenchRate.
 std::vector<double> get_acceleration(const LaneResults& results, std::size_t lane) {
-  std::vector<double> values;
-  const auto lanes = static_cast<std::size_t>(results.lanes);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(results.sample_count); ++i) {
-    values.push_back(
-        results.history[(i * CarChannel::kCount + CarChannel::kBodyAccelerationZ) * lanes + lane]);
-  }
-  return values;
+  return results.get_history(CarChannel::kBodyAccelerationZ, static_cast<int>(lane));
 }
 
 /// rms(values - reference) / rms(reference).
@@ -63,9 +57,8 @@ std::string describe(const IntegrateOptions& options) {
           ? fmt::format(" ({} ms off the bump)", format_number(1e3 * step.coarse_step))
           : "";
   return fmt::format("{} {} ms{}, {}, {} spin, events {}", get_name(step.stepper),
-                     format_number(1e3 * step.step), coarse,
-                     kClosures[static_cast<std::size_t>(options.closure)],
-                     kSpins[static_cast<std::size_t>(options.spin)],
+                     format_number(1e3 * step.step), coarse, find_name(kClosures, options.closure),
+                     find_name(kSpins, options.spin),
                      step.locate_events ? "located" : "not located");
 }
 

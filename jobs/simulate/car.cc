@@ -30,7 +30,7 @@ constexpr std::array<int, 5> kInputs = {CarChannel::kBodyPositionZ, CarChannel::
 LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
                       const StepOptions& step) {
   SolverOptions request;
-  request.solver = options.integrator == kIntegratorCvode ? Solver::kCvode : Solver::kLanes;
+  request.solver = options.integrator == Integrator::kCvode ? Solver::kCvode : Solver::kLanes;
   request.options = options.integrate;
   request.options.step = step;
   request.reference.closure = options.integrate.closure;
@@ -41,19 +41,19 @@ LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
 /// and returns exit code 1.
 int explain_failure(const Arguments& arguments, const PreparedCase& c,
                     const SimulateOptions& options, const LaneResults& results) {
-  const std::string at = format_number(results.failure_time[0]) + " s";
-  if (options.integrator != kIntegratorCvode) {
+  const std::string at = format_number(results.get_failure_time()) + " s";
+  if (options.integrator != Integrator::kCvode) {
     const StepOptions& step = options.integrate.step;
     StepOptions shorter = step;
     shorter.step = kRetryFraction * step.step;
     shorter.coarse_step = 0.0;
-    if (integrate(c, options, shorter).status[0] == 0) {
+    if (integrate(c, options, shorter).is_done()) {
       throw make_step_error(options, "--step", step.step, "failed at t = " + at,
                             fmt::format("a step of {} s {}succeeds", format_number(shorter.step),
                                         step.coarse_step > 0.0 ? "without --coarse-step " : ""));
     }
   }
-  const bool is_out = results.status[0] == static_cast<int>(RunStatus::kOutOfTravel);
+  const bool is_out = results.get_status() == RunStatus::kOutOfTravel;
   print_error(fmt::format("the run failed at t = {}: {}; nothing was written", at,
                           is_out
                               ? "a wheel left the +/-100 mm over which its suspension is modeled; "
@@ -69,7 +69,7 @@ int explain_failure(const Arguments& arguments, const PreparedCase& c,
 std::vector<std::pair<std::string, std::string>> describe_run(const SimulateOptions& options,
                                                               const LaneResults& results) {
   const IntegrateOptions& integrate = options.integrate;
-  const bool cvode = options.integrator == kIntegratorCvode;
+  const bool cvode = options.integrator == Integrator::kCvode;
   auto list = describe_program(options.source);
   list.insert(
       list.end(),
@@ -94,7 +94,7 @@ std::vector<RunParameter> list_case_parameters(const Case& c) {
 }
 
 void print_snapshot(const LaneResults& results) {
-  if (!has_snapshot(results)) {
+  if (!results.has_snapshot()) {
     std::cout << "snapshot: the rear wheels do not reach the bump\n";
     return;
   }
@@ -102,22 +102,21 @@ void print_snapshot(const LaneResults& results) {
   const auto print = [](const std::string& name, double value, const std::string& unit) {
     std::cout << fmt::format("{:<22} {:>20.13g}  {}\n", name, value, unit);
   };
-  print("event_time", results.event_time[0], "s");
+  print("event_time", results.get_event_time(), "s");
   for (const int channel : kInputs) {
-    const auto at = static_cast<std::size_t>(channel);
-    const ChannelInfo& info = list_car_channels()[at];
-    print(info.name, results.snapshot[at], info.unit);
+    const ChannelInfo& info = list_car_channels()[static_cast<std::size_t>(channel)];
+    print(info.name, results.get_snapshot(channel), info.unit);
   }
 }
 
 void print_json(const LaneResults& results, double duration, double seconds) {
   Json snapshot = Json::object();
   for (const int channel : kInputs) {
-    const auto at = static_cast<std::size_t>(channel);
-    snapshot[list_car_channels()[at].name] = results.snapshot[at];
+    const ChannelInfo& info = list_car_channels()[static_cast<std::size_t>(channel)];
+    snapshot[info.name] = results.get_snapshot(channel);
   }
-  const Json json = Json{{"event_time", results.event_time[0]},
-                         {"snapshot", has_snapshot(results) ? snapshot : Json()},
+  const Json json = Json{{"event_time", results.get_event_time()},
+                         {"snapshot", results.has_snapshot() ? snapshot : Json()},
                          {"events", results.event_count},
                          {"seconds", seconds},
                          {"real_time_factor", duration / seconds}};
@@ -127,11 +126,10 @@ void print_json(const LaneResults& results, double duration, double seconds) {
 void print_summary(const SimulateOptions& options, const LaneResults& results, double duration,
                    double seconds) {
   double travel = 0.0;
-  for (std::size_t corner = 0; corner < kCorners; ++corner) {
-    const std::size_t channel = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
-                                CarChannel::kSuspensionDeflection;
-    for (const double d : get_history(results, CarChannel::kCount, channel))
-      travel = std::max(travel, std::fabs(d));
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const int channel = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
+                        CarChannel::kSuspensionDeflection;
+    for (const double d : results.get_history(channel)) travel = std::max(travel, std::fabs(d));
   }
   print_note(
       fmt::format("{}: {} samples, {} contact events, suspension deflection up to {:.1f} mm; "
@@ -160,7 +158,7 @@ int run_car(const Arguments& arguments, const SimulateOptions& options) {
     run.results = integrate(prepared, options, options.integrate.step);
   }
   const double seconds = now() - start;
-  if (run.results.status[0] != 0) {
+  if (!run.results.is_done()) {
     return explain_failure(arguments, prepared, options, run.results);
   }
 

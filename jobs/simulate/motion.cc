@@ -8,7 +8,7 @@
 
 #include "model/car/assemble.h"
 #include "model/scenario/profile.h"
-#include "sweep/simulate_case.h"
+#include "model_files/choices.h"
 
 namespace strut {
 namespace {
@@ -17,7 +17,7 @@ constexpr std::size_t kMaxFrames = 1200;
 constexpr std::size_t kRoadPoints = 200;
 
 std::vector<double> get_channel(const LaneResults& results, std::size_t channel) {
-  return get_history(results, CarChannel::kCount, channel);
+  return results.get_history(static_cast<int>(channel));
 }
 
 double calc_bump_center(const Case& c) {
@@ -107,18 +107,6 @@ Json make_road(const Case& c) {
   return points;
 }
 
-const char* get_name(BumpSide side) {
-  switch (side) {
-    case BumpSide::kLeft:
-      return "left";
-    case BumpSide::kRight:
-      return "right";
-    case BumpSide::kBoth:
-      break;
-  }
-  return "both";
-}
-
 struct CurvePanel {
   const char* label;
   int channel;  // a channel of the body; -1: the channel `corner` of each corner
@@ -163,8 +151,8 @@ Json make_motion(const Case& c, const LaneResults& results) {
   json["radius"] = c.vehicle.tire.unloaded_radius;
   json["nominal_height"] = c.vehicle.whole.centroid_height;
   json["road"] = make_road(c);
-  json["road_side"] = get_name(c.maneuver.road.side);
-  json["snapshot_time"] = has_snapshot(results) ? Json(results.event_time[0]) : Json();
+  json["road_side"] = find_name(kBumpSides, c.maneuver.road.side);
+  json["snapshot_time"] = results.has_snapshot() ? Json(results.get_event_time()) : Json();
   return json;
 }
 

@@ -17,8 +17,8 @@ namespace {
 constexpr double kMaxSamples = 2e6;  // one gigabyte of history
 
 void read_integration(const Arguments& arguments, SimulateOptions& options) {
-  options.integrator = arguments.choice_or("integrator", 0);
-  if (options.integrator == kIntegratorCvode) {
+  options.integrator = static_cast<Integrator>(arguments.choice_or("integrator", 0));
+  if (options.integrator == Integrator::kCvode) {
     refuse_options(arguments, {"step", "coarse-step", "spin", "no-events"},
                    "cvode chooses its own steps; allowed with rk4 and abm4");
   }
@@ -27,7 +27,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   step.step = arguments.number_or("step", step.step,
                                   {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
-  step.stepper = options.integrator == kIntegratorAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.stepper = options.integrator == Integrator::kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.locate_events = !arguments.is_on("no-events");
   integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0));
   integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0));
@@ -95,7 +95,7 @@ void check_rate(double rate, double duration) {
 }
 
 void check_step_count(const SimulateOptions& options, double duration) {
-  if (options.integrator == kIntegratorCvode) return;
+  if (options.integrator == Integrator::kCvode) return;
   const double step = options.integrate.step.step;
   const std::string fault = find_step_count_fault(duration, step);
   if (!fault.empty()) {

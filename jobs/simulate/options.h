@@ -21,19 +21,15 @@ struct SimulateOptions {
   CaseSource source;
   std::filesystem::path output;
   std::filesystem::path report;  // folder; empty: none
-  int integrator = 0;            // index into kIntegrators
+  Integrator integrator = Integrator::kRk4;
   IntegrateOptions integrate;
   double rate = 1000.0;  // Hz
   bool kinematics = false, json = false;
   bool force = false;  // the output may be replaced
 
-  const std::string& integrator_name() const {
-    return kIntegrators[static_cast<std::size_t>(integrator)];
-  }
-  const std::string& closure_name() const {
-    return kClosures[static_cast<std::size_t>(integrate.closure)];
-  }
-  const std::string& spin_name() const { return kSpins[static_cast<std::size_t>(integrate.spin)]; }
+  const char* integrator_name() const { return find_name(kIntegrators, integrator); }
+  const char* closure_name() const { return find_name(kClosures, integrate.closure); }
+  const char* spin_name() const { return find_name(kSpins, integrate.spin); }
 };
 
 /// Reads and checks all options but those that depend on the car and the maneuver. Throws

@@ -32,7 +32,7 @@ int explain_failure(const Arguments& arguments, const SimulateOptions& options, 
   const std::string at = format_number(failure_time) + " s";
   StepOptions shorter = options.integrate.step;
   shorter.step *= kRetryFraction;
-  if (simulate_rig(rig, maneuver.inputs, shorter, plan).status[0] == 0) {
+  if (simulate_rig(rig, maneuver.inputs, shorter, plan).is_done()) {
     throw InputError(
         fmt::format("--step = {} s: {} in {} diverged at t = {}; a step of {} s succeeds",
                     format_number(options.integrate.step.step), options.source.vehicle.string(),
@@ -65,7 +65,7 @@ void describe_run(const SimulateOptions& options, const RigSpec& rig, RunRecord&
 }  // namespace
 
 int run_rig(const Arguments& arguments, const SimulateOptions& options) {
-  if (options.integrator == kIntegratorCvode) {
+  if (options.integrator == Integrator::kCvode) {
     throw InputError("--integrator = cvode: for cars only; must be rk4 or abm4 for a rig");
   }
   const RigSpec rig = load_rig(options.source);
@@ -89,8 +89,8 @@ int run_rig(const Arguments& arguments, const SimulateOptions& options) {
     });
   }
   const double seconds = now() - start;
-  if (run.results.status[0] != 0) {
-    return explain_failure(arguments, options, rig, maneuver, plan, run.results.failure_time[0]);
+  if (!run.results.is_done()) {
+    return explain_failure(arguments, options, rig, maneuver, plan, run.results.get_failure_time());
   }
   describe_run(options, rig, run);
   write_run(options.output, format, run);

@@ -6,7 +6,6 @@
 #include "io/format/csv.h"
 #include "io/format/hdf5.h"
 #include "jobs/cli/interrupt.h"
-#include "sweep/simulate_case.h"
 
 namespace strut {
 namespace {
@@ -16,7 +15,7 @@ void write_run_csv(const std::filesystem::path& path, const RunRecord& run) {
   const std::vector<ChannelInfo>& channels = *run.channels;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     columns.push_back(
-        {channels[c].name, channels[c].unit, get_history(run.results, channels.size(), c)});
+        {channels[c].name, channels[c].unit, run.results.get_history(static_cast<int>(c))});
   }
   write_csv(path, columns);
 }
@@ -30,15 +29,16 @@ void write_run_hdf5(const std::filesystem::path& path, const RunRecord& run) {
   Hdf5Writer file(path);
   const std::vector<ChannelInfo>& channels = *run.channels;
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    file.write("/history/" + channels[c].name, get_history(run.results, channels.size(), c),
+    file.write("/history/" + channels[c].name, run.results.get_history(static_cast<int>(c)),
                {channels[c].unit, channels[c].description, {}});
   }
-  if (has_snapshot(run.results)) {
+  if (run.results.has_snapshot()) {
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      write_one(file, "/snapshot/" + channels[c].name, run.results.snapshot[c], channels[c].unit,
+      write_one(file, "/snapshot/" + channels[c].name,
+                run.results.get_snapshot(static_cast<int>(c)), channels[c].unit,
                 channels[c].description);
     }
-    write_one(file, "/snapshot/event_time", run.results.event_time[0], "s",
+    write_one(file, "/snapshot/event_time", run.results.get_event_time(), "s",
               "time at which the rear wheel centers are over the bump's center");
   }
   for (const RunParameter& p : run.parameters) {

@@ -27,7 +27,7 @@ InputError make_step_error(const SimulateOptions& options, const char* name, dou
 }
 
 void check_steps(const PreparedCase& c, const SimulateOptions& options) {
-  if (options.integrator == kIntegratorCvode) return;
+  if (options.integrator == Integrator::kCvode) return;
   const StepOptions& step = options.integrate.step;
   check_step(c, options, "--step", step.step);
   if (step.coarse_step > 0.0) check_step(c, options, "--coarse-step", step.coarse_step);
