@@ -76,7 +76,7 @@ void write_crossing(const test::TemporaryFolder& folder, const std::string& name
     text += "\n" + test::print_number(i / kRate);
     for (std::size_t k = 0; k < kSensors.size(); ++k) {
       const double value =
-          test::get_history(results, i, find_car_channel(kSensors[k].channel)) +
+          results.get_sample(i, find_car_channel(kSensors[k].channel)) +
           kSensors[k].noise * test::calc_test_normal(seed, k, static_cast<std::uint64_t>(i));
       text += "," + test::print_number(value);
     }

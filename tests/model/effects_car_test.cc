@@ -12,7 +12,6 @@
 namespace strut {
 namespace {
 
-using test::get_history;
 using test::prepare;
 using test::tolerance;
 using C = CarChannel;
@@ -340,8 +339,7 @@ TEST_CASE("A car with many effects follows CVODE", "[unit][reference][effects]")
   for (int i = 0; i < run.sample_count; ++i) {
     for (const int channel : {int{C::kBodyPositionZ}, int{C::kPitchAngle}, int{C::kRollAngle}}) {
       // A micrometer; kinks of damper and stop within steps leave order two.
-      CHECK(std::fabs(get_history(run, i, channel) - get_history(truth, i, channel)) <
-            tolerance(1e-6));
+      CHECK(std::fabs(run.get_sample(i, channel) - truth.get_sample(i, channel)) < tolerance(1e-6));
     }
   }
 }
@@ -386,10 +384,10 @@ TEST_CASE("Effects of the left are those of the right in the mirror", "[unit][pr
   const LaneResults b = scalar().run_scalar(prepare(right), make_options(), plan);
   double largest_roll = 0.0;
   for (int i = 0; i < a.sample_count; ++i) {
-    const double roll = get_history(a, i, C::kRollAngle);
+    const double roll = a.get_sample(i, C::kRollAngle);
     largest_roll = std::fmax(largest_roll, std::fabs(roll));
-    CHECK(std::fabs(roll + get_history(b, i, C::kRollAngle)) < tolerance(1e-10));
-    CHECK(std::fabs(get_history(a, i, C::kBodyPositionZ) - get_history(b, i, C::kBodyPositionZ)) <
+    CHECK(std::fabs(roll + b.get_sample(i, C::kRollAngle)) < tolerance(1e-10));
+    CHECK(std::fabs(a.get_sample(i, C::kBodyPositionZ) - b.get_sample(i, C::kBodyPositionZ)) <
           tolerance(1e-10));
   }
   CHECK(largest_roll > 1e-3);
@@ -436,12 +434,12 @@ TEST_CASE("An effect moves a car, and neutral it is as if absent, also beside on
     double error = 0.0;
     for (int i = 0; i < both.sample_count; ++i) {
       for (int channel = 0; channel < C::kCount; ++channel) {
-        const double value = get_history(both, i, channel);
-        moved = moved || value != get_history(absent, i, channel);
+        const double value = both.get_sample(i, channel);
+        moved = moved || value != absent.get_sample(i, channel);
         error = std::fmax(
-            error, std::fabs(value - get_history(alone, i, channel)) / (1.0 + std::fabs(value)));
+            error, std::fabs(value - alone.get_sample(i, channel)) / (1.0 + std::fabs(value)));
         for (int lane = 1; lane < kernel.lanes; ++lane) {
-          same = same && get_history(both, i, channel, lane) == get_history(base, i, channel, lane);
+          same = same && both.get_sample(i, channel, lane) == base.get_sample(i, channel, lane);
         }
       }
     }
@@ -463,7 +461,7 @@ TEST_CASE("An effect at the front moves the front's force first", "[unit][effect
       const int channel = C::kCornerBegin + corner * C::kCornerChannels + C::kDamperForce;
       int i = 0;
       while (i < a.sample_count &&
-             std::fabs(get_history(a, i, channel) - get_history(b, i, channel)) < 20.0) {
+             std::fabs(a.get_sample(i, channel) - b.get_sample(i, channel)) < 20.0) {
         ++i;
       }
       return i;

@@ -46,12 +46,6 @@ SamplePlan make_plan(double duration, double interval) {
   return plan;
 }
 
-double get_value(const LaneResults& run, RigKind kind, int sample, int channel, int lane = 0) {
-  const auto channels = get_rig_info(kind).channels.size();
-  const auto row = static_cast<std::size_t>(sample) * channels + static_cast<std::size_t>(channel);
-  return run.history[row * static_cast<std::size_t>(run.lanes) + static_cast<std::size_t>(lane)];
-}
-
 /// A force law in words of its own: displacement, speed, temperature over 293.15 K.
 struct Law {
   EffectSettings effects;
@@ -102,7 +96,7 @@ TEST_CASE("A strut on a dynamometer answers by the law of each effect", "[unit][
     const LaneResults run = simulate_rig(spec, inputs, make_options(0.01), make_plan(1.0, 0.002));
     double largest = 0.0, error = 0.0;
     for (int i = 0; i <= 500; ++i) {
-      const auto get = [&](int channel) { return get_value(run, spec.kind, i, channel); };
+      const auto get = [&](int channel) { return run.get_sample(i, channel); };
       const double expected = law.force(get(Strut::kDisplacement), get(Strut::kVelocity),
                                         get(Strut::kTemperature) - 293.15);
       largest = std::fmax(largest, std::fabs(expected));
@@ -125,7 +119,7 @@ std::complex<double> measure_stiffness(const EffectSettings& effects, double fre
   std::complex<double> sum = 0.0;
   for (int i = 5 * samples; i < 6 * samples; ++i) {
     const double t = i * period / samples;
-    sum += get_value(run, spec.kind, i, Strut::kForce) * std::polar(1.0, -w * t);
+    sum += run.get_sample(i, Strut::kForce) * std::polar(1.0, -w * t);
   }
   // force = Im(K x e^(iwt)): the projection is K x / 2i.
   return sum * std::complex<double>(0.0, 2.0) / (samples * 0.01);
@@ -163,9 +157,9 @@ TEST_CASE("A lag that vanishes leaves the damper as it is", "[property][rigs]") 
     REQUIRE(lagging.status[0] == 0);
     double difference = 0.0;
     for (int i = 0; i <= 100; ++i) {
-      const double sprung = get_value(lagging, plain.kind, i, Quarter::kSprungPosition);
-      difference = std::fmax(
-          difference, std::fabs(sprung - get_value(base, plain.kind, i, Quarter::kSprungPosition)));
+      const double sprung = lagging.get_sample(i, Quarter::kSprungPosition);
+      difference =
+          std::fmax(difference, std::fabs(sprung - base.get_sample(i, Quarter::kSprungPosition)));
     }
     INFO(lag);
     CHECK(difference < before);
@@ -203,7 +197,7 @@ TEST_CASE("A damper that loses a stroke is without force until the rod has cross
   const LaneResults run = simulate_rig(spec, {input}, make_options(1e-5), make_plan(0.3, 5e-4));
   int free = 0;
   for (int i = 0; i <= 600; ++i) {
-    const double t = 5e-4 * i - turn, force = get_value(run, spec.kind, i, Strut::kDamperForce);
+    const double t = 5e-4 * i - turn, force = run.get_sample(i, Strut::kDamperForce);
     const double exact = t < 0.0 ? -1500.0 * v : calc_reversed_force(t, v, 1500.0, p);
     if (std::fabs(t) < 1e-9) continue;  // the rate is either side's
     free += force == 0.0 ? 1 : 0;
@@ -221,9 +215,9 @@ TEST_CASE("A joint's play only takes energy", "[unit][property][rigs]") {
   using C = SingleMassChannel;
   double before = 1e300, first = 0.0;
   for (int i = 0; i <= 2000; ++i) {
-    const double x = get_value(run, spec.kind, i, C::kPosition);
-    const double v = get_value(run, spec.kind, i, C::kVelocity);
-    const double w = get_value(run, spec.kind, i, C::kDamperForce) / 1500.0;
+    const double x = run.get_sample(i, C::kPosition);
+    const double v = run.get_sample(i, C::kVelocity);
+    const double w = run.get_sample(i, C::kDamperForce) / 1500.0;
     // The contact, a spring of stiffness c / tau, is pressed in by tau w.
     const double tau = calc_contact_time(p);
     const double energy = 150.0 * v * v + 1e4 * x * x + 0.5 * 1500.0 * tau * w * w;
@@ -247,7 +241,7 @@ TEST_CASE("A quarter car answers smoothly to its damper's lost stroke", "[unit][
     double apart = 0.0, size = 0.0;
     for (int i = 0; i <= 100; ++i) {
       const auto get = [&](const LaneResults& r) {
-        return get_value(r, RigKind::kQuarterCar, i, Quarter::kSprungPosition);
+        return r.get_sample(i, Quarter::kSprungPosition);
       };
       const double wide = (get(high) - get(low)) / (0.2 * stroke);
       const double narrow = (get(above) - get(below)) / (0.02 * stroke);
@@ -271,9 +265,9 @@ TEST_CASE("A play that vanishes leaves the damper as it is", "[property][rigs]")
     REQUIRE(loose.status[0] == 0);
     double difference = 0.0;
     for (int i = 0; i <= 100; ++i) {
-      const double sprung = get_value(loose, plain.kind, i, Quarter::kSprungPosition);
-      difference = std::fmax(
-          difference, std::fabs(sprung - get_value(base, plain.kind, i, Quarter::kSprungPosition)));
+      const double sprung = loose.get_sample(i, Quarter::kSprungPosition);
+      difference =
+          std::fmax(difference, std::fabs(sprung - base.get_sample(i, Quarter::kSprungPosition)));
     }
     INFO(play << ": " << difference);
     CHECK(difference < 1.5 * play + 4e-5);  // the rest: stages of a step do not share one force
@@ -338,10 +332,9 @@ TEST_CASE("A quarter car with many effects moves as one written anew", "[unit][r
     const auto x = integrate_anew(0.05 * sample, road);
     INFO(sample);
     // Kinks at v = 0 and at the stop's contact leave order two: 80 mm times some (w h)^2.
-    CHECK(get_value(run, spec.kind, sample, Quarter::kUnsprungPosition) ==
+    CHECK(run.get_sample(sample, Quarter::kUnsprungPosition) ==
           Approx(x[0]).margin(tolerance(1e-6)));
-    CHECK(get_value(run, spec.kind, sample, Quarter::kSprungPosition) ==
-          Approx(x[1]).margin(tolerance(1e-6)));
+    CHECK(run.get_sample(sample, Quarter::kSprungPosition) == Approx(x[1]).margin(tolerance(1e-6)));
   }
 }
 
@@ -353,15 +346,15 @@ TEST_CASE("Springs and stops give back what they take", "[unit][property][rigs]"
   const LaneResults run = simulate_rig(spec, {}, make_options(2e-4), make_plan(2.0, 0.005));
   using C = SingleMassChannel;
   const auto calc_energy = [&](int i) {
-    const double d = -get_value(run, spec.kind, i, C::kPosition);
-    const double v = get_value(run, spec.kind, i, C::kVelocity);
+    const double d = -run.get_sample(i, C::kPosition);
+    const double v = run.get_sample(i, C::kVelocity);
     const double s = std::fmax(d - 0.02, 0.0);
     return 150.0 * v * v + 1e4 * d * d + 20000.0 * 80.0 / 4.0 * std::pow(d, 4) + 3.5e4 * s * s +
            7e4 * 60.0 / 3.0 * s * s * s;
   };
   double deepest = 0.0;
   for (int i = 0; i <= 400; ++i) {
-    deepest = std::fmax(deepest, -get_value(run, spec.kind, i, C::kPosition));
+    deepest = std::fmax(deepest, -run.get_sample(i, C::kPosition));
     CHECK(calc_energy(i) == Approx(calc_energy(0)).epsilon(tolerance(1e-6)));
   }
   CHECK(deepest > 0.04);
@@ -380,8 +373,8 @@ TEST_CASE("Dampers and friction only take energy", "[unit][property][rigs]") {
   using C = SingleMassChannel;
   double before = 1e300, first = 0.0;
   for (int i = 0; i <= 1000; ++i) {
-    const double x = get_value(run, spec.kind, i, C::kPosition);
-    const double v = get_value(run, spec.kind, i, C::kVelocity);
+    const double x = run.get_sample(i, C::kPosition);
+    const double v = run.get_sample(i, C::kVelocity);
     const double energy = 150.0 * v * v + 1e4 * x * x;
     if (i == 0) first = energy;
     CHECK(energy <= before + 1e-9 * first);  // RK4's own error
@@ -400,8 +393,8 @@ double measure_error(const EffectSettings& effects, double step) {
   const LaneResults fine = run(2e-5), coarse = run(step);
   double error = 0.0;
   for (int i = 1; i <= 10; ++i) {
-    error = std::fmax(error, std::fabs(get_value(fine, spec.kind, i, Quarter::kSprungPosition) -
-                                       get_value(coarse, spec.kind, i, Quarter::kSprungPosition)));
+    error = std::fmax(error, std::fabs(fine.get_sample(i, Quarter::kSprungPosition) -
+                                       coarse.get_sample(i, Quarter::kSprungPosition)));
   }
   return error;
 }
@@ -479,13 +472,13 @@ TEST_CASE("An effect moves its rig, and neutral it is as if absent, also beside 
     bool moved = false, same = true;
     for (int i = 0; i <= 100; ++i) {
       for (int c = 0; c < channels; ++c) {
-        const double value = get_value(both, kind, i, c);
-        moved = moved || value != get_value(absent, kind, i, c);
+        const double value = both.get_sample(i, c);
+        moved = moved || value != absent.get_sample(i, c);
         for (int lane = 1; lane < kWidth; ++lane) {
-          same = same && get_value(both, kind, i, c, lane) == get_value(absent, kind, i, c, lane);
+          same = same && both.get_sample(i, c, lane) == absent.get_sample(i, c, lane);
         }
         const double scale = std::fabs(value) + 1.0;
-        CHECK(std::fabs(value - get_value(alone, kind, i, c)) < tolerance(1e-9 * scale));
+        CHECK(std::fabs(value - alone.get_sample(i, c)) < tolerance(1e-9 * scale));
       }
     }
     CHECK(moved);
@@ -503,7 +496,7 @@ TEST_CASE("Both integrators hold a stiff lag and a joint in a quarter car", "[un
   CHECK(run.status[0] == 0);
   // Nothing damps within the play.
   const double left = 1e-3 + (effect == "damper_hysteresis" ? 0.0 : size);
-  CHECK(std::fabs(get_value(run, spec.kind, 6, Quarter::kSprungPosition)) < left);
+  CHECK(std::fabs(run.get_sample(6, Quarter::kSprungPosition)) < left);
 }
 
 }  // namespace

@@ -378,10 +378,7 @@ TEST_CASE("A steadily driven car keeps height and pitch while its speed rises", 
   plan.interval = 0.05;
   plan.snapshot = false;
   const LaneResults run = list_kernels().back().run_scalar(c, {}, plan);
-  const auto get = [&](int sample, int channel) {
-    return run.history[static_cast<std::size_t>(sample) * CarChannel::kCount +
-                       static_cast<std::size_t>(channel)];
-  };
+  const auto get = [&](int sample, int channel) { return run.get_sample(sample, channel); };
   double height = 0.0, pitch = 0.0;
   for (int i = 0; i < run.sample_count; ++i) {
     height = std::max(

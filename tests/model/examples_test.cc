@@ -17,7 +17,6 @@ namespace strut {
 namespace {
 
 using C = CarChannel;
-using test::get_history;
 using test::make_plan;
 using test::tolerance;
 
@@ -55,8 +54,8 @@ double calc_difference(const LaneResults& a, const LaneResults& b, int channel, 
   REQUIRE(a.sample_count == b.sample_count);
   double largest = 0.0;
   for (int i = 0; i < a.sample_count; ++i) {
-    largest = std::max(largest,
-                       std::abs(get_history(a, i, channel, lane_a) - get_history(b, i, channel)));
+    largest =
+        std::max(largest, std::abs(a.get_sample(i, channel, lane_a) - b.get_sample(i, channel)));
   }
   return largest;
 }
@@ -73,8 +72,8 @@ void check_against_cvode(const Case& c) {
   const double pitch = calc_difference(run, truth, C::kPitchAngle);
   double rise = 0.0;
   for (int i = 0; i < truth.sample_count; ++i) {
-    rise = std::max(rise, std::abs(get_history(truth, i, C::kBodyPositionZ) -
-                                   get_history(truth, 0, C::kBodyPositionZ)));
+    rise = std::max(rise, std::abs(truth.get_sample(i, C::kBodyPositionZ) -
+                                   truth.get_sample(0, C::kBodyPositionZ)));
   }
   INFO("height " << std::scientific << height << " m, pitch " << pitch << " rad, rise " << rise
                  << " m");

@@ -25,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-using test::get_history;
 using test::prepare;
 using test::tolerance;
 using C = CarChannel;
@@ -250,9 +249,9 @@ TEST_CASE("A car's map that is a damper equals a changed rate", "[unit][referenc
   for (int i = 0; i < b.sample_count; ++i) {
     for (int channel = 0; channel < C::kCount; ++channel) {
       INFO(channel);
-      const double value = get_history(b, i, channel);
+      const double value = b.get_sample(i, channel);
       // Tire forces of thousands of newtons cancel in what is near zero.
-      CHECK(std::fabs(get_history(a, i, channel) - value) <
+      CHECK(std::fabs(a.get_sample(i, channel) - value) <
             tolerance(1e-9 * std::fmax(std::fabs(value), 100.0)));
     }
   }
@@ -328,10 +327,10 @@ TEST_CASE("Lanes of cars may differ in their maps and in having one", "[unit][pr
     double error = 0.0;
     for (int i = 0; i < all.sample_count; ++i) {
       for (int channel = 0; channel < C::kCount; ++channel) {
-        const double value = get_history(all, i, channel, lane);
-        same = same && value == get_history(none, i, channel, lane);
+        const double value = all.get_sample(i, channel, lane);
+        same = same && value == none.get_sample(i, channel, lane);
         error = std::fmax(
-            error, std::fabs(value - get_history(alone, i, channel)) / (100.0 + std::fabs(value)));
+            error, std::fabs(value - alone.get_sample(i, channel)) / (100.0 + std::fabs(value)));
       }
     }
     CHECK(error < tolerance(1e-9));
@@ -352,8 +351,7 @@ TEST_CASE("A car with maps follows CVODE", "[unit][reference][effects]") {
   for (int i = 0; i < run.sample_count; ++i) {
     // A micrometer: what kinks of road and contact within steps leave of the car without maps.
     for (const int channel : {int{C::kBodyPositionZ}, int{C::kPitchAngle}, int{C::kRollAngle}}) {
-      CHECK(std::fabs(get_history(run, i, channel) - get_history(truth, i, channel)) <
-            tolerance(1e-6));
+      CHECK(std::fabs(run.get_sample(i, channel) - truth.get_sample(i, channel)) < tolerance(1e-6));
     }
   }
 }

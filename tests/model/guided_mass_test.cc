@@ -25,7 +25,7 @@ RigSpec make_rig() {
 }
 
 double read(const LaneResults& run, int sample, int channel) {
-  return run.history[static_cast<std::size_t>(sample * C::kCount + channel)];
+  return run.get_sample(sample, channel);
 }
 
 LaneResults run(const RigSpec& spec, const std::vector<InputSignal>& inputs, double duration,

@@ -41,14 +41,8 @@ RigSpec make_single_mass() {
   return spec;
 }
 
-double get_value(const LaneResults& run, RigKind kind, int sample, int channel, int lane = 0) {
-  const auto channels = get_rig_info(kind).channels.size();
-  const auto row = static_cast<std::size_t>(sample) * channels + static_cast<std::size_t>(channel);
-  return run.history[row * static_cast<std::size_t>(run.lanes) + static_cast<std::size_t>(lane)];
-}
-
 double get_quarter(const LaneResults& run, int sample, int channel) {
-  return get_value(run, RigKind::kQuarterCar, sample, channel);
+  return run.get_sample(sample, channel);
 }
 
 StepOptions make_options(double step, Stepper stepper = Stepper::kRk4) {
@@ -169,7 +163,7 @@ TEST_CASE("A single mass swings as the damped oscillator", "[reference][rigs]") 
     const double t = 0.01 * i;
     const double x = std::exp(-decay * t) * (0.02 * std::cos(w * t) + b * std::sin(w * t));
     // RK4: t w (w h)^4 / 120 of the amplitude, w = 20 rad/s.
-    CHECK(get_value(run, spec.kind, i, SingleMassChannel::kPosition) == Approx(x).margin(1e-9));
+    CHECK(run.get_sample(i, SingleMassChannel::kPosition) == Approx(x).margin(1e-9));
   }
 }
 
@@ -182,10 +176,9 @@ TEST_CASE("A force accelerates a free mass", "[reference][rigs]") {
   const LaneResults run = simulate_rig(spec, force, make_options(0.01), make_plan(2.0, 0.1));
   for (int i = 0; i <= 20; ++i) {
     const double t = 0.1 * i;  // a = 10 t - g: RK4 is exact
-    CHECK(get_value(run, spec.kind, i, SingleMassChannel::kPosition) ==
+    CHECK(run.get_sample(i, SingleMassChannel::kPosition) ==
           Approx(10.0 * t * t * t / 6.0 - 9.81 * t * t / 2.0).margin(1e-13));
-    CHECK(get_value(run, spec.kind, i, SingleMassChannel::kForce) ==
-          Approx(20.0 * t).margin(1e-13));
+    CHECK(run.get_sample(i, SingleMassChannel::kForce) == Approx(20.0 * t).margin(1e-13));
   }
 }
 
@@ -239,11 +232,11 @@ TEST_CASE("A strut rig's force is that of its spring and damper", "[unit][rigs]"
     const double t = 0.005 * i, w = 2.0 * std::numbers::pi * 1.05;
     const double x = 0.01865 * std::sin(w * t), v = 0.01865 * w * std::cos(w * t);
     // The table's error: 1.5e-8 of 746 N, 1e-6 of 243 N.
-    CHECK(get_value(run, spec.kind, i, C::kForce) == Approx(40000.0 * x + 1980.0 * v).margin(4e-4));
-    CHECK(get_value(run, spec.kind, i, C::kSpringForce) == Approx(40000.0 * x).margin(4e-4));
-    CHECK(get_value(run, spec.kind, i, C::kDisplacement) == Approx(x).margin(1e-9));
-    CHECK(get_value(run, spec.kind, i, C::kVelocity) == Approx(v).margin(3e-7));
-    CHECK(get_value(run, spec.kind, i, C::kTemperature) ==
+    CHECK(run.get_sample(i, C::kForce) == Approx(40000.0 * x + 1980.0 * v).margin(4e-4));
+    CHECK(run.get_sample(i, C::kSpringForce) == Approx(40000.0 * x).margin(4e-4));
+    CHECK(run.get_sample(i, C::kDisplacement) == Approx(x).margin(1e-9));
+    CHECK(run.get_sample(i, C::kVelocity) == Approx(v).margin(3e-7));
+    CHECK(run.get_sample(i, C::kTemperature) ==
           Approx(heated ? 293.0 + 10.0 * t : 293.15).epsilon(1e-14));
   }
 }
@@ -386,8 +379,8 @@ TEST_CASE("Lanes of different rigs repeat each rig in double", "[property][rigs]
         simulate_rig(*pointers[static_cast<std::size_t>(lane)], inputs, options, plan);
     for (int i = 0; i <= 100; ++i) {
       for (int c = 0; c < channels; ++c) {
-        const double expected = get_value(one, kind, i, c);
-        CHECK(get_value(lanes, kind, i, c, lane) == Approx(expected).epsilon(1e-9).margin(1e-9));
+        const double expected = one.get_sample(i, c);
+        CHECK(lanes.get_sample(i, c, lane) == Approx(expected).epsilon(1e-9).margin(1e-9));
       }
     }
   }
@@ -410,8 +403,8 @@ TEST_CASE("A diverging rig is stopped and disturbs no other", "[unit][rigs]") {
   for (int lane = 1; lane < kWidth; ++lane) {
     CHECK(mixed.status[static_cast<std::size_t>(lane)] == 0);
     for (int i = 0; i <= 50; ++i) {
-      CHECK(get_value(mixed, good.kind, i, Quarter::kSprungPosition, lane) ==
-            get_value(alone, good.kind, i, Quarter::kSprungPosition, lane));
+      CHECK(mixed.get_sample(i, Quarter::kSprungPosition, lane) ==
+            alone.get_sample(i, Quarter::kSprungPosition, lane));
     }
   }
 }

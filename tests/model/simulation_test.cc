@@ -46,7 +46,6 @@ namespace strut {
 namespace {
 
 using C = CarChannel;
-using test::get_history;
 using test::make_plan;
 using test::tolerance;
 
@@ -72,7 +71,7 @@ double calc_rms_difference(const LaneResults& a, const LaneResults& b, int chann
                            int lane_a = 0) {
   double sum = 0.0;
   for (int i = 0; i < a.sample_count; ++i) {
-    sum += square(get_history(a, i, channel, lane_a) - get_history(b, i, channel));
+    sum += square(a.get_sample(i, channel, lane_a) - b.get_sample(i, channel));
   }
   return std::sqrt(sum / a.sample_count);
 }
@@ -81,8 +80,8 @@ double calc_largest_difference(const LaneResults& a, const LaneResults& b, int c
                                int lane_a = 0) {
   double largest = 0.0;
   for (int i = 0; i < a.sample_count; ++i) {
-    largest = std::max(largest,
-                       std::abs(get_history(a, i, channel, lane_a) - get_history(b, i, channel)));
+    largest =
+        std::max(largest, std::abs(a.get_sample(i, channel, lane_a) - b.get_sample(i, channel)));
   }
   return largest;
 }
@@ -243,7 +242,7 @@ TEST_CASE("Coarse steps away from the bump cost less than a tenth of a percent",
   const LaneResults truth = run_cvode(c, {}, plan);
   double size = 0.0;
   for (int i = 0; i < truth.sample_count; ++i) {
-    size += square(get_history(truth, i, C::kBodyAccelerationZ));
+    size += square(truth.get_sample(i, C::kBodyAccelerationZ));
   }
   size = std::sqrt(size / truth.sample_count);
   IntegrateOptions options = make_options(Stepper::kRk4, 1.5e-3, Closure::kTable);
@@ -269,7 +268,7 @@ TEST_CASE("Tabulated corners give the same run as Newton closure", "[unit][prope
   for (int channel = 0; channel < C::kCount; ++channel) {
     double scale = 1.0;
     for (int i = 0; i < table.sample_count; ++i) {
-      scale = std::max(scale, std::abs(get_history(table, i, channel)));
+      scale = std::max(scale, std::abs(table.get_sample(i, channel)));
     }
     CAPTURE(list_car_channels()[static_cast<std::size_t>(channel)].name);
     CHECK(calc_largest_difference(newton, table, channel) < tolerance(1e-8 * scale));
@@ -321,8 +320,7 @@ TEST_CASE("A case's bits do not depend on its lane or its neighbours", "[unit][p
     bool same = true;
     for (int i = 0; i < first.sample_count; ++i) {
       for (int channel = 0; channel < C::kCount; ++channel) {
-        same =
-            same && get_history(first, i, channel, lane) == get_history(second, i, channel, other);
+        same = same && first.get_sample(i, channel, lane) == second.get_sample(i, channel, other);
       }
     }
     CHECK(same);

@@ -57,7 +57,7 @@ inline MeasuredRun measure(const Case& known, const Case& truth, const Distortio
     MeasuredChannel c{channel, sigma, {}};
     for (int i = 0; i < results.sample_count; ++i) {
       const auto place = static_cast<std::uint64_t>(i);
-      c.values.push_back(get_history(results, i, channel) +
+      c.values.push_back(results.get_sample(i, channel) +
                          (rate ? distortion.rate_bias : distortion.acceleration_bias) +
                          distortion.noise * sigma *
                              calc_test_normal(distortion.seed, rate ? 1 : 0, place));

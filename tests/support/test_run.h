@@ -11,10 +11,4 @@ inline SamplePlan make_plan(double interval) {
   return plan;
 }
 
-/// A channel of a car's history.
-inline double get_history(const LaneResults& r, int sample, int channel, int lane = 0) {
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  return r.history[(at(sample) * CarChannel::kCount + at(channel)) * at(r.lanes) + at(lane)];
-}
-
 }  // namespace strut::test

@@ -127,8 +127,8 @@ TEST_CASE("Sensors change the readings of their own lane and channel, and no mot
   bool same = true, moved = run.sample_count == 0;
   for (int i = 0; i < run.sample_count; ++i) {
     for (int c = 0; c < C::kCount; ++c) {
-      const double read = test::get_history(run, i, c), was = test::get_history(truth, i, c);
-      same = same && test::get_history(run, i, c, 1) == test::get_history(truth, i, c, 1);
+      const double read = run.get_sample(i, c), was = truth.get_sample(i, c);
+      same = same && run.get_sample(i, c, 1) == truth.get_sample(i, c, 1);
       if (!is_read(c)) same = same && read == was;
       if (is_read(c)) moved = moved || read != was;
     }
@@ -162,8 +162,8 @@ TEST_CASE("Runs of the reference integrator are read through sensors too", "[uni
   const LaneResults dense = read(plain, 1e-3), run = read(late, 0.05);
   REQUIRE(run.sample_count == 21);
   for (int i = 1; i <= 20; ++i) {
-    CHECK(std::fabs(test::get_history(run, i, C::kPitchRate) -
-                    test::get_history(dense, 50 * i - 3, C::kPitchRate)) < tolerance(1e-8));
+    CHECK(std::fabs(run.get_sample(i, C::kPitchRate) -
+                    dense.get_sample(50 * i - 3, C::kPitchRate)) < tolerance(1e-8));
   }
 }
 
