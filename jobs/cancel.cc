@@ -1,5 +1,7 @@
 #include "jobs/cancel.h"
 
+#include <fmt/format.h>
+
 #include <iostream>
 #include <stdexcept>
 
@@ -11,17 +13,17 @@
 namespace strut {
 namespace {
 
-/// Takes back what of it is queued. Throws EnvironmentError where that cannot be told or done,
-/// InputError where its files name what is none of its jobs.
+/// Cancels the queued jobs of a submission. Throws EnvironmentError if the dispatcher does not
+/// answer or refuses, InputError if the files name a job that is not one of the submission.
 void cancel(const Submission& submission) {
   const auto dispatcher = make_dispatcher(submission.dispatcher);
-  // Before the tasks stop: they tell by it why they did. A submit that is under way stops by it.
+  // Set before the tasks stop, since they record it as the cause; it also ends a running submit.
   submission.mark_cancelled();
   try {
     const std::vector<JobRecord> jobs = find_jobs(submission, *dispatcher);
     dispatcher->cancel(jobs);
-    std::cout << "submission " << submission.name() << ": " << jobs.size()
-              << (jobs.size() == 1 ? " job cancelled\n" : " jobs cancelled\n");
+    std::cout << fmt::format("submission {}: {} {} cancelled\n", submission.name(), jobs.size(),
+                             jobs.size() == 1 ? "job" : "jobs");
   } catch (const std::runtime_error&) {
     submission.unmark_cancelled();
     throw;
@@ -33,10 +35,9 @@ void cancel(const Submission& submission) {
 Arguments describe_cancel() {
   Arguments arguments(
       "strut cancel DIR",
-      "Takes back what `strut submit` queued for the sweep in DIR: tasks that wait are dropped, "
-      "tasks\n"
-      "that run stop cleanly. What is written stays; `strut submit` or `strut run` goes on from\n"
-      "there. Runners that somebody started by hand are left alone.",
+      "Cancels the queued jobs of the sweep in DIR: waiting tasks are dropped, running tasks stop\n"
+      "cleanly. Finished shards are kept; `strut submit` or `strut run` continues. Runs that were\n"
+      "started by hand are not affected.",
       "  strut cancel cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;
@@ -45,15 +46,15 @@ Arguments describe_cancel() {
 int run_cancel(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const std::string root = sweep.folder.root.string();
-  std::string dispatcher;  // of the last that was cancelled
+  std::string dispatcher;  // of the last cancelled submission
   bool is_unknown = false;
   for (const Submission& submission : list_submissions(sweep.folder)) {
     const SubmissionState state = follow(submission);
     if (state.queue == QueueState::kEnded) continue;
     if (state.queue == QueueState::kUnknown) {
       print_error("submission " + submission.name() +
-                  ": whether it still runs is unknown: " + state.why_unknown +
-                  "; nothing of it is cancelled; try again later, or stop its job by hand");
+                  ": unknown whether it still runs: " + state.why_unknown +
+                  "; it is not cancelled; try again later, or stop its job by hand");
       is_unknown = true;
       continue;
     }
@@ -65,7 +66,7 @@ int run_cancel(const Arguments& arguments) {
     std::cout << "nothing to cancel: no submission waits or runs\n";
     suggest_next({"strut", "status", root});
   } else {
-    suggest_next({"strut", "submit", root, "--to", dispatcher}, "goes on from here");
+    suggest_next({"strut", "submit", root, "--to", dispatcher}, "continues from here");
   }
   return kExitDone;
 }

@@ -1,5 +1,7 @@
 #include "jobs/merge.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <filesystem>
 #include <iostream>
@@ -41,32 +43,35 @@ void print(const MergeReport& report, const fs::path& output, bool as_json) {
     std::cout << format_json(json) << "\n";
     return;
   }
-  std::cout << output.string() << ": " << format_count(report.cases) << " cases ("
-            << format_count(report.failed) << " failed) of " << format_count(report.shards)
-            << " shards";
-  if (report.missing > 0) std::cout << "; " << format_count(report.missing) << " shards MISSING";
-  std::cout << "\ndata digest " << report.data_digest << "\n";
+  std::cout << fmt::format("{}: {} cases ({} failed) of {} shards", output.string(),
+                           format_count(report.cases), format_count(report.failed),
+                           format_count(report.shards));
+  if (report.missing > 0) {
+    std::cout << fmt::format("; {} shards MISSING", format_count(report.missing));
+  }
+  std::cout << fmt::format("\ndata digest {}\n", report.data_digest);
 }
 
 }  // namespace
 
 Arguments describe_merge() {
-  Arguments arguments(
-      "strut merge DIR -o dataset.h5 [OPTIONS]",
-      "Writes the cases of all shards of the sweep in DIR to one HDF5 file for other tools: the\n"
-      "datasets of a shard, in the order of the plan, retried cases in their place. Where a shard\n"
-      "is missing or damaged, the exit code is 2 and nothing is written; cases that failed are "
-      "rows\n"
-      "of NaN.",
-      "  strut merge cars -o dataset.h5\n"
-      "  strut merge cars -o so_far.h5 --partial");
+  Arguments arguments("strut merge DIR -o dataset.h5 [OPTIONS]",
+                      "Writes the cases of all shards of the sweep in DIR to one HDF5 file for "
+                      "other tools. It has\n"
+                      "the datasets of a shard, in the order of the plan; retried cases replace "
+                      "the failed ones. If a\n"
+                      "shard is missing or damaged, the exit code is 2 and nothing is written; "
+                      "failed cases are rows\n"
+                      "of NaN.",
+                      "  strut merge cars -o dataset.h5\n"
+                      "  strut merge cars -o so_far.h5 --partial");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"h5", "hdf5"}), "file to write");
   arguments.add_removed("virtual",
                         "a view over shards cannot be verified; `strut merge DIR -o FILE` writes a "
                         "copy");
-  arguments.add_switch("partial", "leave out what is missing instead of refusing");
-  arguments.add_switch("force", "replace FILE where it exists");
+  arguments.add_switch("partial", "leave out missing shards instead of refusing");
+  arguments.add_switch("force", "replace FILE if it exists");
   arguments.add_switch("json", "print JSON");
   return arguments;
 }

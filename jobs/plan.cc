@@ -1,6 +1,7 @@
 #include "jobs/plan.h"
 
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <iostream>
 #include <optional>
 
@@ -22,58 +23,61 @@ std::string describe_order(const Plan& plan) {
   const SweepRequest& request = plan.request();
   if (request.sample.method != SampleMethod::kGrid) return "by number";
   if (request.shuffle) {
-    return "shuffled: whatever part of it has run is a random sample of the whole";
+    return "shuffled: any part that has run is a random sample of the whole";
   }
   std::string slow;
   for (const std::size_t a : find_slow_axes(request)) {
     slow += (slow.empty() ? "" : ", ") + request.grid.axes()[a].name;
   }
-  return "the grid's, slowest " + slow + ", which each take a new mechanism or duration";
+  return fmt::format("the grid's, slowest {}, which each take a new mechanism or duration", slow);
 }
 
 std::string describe_cases(const Plan& plan) {
-  const std::string count = std::to_string(plan.case_count());
-  if (plan.request().sample.method == SampleMethod::kLatinHypercube) {
-    return count + ", a Latin hypercube";
+  const std::int64_t count = plan.case_count();
+  switch (plan.request().sample.method) {
+    case SampleMethod::kLatinHypercube:
+      return fmt::format("{}, a Latin hypercube", count);
+    case SampleMethod::kSobol:
+      return fmt::format("{}, a Sobol sequence", count);
+    case SampleMethod::kGrid:
+      break;
   }
-  if (plan.request().sample.method == SampleMethod::kSobol) return count + ", a Sobol sequence";
-  return count + " of the grid's " + std::to_string(plan.point_count()) + " points";
+  return fmt::format("{} of the grid's {} points", count, plan.point_count());
 }
 
-void print_layers(const Plan& plan) {
-  std::cout << "layers    " << plan.strata().size() << " by " << plan.request().sample.by << "\n";
-  char line[160];
-  std::snprintf(line, sizeof line, "%9s %14s %14s %16s %16s\n", "layer", "from", "to", "cases",
-                "drawn");
-  std::cout << line;
+void print_strata(const Plan& plan) {
+  std::cout << fmt::format("layers    {} by {}\n", plan.strata().size(), plan.request().sample.by);
+  std::cout << fmt::format("{:>9} {:>14} {:>14} {:>16} {:>16}\n", "layer", "from", "to", "cases",
+                           "drawn");
   std::size_t number = 0;
-  for (const Stratum& layer : plan.strata()) {
-    std::snprintf(line, sizeof line, "%9zu %14.7g %14.7g %16lld %16lld\n", ++number, layer.lower,
-                  layer.upper, static_cast<long long>(layer.population),
-                  static_cast<long long>(layer.drawn));
-    std::cout << line;
+  for (const Stratum& stratum : plan.strata()) {
+    std::cout << fmt::format("{:>9} {:>14.7g} {:>14.7g} {:>16} {:>16}\n", ++number, stratum.lower,
+                             stratum.upper, stratum.population, stratum.drawn);
   }
 }
 
 void print_text(const Plan& plan, const SweepEstimate& estimate) {
-  std::cout << "cases     " << describe_cases(plan) << "\n";
-  print_layers(plan);
-  std::cout << "order     " << describe_order(plan) << "\nshards    " << plan.shard_count()
-            << " of up to " << plan.request().shard_cases << " cases\ntime      about "
-            << format_duration(estimate.seconds) << " on " << estimate.cores
-            << " cores (an estimate, from " << estimate.measured << " cases)\nsize      about "
-            << format_bytes(estimate.bytes) << " (an estimate, before compression)\nplan      "
-            << plan.hash() << "\n";
+  std::cout << fmt::format("cases     {}\n", describe_cases(plan));
+  print_strata(plan);
+  std::cout << fmt::format(
+      "order     {}\n"
+      "shards    {} of up to {} cases\n"
+      "time      about {} on {} cores (an estimate, from {} cases)\n"
+      "size      about {} (an estimate, before compression)\n"
+      "plan      {}\n",
+      describe_order(plan), plan.shard_count(), plan.request().shard_cases,
+      format_duration(estimate.seconds), estimate.cores, estimate.measured,
+      format_bytes(estimate.bytes), plan.hash());
 }
 
 void print_json(const Plan& plan, const SweepEstimate& estimate,
                 const std::optional<SweepFolder>& folder) {
   Json layers = Json::array();
-  for (const Stratum& layer : plan.strata()) {
-    layers.push_back(Json{{"lower", layer.lower},
-                          {"upper", layer.upper},
-                          {"population", layer.population},
-                          {"drawn", layer.drawn}});
+  for (const Stratum& stratum : plan.strata()) {
+    layers.push_back(Json{{"lower", stratum.lower},
+                          {"upper", stratum.upper},
+                          {"population", stratum.population},
+                          {"drawn", stratum.drawn}});
   }
   std::cout << format_json(Json{{"points", plan.point_count()},
                                 {"cases", plan.case_count()},
@@ -92,16 +96,20 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
 
 void warn(const SweepEstimate& estimate) {
   if (estimate.without_event == estimate.measured) {
-    print_note("warning: none of the " + std::to_string(estimate.measured) +
-               " cases looked at meets the snapshot's line; a longer duration may");
+    print_note(
+        fmt::format("warning: none of the {} cases simulated reaches the snapshot's line; a longer "
+                    "duration may",
+                    estimate.measured));
   }
   if (estimate.failed == estimate.measured) {
-    print_note("warning: all of the " + std::to_string(estimate.measured) +
-               " cases looked at fail; `strut simulate` on one of them says why");
+    print_note(
+        fmt::format("warning: all of the {} cases simulated fail; `strut simulate` on one of them "
+                    "reports the cause",
+                    estimate.measured));
   }
 }
 
-/// From a few cases simulated right now.
+/// Simulates a few cases for the estimate.
 SweepEstimate estimate_time(const Plan& plan) {
   const Stage stage("estimate");
   const ProgressLine line("simulating a few cases for an estimate");
@@ -113,14 +121,14 @@ SweepEstimate estimate_time(const Plan& plan) {
 Arguments describe_plan() {
   Arguments arguments(
       "strut plan SWEEP.toml -o DIR [OPTIONS]",
-      "Reads a sweep file (every key: docs/sweeps.md), draws its cases and makes the folder DIR\n"
-      "that `strut run` fills. The folder holds copies of every file that the sweep names. "
+      "Reads a sweep file (all keys: docs/sweeps.md), draws its cases and creates the folder DIR,\n"
+      "which `strut run` fills. The folder contains copies of all files that the sweep names. "
       "Planning\n"
-      "the same again changes nothing; another sweep in the same folder is refused.",
+      "the same sweep again changes nothing; a different sweep in the same folder is refused.",
       "  strut plan examples/sweeps/paper.toml --dry-run\n"
       "  strut plan examples/sweeps/paper.toml -o cars");
   arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
-  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder to make");
+  arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder to create");
   arguments.add_switch("dry-run", "print layers, shards, estimated time and bytes; write nothing");
   arguments.add_switch("json", "print JSON instead of text");
   return arguments;
@@ -128,8 +136,8 @@ Arguments describe_plan() {
 
 int run_plan(const Arguments& arguments) {
   if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(std::to_string(arguments.positional().size()) +
-                                " files; expected SWEEP.toml");
+    throw arguments.usage_error(
+        fmt::format("{} files; expected SWEEP.toml", arguments.positional().size()));
   }
   const bool dry = arguments.is_on("dry-run");
   if (!dry && !arguments.has("output"))

@@ -1,5 +1,7 @@
 #include "jobs/report.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <iostream>
 
@@ -19,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Each returns the page that it wrote.
+/// Writes the page of a study and returns its path; so do the functions below.
 fs::path report_study(const fs::path& root) {
   const StudyFolder folder{root.lexically_normal()};
   write_study_output(folder, open_study_folder(folder));
@@ -32,7 +34,7 @@ fs::path report_sweep(const fs::path& root) {
   return folder.root / "report.html";
 }
 
-/// What keeps its page: written anew.
+/// For folders that contain their page as data: writes it again.
 fs::path report_page(const fs::path& root) {
   const PageFolder folder{root.lexically_normal()};
   write_page_again(folder);
@@ -43,10 +45,10 @@ const FolderContent& require_content(const fs::path& root) {
   if (const FolderContent* found = find_content(root)) return *found;
   std::vector<std::string> names;
   for (const FolderContent* content : kFolderContents) {
-    names.push_back(std::string("a ") + content->name + " (" + content->file + ")");
+    names.push_back(fmt::format("a {} ({})", content->name, content->file));
   }
-  throw InputError(root.string() + ": nothing to report on; must be the folder of " +
-                   join_names(names));
+  throw InputError(fmt::format("{}: nothing to report on; must be the folder of {}", root.string(),
+                               join_names(names)));
 }
 
 fs::path report(const FolderContent& content, const fs::path& root) {
@@ -58,14 +60,15 @@ fs::path report(const FolderContent& content, const fs::path& root) {
 }  // namespace
 
 Arguments describe_report() {
-  Arguments arguments(
-      "strut report DIR",
-      "Writes DIR/report.html, one file that needs no other, about the study, sweep, comparison,\n"
-      "diagnosis or simulated run in DIR, from what is there: no case is simulated, no network\n"
-      "trained; of a sweep only the few runs by which its sensitivities are told. The numbers of "
-      "the\n"
-      "charts are also in DIR/figures as CSV.",
-      "  strut report study\n  strut report cars\n  strut report diagnosis");
+  Arguments arguments("strut report DIR",
+                      "Writes DIR/report.html, a self-contained page about the study, sweep, "
+                      "comparison, diagnosis or\n"
+                      "simulated run in DIR, from existing data: no network is trained, and no "
+                      "case simulated but the\n"
+                      "few runs for the sensitivities of a sweep. DIR/figures contains the numbers "
+                      "of the charts as\n"
+                      "CSV.",
+                      "  strut report study\n  strut report cars\n  strut report diagnosis");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;
 }
@@ -73,12 +76,12 @@ Arguments describe_report() {
 int run_report(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.size() != 1) {
-    throw arguments.usage_error(std::to_string(names.size()) + " folders; expected DIR");
+    throw arguments.usage_error(fmt::format("{} folders; expected DIR", names.size()));
   }
   const fs::path root = names.front();
   const FolderContent& content = require_content(root);
   const fs::path page = [&] {
-    const ProgressLine line(std::string("writing the report of a ") + content.name);
+    const ProgressLine line(fmt::format("writing the report of a {}", content.name));
     return report(content, root);
   }();
   std::cout << page.string() << "\n";

@@ -1,5 +1,6 @@
 #include "jobs/status.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -20,7 +21,7 @@
 namespace strut {
 namespace {
 
-/// A submission and how far it has come.
+/// A submission and its progress.
 struct Followed {
   Submission submission;
   SubmissionState state;
@@ -37,7 +38,7 @@ Submissions follow_all(const SweepFolder& folder) {
     try {
       SubmissionState state = follow(s);
       all.followed.push_back({std::move(s), std::move(state)});
-    } catch (const InputError& e) {  // of a task's record
+    } catch (const InputError& e) {  // a damaged task record
       all.faults.emplace_back(e.what());
     }
   }
@@ -66,20 +67,22 @@ Json make_json(const Followed& followed) {
 /// "001 on slurm: 3 running, 20 pending (Resources); ended: 7 done, 1 timeout"
 std::string describe(const Followed& followed) {
   const SubmissionState& state = followed.state;
-  std::string text = followed.submission.name() + " on " + followed.submission.dispatcher + ": ";
-  if (state.queue == QueueState::kUnknown) return text + "unknown (" + state.why_unknown + ")";
-  text += format_count(state.running) + " running, " + format_count(state.pending) + " pending";
-  std::string reasons;
-  for (const auto& [reason, tasks] : state.reasons) {
-    reasons += (reasons.empty() ? "" : ", ") + reason;
+  const Submission& submission = followed.submission;
+  std::string text = fmt::format("{} on {}: ", submission.name(), submission.dispatcher);
+  if (state.queue == QueueState::kUnknown) {
+    return text + fmt::format("unknown ({})", state.why_unknown);
   }
-  if (!reasons.empty()) text += " (" + reasons + ")";
-  if (followed.submission.is_cancelled()) text += ", cancelled";
-  std::string ended;
+  text += fmt::format("{} running, {} pending", format_count(state.running),
+                      format_count(state.pending));
+  std::vector<std::string> reasons, ended;
+  for (const auto& [reason, tasks] : state.reasons) reasons.push_back(reason);
   for (const auto& [fate, tasks] : state.fates) {
-    ended += (ended.empty() ? "; ended: " : ", ") + format_count(tasks) + " " + get_name(fate);
+    ended.push_back(fmt::format("{} {}", format_count(tasks), get_name(fate)));
   }
-  return text + ended;
+  if (!reasons.empty()) text += fmt::format(" ({})", fmt::join(reasons, ", "));
+  if (submission.is_cancelled()) text += ", cancelled";
+  if (!ended.empty()) text += fmt::format("; ended: {}", fmt::join(ended, ", "));
+  return text;
 }
 
 Json make_json(const SweepStatus& status, const Submissions& submissions) {
@@ -117,30 +120,31 @@ Json make_json(const SweepStatus& status, const Submissions& submissions) {
 
 void print_text(const SweepStatus& status, const Submissions& submissions) {
   const auto line = [](const char* name, const std::string& value) {
-    std::cout << name << std::string(10 - std::string(name).size(), ' ') << value << "\n";
+    std::cout << fmt::format("{:<10}{}\n", name, value);
   };
   line("cases", format_count(status.cases));
   line("done", format_count(status.done));
   std::string failed = format_count(status.failed);
   for (const auto& [reason, cases] : status.failures) {
-    failed += "  " + reason + ": " + format_count(cases);
+    failed += fmt::format("  {}: {}", reason, format_count(cases));
   }
   line("failed", failed);
   line("running", format_count(status.running));
   line("left", format_count(status.left));
   if (status.rate > 0.0) {
-    line("rate", format_count(std::llround(status.rate)) + "/s, " +
-                     format_duration(status.seconds_left) + " to go");
+    line("rate", fmt::format("{}/s, {} to go", format_count(std::llround(status.rate)),
+                             format_duration(status.seconds_left)));
   }
-  line("shards", format_count(status.shards_present) + " of " + format_count(status.shards) + ", " +
-                     format_bytes(static_cast<double>(status.bytes)));
+  line("shards",
+       fmt::format("{} of {}, {}", format_count(status.shards_present), format_count(status.shards),
+                   format_bytes(static_cast<double>(status.bytes))));
   if (status.duplicates > 0) line("made twice", format_count(status.duplicates) + " shards");
   for (const Followed& followed : submissions.followed) line("submitted", describe(followed));
   for (const std::string& fault : status.faults) print_error(fault);
   for (const std::string& fault : submissions.faults) print_error(fault);
 }
 
-/// Whether somebody works on it, or is about to.
+/// Whether a runner works on the sweep, or a task waits to.
 bool is_under_way(const SweepStatus& status, const Submissions& submissions) {
   if (!status.claims.empty()) return true;
   for (const Followed& followed : submissions.followed) {
@@ -154,13 +158,13 @@ void suggest_next_step(const Arguments& arguments, const std::string& root,
   if (!status.faults.empty()) {
     suggest_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside");
   } else if (!submissions.faults.empty()) {
-    suggest_again(arguments, "once what is named above is moved away");
+    suggest_again(arguments, "once the files named above are moved away");
   } else if (!status.complete() && is_under_way(status, submissions)) {
     suggest_next({"strut", "status", root, "--watch"});
   } else if (!status.complete()) {
     suggest_next({"strut", "run", root});
   } else if (status.untried > 0) {
-    suggest_next({"strut", "resume", root}, "tries what failed again, with shorter steps");
+    suggest_next({"strut", "resume", root}, "retries failed cases with smaller steps");
   } else if (status.failed > 0) {
     suggest_next_after_failures(root, status.failed);
   } else {
@@ -171,12 +175,13 @@ void suggest_next_step(const Arguments& arguments, const std::string& root,
 }  // namespace
 
 Arguments describe_status() {
-  Arguments arguments(
-      "strut status DIR [OPTIONS]",
-      "How far the sweep in DIR has come, from its files, and what the scheduler says of what was\n"
-      "submitted; `strut verify` checks every byte. Ends with code 1 where cases failed or files\n"
-      "cannot be read.",
-      "  strut status cars --watch\n  strut status cars --json");
+  Arguments arguments("strut status DIR [OPTIONS]",
+                      "Shows the progress of the sweep in DIR, from its files, and the state of "
+                      "its submissions, from\n"
+                      "the scheduler; `strut verify` checks every byte. The exit code is 1 if "
+                      "cases failed or files\n"
+                      "cannot be read.",
+                      "  strut status cars --watch\n  strut status cars --json");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_switch("json", "print JSON");
   arguments.add_switch("watch", "print again every second until the sweep is complete");
@@ -186,8 +191,7 @@ Arguments describe_status() {
 int run_status(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const bool on_terminal = is_live_terminal(STDOUT_FILENO);
-  // A scheduler is not to be asked every second.
-  constexpr int kAskEvery = 10;
+  constexpr int kAskEvery = 10;  // [s], so as not to burden the scheduler
   Submissions submissions;
   for (int look = 0;; ++look) {
     const SweepStatus status = read_status(sweep.folder, sweep.plan);

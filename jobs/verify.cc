@@ -1,5 +1,7 @@
 #include "jobs/verify.h"
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <iostream>
 #include <limits>
@@ -38,20 +40,20 @@ void print_text(const VerifyReport& report) {
   for (const std::string& what : report.differing) {
     std::cout << "differs when simulated again: " << what << "\n";
   }
-  std::cout << format_count(report.cases) << " cases: " << format_count(report.missing)
-            << " missing, " << format_count(report.misplaced) << " double, "
-            << format_count(report.foreign) << " foreign; " << format_count(report.shards)
-            << " sound shards\n";
+  std::cout << fmt::format("{} cases: {} missing, {} double, {} foreign; {} sound shards\n",
+                           format_count(report.cases), format_count(report.missing),
+                           format_count(report.misplaced), format_count(report.foreign),
+                           format_count(report.shards));
   if (report.resimulated > 0) {
-    std::cout << format_count(report.resimulated) << " cases simulated again, "
-              << format_count(report.resimulated - report.compared_by_tolerance)
-              << " compared bit for bit";
-    if (report.compared_by_tolerance > 0) {
-      std::cout << ", the others, made with an instruction set this machine lacks, to 1e-9";
-    }
-    std::cout << "\n";
+    std::cout << fmt::format("{} cases simulated again, {} compared bit for bit{}\n",
+                             format_count(report.resimulated),
+                             format_count(report.resimulated - report.compared_by_tolerance),
+                             report.compared_by_tolerance > 0
+                                 ? ", the others, made with an instruction set this machine lacks, "
+                                   "to 1e-9"
+                                 : "");
   }
-  std::cout << "data digest " << report.data_digest << "\n";
+  std::cout << fmt::format("data digest {}\n", report.data_digest);
   if (report.ok()) {
     std::cout << "sound and complete";
   } else {
@@ -79,13 +81,14 @@ void suggest_next_step(const Arguments& arguments, const std::string& root,
   } else if (!report.damaged.empty() && !is_moved) {
     suggest_next({"strut", "verify", root, "--quarantine"},
                  report.missing > 0 ? "moves damaged files aside, then run"
-                                    : "moves what is not the plan's aside");
+                                    : "moves files that are not the plan's aside");
   } else if (report.missing > 0) {
     suggest_next({"strut", "run", root}, "simulates what is missing");
   } else if (!report.damaged.empty()) {
-    suggest_next({"strut", "verify", root}, "nothing is missing: looks at what is left");
+    suggest_next({"strut", "verify", root}, "nothing is missing: checks the remaining files");
   } else {
-    suggest_next({"strut", "doctor", root}, "what of this machine cannot be relied upon");
+    suggest_next({"strut", "doctor", root},
+                 "finds properties of this machine that a sweep cannot rely on");
   }
 }
 
@@ -94,13 +97,16 @@ void suggest_next_step(const Arguments& arguments, const std::string& root,
 Arguments describe_verify() {
   Arguments arguments(
       "strut verify DIR [OPTIONS]",
-      "Reads every byte of the sweep in DIR: checksums, columns, plan, no case missing, double or\n"
-      "foreign. Prints the data digest: the same for the same plan, however it was run.",
+      "Reads every byte of the sweep in DIR and checks checksums, columns and plan, and that no "
+      "case is\n"
+      "missing, duplicate or foreign. Prints the data digest, which is the same for the same "
+      "plan,\n"
+      "however it was run.",
       "  strut verify cars --sample 20\n  strut verify cars --quarantine && strut run cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   arguments.add_option("sample", "N", "simulate N cases again and compare bit for bit (default 0)");
-  arguments.add_option("seed", "S", "of the choice of those (default 1)");
-  arguments.add_switch("quarantine", "move damaged files aside, so that strut run makes them anew");
+  arguments.add_option("seed", "S", "seed of the choice of those cases (default 1)");
+  arguments.add_switch("quarantine", "move damaged files aside, so that strut run replaces them");
   arguments.add_switch("json", "print JSON");
   return arguments;
 }
@@ -108,9 +114,9 @@ Arguments describe_verify() {
 int run_verify(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   VerifyOptions options;
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  options.sample = arguments.integer_or("sample", 0, 0, kMost);
-  options.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMost));
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+  options.sample = arguments.integer_or("sample", 0, 0, kMax);
+  options.seed = static_cast<std::uint64_t>(arguments.integer_or("seed", 1, 0, kMax));
   options.fallback = &list_kernels().front();
   std::atomic<std::int64_t> read{0};
   VerifyReport report;
@@ -119,7 +125,7 @@ int run_verify(const Arguments& arguments) {
     const ProgressLine line([&] {
       return read < sweep.plan.case_count() || options.sample == 0
                  ? format_progress(read, sweep.plan.case_count(), "cases verified", now() - start)
-                 : "simulating " + format_count(options.sample) + " cases again";
+                 : fmt::format("simulating {} cases again", format_count(options.sample));
     });
     report =
         verify_sweep(sweep.folder, sweep.plan, options, [&](std::int64_t cases) { read = cases; });

@@ -1,10 +1,13 @@
 #include "report/html.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 
+#include "base/text/fill_template.h"
 #include "base/text/utf8.h"
 #include "embedded/texts.h"
 
@@ -31,8 +34,8 @@ constexpr std::size_t kLongText = 40;
 std::string make_cell(const std::string& text) {
   const std::size_t end = text.find('\n');
   if (end == std::string::npos) return escape_html(text);
-  return escape_html(text.substr(0, end)) + "<br><small>" + escape_html(text.substr(end + 1)) +
-         "</small>";
+  return fmt::format("{}<br><small>{}</small>", escape_html(text.substr(0, end)),
+                     escape_html(text.substr(end + 1)));
 }
 
 std::string make_cells(const std::vector<std::string>& cells, const std::string& tag,
@@ -41,20 +44,20 @@ std::string make_cells(const std::vector<std::string>& cells, const std::string&
   for (std::size_t c = 0; c < cells.size(); ++c) {
     std::string classes = c < text_columns ? "word" : "";
     if (cells[c].size() > kLongText) classes += " long";
-    text += "<" + tag + (classes.empty() ? ">" : " class=\"" + classes + "\">") +
-            make_cell(cells[c]) + "</" + tag + ">";
+    const std::string attribute = classes.empty() ? "" : fmt::format(" class=\"{}\"", classes);
+    text += fmt::format("<{0}{1}>{2}</{0}>", tag, attribute, make_cell(cells[c]));
   }
   return text + "</tr>\n";
 }
 
 std::string make_table(const ReportTable& table) {
-  std::string text = "<div class=\"wide\"><table>\n<caption>" + escape_html(table.caption) +
-                     "</caption>\n<thead>" + make_cells(table.header, "th", table.text_columns) +
-                     "</thead>\n<tbody>\n";
+  std::string text = fmt::format(
+      "<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead>{}</thead>\n<tbody>\n",
+      escape_html(table.caption), make_cells(table.header, "th", table.text_columns));
   for (const auto& row : table.rows) text += make_cells(row, "td", table.text_columns);
   text += "</tbody></table>\n";
   for (const std::string& note : table.notes) {
-    text += "<p class=\"note\">" + escape_html(note) + "</p>\n";
+    text += fmt::format("<p class=\"note\">{}</p>\n", escape_html(note));
   }
   return text + "</div>\n";
 }
@@ -68,39 +71,40 @@ std::string make_paragraphs(const std::vector<std::string>& paragraphs) {
 std::string make_links(const std::vector<std::string>& files) {
   std::string text;
   for (const std::string& file : files) {
-    text += " <a href=\"" + escape_html(file) + "\">" +
-            escape_html(file.substr(file.find_last_of('.') + 1)) + "</a>";
+    text += fmt::format(" <a href=\"{}\">{}</a>", escape_html(file),
+                        escape_html(file.substr(file.find_last_of('.') + 1)));
   }
   return text;
 }
 
 std::string make_figure(const ReportFigure& figure) {
-  return "<figure id=\"figure-" + escape_html(figure.name) + "\">\n<div class=\"chart\">" +
-         make_json_element(figure.chart) +
-         "<noscript>The chart needs JavaScript; its numbers are linked below.</noscript></div>" +
-         "<figcaption>" + escape_html(figure.caption) + make_links(figure.files) +
-         "</figcaption>\n</figure>\n";
+  return fmt::format(
+      "<figure id=\"figure-{}\">\n<div class=\"chart\">{}<noscript>The chart needs JavaScript; its "
+      "numbers are linked below.</noscript></div><figcaption>{}{}</figcaption>\n</figure>\n",
+      escape_html(figure.name), make_json_element(figure.chart), escape_html(figure.caption),
+      make_links(figure.files));
 }
 
 std::string make_motion_figure(const ReportMotion& motion) {
-  return "<figure>\n<div class=\"motion\">" + make_json_element(motion.scene) +
-         "<noscript>The animation needs JavaScript.</noscript></div><figcaption>" +
-         escape_html(motion.caption) + "</figcaption>\n</figure>\n";
+  return fmt::format(
+      "<figure>\n<div class=\"motion\">{}<noscript>The animation needs JavaScript.</noscript></div>"
+      "<figcaption>{}</figcaption>\n</figure>\n",
+      make_json_element(motion.scene), escape_html(motion.caption));
 }
 
 std::string make_contents(const std::vector<ReportSection>& sections) {
   std::string text = "<nav><ul>\n";
   for (std::size_t s = 0; s < sections.size(); ++s) {
-    text += "<li><a href=\"#part" + std::to_string(s + 1) + "\">" +
-            escape_html(sections[s].heading) + "</a></li>\n";
+    text += fmt::format("<li><a href=\"#part{}\">{}</a></li>\n", s + 1,
+                        escape_html(sections[s].heading));
   }
   return text + "</ul></nav>\n";
 }
 
 std::string make_section(const ReportSection& section, const std::string& id) {
   std::string text = section.motions.empty() ? "<section>" : "<section class=\"beside\">";
-  text += "\n<h2 id=\"" + id + "\">" + escape_html(section.heading) + "</h2>\n" +
-          make_paragraphs(section.paragraphs);
+  text += fmt::format("\n<h2 id=\"{}\">{}</h2>\n{}", id, escape_html(section.heading),
+                      make_paragraphs(section.paragraphs));
   for (const ReportMotion& motion : section.motions) text += make_motion_figure(motion);
   for (const ReportTable& table : section.tables) text += make_table(table);
   for (const ReportFigure& figure : section.figures) text += make_figure(figure);
@@ -182,19 +186,17 @@ std::string escape_html(const std::string& text) {
 }
 
 std::string make_html(const ReportPage& page) {
-  std::string text =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      // Charts in a folder from elsewhere may refer to images and styles on a network.
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      escape_html(page.title) + "</title>\n<style>\n" + std::string(embedded::page_css) +
-      "</style>\n</head>\n<body>\n<h1>" + escape_html(page.title) + "</h1>\n" +
-      make_paragraphs(page.lead) + make_contents(page.sections);
+  std::string sections;
   for (std::size_t s = 0; s < page.sections.size(); ++s) {
-    text += make_section(page.sections[s], "part" + std::to_string(s + 1));
+    sections += make_section(page.sections[s], fmt::format("part{}", s + 1));
   }
-  return text + make_footer(page) + make_scripts(page) + "</body>\n</html>\n";
+  return fill_template(embedded::page_html, {{"title", escape_html(page.title)},
+                                             {"style", std::string(embedded::page_css)},
+                                             {"lead", make_paragraphs(page.lead)},
+                                             {"contents", make_contents(page.sections)},
+                                             {"sections", sections},
+                                             {"footer", make_footer(page)},
+                                             {"scripts", make_scripts(page)}});
 }
 
 std::string make_text(const ReportTable& table) {

@@ -1,7 +1,8 @@
 #include "report/plotly.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <set>
 
@@ -10,9 +11,7 @@ namespace {
 
 Json round(double value) {
   if (!std::isfinite(value)) return {};
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", value);
-  return std::strtod(text, nullptr);
+  return std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr);
 }
 
 Json make_numbers(const std::vector<double>& values) {

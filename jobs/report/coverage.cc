@@ -6,7 +6,7 @@
 namespace strut {
 namespace {
 
-constexpr std::int64_t kMostLevels = 20, kBins = 10;
+constexpr std::int64_t kMaxLevels = 20, kBins = 10;
 
 CaseCount make_layers(const Plan& plan) {
   CaseCount count{"layer by " + make_words(plan.request().sample.by), {}, {}, {}};
@@ -16,9 +16,9 @@ CaseCount make_layers(const Plan& plan) {
   return count;
 }
 
-/// A grid's few levels are counted each; samples and many levels in bins.
+/// Number of bins: one for each level of a grid with few levels; a fixed number otherwise.
 std::int64_t count_bins(const SweepRequest& request, const Axis& axis) {
-  const bool has_levels = request.sample.method == SampleMethod::kGrid && axis.count <= kMostLevels;
+  const bool has_levels = request.sample.method == SampleMethod::kGrid && axis.count <= kMaxLevels;
   return has_levels ? axis.count : kBins;
 }
 
@@ -27,7 +27,7 @@ double calc_bin_width(const SweepRequest& request, const Axis& axis) {
   return bins == axis.count ? axis.step : (axis.last() - axis.from) / static_cast<double>(bins);
 }
 
-/// The center of the first bin.
+/// Center of the first bin.
 double calc_first(const SweepRequest& request, const Axis& axis) {
   if (count_bins(request, axis) == axis.count) return axis.from;
   return axis.from + 0.5 * calc_bin_width(request, axis);
@@ -44,9 +44,9 @@ CaseCount make_bins(const SweepRequest& request, const Axis& axis, const std::st
 
 std::size_t find_bin(const SweepRequest& request, const Axis& axis, double value) {
   const double width = calc_bin_width(request, axis);
-  const double place = width == 0.0 ? 0.0 : (value - calc_first(request, axis)) / width;
+  const double position = width == 0.0 ? 0.0 : (value - calc_first(request, axis)) / width;
   const auto last = static_cast<double>(count_bins(request, axis) - 1);
-  return static_cast<std::size_t>(std::clamp(std::round(place), 0.0, last));
+  return static_cast<std::size_t>(std::clamp(std::round(position), 0.0, last));
 }
 
 void add_case(CaseCount& count, std::size_t bin, bool has_failed) {

@@ -1,4 +1,4 @@
-// Which part of a sweep's parameter space is simulated, and where cases failed.
+// Coverage of a sweep's parameter space: simulated and failed cases by stratum and parameter.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,16 @@
 
 namespace strut {
 
-/// Cases by the bins of one quantity.
+/// Number of cases in the bins of one quantity.
 struct CaseCount {
-  std::string label;              // of its axis
-  std::vector<double> centers;    // of the bins
-  std::vector<double> simulated;  // with a result or failed
+  std::string label;              // label of the axis
+  std::vector<double> centers;    // centers of the bins
+  std::vector<double> simulated;  // with a result, or failed
   std::vector<double> failed;
 };
 
-/// By layer, then by each parameter of the grid: its levels where there are few, else ten bins.
+/// Counts cases by stratum, then by each parameter of the grid: by its levels if there are few,
+/// otherwise in ten bins.
 std::vector<CaseCount> count_cases(Dataset& dataset, const Plan& plan);
 
 Chart make_coverage_chart(const std::vector<CaseCount>& counts);

@@ -1,5 +1,7 @@
 #include "jobs/report/sensitivities.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "base/error/input_error.h"
@@ -8,7 +10,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMostPoints = 600;  // of a curve
+constexpr std::size_t kMaxPoints = 600;  // of a curve
 
 DesignReport calc_report(const SweepRequest& request) {
   DesignReport report;
@@ -24,28 +26,28 @@ DesignReport calc_report(const SweepRequest& request) {
 
 int get_color(std::size_t series) { return 1 + static_cast<int>(series % std::size(kChartColors)); }
 
-/// A curve over the way: get(i) at the i-th instant.
+/// A curve over the distance traveled; get(i): value at instant i.
 template <class Get>
-ChartSeries make_way_curve(const Sensitivity& s, std::size_t parameter, const Get& get) {
+ChartSeries make_distance_curve(const Sensitivity& s, std::size_t parameter, const Get& get) {
   std::vector<double> x, y;
   for (std::size_t i = 0; i < s.instants.size(); ++i) {
     x.push_back(s.instants[i].offset);
     y.push_back(get(i));
   }
   return make_curve(make_words(s.parameters[parameter].name), SeriesKind::kLine,
-                    get_color(parameter), x, y, kMostPoints);
+                    get_color(parameter), x, y, kMaxPoints);
 }
 
-const char kWay[] = "rear wheels beyond the bump's center [m]";
+const char kDistance[] = "rear wheels beyond the bump's center [m]";
 
 Chart make_bound_chart(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
-  ChartPanel panel{{kWay}, {"bound, 1 sigma [%]", true}, {}};
-  double least = INFINITY;
+  ChartPanel panel{{kDistance}, {"bound, 1 sigma [%]", true}, {}};
+  double smallest = INFINITY;
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
-    panel.series.push_back(make_way_curve(s, p, [&](std::size_t i) {
+    panel.series.push_back(make_distance_curve(s, p, [&](std::size_t i) {
       const double bound = report.design.scan[i].bound[p];
-      least = std::min(least, bound);
+      smallest = std::min(smallest, bound);
       return bound <= kIdentifiable ? bound : NAN;
     }));
   }
@@ -56,14 +58,14 @@ Chart make_bound_chart(const DesignReport& report) {
                             SeriesKind::kDashedLine,
                             offset == best ? 3 : kInk,
                             {offset, offset},
-                            {least, kIdentifiable}});
+                            {smallest, kIdentifiable}});
   }
   Chart chart{"bounds", {std::move(panel)}};
   chart.panel_height = 420;
-  chart.caption =
-      "What one snapshot can tell at most, by where it is taken: the Cramer-Rao bound of each "
-      "parameter, as a share of its value; bounds above " +
-      format_short(kIdentifiable) + " % are left out.";
+  chart.caption = fmt::format(
+      "Cramer-Rao bound of each parameter from one snapshot, as a fraction of its value, over "
+      "the location of the snapshot; bounds above {} % are left out.",
+      format_short(kIdentifiable));
   return chart;
 }
 
@@ -71,12 +73,12 @@ Chart make_sensitivity_chart(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   Chart chart{"sensitivities", {}, 2};
   chart.panel_height = 280;
-  chart.caption = "How much each channel of the snapshot changes with one per cent of a parameter.";
+  chart.caption = "Change of each channel of the snapshot when a parameter changes by one percent.";
   for (const int channel : report.channels) {
     const ChannelInfo& info = get_channel(channel);
-    ChartPanel panel{{kWay}, {make_label(info.name, info.unit + " per %")}, {}};
+    ChartPanel panel{{kDistance}, {make_label(info.name, info.unit + " per %")}, {}};
     for (std::size_t p = 0; p < s.parameters.size(); ++p) {
-      panel.series.push_back(make_way_curve(s, p, [&](std::size_t i) {
+      panel.series.push_back(make_distance_curve(s, p, [&](std::size_t i) {
         return to_unit(s.parameters[p], s.get(s.instants[i], channel, p));
       }));
     }
@@ -99,18 +101,18 @@ ReportTable make_bound_table(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   ReportTable table{"Cramer-Rao bounds, 1 sigma [%]", {"measured at", "offset [m]"}};
   for (const SensitivityParameter& p : s.parameters) table.header.push_back(p.name);
-  const auto print_place = [](const Instant& i) { return print_number("%.3f", i.offset); };
+  const auto print_offset = [](const Instant& i) { return print_number("%.3f", i.offset); };
   table.rows.push_back(
-      make_row(s, "the sweep's instant", print_place(s.snapshot), report.design.snapshot));
+      make_row(s, "the sweep's instant", print_offset(s.snapshot), report.design.snapshot));
   for (const DesignChoice& choice : report.design.best) {
-    std::string places;
+    std::string offsets;
     for (const std::size_t i : choice.instants) {
-      places += (places.empty() ? "" : ", ") + print_place(s.instants[i]);
+      offsets += (offsets.empty() ? "" : ", ") + print_offset(s.instants[i]);
     }
     const std::size_t count = choice.instants.size();
     table.rows.push_back(
-        make_row(s, count == 1 ? "best instant" : "best " + std::to_string(count) + " instants",
-                 places, choice.bounds));
+        make_row(s, count == 1 ? "best instant" : fmt::format("best {} instants", count), offsets,
+                 choice.bounds));
   }
   table.rows.push_back(make_row(s, "all instants", "", report.design.window));
   return table;
@@ -123,12 +125,13 @@ ReportSection make_sensitivity_section(const SweepRequest& request, const Figure
   try {
     const DesignReport report = calc_report(request);
     section.paragraphs = {
-        "What the snapshot's channels can tell about the parameters with the noise of usual "
-        "sensors, at the middle of the grid. `strut design` has other sensors and base points."};
+        "Accuracy with which the snapshot's channels identify the parameters, with the noise of "
+        "typical sensors, at the middle of the grid. `strut design` offers other sensors and base "
+        "points."};
     section.tables = {make_bound_table(report)};
     drawer.draw_all({make_bound_chart(report), make_sensitivity_chart(report)}, section);
   } catch (const InputError& e) {
-    section.paragraphs = {std::string("Could not be calculated: ") + e.what()};
+    section.paragraphs = {fmt::format("Could not be calculated: {}", e.what())};
   }
   return section;
 }

@@ -7,8 +7,8 @@
 
 namespace strut {
 
-/// Simulates a few runs around the middle of the grid; noise of the default sensors. A request for
-/// which that cannot be done is told in the section.
+/// Simulates a few runs around the middle of the grid; noise of the default sensors. If that is
+/// impossible for the request, the section says so.
 ReportSection make_sensitivity_section(const SweepRequest& request, const FigureDrawer& drawer);
 
 }  // namespace strut

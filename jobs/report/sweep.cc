@@ -1,5 +1,7 @@
 #include "jobs/report/sweep.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,18 +21,18 @@ namespace strut {
 namespace {
 
 constexpr std::size_t kBins = 10;
-/// Values that a figure is made of; beyond, one case of so many.
-constexpr std::size_t kMostCases = 200000;
+/// Maximum number of cases in a figure; larger sweeps are sampled.
+constexpr std::size_t kMaxCases = 200000;
 
 /// Finished cases with a snapshot, by rows: parameters, then snapshot.
 struct Cases {
   std::vector<ColumnInfo> parameters, channels;
   std::vector<std::vector<double>> rows;
-  std::size_t step = 1;  // one of so many
+  std::size_t step = 1;  // about one case of `step` is included
 };
 
-/// One number of so many, at random but always the same: every n-th one of a Sobol sequence, or of
-/// a grid's order, would leave out parts of the space.
+/// Picks about one number of `step`, at random but reproducibly: every n-th point of a Sobol
+/// sequence or of a grid would leave out parts of the space.
 bool is_picked(std::size_t number, std::size_t step) {
   return calc_uniform(0, 0, number) * static_cast<double>(step) < 1.0;
 }
@@ -38,7 +40,7 @@ bool is_picked(std::size_t number, std::size_t step) {
 Cases read_cases(Dataset& dataset) {
   const ShardSchema& schema = dataset.schema();
   Cases cases{schema.parameters, schema.snapshot, {}, 1};
-  cases.step = (dataset.row_count() + kMostCases - 1) / kMostCases;
+  cases.step = (dataset.row_count() + kMaxCases - 1) / kMaxCases;
   const std::size_t p = schema.parameters.size(), s = schema.snapshot.size();
   std::size_t number = 0;
   for (std::size_t piece = 0; piece < dataset.piece_count(); ++piece) {
@@ -67,9 +69,9 @@ std::vector<double> sort_column(const Cases& cases, std::size_t column) {
   return values;
 }
 
-double find_quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  return sorted[static_cast<std::size_t>(std::llround(place))];
+double find_quantile(const std::vector<double>& sorted, double probability) {
+  const double position = probability * static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::llround(position))];
 }
 
 ReportTable make_channel_table(const Cases& cases) {
@@ -87,25 +89,25 @@ ReportTable make_channel_table(const Cases& cases) {
   return table;
 }
 
-/// A channel against one parameter: median, and the band of 5 to 95 %, per bin of the parameter. A
-/// bin stands at its middle value, which is the level where it holds a single one.
+/// A channel over one parameter: median and 5 to 95 % band for each bin of the parameter. A bin is
+/// drawn at its median value, which is the level if the bin holds a single one.
 ChartPanel make_band_panel(const Cases& cases, std::size_t parameter, std::size_t channel) {
   const std::size_t column = cases.parameters.size() + channel;
   const auto range = sort_column(cases, parameter);
   const double low = range.front(), width = (range.back() - low) / static_cast<double>(kBins);
-  std::vector<std::vector<double>> places(kBins), bins(kBins);
+  std::vector<std::vector<double>> parameters(kBins), bins(kBins);
   for (const auto& row : cases.rows) {
-    const double place = width > 0.0 ? (row[parameter] - low) / width : 0.0;
-    const std::size_t bin = std::min(kBins - 1, static_cast<std::size_t>(place));
-    places[bin].push_back(row[parameter]);
+    const double position = width > 0.0 ? (row[parameter] - low) / width : 0.0;
+    const std::size_t bin = std::min(kBins - 1, static_cast<std::size_t>(position));
+    parameters[bin].push_back(row[parameter]);
     bins[bin].push_back(row[column]);
   }
   ChartSeries band{"5 to 95 %", SeriesKind::kBand, 6}, median{"median", SeriesKind::kLinePoints, 1};
   for (std::size_t b = 0; b < kBins; ++b) {
     if (bins[b].empty()) continue;
-    std::sort(places[b].begin(), places[b].end());
+    std::sort(parameters[b].begin(), parameters[b].end());
     std::sort(bins[b].begin(), bins[b].end());
-    median.x.push_back(find_quantile(places[b], 0.5));
+    median.x.push_back(find_quantile(parameters[b], 0.5));
     median.y.push_back(find_quantile(bins[b], 0.5));
     band.low.push_back(find_quantile(bins[b], 0.05));
     band.high.push_back(find_quantile(bins[b], 0.95));
@@ -128,7 +130,7 @@ Chart make_channel_chart(const Cases& cases, std::size_t channel) {
 }
 
 ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const SweepStatus& s) {
-  ReportTable table{"Progress", {"what", "value"}, {}, {}, 2};
+  ReportTable table{"Progress", {"quantity", "value"}, {}, {}, 2};
   table.rows = {
       {"plan", plan.hash()},
       {"data digest", s.digest.text()},
@@ -148,7 +150,8 @@ ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const S
   }
   ReportSection section{"Cases", {}, {table}};
   if (!s.complete()) {
-    section.paragraphs.push_back("Not complete: `strut run " + folder.root.string() + "` goes on.");
+    section.paragraphs.push_back(
+        fmt::format("Not complete: `strut run {}` continues.", folder.root.string()));
   }
   for (const std::string& fault : s.faults) section.paragraphs.push_back(fault);
   return section;
@@ -186,7 +189,7 @@ Chart make_failure_chart(const SweepStatus& status) {
   }
   panel.series.push_back(std::move(bars));
   Chart chart{"failures", {std::move(panel)}};
-  chart.caption = "Why cases failed; where, the coverage shows.";
+  chart.caption = "Reasons of failures; the coverage shows their locations.";
   return chart;
 }
 
@@ -212,7 +215,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
     return section;
   }
   if (cases.step > 1) {
-    section.paragraphs = {"From one case of " + std::to_string(cases.step) + "."};
+    section.paragraphs = {fmt::format("From about one case of {}.", cases.step)};
   }
   section.tables.push_back(make_channel_table(cases));
   for (std::size_t c = 0; c < cases.channels.size(); ++c) {
