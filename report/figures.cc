@@ -20,9 +20,11 @@ constexpr std::size_t kMaxChartBytes = std::size_t{256} << 20;
 
 void check_figure_name(const Folder& folder, const std::string& name) {
   if (is_figure_name(name)) return;
-  throw InputError(fmt::format(
-      "{}: figure '{}': the name must consist of letters, digits, '_' and '-', as strut writes it",
-      folder.path().string(), shorten(name)));
+  // The name last: it may hold a NUL, which ends the message of an exception.
+  throw InputError(
+      fmt::format("{}: the name of a figure must consist of letters, digits, '_' and '-', as strut "
+                  "writes it; it is '{}'",
+                  folder.path().string(), shorten(name)));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "jobs/completion/words.h"
 
+#include <algorithm>
+
 #include "model_files/parameters.h"
 
 namespace strut {
@@ -10,10 +12,21 @@ std::vector<std::string> list_spellings(const ArgumentOption& option) {
   return spellings;
 }
 
+namespace {
+
+/// Shells show a description on one line.
+std::string join_lines(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace
+
 std::vector<ArgumentOption> list_all_options(const Arguments& arguments) {
   std::vector<ArgumentOption> all = arguments.options();
   const std::vector<ArgumentOption>& common = Arguments::common_options();
   all.insert(all.end(), common.begin(), common.end());
+  for (ArgumentOption& option : all) option.help = join_lines(option.help);
   return all;
 }
 

@@ -77,7 +77,7 @@ TEST_CASE("Names in a report's page that lead out of its folder are refused", "[
     const std::string before = read_text(report / "report.html");
     const Outcome outcome = run_program("report " + report.string());
     CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains("name must consist of letters, digits"));
+    CHECK_THAT(outcome.messages, Contains("name of a figure must consist of letters, digits"));
     CHECK(read_text(report / "report.html") == before);
   }
 }
