@@ -55,7 +55,7 @@ std::string make_text(const Arguments& arguments, const TrainedModel& model,
   return make_c_source(model, find_name(arguments, output), kind);
 }
 
-/// How other programs call it.
+/// Suggests how other programs read or call the exported file.
 void suggest_next_step(const Arguments& arguments, const fs::path& output) {
   const std::string file = output.string();
   if (find_format(output) == ExportFormat::kOnnx) {

@@ -86,7 +86,7 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
   }
   make_folder(folder.root);
   make_subfolders(folder);
-  // Of two processes planning into one folder, one continues. If it dies, its claim becomes stale.
+  // If two processes plan into one folder, one continues. If it dies, its claim becomes stale.
   Claims claims(folder.open(folder.claims()), ClaimOptions());
   if (claims.claim(kPlanUnit) != Claims::Answer::kMine) {
     throw EnvironmentError(folder.root.string() +

@@ -1,5 +1,5 @@
-// What a sweep's snapshot can tell about its parameters, and where along the way more is told: the
-// part of a sweep's report that `strut design` prints in full.
+// Sensitivities of a sweep's snapshot to its parameters, and the positions along the road that
+// would be more informative: a part of a sweep's report, printed in full by `strut design`.
 #pragma once
 
 #include "report/figures.h"

@@ -1,4 +1,4 @@
-// What the command line of `strut run` and `strut resume` asks for.
+// Options of `strut run` and `strut resume`.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What `strut run` prints: progress and summary.
+// Printed output of `strut run`: progress and summary.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What the command line of `strut simulate` asks for.
+// Options of `strut simulate`.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What the command line of `strut submit` asks for.
+// Options of `strut submit`.
 #pragma once
 
 #include <filesystem>

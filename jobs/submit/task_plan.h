@@ -12,7 +12,7 @@
 
 namespace strut {
 
-/// What a sweep lacks: shards that neither exist nor belong to a task that waits or runs.
+/// Missing shards of a sweep: those that neither exist nor belong to a task that waits or runs.
 struct MissingWork {
   std::vector<ShardRange> shards;
   std::int64_t present = 0;  // shards that exist
