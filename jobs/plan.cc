@@ -46,8 +46,8 @@ std::string describe_cases(const Plan& plan) {
 }
 
 void print_strata(const Plan& plan) {
-  std::cout << fmt::format("layers    {} by {}\n", plan.strata().size(), plan.request().sample.by);
-  std::cout << fmt::format("{:>9} {:>14} {:>14} {:>16} {:>16}\n", "layer", "from", "to", "cases",
+  std::cout << fmt::format("strata    {} by {}\n", plan.strata().size(), plan.request().sample.by);
+  std::cout << fmt::format("{:>9} {:>14} {:>14} {:>16} {:>16}\n", "stratum", "from", "to", "cases",
                            "drawn");
   std::size_t number = 0;
   for (const Stratum& stratum : plan.strata()) {

@@ -40,7 +40,7 @@ void print_text(const VerifyReport& report) {
   for (const std::string& what : report.differing) {
     std::cout << "differs when simulated again: " << what << "\n";
   }
-  std::cout << fmt::format("{} cases: {} missing, {} double, {} foreign; {} sound shards\n",
+  std::cout << fmt::format("{} cases: {} missing, {} duplicate, {} foreign; {} sound shards\n",
                            format_count(report.cases), format_count(report.missing),
                            format_count(report.misplaced), format_count(report.foreign),
                            format_count(report.shards));

@@ -9,7 +9,7 @@ namespace {
 constexpr std::int64_t kMaxLevels = 20, kBins = 10;
 
 CaseCount make_layers(const Plan& plan) {
-  CaseCount count{"layer by " + make_words(plan.request().sample.by), {}, {}, {}};
+  CaseCount count{"stratum by " + make_words(plan.request().sample.by), {}, {}, {}};
   for (std::size_t layer = 0; layer < plan.strata().size(); ++layer) {
     count.centers.push_back(static_cast<double>(layer + 1));
   }

@@ -159,7 +159,7 @@ ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const S
 
 ReportTable make_layer_table(const Plan& plan) {
   ReportTable table{"Layers by " + plan.request().sample.by,
-                    {"layer", "from", "to", "cases", "drawn"},
+                    {"stratum", "from", "to", "cases", "drawn"},
                     {},
                     {},
                     0};
