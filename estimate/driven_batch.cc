@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
 #include "base/text/format_number.h"
@@ -19,8 +19,6 @@
 
 namespace strut {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The sampling with as many more steps as a lost stroke of the strut needs: a short stroke is
 /// crossed in a fraction of a millisecond, and a longer step would pass over it. Masses do not
@@ -58,14 +56,14 @@ using Take = std::function<void(std::size_t, const DrivenResult&)>;
 /// so that its result has the same bits.
 void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, std::size_t end,
                        const Take& take) {
-  constexpr double kMarginSteps = 4.0;
   const DrivenTask& common = tasks[first];
   StepOptions step;
   step.step = common.sampling.step;
   SamplePlan plan;
   plan.interval = common.sampling.interval;
-  plan.duration = common.run->times.back() +
-                  (common.sampling.even ? 0.0 : kMarginSteps * common.sampling.interval);
+  plan.duration =
+      common.run->times.back() +
+      (common.sampling.even ? 0.0 : static_cast<double>(kCurveSamples) * common.sampling.interval);
   plan.snapshot = false;
   std::vector<const RigSpec*> specs;
   specs.reserve(end - first);
@@ -156,11 +154,12 @@ DrivenResult::DrivenResult(const DrivenTask& task, const LaneResults& results, i
 
 double DrivenResult::read(std::size_t time, std::size_t channel) const {
   const auto get = [&](std::size_t sample) { return history_[sample * channels_ + channel]; };
-  if (sampling_.even) return time < count_ ? get(time) : kNan;
-  const double at = run_->times[time] / sampling_.interval;
-  const auto index = static_cast<std::size_t>(at);
-  if (index < kCurveMargin || index + 1 + kCurveMargin >= count_) return kNan;
-  return interpolate_curve(get, index, at - static_cast<double>(index), sampling_.interval).value;
+  if (sampling_.even) {
+    STRUT_CHECK(time < count_, "a sample at every reading");
+    return get(time);
+  }
+  STRUT_CHECK(count_ >= kCurveSamples, "samples to interpolate");
+  return interpolate_samples(get, count_, run_->times[time] / sampling_.interval);
 }
 
 /// Replaces the channels by the readings of their sensors.

@@ -55,7 +55,7 @@ class DrivenResult {
   DrivenResult(const DrivenTask& task, const LaneResults& results, int lane);
 
   const std::string& failure() const { return failure_; }
-  /// NaN where the simulation cannot be interpolated.
+  /// Interpolates where the samples are not at the run's times. Needs a result without failure.
   double read(std::size_t time, std::size_t channel) const;
 
  private:

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "estimate/driven_batch.h"
-#include "estimate/sampled_curve.h"
 
 namespace strut {
 namespace {
@@ -51,9 +50,7 @@ DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknow
                                const LinearizeOptions& options)
     : ReadingModel(std::move(runs), std::move(unknowns)), options_(options) {
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const DrivenSampling sampling = choose_sampling(runs_[r], options_);
-    const double margin = static_cast<double>(kCurveMargin) * sampling.interval;
-    add_readings(r, [&](double time) { return sampling.even || time >= margin; });
+    add_readings(r, [](double) { return true; });
   }
   finish();
 }

@@ -27,4 +27,30 @@ CurvePoint interpolate_curve(const Get& get, std::size_t index, double theta, do
           (d0 + theta * (2.0 * b + theta * 3.0 * a)) / step};
 }
 
+/// Number of samples of an interpolation, on either side of its interval or at an end.
+inline constexpr std::size_t kCurveSamples = 2 * kCurveMargin + 2;
+
+/// Value at `position` (in samples, 0 to count - 1) of `count` >= kCurveSamples samples get(i): by
+/// interpolate_curve, or within kCurveMargin of an end by the polynomial through the kCurveSamples
+/// samples there (Lagrange's; error below step^6 y^(6) / 42).
+template <class Get>
+double interpolate_samples(const Get& get, std::size_t count, double position) {
+  const auto index = static_cast<std::size_t>(position);
+  if (index >= kCurveMargin && index + 1 + kCurveMargin < count) {
+    return interpolate_curve(get, index, position - static_cast<double>(index), 1.0).value;
+  }
+  const std::size_t first = index < kCurveMargin ? 0 : count - kCurveSamples;
+  double value = 0.0;
+  for (std::size_t i = 0; i < kCurveSamples; ++i) {
+    double weight = 1.0;
+    for (std::size_t k = 0; k < kCurveSamples; ++k) {
+      if (k == i) continue;
+      weight *= (position - static_cast<double>(first + k)) /
+                (static_cast<double>(i) - static_cast<double>(k));
+    }
+    value += weight * get(first + i);
+  }
+  return value;
+}
+
 }  // namespace strut

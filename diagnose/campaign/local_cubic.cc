@@ -10,7 +10,39 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kLeast = 6;  // readings of a cubic's four numbers
+constexpr std::size_t kMinReadings = 6;  // of a cubic's four numbers
+
+/// Extends the readings [first, last) of a window around time i to the next ones on either side
+/// until kMinReadings of them are there or no others are left: a clock with jitter leaves narrow
+/// windows a reading short.
+void widen(std::span<const double> times, std::span<const double> values, std::size_t i,
+           std::size_t& first, std::size_t& last) {
+  std::size_t count = count_readings(values.subspan(first, last - first));
+  while (count < kMinReadings && (first > 0 || last < times.size())) {
+    const bool back =
+        last == times.size() || (first > 0 && times[i] - times[first - 1] < times[last] - times[i]);
+    const std::size_t next = back ? --first : last++;
+    count += std::isfinite(values[next]) ? 1 : 0;
+  }
+}
+
+/// Least-squares cubic in (t - times[i]) / half_width through the readings [first, last); false
+/// where they are too few.
+bool fit_cubic(std::span<const double> times, std::span<const double> values, std::size_t i,
+               double half_width, std::size_t first, std::size_t last, Eigen::Vector4d& cubic) {
+  if (count_readings(values.subspan(first, last - first)) < kMinReadings) return false;
+  Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d moment = Eigen::Vector4d::Zero();
+  for (std::size_t k = first; k < last; ++k) {
+    if (!std::isfinite(values[k])) continue;
+    const double s = (times[k] - times[i]) / half_width;
+    const Eigen::Vector4d powers(1.0, s, s * s, s * s * s);
+    gram += powers * powers.transpose();
+    moment += values[k] * powers;
+  }
+  cubic = gram.ldlt().solve(moment);
+  return true;
+}
 
 }  // namespace
 
@@ -27,19 +59,10 @@ SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const doub
     if (ends == CurveEnds::kNone && std::abs(middle - times[i]) > 1e-3 * half_width) continue;
     while (first < i && times[first] < middle - reach) ++first;
     while (last < times.size() && times[last] <= middle + reach) ++last;
-    Eigen::Matrix4d gram = Eigen::Matrix4d::Zero();
-    Eigen::Vector4d moment = Eigen::Vector4d::Zero();
-    std::size_t count = 0;
-    for (std::size_t k = first; k < last; ++k) {
-      if (!std::isfinite(values[k])) continue;
-      const double s = (times[k] - times[i]) / half_width;
-      const Eigen::Vector4d powers(1.0, s, s * s, s * s * s);
-      gram += powers * powers.transpose();
-      moment += values[k] * powers;
-      ++count;
-    }
-    if (count < kLeast) continue;
-    const Eigen::Vector4d cubic = gram.ldlt().solve(moment);
+    std::size_t begin = first, end = last;
+    if (ends == CurveEnds::kOneSided) widen(times, values, i, begin, end);
+    Eigen::Vector4d cubic;
+    if (!fit_cubic(times, values, i, half_width, begin, end, cubic)) continue;
     curve.value[i] = cubic(0);
     curve.rate[i] = cubic(1) / half_width;
     curve.second_rate[i] = 2.0 * cubic(2) / (half_width * half_width);

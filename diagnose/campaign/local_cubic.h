@@ -15,7 +15,8 @@ struct SmoothCurve {
 /// may be uneven or missing (A. Savitzky, M. J. E. Golay, Anal. Chem. 36 (1964), where they are
 /// even). Errors: of the value and the second rate half_width^4 and half_width^2 times the fourth
 /// derivative, of the rate half_width^4 times the fifth to leading order.
-/// Within half a width of the ends there is nothing, or with kOneSided a cubic of what is there.
+/// Within half a width of the ends there is nothing; with kOneSided there is a cubic everywhere, at
+/// the ends and where a window holds too few readings by the nearest ones.
 enum class CurveEnds { kNone, kOneSided };
 SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const double> values,
                              double half_width, CurveEnds ends = CurveEnds::kNone);

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "base/math/spread.h"
 #include "diagnose/baseline/baseline.h"
 #include "estimate/driven_batch.h"
+#include "estimate/simulate_run.h"
 #include "model/rig/rig_system.h"
 #include "model_files/read_rig.h"
 #include "tests/support/campaign_files.h"
@@ -59,6 +61,29 @@ TEST_CASE("A fit recovers a rig's parameters from records of another integrator"
     if (u.name == "initial_sprung_velocity" && u.run == 0) {
       CHECK(baseline.fit.values[i] == Approx(-0.01).epsilon(test::tolerance(0.01)));
     }
+  }
+}
+
+TEST_CASE("A clock with jitter loses no reading and moves no parameter", "[reference]") {
+  test::QuarterTruth truth;
+  truth.noise = 2e-5;
+  truth.jitter = GENERATE(1e-8, 1e-6, 2e-4);
+  const CampaignData data = read_two_runs(truth, with_noise(2e-5));
+  const Baseline baseline = calibrate_baseline(data);
+  CHECK(baseline.fit.converged);
+  const auto model =
+      make_reading_model(data, {0}, {make_shared_unknown(data.runs, "stiffness")}, 1);
+  CHECK(model->reading_count() == 2 * data.times(0).size());
+  CHECK(baseline.fit.chi2_per_degree() == Approx(1.0).epsilon(test::tolerance(0.2)));
+  for (std::size_t i = 0; i < baseline.shared_count(); ++i) {
+    INFO(baseline.calibrated.unknowns[i].name);
+    const double error = baseline.calibrated.values[i] - list_truth(truth)[i].second;
+    CHECK(std::abs(error) < test::tolerance(4.0) * baseline.calc_sigma(i));
+  }
+  const RunCurves curves = simulate_run(data.runs[1], {}, {});
+  REQUIRE(curves.failure.empty());
+  for (const std::vector<double>& channel : curves.channel) {
+    CHECK(count_readings(channel) == channel.size());
   }
 }
 

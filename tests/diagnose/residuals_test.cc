@@ -108,6 +108,23 @@ TEST_CASE("A local cubic gives cubics and their derivatives exactly", "[property
   }
 }
 
+TEST_CASE("A one-sided local cubic is defined everywhere on a clock with jitter", "[property]") {
+  std::vector<double> times, y;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const double t = 0.01 * static_cast<double>(i) + 1e-6 * test::calc_test_normal(5, 0, i);
+    times.push_back(t);
+    y.push_back(1.0 + t * (2.0 + t * (-3.0 + 4.0 * t)));
+  }
+  const SmoothCurve inside = calc_local_cubic(times, y, 0.03);
+  const SmoothCurve curve = calc_local_cubic(times, y, 0.03, CurveEnds::kOneSided);
+  CHECK(count_readings(inside.value) < 390);  // some windows hold five readings
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double t = times[i];
+    CHECK(curve.value[i] == Approx(1.0 + t * (2.0 + t * (-3.0 + 4.0 * t))).epsilon(1e-9));
+    CHECK(curve.rate[i] == Approx(2.0 - 6.0 * t + 12.0 * t * t).epsilon(1e-7));
+  }
+}
+
 TEST_CASE("Noise reaches a local cubic's second rate as stated", "[statistical]") {
   std::vector<double> times = make_times(4000, 0.002), y;
   for (std::uint64_t i = 0; i < 4000; ++i) y.push_back(1e-5 * test::calc_test_normal(3, 0, i));

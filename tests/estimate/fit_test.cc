@@ -46,6 +46,20 @@ TEST_CASE("A sampled curve is exact for cubics, with its slope", "[unit]") {
   }
 }
 
+TEST_CASE("Samples are interpolated up to both ends", "[unit]") {
+  constexpr std::size_t kCount = 9;
+  const auto f = [](double x) { return 1.0 + x * (2.0 - x * (0.5 - x * 0.1)); };
+  const auto get = [&](std::size_t i) { return f(static_cast<double>(i)); };
+  for (const double at : {0.0, 0.3, 1.7, 2.2, 5.9, 6.4, 7.5, 8.0}) {
+    CHECK(interpolate_samples(get, kCount, at) == Approx(f(at)).epsilon(tolerance(1e-13)));
+  }
+  // At the ends the polynomial of degree 5 is exact where the cubic in the middle is not.
+  const auto power = [](std::size_t i) { return std::pow(static_cast<double>(i), 5.0); };
+  CHECK(interpolate_samples(power, kCount, 0.5) == Approx(std::pow(0.5, 5.0)));
+  CHECK(interpolate_samples(power, kCount, 7.5) == Approx(std::pow(7.5, 5.0)));
+  CHECK(std::abs(interpolate_samples(power, kCount, 4.5) - std::pow(4.5, 5.0)) > 0.1);
+}
+
 TEST_CASE("The error of a sampled curve falls with the fourth power of its step", "[property]") {
   const CurvePoint coarse = calc_sine_error(0.1), fine = calc_sine_error(0.05);
   CHECK(coarse.value / fine.value == Approx(16.0).epsilon(tolerance(0.05)));

@@ -30,6 +30,7 @@ struct QuarterTruth {
   double stroke_friction = 0.0;  // N/m, friction by the strut's deflection, smoothed alike
   double hum = 0.0;              // m, a tone of 31.2 Hz in the sensor of the unsprung position
   double lost_stroke = 0.0;      // m, play before the damper, hard at both ends
+  double jitter = 0.0;           // s, 1 sigma of the times of all samples but the first
 };
 
 struct QuarterRecord {
@@ -55,12 +56,12 @@ inline double calc_test_normal(std::uint64_t seed, std::uint64_t stream, std::ui
 inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double duration = 4.0,
                                         double rate = 200.0) {
   constexpr int kSubsteps = 20;
-  const double h = 1.0 / rate / kSubsteps, small = 1e-6;
+  constexpr double kSmall = 1e-6;
   using State = std::array<double, 4>;
   const auto road_rate = [&](double t) {
-    return (calc_test_road(truth, t + small, duration) -
-            calc_test_road(truth, t - small, duration)) /
-           (2.0 * small);
+    return (calc_test_road(truth, t + kSmall, duration) -
+            calc_test_road(truth, t - kSmall, duration)) /
+           (2.0 * kSmall);
   };
   const double half_play = 0.5 * truth.lost_stroke;
   double joint = 0.0;  // where the rod is in its play
@@ -82,9 +83,13 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
   };
   QuarterRecord record;
   State x = truth.start;
+  const auto calc_time = [&](int i) {
+    const auto place = static_cast<std::uint64_t>(i);
+    return i / rate + (i > 0 ? truth.jitter * calc_test_normal(truth.seed, 2, place) : 0.0);
+  };
   const auto count = static_cast<int>(std::lround(duration * rate)) + 1;
   for (int i = 0; i < count; ++i) {
-    const double begin = i / rate;
+    const double begin = calc_time(i), h = (calc_time(i + 1) - begin) / kSubsteps;
     const auto place = static_cast<std::uint64_t>(i);
     record.time.push_back(begin);
     record.road.push_back(calc_test_road(truth, begin, duration));
