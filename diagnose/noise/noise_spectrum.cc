@@ -1,5 +1,7 @@
 #include "diagnose/noise/noise_spectrum.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "base/math/all_finite.h"
 #include "estimate/run_prepared.h"
 #include "estimate/simulate_run.h"
 
@@ -306,6 +309,18 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
   return s;
 }
 
+/// Throws InputError where the noise of a run is not finite.
+void check_finite(const NoiseSpectrum& s, const std::string& run) {
+  const bool is_finite =
+      all_finite(s.sigma) &&
+      std::all_of(s.common.begin(), s.common.end(), [](const auto& c) { return c.allFinite(); });
+  if (!is_finite) {
+    throw InputError(fmt::format(
+        "{}: the noise of its channels is not finite: the nominal model cannot be simulated there",
+        run));
+  }
+}
+
 }  // namespace
 
 std::size_t find_noise_band(double frequency) {
@@ -363,6 +378,7 @@ std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
     spectra.push_back(data.has_inputs() ? make_driven_spectrum(data, runs[i], unknowns, values)
                                         : make_road_spectrum(data, runs[i], static_cast<int>(i),
                                                              unknowns, values, record));
+    check_finite(spectra.back(), data.runs[runs[i]].name);
   }
   return spectra;
 }

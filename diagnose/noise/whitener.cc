@@ -8,6 +8,8 @@
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
+#include "base/error/check.h"
+
 namespace strut {
 namespace {
 
@@ -64,6 +66,7 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
         places_.insert(places_.end(), static_cast<std::size_t>(parts), {r, k, c});
       }
     }
+    STRUT_CHECK(std::isfinite(run.log_determinant), "noise of finite covariance");
     runs_.push_back(std::move(run));
   }
   run_begin_.push_back(places_.size());
@@ -157,6 +160,7 @@ Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns) const {
       apply_run(r, column, out.col(i).segment(begin, count));
     }
   }
+  STRUT_CHECK(out.allFinite(), "finite residuals and derivatives");
   return out;
 }
 

@@ -4,9 +4,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <vector>
 
+#include "base/error/check.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/tolerance.h"
 
@@ -176,6 +178,18 @@ TEST_CASE("Quick lengths are even and of small factors", "[unit]") {
   CHECK(find_quick_length(1501) == 1500);
   CHECK(find_quick_length(1999) == 1944);
   CHECK(find_quick_length(2) == 2);
+}
+
+TEST_CASE("Noise or a residual that is not finite is refused, not whitened", "[unit]") {
+  const ConstantModel model(1);
+  NoiseSpectrum spectrum = make_spectrum();
+  const Whitener whitener(model, {spectrum});
+  Eigen::VectorXd residual =
+      Eigen::VectorXd::Ones(static_cast<Eigen::Index>(model.reading_count()));
+  residual(7) = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(whitener.apply(residual), CheckError);
+  spectrum.common[3](1, 1) = residual(7);
+  CHECK_THROWS_AS(Whitener(model, {spectrum}), CheckError);
 }
 
 }  // namespace
