@@ -1,183 +1,15 @@
 #include "diagnose/decide/select.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "base/error/input_error.h"
-#include "base/math/normal.h"
-#include "base/parallel/team.h"
+#include "diagnose/decide/effect_round.h"
+#include "diagnose/decide/extended_unknowns.h"
 
 namespace strut {
 namespace {
-
-bool is_one_sided(const CampaignData& data, const Hypothesis& h) {
-  const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [](const EffectParameter* p) { return p->switches && p->low >= p->neutral; });
-}
-
-struct RankedTrial {
-  std::size_t trial;
-  Gain gain;
-};
-
-/// The best trial of each hypothesis, best first.
-std::vector<RankedTrial> rank(const Evidence& evidence, const Score& score,
-                              const std::vector<bool>& one_sided) {
-  std::map<std::size_t, RankedTrial> best;
-  for (std::size_t t = 0; t < evidence.trials.size(); ++t) {
-    const HypothesisTrial& trial = evidence.trials[t];
-    const Gain gain = calc_gain(score, trial.columns, one_sided[trial.hypothesis]);
-    const auto found = best.find(trial.hypothesis);
-    if (found != best.end() && found->second.gain.chi2 >= gain.chi2) continue;
-    best[trial.hypothesis] = {t, gain};
-  }
-  std::vector<RankedTrial> list;
-  list.reserve(best.size());
-  for (const auto& [hypothesis, ranked] : best) list.push_back(ranked);
-  std::stable_sort(list.begin(), list.end(), [](const RankedTrial& a, const RankedTrial& b) {
-    return a.gain.chi2 > b.gain.chi2;
-  });
-  return list;
-}
-
-/// A beginning with the sizes that the score asks for, within what is allowed.
-std::vector<double> make_beginning(const CampaignData& data, const Hypothesis& h,
-                                   const HypothesisTrial& trial, const Gain& gain) {
-  const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
-  std::vector<double> values = h.beginnings[trial.beginning];
-  for (std::size_t j = 0; j < trial.parameters.size(); ++j) {
-    const std::size_t i = trial.parameters[j];
-    // Not too far: what is linear at first may not stay so.
-    const double amplitude = std::clamp(gain.amplitude(static_cast<Eigen::Index>(j)), -10.0, 10.0);
-    values[i] = std::clamp(values[i] * amplitude, parameters[i]->low, parameters[i]->high);
-  }
-  return values;
-}
-
-/// A beginning with a fiftieth of its sizes.
-std::vector<double> reduce(const HypothesisTrial& trial, std::vector<double> beginning) {
-  constexpr double kShare = 0.02;
-  for (const std::size_t i : trial.parameters) beginning[i] *= kShare;
-  return beginning;
-}
-
-std::vector<double> make_weights(std::size_t count) { return std::vector<double>(count, 1.0); }
-
-/// Share of the runs without which the hypothesis is still within a factor of the best.
-double calc_stability(const Evidence& evidence, const std::vector<bool>& one_sided,
-                      std::size_t hypothesis) {
-  constexpr double kStays = 0.8;
-  if (evidence.run_count() < 2) return 1.0;
-  double stays = 0.0;
-  for (std::size_t r = 0; r < evidence.run_count(); ++r) {
-    std::vector<double> weights = make_weights(evidence.run_count());
-    weights[r] = 0.0;
-    const Score score = calc_score(evidence, weights);
-    const std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
-    const auto own = std::find_if(ranked.begin(), ranked.end(), [&](const RankedTrial& t) {
-      return evidence.trials[t.trial].hypothesis == hypothesis;
-    });
-    if (own != ranked.end() && own->gain.chi2 >= kStays * ranked.front().gain.chi2) ++stays;
-  }
-  return stays / static_cast<double>(evidence.run_count());
-}
-
-/// The unknowns and values of a fit with a hypothesis put behind those that all runs share.
-struct ExtendedUnknowns {
-  std::vector<Unknown> unknowns;
-  std::vector<double> values;
-  std::size_t shared_count = 0;
-};
-
-ExtendedUnknowns extend(const CampaignData& data, const WhitenedFit& base, const Hypothesis& h,
-                        const std::vector<double>& base_values,
-                        const std::vector<double>& parameters) {
-  ExtendedUnknowns e;
-  const auto shared = static_cast<std::ptrdiff_t>(base.shared_count);
-  e.unknowns.assign(base.fit.unknowns.begin(), base.fit.unknowns.begin() + shared);
-  e.values.assign(base_values.begin(), base_values.begin() + shared);
-  std::vector<Unknown> own = make_unknowns(data, h);
-  const auto of_effect = list_effect_parameters(*find_effect(h.effect), data.model());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    Unknown& u = own[i];
-    // Steps and sizes are counted in what was found.
-    if (parameters[i] != 0.0) u.scale = std::abs(parameters[i]);
-    if (!h.parameters[i].switches) {
-      const double ordinary = std::max(std::abs(parameters[i]), std::abs(of_effect[i]->typical));
-      u.prior = {parameters[i], std::max(ordinary, 1e-12)};
-    }
-    e.unknowns.push_back(std::move(u));
-    e.values.push_back(parameters[i]);
-  }
-  e.shared_count = e.unknowns.size();
-  e.unknowns.insert(e.unknowns.end(), base.fit.unknowns.begin() + shared, base.fit.unknowns.end());
-  e.values.insert(e.values.end(), base_values.begin() + shared, base_values.end());
-  return e;
-}
-
-/// The same without a hypothesis.
-ExtendedUnknowns remove(const WhitenedFit& fit, const Hypothesis& h) {
-  ExtendedUnknowns e;
-  for (std::size_t i = 0; i < fit.fit.unknowns.size(); ++i) {
-    const auto is_own = [&](const HypothesisParameter& p) {
-      return p.name == fit.fit.unknowns[i].name;
-    };
-    if (std::any_of(h.parameters.begin(), h.parameters.end(), is_own)) continue;
-    e.unknowns.push_back(fit.fit.unknowns[i]);
-    e.values.push_back(fit.fit.values[i]);
-    if (i < fit.shared_count) ++e.shared_count;
-  }
-  return e;
-}
-
-/// All that runs share at a hypothesis' fit.
-SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const HypothesisFit& fit) {
-  SharedValues shared = base.shared();
-  std::copy_n(fit.values.begin(), base.shared_count, shared.values.begin());
-  const std::size_t first = base.fit.unknowns.size();
-  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
-    Unknown u;
-    u.name = h.parameters[i].name;
-    shared.unknowns.push_back(std::move(u));
-    shared.values.push_back(fit.values[first + i]);
-  }
-  return shared;
-}
-
-/// For each of the ranked, one before it whose first beginning does the same to all readings: what
-/// no data tell apart is fitted once. Itself where there is none.
-std::vector<std::size_t> find_twins(const std::vector<RankedTrial>& ranked,
-                                    const std::vector<std::vector<double>>& beginnings) {
-  constexpr double kSame = 1e-9;
-  std::vector<std::size_t> twins;
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
-    std::size_t twin = 0;
-    while (twin < i &&
-           (beginnings[twin] != beginnings[i] ||
-            std::abs(ranked[twin].gain.chi2 - ranked[i].gain.chi2) > kSame * ranked[i].gain.chi2)) {
-      ++twin;
-    }
-    twins.push_back(twin);
-  }
-  return twins;
-}
-
-/// The fit of its twin under the hypothesis' own names.
-Candidate rename(Candidate twin, const Hypothesis& h) {
-  twin.hypothesis = h;
-  twin.simulations = 0;
-  if (twin.values.empty()) return twin;
-  const std::size_t first = twin.shared.unknowns.size() - h.parameters.size();
-  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
-    twin.shared.unknowns[first + i].name = h.parameters[i].name;
-  }
-  return twin;
-}
 
 double sum_chi2(const std::vector<HoldOutRun>& runs) {
   double sum = 0.0;
@@ -209,9 +41,13 @@ class Selector {
     selection_.hold_out_after = selection_.hold_out_before;
     const int most =
         selection_.base.is_dominated ? options_.most_causes_dominated : options_.most_causes;
-    while (static_cast<int>(selection_.causes.size()) < most && add()) {
+    constexpr int kPasses = 2;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      while (static_cast<int>(selection_.causes.size()) < most && add()) {
+      }
+      last_ = selection_.rounds.back();
+      if (!reconsider()) break;
     }
-    if (selection_.causes.size() > 1) reconsider();
     measure_left();
     return std::move(selection_);
   }
@@ -255,24 +91,6 @@ class Selector {
     return selection_.judge->judge(fit.shared());
   }
 
-  /// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
-  double calc_negligible(const Whitener& whitener) const {
-    const double share = data_.has_inputs() ? options_.negligible : options_.negligible_car;
-    double power = share * static_cast<double>(whitener.whitened_count());
-    if (data_.has_inputs()) return power;
-    for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
-      const NoiseSpectrum& s = whitener.spectra()[r];
-      double ratio = 0.0;  // of the road's power to the sensors', mean over channels
-      for (std::size_t c = 0; c < s.sigma.size(); ++c) {
-        ratio += s.level * calc_common_variance(s, c) /
-                 (s.sigma[c] * s.sigma[c] * static_cast<double>(s.sigma.size()));
-      }
-      const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);
-      power += options_.negligible_road * ratio * count;
-    }
-    return power;
-  }
-
   void measure_left() {
     const WhitenedFit& now = selection_.extended;
     TestBench bench(data_, now, options_.threads);
@@ -280,137 +98,134 @@ class Selector {
     selection_.simulations += bench.simulation_count();
     selection_.is_left = selection_.left.significance >= options_.leftover.significant;
     // A round's best that was large but explains too little for a cause of its own is left, too.
-    const SelectRound& last = selection_.rounds.back();
-    if (!last.candidates.empty() && !last.accepted && !selection_.causes.empty() &&
-        last.candidates.front().gain / last.misfit > 2.0 * last.threshold) {
+    if (!last_.candidates.empty() && !last_.accepted && !selection_.causes.empty() &&
+        last_.candidates.front().gain / last_.misfit > 2.0 * last_.threshold) {
       selection_.is_left = true;
-      selection_.left.energy = std::max(selection_.left.energy, last.candidates.front().gain);
+      selection_.left.energy = std::max(selection_.left.energy, last_.candidates.front().gain);
     }
-  }
-
-  /// With several causes, the first were chosen without the others: each is taken out, everything
-  /// tested anew, and replaced where another does better, or left out where nothing does.
-  void reconsider() {
-    // What replaces a cause stands last; another one then stands in its place.
-    std::size_t i = 0;
-    for (std::size_t left = selection_.causes.size() - 1;
-         left > 0 && i + 1 < selection_.causes.size(); --left) {
-      const Selection kept = selection_;
-      const Hypothesis removed = selection_.causes[i];
-      const ExtendedUnknowns e = remove(selection_.extended, removed);
-      selection_.causes.erase(selection_.causes.begin() + static_cast<std::ptrdiff_t>(i));
-      selection_.round_of.erase(selection_.round_of.begin() + static_cast<std::ptrdiff_t>(i));
-      selection_.gains.erase(selection_.gains.begin() + static_cast<std::ptrdiff_t>(i));
-      tell("reconsidering " + removed.describe());
-      selection_.extended = fit_whitened(data_, kept.extended.runs, kept.extended.spectra,
-                                         e.unknowns, e.values, e.shared_count, options_.threads);
-      selection_.hold_out_after = judge(selection_.extended);
-      const bool added = add();
-      const bool same = added && selection_.causes.back().effect == removed.effect &&
-                        selection_.causes.back().place == removed.place;
-      const bool better = sum_chi2(selection_.hold_out_after) < sum_chi2(kept.hold_out_after);
-      if (!same && better) continue;
-      const long simulations = selection_.simulations;
-      selection_ = kept;
-      selection_.simulations = simulations;
-      ++i;
-    }
-  }
-
-  /// The fit of one effect, values empty where it cannot be simulated.
-  Candidate fit_candidate(const TestBench& bench, const Hypothesis& h, const HypothesisTrial& trial,
-                          const Gain& gain, const std::vector<double>& beginning) const {
-    HypothesisFit fit = bench.fit(h, beginning);
-    Candidate c;
-    c.simulations = fit.simulations;
-    if (data_.has_inputs() && (!fit.failure.empty() || fit.gain < 0.5 * gain.chi2)) {
-      // Far from what the score promised: another valley, and none of the sizes that a search
-      // begins with was in the right one. Near the base the score cannot be wrong.
-      HypothesisFit near = bench.fit(h, reduce(trial, beginning));
-      c.simulations += near.simulations;
-      if (near.failure.empty() && (!fit.failure.empty() || near.gain > fit.gain)) {
-        fit = std::move(near);
-      }
-    }
-    c.hypothesis = h;
-    c.score = gain.chi2;
-    c.gain = fit.gain;
-    c.sigma = fit.sigma;
-    if (!fit.failure.empty()) return c;
-    const auto base = static_cast<std::ptrdiff_t>(bench.values().size());
-    c.base_values.assign(fit.values.begin(), fit.values.begin() + base);
-    c.values.assign(fit.values.begin() + base, fit.values.end());
-    c.shared = make_shared(selection_.extended, h, fit);
-    return c;
   }
 
   /// One round; whether a cause was added.
   bool add() {
-    const WhitenedFit& now = selection_.extended;
     tell("testing every effect" +
          (selection_.causes.empty() ? "" : " beside " + selection_.causes.back().describe()));
-    TestBench bench(data_, now, options_.threads);
-    const SharedValues shared = now.shared();
-    const std::vector<Hypothesis> hypotheses =
-        list_hypotheses(data_, shared, list_effects_on(data_, shared), shared.unknowns);
-    std::vector<bool> one_sided;
-    one_sided.reserve(hypotheses.size());
-    for (const Hypothesis& h : hypotheses) one_sided.push_back(is_one_sided(data_, h));
-    const Evidence evidence = bench.gather(hypotheses);
-    const Score score = calc_score(evidence, make_weights(evidence.run_count()));
-    SelectRound round;
-    round.threshold =
-        std::max(options_.margin * calc_null_threshold(evidence, score, one_sided, options_.nulls,
-                                                       options_.confidence),
-                 calc_negligible(bench.whitener()));
-    std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
-    ranked.resize(std::min(ranked.size(), options_.fitted));
-    std::erase_if(ranked,
-                  [&](const RankedTrial& r) { return r.gain.chi2 < 0.3 * round.threshold; });
-    tell("fitting the best " + std::to_string(ranked.size()));
-    // Each alone on a thread: one fit does not fill several.
-    std::vector<std::vector<double>> beginnings;
-    for (const RankedTrial& r : ranked) {
-      const HypothesisTrial& trial = evidence.trials[r.trial];
-      beginnings.push_back(make_beginning(data_, hypotheses[trial.hypothesis], trial, r.gain));
-    }
-    const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
-    std::vector<Candidate> fitted(ranked.size());
-    share_items(options_.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
-      if (twins[i] != i) return;
-      const HypothesisTrial& trial = evidence.trials[ranked[i].trial];
-      fitted[i] =
-          fit_candidate(bench, hypotheses[trial.hypothesis], trial, ranked[i].gain, beginnings[i]);
-      fitted[i].stability = calc_stability(evidence, one_sided, trial.hypothesis);
-    });
-    for (std::size_t i = 0; i < fitted.size(); ++i) {
-      if (twins[i] == i) continue;
-      const std::size_t h = evidence.trials[ranked[i].trial].hypothesis;
-      fitted[i] = rename(fitted[twins[i]], hypotheses[h]);
-    }
-    for (Candidate& c : fitted) {
-      selection_.simulations += c.simulations;
-      if (c.values.empty() || !is_allowed(c)) continue;
-      round.candidates.push_back(std::move(c));
-    }
-    std::stable_sort(round.candidates.begin(), round.candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
-    const double most = round.candidates.empty() ? 0.0 : round.candidates.front().gain;
-    round.misfit = std::max(1.0, (now.fit.chi2 - most) / static_cast<double>(now.fit.degrees));
-    selection_.simulations += bench.simulation_count();
+    SelectRound round = test_effects(data_, selection_.extended, options_, {options_.fitted});
+    look_ahead(round);
+    selection_.simulations += round.simulations;
     selection_.rounds.push_back(std::move(round));
     const bool accepted = accept(selection_.rounds.back());
     selection_.rounds.back().accepted = accepted;
     return accepted;
   }
 
-  /// Whether a candidate's values are within its own effect's range, and such as that effect has.
-  bool is_allowed(const Candidate& c) const {
-    const std::vector<Unknown> unknowns = make_unknowns(data_, c.hypothesis);
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      if (c.values[i] < unknowns[i].low || c.values[i] > unknowns[i].high) return false;
+  /// The best alone may be a third effect that imitates two others together. For the best of each
+  /// class, the best second effect is looked up, and that of the best pair leads the round.
+  void look_ahead(SelectRound& round) {
+    constexpr double kExplained = 1.2, kBetter = 1.02;
+    if (!data_.has_inputs() || round.candidates.size() < 2 || round.misfit < kExplained) return;
+    if (round.candidates.front().gain < round.threshold * round.misfit) return;
+    tell("looking for pairs of effects");
+    std::vector<std::size_t> classes;
+    std::size_t best = 0;
+    double first = 0.0, most = 0.0;
+    for (std::size_t i = 0; i < round.candidates.size() && classes.size() < options_.paired; ++i) {
+      const Candidate& c = round.candidates[i];
+      if (std::find(classes.begin(), classes.end(), c.alias) != classes.end()) continue;
+      classes.push_back(c.alias);
+      const double gain = c.gain + find_partner_gain(round, c);
+      if (i == 0) first = gain;
+      if (gain <= most) continue;
+      most = gain;
+      best = i;
     }
-    return is_plausible(data_, c.hypothesis, c.values);
+    if (most < kBetter * first || most - first < round.threshold * round.misfit) return;
+    std::rotate(round.candidates.begin(), round.candidates.begin() + static_cast<long>(best),
+                round.candidates.begin() + static_cast<long>(best) + 1);
+    round.pair_gain = most;
+  }
+
+  double find_partner_gain(SelectRound& round, const Candidate& c) const {
+    const WhitenedFit with = adopt(data_, selection_.extended, c);
+    RoundOptions quick{options_.partners};
+    quick.is_final = false;
+    const SelectRound next = test_effects(data_, with, options_, quick);
+    round.simulations += next.simulations;
+    return next.candidates.empty() ? 0.0 : std::max(0.0, next.candidates.front().gain);
+  }
+
+  /// With several causes, each was chosen without those that came later: each is taken out, every
+  /// effect tested beside the others, and the cause replaced where another does better, or dropped
+  /// where it is not needed any more. Whether any was.
+  bool reconsider() {
+    bool has_changed = false;
+    for (std::size_t i = 0, tries = selection_.causes.size();
+         tries > 0 && i < selection_.causes.size() && selection_.causes.size() > 1; --tries) {
+      const bool is_replaced = replace(i);
+      has_changed = has_changed || is_replaced;
+      if (!is_replaced) ++i;  // what replaces a cause stands last
+    }
+    return has_changed;
+  }
+
+  /// Takes a cause out, and puts what does better in its place; whether there is such.
+  bool replace(std::size_t i) {
+    const Selection kept = selection_;
+    const Hypothesis removed = kept.causes[i];
+    tell("reconsidering " + removed.describe());
+    take_out(i);
+    RoundOptions round_options{options_.fitted / 2};
+    round_options.also = &removed;
+    round_options.values = get_values(kept.extended, removed);
+    SelectRound round = test_effects(data_, selection_.extended, options_, round_options);
+    const long simulations = selection_.simulations + round.simulations;
+    const bool is_needed = is_large(round);
+    const bool is_best = is_needed && is_same_effect(round.candidates.front().hypothesis, removed);
+    bool is_replaced = !is_needed;
+    if (is_needed && !is_best) {
+      selection_.rounds.push_back(round);
+      is_replaced = accept(selection_.rounds.back()) &&
+                    sum_chi2(selection_.hold_out_after) < sum_chi2(kept.hold_out_after);
+      selection_.rounds.back().accepted = is_replaced;
+    }
+    if (!is_replaced) {
+      selection_ = kept;
+      keep_round(i, std::move(round));
+    }
+    selection_.simulations = simulations;
+    return is_replaced;
+  }
+
+  void take_out(std::size_t i) {
+    const ExtendedUnknowns e = remove(selection_.extended, selection_.causes[i]);
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    selection_.causes.erase(selection_.causes.begin() + at);
+    selection_.round_of.erase(selection_.round_of.begin() + at);
+    selection_.gains.erase(selection_.gains.begin() + at);
+    selection_.extended = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
+                                       e.unknowns, e.values, e.shared_count, options_.threads);
+    selection_.hold_out_after = judge(selection_.extended);
+  }
+
+  /// A cause's own round becomes that beside all others.
+  void keep_round(std::size_t i, SelectRound round) {
+    const auto own = std::find_if(
+        round.candidates.begin(), round.candidates.end(),
+        [&](const Candidate& c) { return is_same_effect(c.hypothesis, selection_.causes[i]); });
+    if (own == round.candidates.end()) return;
+    round.accepted = true;
+    selection_.gains[i] = own->gain;
+    selection_.round_of[i] = selection_.rounds.size();
+    selection_.rounds.push_back(std::move(round));
+  }
+
+  static std::vector<double> get_values(const WhitenedFit& fit, const Hypothesis& h) {
+    std::vector<double> values;
+    for (const HypothesisParameter& p : h.parameters) {
+      for (std::size_t i = 0; i < fit.shared_count; ++i) {
+        if (fit.fit.unknowns[i].name == p.name) values.push_back(fit.fit.values[i]);
+      }
+    }
+    return values;
   }
 
   /// Whether the best of a round gains far more than it needs.
@@ -423,7 +238,10 @@ class Selector {
     if (round.candidates.empty()) return false;
     const WhitenedFit& now = selection_.extended;
     const double gain = round.candidates.front().gain;
-    if (now.is_dominated) return gain > options_.dominated_share * now.fit.chi2;
+    if (now.is_dominated) {
+      return gain > options_.dominated_share * now.fit.chi2 ||
+             round.pair_gain > 2.0 * options_.dominated_share * now.fit.chi2;
+    }
     if (gain / round.misfit < round.threshold) return false;
     if (!is_certain(round) && round.candidates.front().stability < options_.stability) return false;
     const double first = selection_.rounds.front().candidates.front().gain;
@@ -461,41 +279,10 @@ class Selector {
   const CampaignData& data_;
   const SelectOptions& options_;
   Selection selection_;
+  SelectRound last_;  // the last that looked for a further cause
 };
 
 }  // namespace
-
-double calc_null_threshold(const Evidence& evidence, const Score& score,
-                           const std::vector<bool>& one_sided, std::size_t nulls,
-                           double confidence) {
-  constexpr std::uint64_t kSeed = 1;
-  // Of correlations: effects differ in size by orders, and rounding of the largest is not to be
-  // taken for noise of the smallest.
-  const Eigen::VectorXd sigma = score.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::VectorXd unit = sigma.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * score.covariance *
-                                                              unit.asDiagonal());
-  const Eigen::MatrixXd root = sigma.asDiagonal() * solver.eigenvectors() *
-                               solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  std::vector<double> most;
-  most.reserve(nulls);
-  Score null = score;
-  for (std::size_t i = 0; i < nulls; ++i) {
-    Eigen::VectorXd normal(root.cols());
-    for (Eigen::Index k = 0; k < normal.size(); ++k) {
-      normal(k) = calc_normal(kSeed, i, static_cast<std::uint64_t>(k));
-    }
-    null.gradient = root * normal;
-    double best = 0.0;
-    for (const HypothesisTrial& trial : evidence.trials) {
-      best = std::max(best, calc_gain(null, trial.columns, one_sided[trial.hypothesis]).chi2);
-    }
-    most.push_back(best);
-  }
-  std::sort(most.begin(), most.end());
-  return most[std::min(nulls - 1,
-                       static_cast<std::size_t>(confidence * static_cast<double>(nulls)))];
-}
 
 Selection select_causes(const CampaignData& data, const SelectOptions& options) {
   return Selector(data, options).run();

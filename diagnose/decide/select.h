@@ -31,6 +31,11 @@ struct SelectOptions {
   /// A second cause explains at least this fraction of what the first does; less cannot be
   /// distinguished from a first cause whose form deviates from the catalogue's.
   double second_share = 0.1;
+  /// First fits of a round, to rank its hypotheses; and fits of the best.
+  SearchEffort screening{15, 1.0}, convergence{60, 0.1};
+  /// Number of classes of a round's best hypotheses for which the best second effect is looked up,
+  /// and number of second effects fitted beside each. For rigs.
+  std::size_t paired = 6, partners = 2;
   LeftoverOptions leftover;
   /// Minimum ratio of a cause's delta chi2 per reading of the held-out runs to that of the fitted
   /// runs; and minimum fraction of the runs without each of which it remains among the best.
@@ -55,6 +60,11 @@ struct Candidate {
   SharedValues shared;                // shared unknowns, the hypothesis' parameters last
   double stability = 0.0;             // fraction of the runs without each of which it is among the
                                       // best
+  /// The fit's distance to its minimum in standard deviations, and whether it has converged; only
+  /// fits that come near the best are continued until they do.
+  double distance = 0.0;
+  bool converged = false;
+  std::size_t alias = 0;  // number of its class: hypotheses to which the readings respond alike
   long simulations = 0;
 };
 
@@ -64,6 +74,10 @@ struct SelectRound {
   double threshold = 0.0;             // of Candidate::gain
   bool accepted = false;              // the best candidate became a cause
   double misfit = 1.0;                // chi2 over its expectation, by which gains are divided
+  /// Delta chi2 of the first candidate and another effect together, if it leads the candidates for
+  /// that reason.
+  double pair_gain = 0.0;
+  long simulations = 0;
 };
 
 struct Selection {
@@ -73,7 +87,7 @@ struct Selection {
   std::vector<double> gains;          // delta chi2 of each cause in its round
   Leftover left;                      // residual of the extended model
   bool is_left = false;               // the residual exceeds noise
-  std::vector<SelectRound> rounds;    // one per cause, and a last one without a new cause
+  std::vector<SelectRound> rounds;    // in the order in which they were made
   std::vector<HoldOutRun> hold_out_before, hold_out_after;
   std::shared_ptr<const HoldOutJudge> judge;
   long simulations = 0;

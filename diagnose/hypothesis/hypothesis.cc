@@ -85,6 +85,33 @@ bool overlaps(const std::string& place, const std::string& other) {
   return place.starts_with(other) || other.starts_with(place);
 }
 
+enum class OnAt { kNowhere, kPlace, kOverlapping };
+
+/// Where an effect is on, compared with `place`.
+OnAt find_on(const EffectSettings& effects, const std::string& effect, const std::string& place) {
+  OnAt on = OnAt::kNowhere;
+  for (const EffectSetting& s : effects) {
+    if (s.effect != effect || !overlaps(s.place, place)) continue;
+    if (s.place == place) return OnAt::kPlace;
+    on = OnAt::kOverlapping;
+  }
+  return on;
+}
+
+/// Makes it a hypothesis about an effect of the model file: it starts at a fifth less of it.
+void change_from_file(const CampaignData& data,
+                      const std::vector<const EffectParameter*>& parameters, Hypothesis& h) {
+  constexpr double kStartFraction = 0.8;
+  h.change = EffectChange::kChanged;
+  h.beginnings.emplace_back();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EffectParameter& p = *parameters[i];
+    h.reference[i] = get_parameter(data.runs[0].setup, h.parameters[i].name);
+    h.beginnings[0].push_back(p.switches ? p.neutral + kStartFraction * (h.reference[i] - p.neutral)
+                                         : h.reference[i]);
+  }
+}
+
 bool is_compared(const CampaignData& data, const std::string& channel) {
   for (const std::size_t r : data.list_runs(RunUse::kFit)) {
     for (const MeasuredChannel& c : data.channels(r)) {
@@ -113,11 +140,39 @@ std::vector<std::vector<double>> make_beginnings(
 
 }  // namespace
 
-std::string describe_effect(const std::string& effect, const std::string& place) {
-  return effect + (place.empty() ? "" : " at " + place);
+std::string describe_effect(const std::string& effect, const std::string& place,
+                            EffectChange change) {
+  const std::string head = change == EffectChange::kRemoved   ? "without "
+                           : change == EffectChange::kChanged ? "another "
+                                                              : "";
+  return head + effect + (place.empty() ? "" : " at " + place);
 }
 
-std::string Hypothesis::describe() const { return describe_effect(effect, place); }
+std::string Hypothesis::describe() const { return describe_effect(effect, place, change); }
+
+bool is_same_effect(const Hypothesis& a, const Hypothesis& b) {
+  return a.effect == b.effect && a.place == b.place;
+}
+
+Hypothesis make_removal(const CampaignData& data, const Hypothesis& changed) {
+  const auto parameters = list_effect_parameters(*find_effect(changed.effect), data.model());
+  Hypothesis h{changed.effect, changed.place, {}, {{}}, EffectChange::kRemoved, {}};
+  for (std::size_t i = 0; i < changed.parameters.size(); ++i) {
+    if (!changed.parameters[i].switches) continue;
+    h.parameters.push_back(changed.parameters[i]);
+    h.reference.push_back(changed.reference[i]);
+    h.beginnings.front().push_back(parameters[i]->neutral);
+  }
+  return h;
+}
+
+bool is_one_sided(const CampaignData& data, const Hypothesis& h) {
+  const std::vector<Unknown> unknowns = make_unknowns(data, h);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    if (h.parameters[i].switches && unknowns[i].low >= h.reference[i]) return true;
+  }
+  return false;
+}
 
 std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h) {
   std::vector<Unknown> unknowns;
@@ -160,14 +215,11 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       continue;  // a bias of every run and channel is always free
     const auto parameters = list_effect_parameters(effect, model);
     for (const std::string& place : list_effect_places(effect, model)) {
-      const bool is_on =
-          std::any_of(model_effects.begin(), model_effects.end(), [&](const EffectSetting& s) {
-            return s.effect == effect.name && overlaps(s.place, place);
-          });
-      if (is_on) continue;
+      const OnAt on = find_on(model_effects, effect.name, place);
+      if (on == OnAt::kOverlapping) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;
       const auto motion = motions.find(find_axle(place));
-      Hypothesis h{effect.name, place, {}, {}};
+      Hypothesis h{effect.name, place, {}, {}, EffectChange::kAdded, {}};
       for (const EffectParameter* p : parameters) {
         h.parameters.push_back(
             {make_effect_parameter_name(effect, place, *p, model), p->name, p->switches});
@@ -178,9 +230,14 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
                            [&](const HypothesisParameter& p) { return p.name == u.name; });
       });
       if (is_free) continue;
-      h.beginnings = make_beginnings(
-          parameters, choose_search_starts(
-                          effect.name, motion == motions.end() ? StrutMotion{} : motion->second));
+      for (const EffectParameter* p : parameters) h.reference.push_back(p->neutral);
+      if (on == OnAt::kPlace) {
+        change_from_file(data, parameters, h);
+      } else {
+        h.beginnings = make_beginnings(
+            parameters, choose_search_starts(
+                            effect.name, motion == motions.end() ? StrutMotion{} : motion->second));
+      }
       list.push_back(std::move(h));
     }
   }

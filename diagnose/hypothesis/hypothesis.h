@@ -18,26 +18,48 @@ struct HypothesisParameter {
                          // false: it only shapes the effect
 };
 
-/// "damper_asymmetry at rear"; without the place on a rig.
-std::string describe_effect(const std::string& effect, const std::string& place);
+/// How a hypothesis changes the model file.
+enum class EffectChange {
+  kAdded,    // switches an effect on
+  kChanged,  // frees the parameters of an effect that the file switches on
+  kRemoved,  // switches it off
+};
+
+/// "damper_asymmetry at rear"; without the place on a rig. An effect of the model file: "another
+/// damper_asymmetry at rear", "without damper_asymmetry at rear".
+std::string describe_effect(const std::string& effect, const std::string& place,
+                            EffectChange change = EffectChange::kAdded);
 
 struct Hypothesis {
   std::string effect, place;
   std::vector<HypothesisParameter> parameters;
-  /// Start values of the parameters, small but not neutral. Several, since the shape of an effect
-  /// determines which readings it changes.
+  /// Start values of the parameters, close to `reference` but not equal. Several, since the shape
+  /// of an effect determines which readings it changes.
   std::vector<std::vector<double>> beginnings;
+  EffectChange change = EffectChange::kAdded;
+  /// Values of the parameters without the hypothesis: neutral, or those of the model file.
+  std::vector<double> reference;
 
   std::string describe() const;
 };
 
+/// Whether both concern the same effect at the same place.
+bool is_same_effect(const Hypothesis& a, const Hypothesis& b);
+
+/// The hypothesis that an effect of the model file is not there: its switching parameters are
+/// neutral, and nothing of it is free.
+Hypothesis make_removal(const CampaignData& data, const Hypothesis& changed);
+
+/// Whether a parameter has values on one side of its reference only.
+bool is_one_sided(const CampaignData& data, const Hypothesis& h);
+
 /// One unknown per parameter of a hypothesis, which all runs share.
 std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h);
 
-/// Lists the hypotheses that exist in the campaign's model, except effects that `model_effects`
-/// switches on at an overlapping place, and those with a parameter among `free`. Start values are
-/// fractions of the struts' forces, deflections and velocities in the runs for fitting, simulated
-/// at `shared`.
+/// Lists the hypotheses that exist in the campaign's model, except those with a parameter among
+/// `free`. An effect that `model_effects` switches on may be changed at its place; it may not be
+/// added at an overlapping one. Start values are fractions of the struts' forces, deflections and
+/// velocities in the runs for fitting, simulated at `shared`.
 std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,
                                         const EffectSettings& model_effects,
                                         const std::vector<Unknown>& free = {});

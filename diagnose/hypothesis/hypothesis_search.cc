@@ -10,25 +10,19 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kEnough = 0.02, kEnoughShare = 1e-5;  // of chi2
-
 /// How a parameter of a hypothesis is counted.
 struct Coordinate {
   double beginning = 0.0, unit = 1.0;
+  double reference = 0.0;  // value without the hypothesis
   bool is_logarithm = false, is_shape = false;
   double low = 0.0, high = 0.0;
-
-  /// Within the bounds, so that a step back leads back.
-  double restrain(double x) const {
-    if (is_logarithm) {
-      return std::clamp(x, std::log(std::max(low, 1e-12) / beginning), std::log(high / beginning));
-    }
-    return std::clamp(x, (low - beginning) / unit, (high - beginning) / unit);
-  }
 
   double calc_value(double x) const {
     const double value = is_logarithm ? beginning * std::exp(x) : beginning + unit * x;
     return std::clamp(value, low, high);
+  }
+  double calc_coordinate(double value) const {
+    return is_logarithm ? std::log(std::max(value, 1e-12) / beginning) : (value - beginning) / unit;
   }
 };
 
@@ -38,11 +32,14 @@ std::vector<Coordinate> make_coordinates(const Hypothesis& h, const std::vector<
   for (std::size_t i = 0; i < h.parameters.size(); ++i) {
     Coordinate c;
     c.beginning = beginning[i];
+    c.reference = h.reference[i];
     c.is_shape = !h.parameters[i].switches;
     c.is_logarithm = c.is_shape && beginning[i] > 0.0 && unknowns[i].low >= 0.0;
-    c.unit = beginning[i] != 0.0 && !c.is_shape ? std::abs(beginning[i]) : 1.0;
-    c.low = unknowns[i].low;
-    c.high = unknowns[i].high;
+    const double size = std::abs(beginning[i] - h.reference[i]);
+    c.unit = size > 0.0 && !c.is_shape ? size : 1.0;
+    const bool is_pinned = h.change == EffectChange::kRemoved;
+    c.low = is_pinned ? beginning[i] : unknowns[i].low;
+    c.high = is_pinned ? beginning[i] : unknowns[i].high;
     coordinates.push_back(c);
   }
   return coordinates;
@@ -56,14 +53,24 @@ class Search {
         coordinates_(std::move(coordinates)),
         n_(static_cast<Index>(ground.values.size())),
         m_(static_cast<Index>(coordinates_.size())),
-        x_(Eigen::VectorXd::Zero(n_ + m_)) {}
-
-  HypothesisFit run() {
-    const int steps = ground_.has_inputs ? 60 : 12;
-    if (begin()) {
-      for (int step = 0; step < steps && linearize() && improve(); ++step) {
-      }
+        x_(Eigen::VectorXd::Zero(n_ + m_)),
+        low_(n_ + m_),
+        high_(n_ + m_) {
+    for (Index i = 0; i < n_; ++i) {
+      const Unknown& u = ground.unknowns[static_cast<std::size_t>(i)];
+      const double value = ground.values[static_cast<std::size_t>(i)];
+      low_(i) = (u.low - value) / u.scale;
+      high_(i) = (u.high - value) / u.scale;
     }
+    for (Index j = 0; j < m_; ++j) {
+      const Coordinate& c = get_coordinate(j);
+      low_(n_ + j) = c.calc_coordinate(c.low);
+      high_(n_ + j) = c.calc_coordinate(c.high);
+    }
+  }
+
+  HypothesisFit run(const SearchEffort& effort, const std::vector<double>& from) {
+    if (from.empty() ? begin() : resume(from)) approach(effort);
     fit_.simulations = model_.simulation_count();
     if (information_.size() > 0) conclude();
     return std::move(fit_);
@@ -95,13 +102,6 @@ class Search {
     return chi2;
   }
 
-  bool evaluate(const Eigen::VectorXd& at, Eigen::VectorXd& residual) {
-    const Evaluation e = model_.evaluate(get_point(at));
-    if (!e.failure.empty()) return false;
-    residual = ground_.whitener.apply(e.residual);
-    return true;
-  }
-
   /// What is linear at first may not stay so: less of it may be a better beginning. A lost stroke
   /// that ends between two readings has valleys of its own, so a rig, being cheap, is asked often.
   bool begin() {
@@ -112,14 +112,15 @@ class Search {
     std::vector<Eigen::VectorXd> tried;
     std::vector<std::vector<double>> points;
     for (double share = 1.0; share > 0.9 * shares.least; share *= shares.factor) {
-      if (!tried.empty() && tried.back() == x_) break;  // no size to begin with
-      tried.push_back(x_);
+      Eigen::VectorXd at = x_;
       for (Index j = 0; j < m_; ++j) {
         const Coordinate& c = get_coordinate(j);
-        if (c.is_shape || c.beginning == 0.0) continue;
-        tried.back()(n_ + j) = (share - 1.0) * c.beginning / c.unit;
+        if (c.is_shape || c.low == c.high) continue;
+        at(n_ + j) = (share - 1.0) * (c.beginning - c.reference) / c.unit;
       }
-      points.push_back(get_point(tried.back()));
+      if (!tried.empty() && tried.back() == at) break;  // no size to begin with
+      points.push_back(get_point(at));
+      tried.push_back(std::move(at));
     }
     const std::vector<Evaluation> there = model_.evaluate(points);
     double least = std::numeric_limits<double>::infinity();
@@ -128,7 +129,7 @@ class Search {
       const Eigen::VectorXd residual = ground_.whitener.apply(there[i].residual);
       const Eigen::VectorXd slope = ground_.jacobian.transpose() * residual;
       const double chi2 = residual.squaredNorm() - slope.dot(ground_.regular_normal.solve(slope));
-      if (chi2 >= least) continue;
+      if (!(chi2 < least)) continue;
       least = chi2;
       x_ = tried[i];
       residual_ = residual;
@@ -139,6 +140,42 @@ class Search {
     }
     chi2_ = residual_.squaredNorm() + calc_shape_chi2(x_);
     return true;
+  }
+
+  bool resume(const std::vector<double>& from) {
+    for (Index i = 0; i < n_ + m_; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      x_(i) = i < n_ ? (from[at] - ground_.values[at]) / ground_.unknowns[at].scale
+                     : get_coordinate(i - n_).calc_coordinate(from[at]);
+    }
+    const Evaluation e = model_.evaluate(get_point(x_));
+    fit_.failure = e.failure;
+    if (!e.failure.empty()) return false;
+    residual_ = ground_.whitener.apply(e.residual);
+    chi2_ = residual_.squaredNorm() + calc_shape_chi2(x_);
+    return true;
+  }
+
+  /// Steps until the minimum is near by derivatives of there, or no step leads down.
+  void approach(const SearchEffort& effort) {
+    constexpr double kEnough = 0.25;  // decrease over the predicted one: the derivatives serve on
+    bool renew = true;
+    for (int step = 0; step < effort.steps; ++step) {
+      if (renew && !linearize()) return;
+      fit_.distance = calc_distance();
+      if (fit_.distance <= effort.distance) {
+        fit_.converged = is_fresh_;
+        if (is_fresh_) return;
+        renew = true;
+        continue;
+      }
+      const double ratio = improve();
+      if (ratio == 0.0 && is_fresh_) {
+        fit_.converged = fit_.distance <= kMaxKink;
+        return;
+      }
+      renew = !ground_.has_inputs || ratio < kEnough;
+    }
   }
 
   /// Derivatives of whitened readings by the coordinates, by differences.
@@ -166,80 +203,148 @@ class Search {
     return columns;
   }
 
-  /// Normal equations where the search stands. False where a rig cannot be simulated beside it.
+  /// Derivatives where the search stands. False where a rig cannot be simulated beside it.
   bool linearize() {
-    if (!ground_.has_inputs) {
-      gather(ground_.jacobian, ground_.normal, calc_differences());
-      return true;
+    if (ground_.has_inputs) {
+      // Strong effects change what the other parameters do.
+      const std::vector<double> point = get_point(x_);
+      const Linearization at = model_.linearize(point);
+      if (!at.failure.empty()) {
+        fit_.failure = at.failure;
+        return false;
+      }
+      jacobian_ = ground_.whitener.apply(at.jacobian);
+      for (Index j = 0; j < m_; ++j) {
+        const Coordinate& c = get_coordinate(j);
+        const auto i = static_cast<std::size_t>(n_ + j);
+        jacobian_.col(n_ + j) *= (c.is_logarithm ? point[i] : c.unit) / model_.unknowns()[i].scale;
+      }
+      gather(jacobian_.leftCols(n_).transpose() * jacobian_.leftCols(n_));
+    } else {
+      jacobian_.resize(residual_.size(), n_ + m_);
+      jacobian_.leftCols(n_) = ground_.jacobian;
+      jacobian_.rightCols(m_) = calc_differences();
+      gather(ground_.normal);
     }
-    // Cheap, and strong effects change what the other parameters do.
-    const std::vector<double> point = get_point(x_);
-    const Linearization at = model_.linearize(point);
-    if (!at.failure.empty()) {
-      fit_.failure = at.failure;
-      return false;
-    }
-    const Eigen::MatrixXd jacobian = ground_.whitener.apply(at.jacobian);
-    Eigen::MatrixXd columns = jacobian.rightCols(m_);
-    for (Index j = 0; j < m_; ++j) {
-      const Coordinate& c = get_coordinate(j);
-      const auto i = static_cast<std::size_t>(n_ + j);
-      columns.col(j) *= (c.is_logarithm ? point[i] : c.unit) / model_.unknowns()[i].scale;
-    }
-    const Eigen::MatrixXd base = jacobian.leftCols(n_);
-    gather(base, base.transpose() * base, columns);
+    is_fresh_ = true;
     return true;
   }
 
-  void gather(const Eigen::MatrixXd& base, const Eigen::MatrixXd& normal,
-              const Eigen::MatrixXd& columns) {
+  /// Normal equations; `normal`: those of the ground's unknowns.
+  void gather(const Eigen::MatrixXd& normal) {
+    const auto base = jacobian_.leftCols(n_), columns = jacobian_.rightCols(m_);
     information_.resize(n_ + m_, n_ + m_);
     information_.topLeftCorner(n_, n_) = normal;
     information_.topRightCorner(n_, m_).noalias() = base.transpose() * columns;
     information_.bottomLeftCorner(m_, n_) = information_.topRightCorner(n_, m_).transpose();
     information_.bottomRightCorner(m_, m_).noalias() = columns.transpose() * columns;
-    gradient_.resize(n_ + m_);
-    gradient_.head(n_).noalias() = base.transpose() * residual_;
-    gradient_.tail(m_).noalias() = columns.transpose() * residual_;
     for (Index j = 0; j < m_; ++j) {
-      if (!get_coordinate(j).is_shape) continue;
-      information_(n_ + j, n_ + j) += 1.0;
-      gradient_(n_ + j) += x_(n_ + j);
+      if (get_coordinate(j).is_shape) information_(n_ + j, n_ + j) += 1.0;
     }
+    update_gradient();
   }
 
-  /// A step that leads down. Whether another may be worth it.
-  bool improve() {
-    for (int attempt = 0; attempt < 12; ++attempt) {
-      Eigen::MatrixXd damped = information_;
-      damped.diagonal() *= 1.0 + damping_;
-      damped.diagonal().array() += 1e-12;
-      const Eigen::VectorXd change = -damped.ldlt().solve(gradient_);
-      const double expected = -gradient_.dot(change) * 2.0 - change.dot(information_ * change);
-      if (expected < std::max(kEnough, kEnoughShare * chi2_)) return false;
-      Eigen::VectorXd tried = x_ + change, next;
-      for (Index j = 0; j < m_; ++j) {
-        tried(n_ + j) = get_coordinate(j).restrain(tried(n_ + j));
-      }
-      if (change.allFinite() && evaluate(tried, next)) {
-        const double less = next.squaredNorm() + calc_shape_chi2(tried);
-        if (less < chi2_) {
-          const bool goes_on = chi2_ - less >= std::max(kEnough, 0.1 * kEnoughShare * chi2_);
-          x_ = tried;
-          residual_ = next;
-          chi2_ = less;
-          damping_ = std::max(1e-6, 0.1 * damping_);
-          return goes_on;
-        }
-      }
-      damping_ = std::max(1e-3, 10.0 * damping_);
+  void update_gradient() {
+    gradient_.noalias() = jacobian_.transpose() * residual_;
+    for (Index j = 0; j < m_; ++j) {
+      if (get_coordinate(j).is_shape) gradient_(n_ + j) += x_(n_ + j);
     }
-    return false;
+    system_ = information_;
+    free_gradient_ = gradient_;
+    for (Index i = 0; i < n_ + m_; ++i) {
+      const bool is_held =
+          (x_(i) <= low_(i) && gradient_(i) >= 0.0) || (x_(i) >= high_(i) && gradient_(i) <= 0.0);
+      if (!is_held) continue;
+      system_.row(i).setZero();
+      system_.col(i).setZero();
+      system_(i, i) = 1.0;
+      free_gradient_(i) = 0.0;
+    }
+    system_.diagonal().array() += 1e-12;
+  }
+
+  double calc_distance() const {
+    Eigen::MatrixXd regular = system_;
+    regular.diagonal() *= 1.0 + 1e-10;
+    const double rise = free_gradient_.dot(regular.ldlt().solve(free_gradient_));
+    const double degrees = static_cast<double>(residual_.size() - n_ - m_);
+    const double misfit = std::max(1.0, chi2_ / std::max(1.0, degrees));
+    return std::sqrt(std::max(0.0, rise) / misfit);
+  }
+
+  Eigen::VectorXd calc_step(double damping) const {
+    Eigen::MatrixXd damped = system_;
+    damped.diagonal() *= 1.0 + damping;
+    const Eigen::VectorXd change = -damped.ldlt().solve(free_gradient_);
+    return (x_ + change).cwiseMax(low_).cwiseMin(high_) - x_;
+  }
+
+  /// Takes the best of some steps of growing damping that leads down. A rig's share the lanes of
+  /// one simulation. Returns its decrease of chi2 over the predicted one; 0: none leads down.
+  double improve() {
+    const int at_once = ground_.has_inputs ? 8 : 1, attempts = ground_.has_inputs ? 2 : 12;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+      std::vector<Eigen::VectorXd> steps;
+      std::vector<std::vector<double>> points;
+      std::vector<double> dampings;
+      for (int k = 0; k < at_once; ++k) {
+        Eigen::VectorXd step = calc_step(damping_);
+        dampings.push_back(damping_);
+        damping_ = std::max(1e-3, 10.0 * damping_);
+        if (!step.allFinite()) continue;
+        points.push_back(get_point(x_ + step));
+        steps.push_back(std::move(step));
+      }
+      const double ratio = take_best(steps, dampings, model_.evaluate(points));
+      if (ratio > 0.0) return ratio;
+    }
+    damping_ = 1e-6;
+    return 0.0;
+  }
+
+  double take_best(const std::vector<Eigen::VectorXd>& steps, const std::vector<double>& dampings,
+                   const std::vector<Evaluation>& there) {
+    std::size_t best = steps.size();
+    double least = chi2_;
+    Eigen::VectorXd residual;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      if (!there[i].failure.empty()) continue;
+      Eigen::VectorXd whitened = ground_.whitener.apply(there[i].residual);
+      const double chi2 = whitened.squaredNorm() + calc_shape_chi2(x_ + steps[i]);
+      if (!(chi2 < least)) continue;
+      best = i;
+      least = chi2;
+      residual = std::move(whitened);
+    }
+    if (best == steps.size()) return 0.0;
+    const Eigen::VectorXd& step = steps[best];
+    const double predicted = -2.0 * gradient_.dot(step) - step.dot(information_ * step);
+    const double ratio = (chi2_ - least) / std::max(predicted, 1e-300);
+    damping_ = std::max(1e-6, 0.01 * dampings[best]);
+    if (ground_.has_inputs) correct_jacobian(step, residual);
+    x_ += step;
+    residual_ = std::move(residual);
+    chi2_ = least;
+    update_gradient();
+    return ratio;
+  }
+
+  /// Broyden's update: derivatives along the step become its difference.
+  void correct_jacobian(const Eigen::VectorXd& step, const Eigen::VectorXd& residual) {
+    // In the metric of the unknowns' standard errors, or a weakly determined one would take all.
+    const Eigen::VectorXd weighted = information_.diagonal().cwiseMax(0.0).cwiseProduct(step);
+    const double length = weighted.dot(step);
+    if (!(length > 0.0)) return;
+    const Eigen::VectorXd error = residual - residual_ - jacobian_ * step;
+    const Eigen::VectorXd u = jacobian_.transpose() * error / length;
+    information_ += u * weighted.transpose() + weighted * u.transpose() +
+                    (error.squaredNorm() / (length * length)) * weighted * weighted.transpose();
+    jacobian_ += error / length * weighted.transpose();
+    is_fresh_ = false;
   }
 
   void conclude() {
     fit_.failure.clear();
-    // A coordinate that was carried beyond its bound stays on it.
     fit_.values = get_point(x_);
     fit_.gain = ground_.residual.squaredNorm() - chi2_;
     Eigen::MatrixXd regular = information_;
@@ -247,22 +352,29 @@ class Search {
     const Eigen::MatrixXd covariance =
         regular.ldlt().solve(Eigen::MatrixXd::Identity(n_ + m_, n_ + m_));
     for (Index j = 0; j < m_; ++j) {
-      const double sigma = std::sqrt(std::max(0.0, covariance(n_ + j, n_ + j)));
       const Coordinate& c = get_coordinate(j);
+      const double sigma =
+          c.low == c.high ? 0.0 : std::sqrt(std::max(0.0, covariance(n_ + j, n_ + j)));
       const double value = fit_.values[static_cast<std::size_t>(n_ + j)];
       fit_.sigma.push_back(c.is_logarithm ? sigma * value : sigma * c.unit);
     }
   }
 
+  static constexpr double kMaxKink = 0.5;  // distance of a minimum with a kink, as kKinkTolerance
+
   const SearchGround& ground_;
   ReadingModel& model_;
   const std::vector<Coordinate> coordinates_;
   const Index n_, m_;
-  Eigen::VectorXd x_;         // changes of the ground's unknowns in their scale, then coordinates
+  Eigen::VectorXd x_;  // changes of the ground's unknowns in their scale, then coordinates
+  Eigen::VectorXd low_, high_;
   Eigen::VectorXd residual_;  // there
   double chi2_ = 0.0, damping_ = 1e-6;
-  Eigen::MatrixXd information_;
+  Eigen::MatrixXd jacobian_, information_;
   Eigen::VectorXd gradient_;
+  Eigen::MatrixXd system_;         // information without what bounds hold
+  Eigen::VectorXd free_gradient_;  // likewise
+  bool is_fresh_ = false;          // derivatives by differences at x_
   HypothesisFit fit_;
 };
 
@@ -270,8 +382,9 @@ class Search {
 
 HypothesisFit search_hypothesis(const SearchGround& ground, ReadingModel& model,
                                 const Hypothesis& hypothesis, const std::vector<Unknown>& own,
-                                const std::vector<double>& beginning) {
-  return Search(ground, model, make_coordinates(hypothesis, own, beginning)).run();
+                                const std::vector<double>& beginning, const SearchEffort& effort,
+                                const std::vector<double>& from) {
+  return Search(ground, model, make_coordinates(hypothesis, own, beginning)).run(effort, from);
 }
 
 }  // namespace strut

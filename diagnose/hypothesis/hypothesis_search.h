@@ -20,7 +20,18 @@ struct HypothesisFit {
   std::vector<double> values;  // of the base unknowns, then of the hypothesis' parameters
   std::vector<double> sigma;   // standard errors of the hypothesis' parameters
   double gain = 0.0;           // delta chi2
+  /// Distance to the minimum of the linear model, in standard deviations for noise as large as the
+  /// residuals.
+  double distance = 0.0;
+  bool converged =
+      false;  // distance within SearchEffort::distance, or no step lowers chi2 (a kink)
   long simulations = 0;
+};
+
+/// When a search stops.
+struct SearchEffort {
+  int steps = 60;         // max
+  double distance = 0.1;  // of HypothesisFit
 };
 
 /// The fit from which a search starts. All references must outlive the search.
@@ -36,10 +47,14 @@ struct SearchGround {
 };
 
 /// `model` has the unknowns of `ground`, followed by the hypothesis' `own`. For a car, the
-/// derivatives with respect to the former stay those of `ground`; for a rig, all are updated in
-/// every step.
+/// derivatives with respect to the former stay those of `ground`; for a rig, all are updated:
+/// by differences where a step disappoints, else by the step itself (C. G. Broyden, Math. Comp. 19
+/// (1965)). The search starts at the best of several fractions of `beginning`, the center of the
+/// shapes' priors; or at `from`, values of all unknowns.
 HypothesisFit search_hypothesis(const SearchGround& ground, ReadingModel& model,
                                 const Hypothesis& hypothesis, const std::vector<Unknown>& own,
-                                const std::vector<double>& beginning);
+                                const std::vector<double>& beginning,
+                                const SearchEffort& effort = {},
+                                const std::vector<double>& from = {});
 
 }  // namespace strut

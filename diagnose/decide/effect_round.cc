@@ -1,0 +1,446 @@
+#include "diagnose/decide/effect_round.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/math/normal.h"
+#include "base/parallel/team.h"
+#include "diagnose/decide/extended_unknowns.h"
+
+namespace strut {
+namespace {
+
+struct RankedTrial {
+  std::size_t trial;
+  Gain gain;
+};
+
+/// The best trial of each hypothesis, best first.
+std::vector<RankedTrial> rank(const Evidence& evidence, const Score& score,
+                              const std::vector<bool>& one_sided) {
+  std::map<std::size_t, RankedTrial> best;
+  for (std::size_t t = 0; t < evidence.trials.size(); ++t) {
+    const HypothesisTrial& trial = evidence.trials[t];
+    const Gain gain = calc_gain(score, trial.columns, one_sided[trial.hypothesis]);
+    const auto found = best.find(trial.hypothesis);
+    if (found != best.end() && found->second.gain.chi2 >= gain.chi2) continue;
+    best[trial.hypothesis] = {t, gain};
+  }
+  std::vector<RankedTrial> list;
+  list.reserve(best.size());
+  for (const auto& [hypothesis, ranked] : best) list.push_back(ranked);
+  std::stable_sort(list.begin(), list.end(), [](const RankedTrial& a, const RankedTrial& b) {
+    return a.gain.chi2 > b.gain.chi2;
+  });
+  return list;
+}
+
+/// The reference moved by the start's difference from it times `amplitude`, within what is allowed.
+std::vector<double> scale_beginning(const CampaignData& data, const Hypothesis& h,
+                                    const HypothesisTrial& trial,
+                                    const Eigen::VectorXd& amplitude) {
+  const std::vector<Unknown> unknowns = make_unknowns(data, h);
+  std::vector<double> values = h.beginnings[trial.beginning];
+  for (std::size_t j = 0; j < trial.parameters.size(); ++j) {
+    const std::size_t i = trial.parameters[j];
+    const double size = amplitude(static_cast<Eigen::Index>(j)) * (values[i] - h.reference[i]);
+    values[i] = std::clamp(h.reference[i] + size, unknowns[i].low, unknowns[i].high);
+  }
+  return values;
+}
+
+/// A beginning with the sizes that the score asks for, but not too far: what is linear at first may
+/// not stay so.
+std::vector<double> make_beginning(const CampaignData& data, const Hypothesis& h,
+                                   const HypothesisTrial& trial, const Gain& gain) {
+  constexpr double kMost = 10.0;
+  return scale_beginning(data, h, trial, gain.amplitude.cwiseMax(-kMost).cwiseMin(kMost));
+}
+
+std::vector<double> make_weights(std::size_t count) { return std::vector<double>(count, 1.0); }
+
+/// Share of the runs without which the hypothesis is still within a factor of the best.
+double calc_stability(const Evidence& evidence, const std::vector<bool>& one_sided,
+                      std::size_t hypothesis) {
+  constexpr double kStays = 0.8;
+  if (evidence.run_count() < 2) return 1.0;
+  double stays = 0.0;
+  for (std::size_t r = 0; r < evidence.run_count(); ++r) {
+    std::vector<double> weights = make_weights(evidence.run_count());
+    weights[r] = 0.0;
+    const Score score = calc_score(evidence, weights);
+    const std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
+    const auto own = std::find_if(ranked.begin(), ranked.end(), [&](const RankedTrial& t) {
+      return evidence.trials[t.trial].hypothesis == hypothesis;
+    });
+    if (own != ranked.end() && own->gain.chi2 >= kStays * ranked.front().gain.chi2) ++stays;
+  }
+  return stays / static_cast<double>(evidence.run_count());
+}
+
+/// All that runs share at a hypothesis' fit.
+SharedValues make_shared(const WhitenedFit& base, const Hypothesis& h, const HypothesisFit& fit) {
+  SharedValues shared = base.shared();
+  std::copy_n(fit.values.begin(), base.shared_count, shared.values.begin());
+  const std::size_t first = base.fit.unknowns.size();
+  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
+    Unknown u;
+    u.name = h.parameters[i].name;
+    shared.unknowns.push_back(std::move(u));
+    shared.values.push_back(fit.values[first + i]);
+  }
+  return shared;
+}
+
+/// For each of the ranked, one before it whose first beginning does the same to all readings: what
+/// no data tell apart is fitted once. Itself where there is none.
+std::vector<std::size_t> find_twins(const std::vector<RankedTrial>& ranked,
+                                    const std::vector<std::vector<double>>& beginnings) {
+  constexpr double kSame = 1e-9;
+  std::vector<std::size_t> twins;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    std::size_t twin = 0;
+    while (twin < i &&
+           (beginnings[twin] != beginnings[i] ||
+            std::abs(ranked[twin].gain.chi2 - ranked[i].gain.chi2) > kSame * ranked[i].gain.chi2)) {
+      ++twin;
+    }
+    twins.push_back(twin);
+  }
+  return twins;
+}
+
+/// The fit of its twin under the hypothesis' own names.
+Candidate rename(Candidate twin, const Hypothesis& h) {
+  twin.hypothesis = h;
+  twin.simulations = 0;
+  if (twin.values.empty()) return twin;
+  const std::size_t first = twin.shared.unknowns.size() - h.parameters.size();
+  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
+    twin.shared.unknowns[first + i].name = h.parameters[i].name;
+  }
+  return twin;
+}
+
+/// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
+double calc_negligible(const CampaignData& data, const SelectOptions& options,
+                       const Whitener& whitener) {
+  const double share = data.has_inputs() ? options.negligible : options.negligible_car;
+  double power = share * static_cast<double>(whitener.whitened_count());
+  if (data.has_inputs()) return power;
+  for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
+    const NoiseSpectrum& s = whitener.spectra()[r];
+    double ratio = 0.0;  // of the road's power to the sensors', mean over channels
+    for (std::size_t c = 0; c < s.sigma.size(); ++c) {
+      ratio += s.level * calc_common_variance(s, c) /
+               (s.sigma[c] * s.sigma[c] * static_cast<double>(s.sigma.size()));
+    }
+    const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);
+    power += options.negligible_road * ratio * count;
+  }
+  return power;
+}
+
+/// What all fits of a round need.
+struct Round {
+  const CampaignData& data;
+  const WhitenedFit& now;
+  const SelectOptions& options;
+  const TestBench& bench;
+  const std::vector<Hypothesis>& hypotheses;
+  const Evidence& evidence;
+};
+
+/// A candidate with the point from which its search can go on.
+struct Fitted {
+  Candidate candidate;
+  std::vector<double> beginning, values;
+};
+
+Fitted keep_fit(const Round& round, const Hypothesis& h, const HypothesisFit& fit,
+                std::vector<double> beginning) {
+  Fitted f;
+  Candidate& c = f.candidate;
+  c.hypothesis = h;
+  c.gain = fit.gain;
+  c.sigma = fit.sigma;
+  c.distance = fit.distance;
+  c.converged = fit.converged;
+  c.simulations = fit.simulations;
+  f.beginning = std::move(beginning);
+  f.values = fit.values;
+  if (!fit.failure.empty()) return f;
+  const auto base = static_cast<std::ptrdiff_t>(round.bench.values().size());
+  c.base_values.assign(fit.values.begin(), fit.values.begin() + base);
+  c.values.assign(fit.values.begin() + base, fit.values.end());
+  c.shared = make_shared(round.now, h, fit);
+  return f;
+}
+
+/// Keeps the better of two fits, and counts the simulations of both.
+void improve(Fitted& fitted, Fitted other) {
+  const bool is_better =
+      !other.candidate.values.empty() &&
+      (fitted.candidate.values.empty() || other.candidate.gain > fitted.candidate.gain);
+  const long simulations = fitted.candidate.simulations + other.candidate.simulations;
+  if (is_better) fitted = std::move(other);
+  fitted.candidate.simulations = simulations;
+}
+
+/// The first fit of one effect, values empty where it cannot be simulated.
+Fitted fit_first(const Round& round, const RankedTrial& ranked,
+                 const std::vector<double>& beginning) {
+  constexpr double kNear = 0.02;
+  const HypothesisTrial& trial = round.evidence.trials[ranked.trial];
+  const Hypothesis& h = round.hypotheses[trial.hypothesis];
+  const auto fit = [&](const std::vector<double>& start) {
+    return keep_fit(round, h, round.bench.fit(h, start, round.options.screening), start);
+  };
+  Fitted fitted = fit(beginning);
+  // Far from what the score promised: another valley, and none of the sizes that a search begins
+  // with was in the right one. Near the base the score cannot be wrong.
+  if (round.data.has_inputs() &&
+      (fitted.candidate.values.empty() || fitted.candidate.gain < 0.5 * ranked.gain.chi2)) {
+    const auto ones = Eigen::VectorXd::Constant(ranked.gain.amplitude.size(), kNear);
+    improve(fitted,
+            fit(scale_beginning(round.data, h, trial, ones.cwiseProduct(ranked.gain.amplitude))));
+  }
+  fitted.candidate.score = ranked.gain.chi2;
+  return fitted;
+}
+
+/// Searches on where a fit has not converged.
+void finish(const Round& round, Fitted& fitted) {
+  Candidate& c = fitted.candidate;
+  if (c.values.empty()) return;
+  const Fitted first = fitted;
+  const HypothesisFit fit =
+      round.bench.fit(c.hypothesis, fitted.beginning, round.options.convergence, fitted.values);
+  fitted = keep_fit(round, first.candidate.hypothesis, fit, first.beginning);
+  if (fitted.candidate.values.empty()) fitted = first;
+  fitted.candidate.score = first.candidate.score;
+  fitted.candidate.stability = first.candidate.stability;
+  fitted.candidate.simulations = first.candidate.simulations + fit.simulations;
+}
+
+/// Whether a candidate's values are within its own effect's range, and such as that effect has.
+bool is_allowed(const CampaignData& data, const Candidate& c) {
+  if (c.values.empty()) return false;
+  const std::vector<Unknown> unknowns = make_unknowns(data, c.hypothesis);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    if (c.values[i] < unknowns[i].low || c.values[i] > unknowns[i].high) return false;
+  }
+  return is_plausible(data, c.hypothesis, c.values);
+}
+
+/// An effect of the model's file that is better with other values may as well not be there: then
+/// that is the hypothesis, since nothing is left to be determined.
+void try_removal(const Round& round, Fitted& fitted) {
+  constexpr double kSigmas = 9.0;  // chi2 of 3 standard deviations
+  const Candidate& c = fitted.candidate;
+  if (c.values.empty() || c.hypothesis.change != EffectChange::kChanged) return;
+  const Hypothesis removal = make_removal(round.data, c.hypothesis);
+  const std::vector<double>& none = removal.beginnings.front();
+  Fitted removed =
+      keep_fit(round, removal, round.bench.fit(removal, none, round.options.convergence), none);
+  const double misfit =
+      std::max(1.0, (round.now.fit.chi2 - c.gain) / static_cast<double>(round.now.fit.degrees));
+  if (removed.candidate.values.empty() || removed.candidate.gain < c.gain - kSigmas * misfit) {
+    return;
+  }
+  removed.candidate.score = c.score;
+  removed.candidate.stability = c.stability;
+  removed.candidate.simulations += c.simulations;
+  fitted = std::move(removed);
+}
+
+/// Cosine of the responses to two trials at the sizes that their scores ask for, beside what the
+/// free parameters absorb.
+double calc_cosine(const Score& score, const HypothesisTrial& a, const Eigen::VectorXd& sizes_a,
+                   const HypothesisTrial& b, const Eigen::VectorXd& sizes_b) {
+  const auto calc_product = [&](const HypothesisTrial& s, const Eigen::VectorXd& x,
+                                const HypothesisTrial& t, const Eigen::VectorXd& y) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < s.columns.size(); ++i) {
+      for (std::size_t j = 0; j < t.columns.size(); ++j) {
+        sum += x(static_cast<Eigen::Index>(i)) * y(static_cast<Eigen::Index>(j)) *
+               score.covariance(static_cast<Eigen::Index>(s.columns[i]),
+                                static_cast<Eigen::Index>(t.columns[j]));
+      }
+    }
+    return sum;
+  };
+  const double aa = calc_product(a, sizes_a, a, sizes_a), bb = calc_product(b, sizes_b, b, sizes_b);
+  return aa > 0.0 && bb > 0.0 ? calc_product(a, sizes_a, b, sizes_b) / std::sqrt(aa * bb) : 0.0;
+}
+
+/// The classes of the ranked: the number of the first whose response is the same.
+std::vector<std::size_t> list_classes(const Evidence& evidence, const Score& score,
+                                      const std::vector<RankedTrial>& ranked) {
+  constexpr double kSame = 0.995;
+  std::vector<std::size_t> classes;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    std::size_t first = 0;
+    while (first < i &&
+           calc_cosine(score, evidence.trials[ranked[first].trial], ranked[first].gain.amplitude,
+                       evidence.trials[ranked[i].trial], ranked[i].gain.amplitude) < kSame) {
+      ++first;
+    }
+    classes.push_back(first < i ? classes[first] : i);
+  }
+  return classes;
+}
+
+/// The best of the ranked, and the one that is wanted in any case.
+std::vector<RankedTrial> choose(const Evidence& evidence, const std::vector<Hypothesis>& hypotheses,
+                                std::vector<RankedTrial> ranked, const RoundOptions& options,
+                                double least) {
+  std::vector<RankedTrial> chosen;
+  for (RankedTrial& r : ranked) {
+    const Hypothesis& h = hypotheses[evidence.trials[r.trial].hypothesis];
+    const bool is_wanted = options.also != nullptr && is_same_effect(*options.also, h);
+    if (is_wanted || (chosen.size() < options.fitted && r.gain.chi2 > least)) {
+      chosen.push_back(std::move(r));
+    }
+  }
+  return chosen;
+}
+
+std::vector<std::vector<double>> list_beginnings(const Round& round,
+                                                 const std::vector<RankedTrial>& ranked,
+                                                 const RoundOptions& options) {
+  std::vector<std::vector<double>> beginnings;
+  for (const RankedTrial& r : ranked) {
+    const HypothesisTrial& trial = round.evidence.trials[r.trial];
+    const Hypothesis& h = round.hypotheses[trial.hypothesis];
+    const bool is_wanted = options.also != nullptr && is_same_effect(*options.also, h) &&
+                           options.values.size() == h.parameters.size();
+    beginnings.push_back(is_wanted ? options.values : make_beginning(round.data, h, trial, r.gain));
+  }
+  return beginnings;
+}
+
+/// Fits of the ranked: all for a start, then those near the best until they converge. Each alone on
+/// a thread: one fit does not fill several.
+std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial>& ranked,
+                               const RoundOptions& options) {
+  constexpr double kNear = 0.7;
+  const std::vector<std::vector<double>> beginnings = list_beginnings(round, ranked, options);
+  const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
+  std::vector<Fitted> fitted(ranked.size());
+  const auto on_each = [&](const auto& work) {
+    share_items(round.options.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
+      if (twins[i] == i) work(i);
+    });
+  };
+  on_each([&](std::size_t i) { fitted[i] = fit_first(round, ranked[i], beginnings[i]); });
+  double most = 0.0;
+  for (const Fitted& f : fitted) most = std::max(most, f.candidate.gain);
+  if (options.is_final) {
+    on_each([&](std::size_t i) {
+      if (fitted[i].candidate.gain > kNear * most) finish(round, fitted[i]);
+      try_removal(round, fitted[i]);
+    });
+  }
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (twins[i] == i) continue;
+    const std::size_t h = round.evidence.trials[ranked[i].trial].hypothesis;
+    fitted[i].candidate = rename(fitted[twins[i]].candidate, round.hypotheses[h]);
+  }
+  return fitted;
+}
+
+}  // namespace
+
+SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
+                         const SelectOptions& options, const RoundOptions& round_options) {
+  TestBench bench(data, now, options.threads);
+  const SharedValues shared = now.shared();
+  const std::vector<Hypothesis> hypotheses =
+      list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns);
+  std::vector<bool> one_sided;
+  one_sided.reserve(hypotheses.size());
+  for (const Hypothesis& h : hypotheses) one_sided.push_back(is_one_sided(data, h));
+  const Evidence evidence = bench.gather(hypotheses);
+  const Score score = calc_score(evidence, make_weights(evidence.run_count()));
+  SelectRound result;
+  if (round_options.is_final) {
+    result.threshold =
+        std::max(options.margin * calc_null_threshold(evidence, score, one_sided, options.nulls,
+                                                      options.confidence),
+                 calc_negligible(data, options, bench.whitener()));
+  }
+  const Round round{data, now, options, bench, hypotheses, evidence};
+  const std::vector<RankedTrial> ranked =
+      choose(evidence, hypotheses, rank(evidence, score, one_sided), round_options,
+             0.3 * result.threshold);
+  const std::vector<std::size_t> classes = list_classes(evidence, score, ranked);
+  std::vector<Fitted> fitted = fit_ranked(round, ranked, round_options);
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    Candidate& c = fitted[i].candidate;
+    result.simulations += c.simulations;
+    if (!is_allowed(data, c)) continue;
+    c.alias = classes[i];
+    const std::size_t h = evidence.trials[ranked[i].trial].hypothesis;
+    if (round_options.is_final) c.stability = calc_stability(evidence, one_sided, h);
+    result.candidates.push_back(std::move(c));
+  }
+  std::stable_sort(result.candidates.begin(), result.candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
+  const double most = result.candidates.empty() ? 0.0 : result.candidates.front().gain;
+  result.misfit = std::max(1.0, (now.fit.chi2 - most) / static_cast<double>(now.fit.degrees));
+  result.simulations += bench.simulation_count();
+  return result;
+}
+
+WhitenedFit adopt(const CampaignData& data, const WhitenedFit& now, const Candidate& candidate) {
+  ExtendedUnknowns e =
+      extend(data, now, candidate.hypothesis, candidate.base_values, candidate.values);
+  WhitenedFit fit;
+  fit.runs = now.runs;
+  fit.spectra = now.spectra;
+  fit.shared_count = e.shared_count;
+  fit.is_dominated = now.is_dominated;
+  fit.fit.unknowns = std::move(e.unknowns);
+  fit.fit.values = std::move(e.values);
+  fit.fit.chi2 = now.fit.chi2 - candidate.gain;
+  fit.fit.degrees = now.fit.degrees - static_cast<long>(candidate.values.size());
+  return fit;
+}
+
+double calc_null_threshold(const Evidence& evidence, const Score& score,
+                           const std::vector<bool>& one_sided, std::size_t nulls,
+                           double confidence) {
+  constexpr std::uint64_t kSeed = 1;
+  // Of correlations: effects differ in size by orders, and rounding of the largest is not to be
+  // taken for noise of the smallest.
+  const Eigen::VectorXd sigma = score.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd unit = sigma.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * score.covariance *
+                                                              unit.asDiagonal());
+  const Eigen::MatrixXd root = sigma.asDiagonal() * solver.eigenvectors() *
+                               solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::vector<double> most;
+  most.reserve(nulls);
+  Score null = score;
+  for (std::size_t i = 0; i < nulls; ++i) {
+    Eigen::VectorXd normal(root.cols());
+    for (Eigen::Index k = 0; k < normal.size(); ++k) {
+      normal(k) = calc_normal(kSeed, i, static_cast<std::uint64_t>(k));
+    }
+    null.gradient = root * normal;
+    double best = 0.0;
+    for (const HypothesisTrial& trial : evidence.trials) {
+      best = std::max(best, calc_gain(null, trial.columns, one_sided[trial.hypothesis]).chi2);
+    }
+    most.push_back(best);
+  }
+  std::sort(most.begin(), most.end());
+  return most[std::min(nulls - 1,
+                       static_cast<std::size_t>(confidence * static_cast<double>(nulls)))];
+}
+
+}  // namespace strut

@@ -1,0 +1,22 @@
+// One round of the selection: a score test of all hypotheses beside a fit, and fits of the best.
+#pragma once
+
+#include "diagnose/decide/select.h"
+
+namespace strut {
+
+struct RoundOptions {
+  std::size_t fitted = 8;            // number of hypotheses fitted, the best by score
+  bool is_final = true;              // finds the threshold, and fits the best until they converge
+  const Hypothesis* also = nullptr;  // fitted in any case, from `values`
+  std::vector<double> values{};
+};
+
+/// Tests every effect beside those of `now`. Throws InputError where `now` cannot be simulated.
+SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
+                         const SelectOptions& options, const RoundOptions& round);
+
+/// The fit `now` with a candidate, at the values that the candidate's own fit found.
+WhitenedFit adopt(const CampaignData& data, const WhitenedFit& now, const Candidate& candidate);
+
+}  // namespace strut
