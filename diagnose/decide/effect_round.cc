@@ -374,9 +374,10 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                  calc_negligible(data, options, bench.whitener()));
   }
   const Round round{data, now, options, bench, hypotheses, evidence};
+  std::vector<RankedTrial> all = rank(evidence, score, one_sided);
+  if (!all.empty()) result.best_score = all.front().gain.chi2;
   const std::vector<RankedTrial> ranked =
-      choose(evidence, hypotheses, rank(evidence, score, one_sided), round_options,
-             0.3 * result.threshold);
+      choose(evidence, hypotheses, std::move(all), round_options, 0.3 * result.threshold);
   const std::vector<std::size_t> classes = list_classes(evidence, score, ranked);
   std::vector<Fitted> fitted = fit_ranked(round, ranked, round_options);
   for (std::size_t i = 0; i < fitted.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "diagnose/decide/probability.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace strut {
 
@@ -16,6 +17,10 @@ std::vector<double> calc_log_odds(const SelectRound& round, const ProbabilityOpt
       if (!p.switches) value -= options.shape_cost;
     }
     if (is_corner(c.hypothesis.place)) value -= options.corner_cost;
+    // Names of one class share its probability.
+    value -= std::log(static_cast<double>(
+        std::count_if(round.candidates.begin(), round.candidates.end(),
+                      [&](const Candidate& other) { return other.alias == c.alias; })));
     odds.push_back(value);
   }
   const double best = *std::max_element(odds.begin(), odds.end());

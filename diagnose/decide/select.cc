@@ -125,18 +125,22 @@ class Selector {
     if (!data_.has_inputs() || round.candidates.size() < 2 || round.misfit < kExplained) return;
     if (round.candidates.front().gain < round.threshold * round.misfit) return;
     tell("looking for pairs of effects");
-    std::vector<std::size_t> classes;
-    std::size_t best = 0;
+    // By score, then the best by fits.
+    std::vector<Pair> pairs = list_pairs(round);
     double first = 0.0, most = 0.0;
-    for (std::size_t i = 0; i < round.candidates.size() && classes.size() < options_.paired; ++i) {
-      const Candidate& c = round.candidates[i];
-      if (std::find(classes.begin(), classes.end(), c.alias) != classes.end()) continue;
-      classes.push_back(c.alias);
-      const double gain = c.gain + find_partner_gain(round, c);
-      if (i == 0) first = gain;
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const bool is_first = pairs[i].candidate == 0;
+      if (i >= options_.paired_fits && !is_first) continue;
+      const Candidate& c = round.candidates[pairs[i].candidate];
+      const SelectRound beside = test_beside(c, options_.partners);
+      round.simulations += beside.simulations;
+      const double gain =
+          c.gain + (beside.candidates.empty() ? 0.0 : beside.candidates.front().gain);
+      if (is_first) first = gain;
       if (gain <= most) continue;
       most = gain;
-      best = i;
+      best = pairs[i].candidate;
     }
     if (most < kBetter * first || most - first < round.threshold * round.misfit) return;
     std::rotate(round.candidates.begin(), round.candidates.begin() + static_cast<long>(best),
@@ -144,13 +148,34 @@ class Selector {
     round.pair_gain = most;
   }
 
-  double find_partner_gain(SelectRound& round, const Candidate& c) const {
-    const WhitenedFit with = adopt(data_, selection_.extended, c);
-    RoundOptions quick{options_.partners};
+  /// A candidate, and the delta chi2 that it promises with the best second effect.
+  struct Pair {
+    std::size_t candidate;
+    double promise;
+  };
+
+  /// Pairs of the best of each class, the most promising first.
+  std::vector<Pair> list_pairs(SelectRound& round) const {
+    const std::size_t count = selection_.causes.empty() ? options_.paired : options_.paired_later;
+    std::vector<std::size_t> classes;
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < round.candidates.size() && pairs.size() < count; ++i) {
+      const Candidate& c = round.candidates[i];
+      if (std::find(classes.begin(), classes.end(), c.alias) != classes.end()) continue;
+      classes.push_back(c.alias);
+      const SelectRound beside = test_beside(c, 0);
+      round.simulations += beside.simulations;
+      pairs.push_back({i, c.gain + beside.best_score});
+    }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return a.promise > b.promise; });
+    return pairs;
+  }
+
+  SelectRound test_beside(const Candidate& c, std::size_t fitted) const {
+    RoundOptions quick{fitted};
     quick.is_final = false;
-    const SelectRound next = test_effects(data_, with, options_, quick);
-    round.simulations += next.simulations;
-    return next.candidates.empty() ? 0.0 : std::max(0.0, next.candidates.front().gain);
+    return test_effects(data_, adopt(data_, selection_.extended, c), options_, quick);
   }
 
   /// With several causes, each was chosen without those that came later: each is taken out, every
@@ -245,7 +270,7 @@ class Selector {
     if (gain / round.misfit < round.threshold) return false;
     if (!is_certain(round) && round.candidates.front().stability < options_.stability) return false;
     const double first = selection_.rounds.front().candidates.front().gain;
-    return selection_.rounds.size() == 1 || gain > options_.second_share * first;
+    return selection_.causes.empty() || is_certain(round) || gain > options_.second_share * first;
   }
 
   bool accept(const SelectRound& round) {

@@ -33,9 +33,10 @@ struct SelectOptions {
   double second_share = 0.1;
   /// First fits of a round, to rank its hypotheses; and fits of the best.
   SearchEffort screening{15, 1.0}, convergence{60, 0.1};
-  /// Number of classes of a round's best hypotheses for which the best second effect is looked up,
-  /// and number of second effects fitted beside each. For rigs.
-  std::size_t paired = 6, partners = 2;
+  /// For rigs: number of classes of the first and of later rounds whose best hypotheses are scored
+  /// together with a second effect; number of them that are fitted; number of second effects fitted
+  /// beside each.
+  std::size_t paired = 6, paired_later = 3, paired_fits = 3, partners = 2;
   LeftoverOptions leftover;
   /// Minimum ratio of a cause's delta chi2 per reading of the held-out runs to that of the fitted
   /// runs; and minimum fraction of the runs without each of which it remains among the best.
@@ -77,6 +78,7 @@ struct SelectRound {
   /// Delta chi2 of the first candidate and another effect together, if it leads the candidates for
   /// that reason.
   double pair_gain = 0.0;
+  double best_score = 0.0;  // delta chi2 to first order of the best hypothesis
   long simulations = 0;
 };
 

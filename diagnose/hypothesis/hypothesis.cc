@@ -154,6 +154,14 @@ bool is_same_effect(const Hypothesis& a, const Hypothesis& b) {
   return a.effect == b.effect && a.place == b.place;
 }
 
+bool are_identical(const Hypothesis& a, const Hypothesis& b) {
+  const auto is_stroke = [](const Hypothesis& h) {
+    return h.effect == EffectName::kDamperLeak || h.effect == EffectName::kJointPlay;
+  };
+  return is_stroke(a) && is_stroke(b) && a.place == b.place && a.beginnings == b.beginnings &&
+         a.reference == b.reference;
+}
+
 Hypothesis make_removal(const CampaignData& data, const Hypothesis& changed) {
   const auto parameters = list_effect_parameters(*find_effect(changed.effect), data.model());
   Hypothesis h{changed.effect, changed.place, {}, {{}}, EffectChange::kRemoved, {}};

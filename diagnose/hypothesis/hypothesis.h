@@ -46,6 +46,10 @@ struct Hypothesis {
 /// Whether both concern the same effect at the same place.
 bool is_same_effect(const Hypothesis& a, const Hypothesis& b);
 
+/// Whether the model gives both the same equations, so that no data tell them apart: a lost stroke
+/// and a joint's play of one strut.
+bool are_identical(const Hypothesis& a, const Hypothesis& b);
+
 /// The hypothesis that an effect of the model file is not there: its switching parameters are
 /// neutral, and nothing of it is free.
 Hypothesis make_removal(const CampaignData& data, const Hypothesis& changed);

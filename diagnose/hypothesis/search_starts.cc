@@ -32,6 +32,14 @@ Starts start_bump_stop(Motion m) {
   return starts;
 }
 
+/// A stroke far beyond the motion of a reading changes other readings than a short one.
+Starts start_stroke(const char* name, Motion m) {
+  Starts starts;
+  for (const double fraction : {0.02, 0.1, 0.4})
+    starts.push_back({{name, fraction * m.deflection}});
+  return starts;
+}
+
 Starts start_friction(Motion m) {
   return {{{"force", 0.1 * m.damper_force()}, {"speed", 0.05 * m.velocity}}};
 }
@@ -85,10 +93,7 @@ const Rules& list_rules() {
                     [](Motion m) -> Starts {
                       return {{{"lag", 0.05 / m.frequency()}}};
                     }},
-                   {EffectName::kDamperLeak,
-                    [](Motion m) -> Starts {
-                      return {{{"stroke", 0.02 * m.deflection}}};
-                    }},
+                   {EffectName::kDamperLeak, [](Motion m) { return start_stroke("stroke", m); }},
                    {EffectName::kDamperFade,
                     [](Motion) -> Starts {
                       return {{{"loss", 0.005}, {"rate", 0.005}}};
@@ -97,10 +102,7 @@ const Rules& list_rules() {
                    {EffectName::kProgressiveSpring, start_progressive_spring},
                    {EffectName::kBumpStop, start_bump_stop},
                    {EffectName::kTopMountCompliance, start_top_mount},
-                   {EffectName::kJointPlay,
-                    [](Motion m) -> Starts {
-                      return {{{"play", 0.02 * m.deflection}}};
-                    }},
+                   {EffectName::kJointPlay, [](Motion m) { return start_stroke("play", m); }},
                    {EffectName::kGasForce,
                     [](Motion m) -> Starts {
                       return {{{"force", 0.05 * m.stiffness * m.deflection}}};

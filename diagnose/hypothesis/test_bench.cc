@@ -1,6 +1,7 @@
 #include "diagnose/hypothesis/test_bench.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <utility>
 
 #include "base/error/input_error.h"
@@ -97,6 +98,18 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypot
   std::size_t first = 0;
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = hypotheses[h];
+    const auto twin = std::find_if(trials.begin(), trials.end(), [&](const HypothesisTrial& trial) {
+      return are_identical(hypotheses[trial.hypothesis], hypothesis);
+    });
+    if (twin != trials.end()) {
+      const std::size_t other = twin->hypothesis;
+      for (std::size_t t = 0, count = trials.size(); t < count; ++t) {
+        if (trials[t].hypothesis != other) continue;
+        trials.push_back({h, trials[t].beginning, trials[t].columns, trials[t].parameters});
+      }
+      first += hypothesis.parameters.size();
+      continue;
+    }
     for (std::size_t b = 0; b < hypothesis.beginnings.size(); ++b) {
       HypothesisTrial trial{h, b, {}, {}};
       for (std::size_t j = 0; j < hypothesis.parameters.size(); ++j) {
@@ -169,14 +182,12 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
   return evidence;
 }
 
-HypothesisFit TestBench::fit(const Hypothesis& hypothesis,
-                             const std::vector<double>& beginning, const SearchEffort& effort,
-                             const std::vector<double>& from) const {
+HypothesisFit TestBench::fit(const Hypothesis& hypothesis, const std::vector<double>& beginning,
+                             const SearchEffort& effort, const std::vector<double>& from) const {
   const std::vector<Unknown> own = make_unknowns(data_, hypothesis);
   const SearchGround ground{data_.has_inputs(), unknowns_, values_, *whitener_,
                             residual_,          jacobian_, normal_, regular_normal_};
-  return search_hypothesis(ground, *make_model(own, 1), hypothesis, own, beginning,
-                           effort, from);
+  return search_hypothesis(ground, *make_model(own, 1), hypothesis, own, beginning, effort, from);
 }
 
 }  // namespace strut
