@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/hidden/fault_range.h"
 #include "tests/hidden/sha256.h"
 #include "tests/hidden/vehicle_file.h"
 
@@ -150,7 +151,7 @@ std::string format_short(double value) {
 }
 
 std::string make_table(const Kit& kit, const Trial& trial, std::size_t run) {
-  constexpr double kOversampling = 4.0, kMargin = 0.04;
+  constexpr double kOversampling = 4.0;
   const RunPlan& plan = kit.runs[run];
   const std::vector<Signal> signals =
       simulate_run(kit, trial.truth, run, kOversampling * kit.rate, kMargin);
@@ -184,11 +185,13 @@ std::string make_fault(const Kit& kit, const HiddenFault& hidden) {
       << ", \"place\": " << quote(get_place(kit, hidden.setting))
       << ", \"where\": " << quote(get_where(kit, hidden.setting))
       << ", \"magnitude\": " << format(hidden.setting.magnitude)
-      << ", \"parameter\": " << quote(info.parameter)
-      << ", \"ratio\": " << format(hidden.noise.ratio)
-      << ", \"joint_ratio\": " << format(hidden.noise.joint)
-      << ", \"ratio_beyond_survey\": " << format(hidden.beyond_survey)
-      << ", \"grade\": " << quote(std::string(1, find_grade(hidden.noise.ratio))) << "}";
+      << ", \"parameter\": " << quote(info.parameter) << ", \"ratio\": " << format(hidden.ratio)
+      << ", \"grade\": " << quote(std::string(1, find_grade(hidden.ratio))) << ", \"twins\": [";
+  for (std::size_t i = 0; i < hidden.twins.size(); ++i) {
+    out << (i > 0 ? ", " : "") << "{\"effect\": " << quote(hidden.twins[i].effect)
+        << ", \"place\": " << quote(hidden.twins[i].place) << "}";
+  }
+  out << "]}";
   return out.str();
 }
 
@@ -208,7 +211,8 @@ std::string make_truth(const Kit& kit, const Trial& trial) {
   out << "{\"seed\": " << trial.seed << ", \"kit\": " << quote(kit.name)
       << ", \"category\": " << quote(get_name(trial.category))
       << ", \"grade\": " << quote(std::string(1, trial.get_grade()))
-      << ", \"grade_beyond_survey\": " << quote(std::string(1, trial.get_grade_beyond_survey()))
+      << ", \"beyond_one\": " << format(trial.beyond_one)
+      << ", \"beyond_two\": " << format(trial.beyond_two)
       << ", \"roughness\": " << format(trial.truth.roughness) << ",\n \"faults\": [";
   for (std::size_t i = 0; i < trial.faults.size(); ++i) {
     out << (i > 0 ? ",\n  " : "") << make_fault(kit, trial.faults[i]);

@@ -17,9 +17,8 @@ void write_trial(const Kit& kit, const Trial& trial, const std::filesystem::path
 /// DIR/truths/SEED.json. It is written last and atomically, so a trial that has it is complete.
 std::filesystem::path find_truth(const std::filesystem::path& folder, std::uint64_t seed);
 
-/// The truth as JSON: category, grade, faults with place, magnitude and ratios, true parameters and
-/// their Cramer-Rao bounds (Detector::bounds). The grade, and the grade beyond the surveys,
-/// which scores use.
+/// The truth as JSON: category, grade, ratios beyond imitation, faults with place, magnitude, ratio
+/// and twins, true parameters and their Cramer-Rao bounds (Detector::bounds).
 std::string make_truth(const Kit& kit, const Trial& trial);
 
 /// Writes DIR/truths/SHA256SUMS over the truths there, sorted, in the format of sha256sum. Existing

@@ -60,23 +60,22 @@ Request parse(const std::vector<std::string>& words) {
   return request;
 }
 
-void write_one(const Request& request, const Sampler& sampler, std::uint64_t seed) {
+void write_one(const Request& request, std::uint64_t seed) {
   if (std::filesystem::exists(find_truth(request.folder, seed))) return;
   Kit kit = request.kit;
-  Trial trial = sampler.draw(seed);
+  Trial trial = draw_trial(kit, seed);
   ablate(request.ablation, kit, trial);
   write_trial(kit, trial, request.folder);
 }
 
 void write_trials(const Request& request) {
-  const Sampler sampler(request.kit);
   std::atomic<std::size_t> next = 0;
   std::exception_ptr failure;
   std::mutex guard;
   const auto work = [&] {
     try {
       for (std::size_t i = next++; i < request.seeds.size(); i = next++) {
-        write_one(request, sampler, request.seeds[i]);
+        write_one(request, request.seeds[i]);
       }
     } catch (...) {
       const std::lock_guard<std::mutex> lock(guard);

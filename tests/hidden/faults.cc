@@ -109,7 +109,7 @@ const std::vector<FaultInfo>& list_faults() {
       {Fault::kImuPosition, "leaning sensor elsewhere", "sensor_position", "x", W::kBody, kInCar,
        true, 0.05, 0.0, true},
       {Fault::kSpeedometer, "speedometer wrong at speed", "speed_error", "", W::kRoad, kInCar, true,
-       0.02, 0.0, true, true},
+       0.02, 0.0, true},
       {Fault::kWarming, "damper warming from run to run", "", "", W::kStrut, kAll, false, 0.1, 0.1,
        true},
       {Fault::kGas, "compressed gas", "", "", W::kStrut, kAll, false, 0.1, 0.1, true},

@@ -67,9 +67,8 @@ struct FaultInfo {
   Where where;
   unsigned kits;
   bool either_sign;
-  double car, rig;              // start values of a search for the magnitude
-  bool newer = false;           // hidden by seeds from kNewerFaults on
-  bool seen_by_speeds = false;  // fits compensate it by speeds away from their priors
+  double car, rig;     // start values of a search for the magnitude
+  bool newer = false;  // hidden by seeds from kNewerFaults on
 };
 
 /// Seeds below it hide the same faults as before the newer ones were added.

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
 
 namespace strut::hidden {
 namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
-constexpr double kPreroll = 1.5;  // s of road before a recording, which starts in mid-drive
+constexpr double kPreroll = 1.5;       // s of road before a recording, which starts in mid-drive
+constexpr double kRoomToShift = 0.05;  // s
 constexpr double kKmh = 1.0 / 3.6;
 constexpr double kG = 9.80665;
 
@@ -19,6 +19,11 @@ std::vector<double> make_grid(double begin, double end, double rate) {
   std::vector<double> times(count);
   for (std::size_t i = 0; i < count; ++i) times[i] = begin + static_cast<double>(i) / rate;
   return times;
+}
+
+/// An adjustment of a run; 0 where there is none.
+double get_adjustment(const std::vector<double>& of_runs, std::size_t run) {
+  return of_runs.empty() ? 0.0 : of_runs[run];
 }
 
 double find_factor(const Kit& kit, const Truth& truth, const std::string& name) {
@@ -122,7 +127,8 @@ std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::si
   const CarModel model(car);
   const double front = car.wheel[0].position.x(), rear = car.wheel[2].position.x();
   Drive drive;
-  drive.speed = run.speed * (1.0 + truth.speed_error[number]);
+  const double laid_at = run.speed * (1.0 + truth.speed_error[number]);
+  drive.speed = laid_at * (1.0 + get_adjustment(truth.speed_change, number));
   for (const FaultSetting& s : truth.faults) {
     drive.speed += run.speed * calc_speed_error(s, run.speed);
   }
@@ -139,8 +145,9 @@ std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::si
   const bool is_rough = truth.roughness > 0.0;
   const double before = is_rough ? kPreroll + margin : margin;
   if (is_rough) {
-    const double begin = rear - 1.0 - drive.speed * before;
-    const double length = drive.speed * (run.duration + before + margin) + front - rear + 10.0;
+    // The road does not depend on what a fit adjusts.
+    const double begin = rear - 1.0 - laid_at * before;
+    const double length = laid_at * (run.duration + before + margin) + front - rear + 10.0;
     Roughness roughness;
     roughness.degree = truth.roughness;
     rough = make_rough_tracks(roughness, begin, length, kFootprint, truth.seed + 1000003 * number);
@@ -148,9 +155,10 @@ std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::si
       drive.track[i].rough = i % 2 == 0 ? &rough.left : &rough.right;
     }
   }
-  std::vector<double> times = make_grid(-margin, run.duration + margin, rate);
+  const std::vector<double> times = make_grid(-margin, run.duration + margin, rate);
   std::vector<double> all = times;
-  all.insert(all.begin(), -before - 1e-9);
+  for (double& t : all) t += get_adjustment(truth.time_shift, number);
+  all.insert(all.begin(), -before - kRoomToShift);
   std::vector<CarSample> samples =
       simulate_car(model, drive, model.make_start(drive.speed, drive.speed * all.front()), all);
   samples.erase(samples.begin());
@@ -410,33 +418,6 @@ Truth make_nominal_truth(const Kit& kit) {
   truth.factors.assign(kit.parameters.size(), 1.0);
   truth.speed_error.assign(kit.runs.size(), 0.0);
   return truth;
-}
-
-double calc_speed_stray(const Kit& kit, const FaultSetting& setting) {
-  double square = 0.0;
-  for (const RunPlan& run : kit.runs) {
-    // Level ground carries no information about the speed.
-    if (!run.fit || run.excitation != Excitation::kBump) continue;
-    square += std::pow(calc_speed_error(setting, run.speed) / kit.speed_sigma, 2);
-  }
-  return std::sqrt(square);
-}
-
-double calc_survey_stray(const Kit& kit, const FaultSetting& setting) {
-  if (setting.fault != Fault::kBumpHeight && setting.fault != Fault::kBumpLength) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const std::string surveyed = setting.fault == Fault::kBumpHeight ? "bump_height" : "bump_length";
-  double square = 0.0;
-  for (const KitParameter& p : kit.parameters) {
-    // Crossed once or thrice, a bump is surveyed once.
-    const bool is_crossed = std::any_of(kit.runs.begin(), kit.runs.end(), [&](const RunPlan& run) {
-      return run.fit && run.excitation == Excitation::kBump &&
-             p.name == surveyed + std::to_string(run.bump_number);
-    });
-    if (is_crossed) square += std::pow(setting.magnitude / p.prior, 2);
-  }
-  return std::sqrt(square);
 }
 
 Car make_car(const Kit& kit, const Truth& truth) {

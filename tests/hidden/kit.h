@@ -62,6 +62,9 @@ struct Truth {
   double roughness = 0.0;           // m^3 at 0.1 cycles/m; 0: smooth
   std::uint64_t seed = 0;           // of the roughness
   double force_scale = 1.0;         // of the car's masses, inertias, stiffnesses and dampings
+  // Adjustments of a fit, of each run; empty: none.
+  std::vector<double> speed_change;  // 1, on the road of the speeds without it
+  std::vector<double> time_shift;    // s, by which the recording begins later
 };
 
 /// "car", "quarter_car" or "dyno"; throws std::invalid_argument for others.
@@ -74,15 +77,6 @@ Truth make_nominal_truth(const Kit& kit);
 /// `margin` [s] before the recording and ends as much after it; sensor faults included.
 std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
                                  double margin);
-
-/// Deviation, in sigmas of the speeds over all crossings for fitting, of fits that compensate an
-/// error of the speedometer.
-double calc_speed_stray(const Kit& kit, const FaultSetting& setting);
-
-/// Deviation, in sigmas of the surveys over all bumps for fitting, of fits that compensate a fault
-/// of the bumps. A deviation within the error of a survey is no fault. Infinite for faults that
-/// bumps cannot compensate.
-double calc_survey_stray(const Kit& kit, const FaultSetting& setting);
 
 /// The car of a truth.
 Car make_car(const Kit& kit, const Truth& truth);

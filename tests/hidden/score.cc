@@ -19,9 +19,16 @@ std::string merge_aliases(const std::string& effect) {
   return effect == "joint_play" ? "damper_leak" : effect;
 }
 
+bool is_cause(const Claim& claim, const std::string& effect, const std::string& place) {
+  return merge_aliases(claim.effect) == merge_aliases(effect) && claim.place == place;
+}
+
+/// Whether a claim is the hidden effect, or one that the trial's runs cannot tell from it.
 bool is_truth(const Claim& claim, const TrueFault& fault) {
-  return !fault.effect.empty() && merge_aliases(claim.effect) == merge_aliases(fault.effect) &&
-         claim.place == fault.place;
+  if (fault.effect.empty()) return false;
+  return is_cause(claim, fault.effect, fault.place) ||
+         std::any_of(fault.twins.begin(), fault.twins.end(),
+                     [&](const CauseName& c) { return is_cause(claim, c.effect, c.place); });
 }
 
 bool names(const std::vector<Claim>& claims, const TrueFault& fault) {
@@ -65,13 +72,6 @@ double find_probability(const Verdict& v, const TrueFault& fault) {
     }
   }
   return 0.0;
-}
-
-/// Effects with an alias that no run of the kits can distinguish.
-bool is_splittable(const TrueFault& fault) {
-  static const std::set<std::string> kAliases = {"sensor_delay", "sensor_lowpass", "damper_leak",
-                                                 "joint_play", "strut_friction"};
-  return kAliases.count(fault.effect) == 0;
 }
 
 bool is_strut_rate(const std::string& name) {
@@ -123,6 +123,7 @@ void add_explained(const Verdict& v, char grade, Score& score) {
 }
 
 void add_effect(const TrueFault& fault, const Claim& claim, char grade, Score& score) {
+  if (!is_cause(claim, fault.effect, fault.place)) return;
   const auto found = claim.parameters.find(fault.parameter);
   if (found == claim.parameters.end()) return;
   const Estimate& e = found->second;
@@ -142,7 +143,7 @@ void add_one(const TrueTrial& trial, const Verdict& v, Score& score) {
   score.cells[Metric::kInPrintedGroup][grade].add(
       is_in_group(v, fault, std::numeric_limits<std::size_t>::max()));
   score.cells[Metric::kAloneRight][grade].add(exact && count_names(v) == 1);
-  if (is_splittable(fault)) score.cells[Metric::kExact][grade].add(exact);
+  score.cells[Metric::kExact][grade].add(exact);
   if (grade <= 'B') {
     score.probability_on_truth.push_back(find_probability(v, fault));
     if (claims) score.names.push_back(static_cast<double>(count_names(v)));
@@ -154,17 +155,20 @@ void add_one(const TrueTrial& trial, const Verdict& v, Score& score) {
 void add_two(const TrueTrial& trial, const Verdict& v, Score& score) {
   int right = 0;
   for (const TrueFault& fault : trial.faults) right += is_in_group(v, fault, count_allowed(trial));
-  score.cells[Metric::kBothNamed][trial.grade].add(right == 2);
+  // Both are asked for where no other pair explains the data as well.
+  const char grade = std::max(trial.grade, find_grade(trial.beyond_two));
+  score.cells[Metric::kBothNamed][grade].add(right == 2);
   score.cells[Metric::kOneOfTwoNamed][trial.grade].add(right >= 1);
 }
 
 void add_unknown(const TrueTrial& trial, const Verdict& v, Score& score) {
   const bool flagged = is_flagged(v);
-  score.cells[Metric::kUnknownFlagged][trial.grade].add(flagged);
-  score.cells[Metric::kMapExplained70][trial.grade].add(flagged &&
-                                                        v.map_share.value_or(0.0) >= 0.70);
+  // What a known cause imitates cannot be flagged.
+  const char grade = find_grade(trial.beyond_one);
+  score.cells[Metric::kUnknownFlagged][grade].add(flagged);
+  score.cells[Metric::kMapExplained70][grade].add(flagged && v.map_share.value_or(0.0) >= 0.70);
   if (flagged) {
-    score.cells[Metric::kUnknownPlaced][trial.grade].add(v.place == trial.faults.front().where);
+    score.cells[Metric::kUnknownPlaced][grade].add(v.place == trial.faults.front().where);
   }
 }
 
@@ -206,7 +210,9 @@ void add_missing(const TrueTrial& trial, Score& score) {
   score.cells[Metric::kWrongConfident][grade].add(true);
   score.confidence.emplace_back(1.0, false);
   if (grade == 'D') score.cells[Metric::kOverclaimed]['D'].add(true);
-  if (trial.category == "unknown") score.cells[Metric::kUnknownPlaced][grade].add(false);
+  if (trial.category == "unknown") {
+    score.cells[Metric::kUnknownPlaced][find_grade(trial.beyond_one)].add(false);
+  }
   const bool one = trial.category == "one";
   if (one && !trial.faults.front().parameter.empty()) {
     score.cells[Metric::kEffectCovered][grade].add(false);
@@ -309,7 +315,8 @@ const std::vector<Gate>& list_gates() {
       {Metric::kInGroup, "C", 0.80, true},
       {Metric::kInPrintedGroup, "AB", 0.99, true},
       {Metric::kExact, "AB", 0.90, true},
-      {Metric::kUnknownFlagged, "AB", 0.95, true},
+      {Metric::kUnknownFlagged, "A", 0.95, true},
+      {Metric::kUnknownFlagged, "B", 0.85, true},
       {Metric::kUnknownPlaced, "AB", 0.85, true},
       {Metric::kWrongConfident, "ABCD-", 0.02, false},
       {Metric::kBothNamed, "AB", 0.70, true},
@@ -410,15 +417,16 @@ std::vector<Quantity> list_quantities(const Score& score) {
           {"names in cause and group, A and B: mean", calc_mean(score.names), score.names.size(),
            static_cast<double>(kLargestGroup), false},
           {"calibration error of first causes", calc_calibration_error(score.confidence),
-           score.confidence.size(), 0.05, false},
+           score.confidence.size(), 0.07, false},
           {"stiffness and damping, named, smooth: rms relative", calc_rms(score.smooth_error),
            score.smooth_error.size(), 0.003, false},
           {"stiffness and damping, named, road of class A: rms relative",
            calc_rms(score.rough_error), score.rough_error.size(), 0.01, false},
           {"stiffness and damping, nothing hidden: rms over the stated 1 sigma",
            calc_rms(score.null_pull), score.null_pull.size(), 1.2, false},
+          // 1.4 for cars and 1.15 for stands, in the table's shares.
           {"stiffness and damping, nothing hidden: rms over the Cramer-Rao bound",
-           calc_rms(score.null_excess), score.null_excess.size(), 1.2, false},
+           calc_rms(score.null_excess), score.null_excess.size(), 1.24, false},
           {"stiffness and damping, nothing hidden: rms relative", calc_rms(score.null_error),
            score.null_error.size(), 0.01, false},
           {"effect's parameter, named exactly: median relative error",

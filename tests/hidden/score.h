@@ -12,17 +12,18 @@
 
 namespace strut::hidden {
 
-/// A count, with one cell for each grade.
+/// A count, with one cell for each grade. The truth is the hidden effect, or one that the runs of
+/// its trial cannot tell from it.
 enum class Metric {
   kFalseAlarm,      // nothing hidden, something claimed
   kDetected,        // one effect of the catalogue hidden, verdict not adequate
   kInGroup,         // one: the truth is a cause or in the group, of at most kLargestGroup
   kInPrintedGroup,  // one: the truth is a cause or in the group, however large
   kAloneRight,      // one: the truth is the only cause, and the group holds no other name
-  kExact,           // one, effects that the kits can distinguish: the first cause is the truth
-  kUnknownFlagged,  // unknown hidden: verdict unknown or form_incomplete
+  kExact,           // one: the first cause is the truth
+  kUnknownFlagged,  // unknown hidden, graded beyond imitation: verdict unknown or form_incomplete
   kUnknownPlaced,   // unknown, flagged: where.place is the truth's, word for word
-  kBothNamed,       // two hidden
+  kBothNamed,       // two hidden, graded beyond every other pair
   kOneOfTwoNamed,
   kWrongConfident,  // any trial: a wrong cause with more than 0.8, no truth for it in the group
   kOverclaimed,     // grade D: a cause named with more than 0.8, no group beside it

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/hidden/limits.h"
+#include "tests/hidden/regrade.h"
 #include "tests/hidden/report.h"
 
 namespace strut::hidden {
@@ -17,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kUsage[] =
-    "Usage: strut_hidden_score [OPTION] TRUTHS VERDICTS [TRUTHS VERDICTS...]\n\n"
+    "Usage: strut_hidden_score [OPTION] TRUTHS VERDICTS [TRUTHS VERDICTS...]\n"
+    "       strut_hidden_score --regrade FILE [THREADS] [LIST]\n\n"
     "Prints how the verdicts VERDICTS/SEED/verdict.json answer the truths TRUTHS/SEED.json, per\n"
     "grade of the signal-to-noise ratio with 95 % Wilson intervals, trials of several kits\n"
     "together and kit by kit. Exit status 1 where the whole interval of a gate lies on the wrong\n"
@@ -25,13 +27,38 @@ constexpr char kUsage[] =
     "  --limits FILE       exit status 1 where a score lies beyond its limit in FILE instead, or\n"
     "                      where the limits would let an impostor pass\n"
     "  --set-limits FILE   writes FILE from this run\n"
-    "  --json              prints counts and values as JSON; exit status 0\n\n"
+    "  --json              prints counts and values as JSON; exit status 0\n"
+    "  --regrade FILE      grades the published trials of FILE anew, without new verdicts, and\n"
+    "                      prints their scores by both grades; LIST gets a line for each fault\n\n"
     "Example: strut_hidden_score hidden/truths hidden/verdicts\n";
 
 struct Request {
   std::string option, limits;
   std::vector<fs::path> folders;
 };
+
+bool is_regrade(const std::vector<std::string>& words) {
+  return !words.empty() && words.front() == "--regrade";
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(path.string() + ": cannot be written");
+}
+
+int print_regrade(const std::vector<std::string>& words) {
+  if (words.size() < 2 || words.size() > 4) {
+    throw std::invalid_argument("--regrade FILE [THREADS] [LIST]");
+  }
+  const auto threads = words.size() > 2 ? static_cast<unsigned>(std::stoul(words[2])) : 1U;
+  const std::vector<PublishedTrial> published = read_published(words[1]);
+  const std::vector<Trial> trials = regrade(published, threads);
+  std::cout << make_regrade_report(published, trials);
+  if (words.size() > 3) write_text(words[3], make_regrade_list(published, trials));
+  return 0;
+}
 
 struct Trials {
   std::vector<TrueTrial> truths;
@@ -103,10 +130,7 @@ int run(const Request& request) {
   if (request.option == "--limits") return judge(read_limits(request.limits), trials);
   if (request.option == "--set-limits") {
     const Limits limits = make_limits(calc_score(trials.truths, trials.verdicts));
-    std::ofstream out(request.limits, std::ios::binary);
-    out << make_limits_json(limits);
-    out.close();
-    if (!out) throw std::runtime_error(request.limits + ": cannot be written");
+    write_text(request.limits, make_limits_json(limits));
     return judge(limits, trials);
   }
   return passed ? 0 : 1;
@@ -117,7 +141,9 @@ int run(const Request& request) {
 
 int main(int count, char** words) {
   try {
-    return strut::hidden::run(strut::hidden::parse({words + 1, words + count}));
+    const std::vector<std::string> list(words + 1, words + count);
+    if (strut::hidden::is_regrade(list)) return strut::hidden::print_regrade(list);
+    return strut::hidden::run(strut::hidden::parse(list));
   } catch (const std::invalid_argument& e) {
     std::cerr << "strut_hidden_score: " << e.what() << "\n\n" << strut::hidden::kUsage;
     return 2;

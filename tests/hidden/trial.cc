@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <utility>
 
+#include "tests/hidden/fault_range.h"
 #include "tests/hidden/random_stream.h"
 
 namespace strut::hidden {
@@ -18,53 +18,78 @@ constexpr double kLowest = 5.0 * 0.39810717055349725, kHighest = 5.0 * 12.589254
 
 bool is_known(const FaultInfo& info) { return *info.effect != '\0'; }
 
-double get_start(const Kit& kit, const FaultInfo& info) {
-  // A dynamometer holds a car's strut.
-  return kit.kind == KitKind::kQuarterCar ? info.rig : info.car;
+/// A hidden fault and what a fit without it leaves of the whitened runs.
+struct Graded {
+  HiddenFault fault;
+  Eigen::VectorXd residual;
+};
+
+Graded grade_fault(const Detector& detector, const FaultSetting& setting, double target) {
+  const Eigen::VectorXd residual = detector.fit(detector.calc_deviation({setting}));
+  return {{setting, residual.norm(), target, {}}, residual};
 }
 
-/// The largest magnitude that is still the thing it is called.
-double get_cap(const Kit& kit, const FaultInfo& info) {
-  switch (info.fault) {
-    case Fault::kAsymmetry:
-    case Fault::kKnee:
-    case Fault::kSelectiveDamper:
-      return 0.8;
-    case Fault::kSaturation:
-    case Fault::kWarming:
-      return 0.6;
-    case Fault::kSpeedometer:
-      return 0.06;
-    case Fault::kParabola:
-    case Fault::kTruncatedRamp:
-      return 1.2;
-    case Fault::kSensorGain:
-    case Fault::kRoadGain:
-    case Fault::kBumpHeight:
-    case Fault::kBumpLength:
-      return 0.3;
-    default:
-      return 10.0 * get_start(kit, info);
+Graded size_fault(const Detector& detector, FaultSetting setting, double target) {
+  // Nearly in proportion; thresholds need the bracket, too.
+  auto [low, high] = find_bracket(detector.kit(), setting.fault);
+  setting.magnitude *= kSmall;
+  setting.peak = find_peak(detector.kit(), detector.truth(), setting);
+  Graded graded = grade_fault(detector, setting, target);
+  for (int i = 0; i < 9; ++i) {
+    const double size = std::fabs(setting.magnitude), ratio = graded.fault.ratio;
+    if (std::fabs(ratio / target - 1.0) < 0.05) break;
+    (ratio < target ? low : high) = size;
+    double next = size * target / std::max(ratio, 1e-9 * target);
+    if (next <= low || next >= high) next = std::sqrt(low * high);
+    if (std::fabs(next / size - 1.0) < 1e-3) break;
+    setting.magnitude = std::copysign(next, setting.magnitude);
+    graded = grade_fault(detector, setting, target);
   }
+  return graded;
 }
 
-/// Below it the equations become stiffer than the integrator likes, or nothing is left.
-double get_floor(const Kit& kit, const FaultInfo& info) {
-  const double start = get_start(kit, info);
-  const bool is_stiff =
-      info.fault == Fault::kMount || info.fault == Fault::kLag || info.fault == Fault::kPlay;
-  return is_stiff ? 0.02 * start : 3e-4 * start;
-}
-
-/// Largest reading of a sensor in all runs.
-double find_peak(const std::vector<std::vector<Signal>>& runs, int sensor) {
-  double peak = 0.0;
-  for (const std::vector<Signal>& run : runs) {
-    for (const double v : run[static_cast<std::size_t>(sensor)].value) {
-      peak = std::max(peak, std::fabs(v));
-    }
+/// Compares hidden faults with the causes that the catalogue knows.
+void add_likeness(const Detector& detector, const std::vector<Graded>& graded, Trial& trial) {
+  if (graded.empty()) return;
+  const std::vector<KnownCause> causes = list_known_causes(detector);
+  std::vector<Eigen::VectorXd> residuals;
+  for (std::size_t i = 0; i < graded.size(); ++i) {
+    residuals.push_back(graded[i].residual);
+    trial.faults[i].twins =
+        list_twins(detector.kit(), graded[i].fault.setting, residuals.back(), causes);
   }
-  return peak;
+  const Eigen::VectorXd all = graded.size() == 1
+                                  ? residuals.front()
+                                  : detector.fit(detector.calc_deviation(trial.truth.faults));
+  trial.beyond_one = calc_beyond_one(all, causes);
+  trial.beyond_two = calc_beyond_two(all, causes, residuals);
+}
+
+/// The trial of the detector's truth with its clocks, biases and bounds.
+Trial make_trial(const Detector& detector, const std::vector<Graded>& graded) {
+  const Kit& kit = detector.kit();
+  Trial trial;
+  trial.seed = detector.truth().seed;
+  trial.category = draw_category(trial.seed);
+  trial.truth = detector.truth();
+  for (const Graded& g : graded) {
+    trial.faults.push_back(g.fault);
+    trial.truth.faults.push_back(g.fault.setting);
+  }
+  add_likeness(detector, graded, trial);
+  for (std::size_t i = 0; i < kit.parameters.size(); ++i) {
+    trial.bounds.push_back(kit.parameters[i].nominal * detector.bounds()[i]);
+  }
+  RandomStream clocks(trial.seed, "clocks");
+  for (std::size_t r = 0; r < kit.runs.size(); ++r) {
+    const double offset = kit.time_sigma * clocks.draw_normal();
+    trial.clocks.push_back({offset, 2e-5 * clocks.draw_normal(), kit.jitter});
+  }
+  RandomStream biases(trial.seed, "biases");
+  for (const Sensor& sensor : kit.sensors) {
+    trial.bias.push_back(sensor.bias * biases.draw_normal());
+  }
+  return trial;
 }
 
 }  // namespace
@@ -91,53 +116,37 @@ Category draw_category(std::uint64_t seed) {
 
 char Trial::get_grade() const {
   char grade = '-';
-  for (const HiddenFault& f : faults) grade = std::max(grade, find_grade(f.noise.ratio));
+  for (const HiddenFault& f : faults) grade = std::max(grade, find_grade(f.ratio));
   return grade;
 }
 
-char Trial::get_grade_beyond_survey() const {
-  char grade = '-';
-  for (const HiddenFault& f : faults) grade = std::max(grade, find_grade(f.beyond_survey));
-  return grade;
-}
-
-Sampler::Sampler(const Kit& kit) : kit_(kit), classes_{0.0} {
-  if (kit.kind == KitKind::kCar) classes_ = {1e-6, 16e-6, 64e-6};
-  const std::vector<Nuisance> nuisances = make_nuisances(kit_);
-  for (const double degree : classes_) {
-    detectors_.push_back(std::make_unique<Detector>(kit_, nuisances, degree));
-  }
-}
-
-const Detector& Sampler::get_detector(double roughness) const {
-  const auto at = std::find(classes_.begin(), classes_.end(), roughness) - classes_.begin();
-  return *detectors_[static_cast<std::size_t>(at)];
-}
-
-Truth Sampler::draw_truth(std::uint64_t seed) const {
-  Truth truth = make_nominal_truth(kit_);
+Truth draw_truth(const Kit& kit, std::uint64_t seed) {
+  Truth truth = make_nominal_truth(kit);
   RandomStream draws(seed, "parameters");
-  for (std::size_t i = 0; i < kit_.parameters.size(); ++i) {
-    const KitParameter& p = kit_.parameters[i];
+  for (std::size_t i = 0; i < kit.parameters.size(); ++i) {
+    const KitParameter& p = kit.parameters[i];
     truth.factors[i] =
         p.prior > 0.0 ? 1.0 + p.prior * draws.draw_normal() : draws.draw_uniform(p.low, p.high);
   }
   RandomStream speed(seed, "speed");
-  for (double& e : truth.speed_error) e = kit_.speed_sigma * speed.draw_normal();
-  RandomStream road(seed, "road class");
-  truth.roughness =
-      classes_[static_cast<std::size_t>(road.draw_index(static_cast<int>(classes_.size())))];
+  for (double& e : truth.speed_error) e = kit.speed_sigma * speed.draw_normal();
+  if (kit.kind == KitKind::kCar) {
+    constexpr std::array<double, 3> kClasses = {1e-6, 16e-6, 64e-6};  // m^3
+    RandomStream road(seed, "road class");
+    truth.roughness = kClasses[static_cast<std::size_t>(road.draw_index(kClasses.size()))];
+  }
   truth.seed = seed;
   return truth;
 }
 
-std::vector<FaultSetting> Sampler::draw_faults(std::uint64_t seed, Category category) const {
+std::vector<FaultSetting> draw_faults(const Kit& kit, std::uint64_t seed) {
+  const Category category = draw_category(seed);
   if (category == Category::kNone) return {};
   std::vector<const FaultInfo*> candidates;
   for (const FaultInfo& info : list_faults()) {
     const bool wanted = is_known(info) != (category == Category::kUnknown);
     if (info.newer && seed < kNewerFaults) continue;
-    if (wanted && (info.kits & kit_.bit) != 0) candidates.push_back(&info);
+    if (wanted && (info.kits & kit.bit) != 0) candidates.push_back(&info);
   }
   RandomStream draws(seed, "faults");
   std::vector<FaultSetting> settings;
@@ -146,16 +155,16 @@ std::vector<FaultSetting> Sampler::draw_faults(std::uint64_t seed, Category cate
     const auto which =
         static_cast<std::size_t>(draws.draw_index(static_cast<int>(candidates.size())));
     const FaultInfo& info = *candidates[which];
-    FaultSetting s{info.fault, 0, get_start(kit_, info), 0.0};
+    FaultSetting s{info.fault, 0, get_start(kit, info), 0.0};
     const double side = draws.draw_uniform(), sign = draws.draw_sign();
     if (info.either_sign) s.magnitude *= sign;
-    if (kit_.kind == KitKind::kCar && (info.where == Where::kStrut || info.where == Where::kTire)) {
+    if (kit.kind == KitKind::kCar && (info.where == Where::kStrut || info.where == Where::kTire)) {
       s.place = side < 0.5 ? 0 : 1;
     }
     if (info.where == Where::kChannel) {
-      const auto inputs = static_cast<int>(std::count_if(kit_.sensors.begin(), kit_.sensors.end(),
+      const auto inputs = static_cast<int>(std::count_if(kit.sensors.begin(), kit.sensors.end(),
                                                          [](const Sensor& x) { return x.input; }));
-      const int outputs = static_cast<int>(kit_.sensors.size()) - inputs;
+      const int outputs = static_cast<int>(kit.sensors.size()) - inputs;
       s.place = inputs + static_cast<int>(side * outputs);
     }
     candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(which));
@@ -164,96 +173,24 @@ std::vector<FaultSetting> Sampler::draw_faults(std::uint64_t seed, Category cate
   return settings;
 }
 
-SignalToNoise Sampler::measure(const FaultSetting& setting, const Truth& without,
-                               const std::vector<std::vector<Signal>>& base) const {
-  if (get_info(setting.fault).seen_by_speeds) {
-    const double stray = calc_speed_stray(kit_, setting);
-    return {stray, stray, stray};
-  }
-  Truth with = without;
-  with.faults = {setting};
-  return get_detector(without.roughness).calc(subtract(simulate_fit_runs(kit_, with), base));
-}
-
-HiddenFault Sampler::size_fault(FaultSetting setting, double target, const Truth& without,
-                                const std::vector<std::vector<Signal>>& base) const {
-  // Nearly in proportion; thresholds need the bracket, too.
-  auto [low, high] = find_bracket(kit_, setting.fault);
-  HiddenFault hidden{setting, measure(setting, without, base), target, 0.0};
-  for (int i = 0; i < 9; ++i) {
-    const double size = std::fabs(hidden.setting.magnitude), ratio = hidden.noise.ratio;
-    if (std::fabs(ratio / target - 1.0) < 0.05) break;
-    (ratio < target ? low : high) = size;
-    double next = size * target / std::max(ratio, 1e-9 * target);
-    if (next <= low || next >= high) next = std::sqrt(low * high);
-    if (std::fabs(next / size - 1.0) < 1e-3) break;
-    hidden.setting.magnitude = std::copysign(next, setting.magnitude);
-    hidden.noise = measure(hidden.setting, without, base);
-  }
-  hidden.beyond_survey = std::min(hidden.noise.ratio, calc_survey_stray(kit_, hidden.setting));
-  return hidden;
-}
-
-Trial Sampler::draw(std::uint64_t seed) const {
-  Trial trial;
-  trial.seed = seed;
-  trial.category = draw_category(seed);
-  trial.truth = draw_truth(seed);
+Trial draw_trial(const Kit& kit, std::uint64_t seed) {
+  const Detector detector(kit, draw_truth(kit, seed));
   RandomStream sizes(seed, "sizes");
-  const std::vector<FaultSetting> settings = draw_faults(seed, trial.category);
-  if (!settings.empty()) {
-    const auto base = simulate_fit_runs(kit_, trial.truth);
-    Truth without = trial.truth;
-    for (FaultSetting s : settings) {
-      if (s.fault == Fault::kSaturation) s.peak = find_peak(base, s.place);
-      const double target = sizes.draw_log_uniform(kLowest, kHighest);
-      trial.faults.push_back(size_fault(s, target, without, base));
-      trial.truth.faults.push_back(trial.faults.back().setting);
-    }
+  std::vector<Graded> graded;
+  for (const FaultSetting& s : draw_faults(kit, seed)) {
+    graded.push_back(size_fault(detector, s, sizes.draw_log_uniform(kLowest, kHighest)));
   }
-  const std::vector<double>& bounds = get_detector(trial.truth.roughness).bounds();
-  for (std::size_t i = 0; i < kit_.parameters.size(); ++i) {
-    trial.bounds.push_back(kit_.parameters[i].nominal * bounds[i]);
-  }
-  RandomStream clocks(seed, "clocks");
-  for (std::size_t r = 0; r < kit_.runs.size(); ++r) {
-    const double offset = kit_.time_sigma * clocks.draw_normal();
-    trial.clocks.push_back({offset, 2e-5 * clocks.draw_normal(), kit_.jitter});
-  }
-  RandomStream biases(seed, "biases");
-  for (const Sensor& sensor : kit_.sensors) {
-    trial.bias.push_back(sensor.bias * biases.draw_normal());
-  }
-  return trial;
+  return make_trial(detector, graded);
 }
 
-std::pair<double, double> find_bracket(const Kit& kit, Fault fault) {
-  const FaultInfo& info = get_info(fault);
-  return {get_floor(kit, info), get_cap(kit, info)};
-}
-
-std::string get_place(const Kit& kit, const FaultSetting& setting) {
-  const Where where = get_info(setting.fault).where;
-  if (where == Where::kChannel) return kit.sensors[static_cast<std::size_t>(setting.place)].channel;
-  if (kit.kind != KitKind::kCar) return "";
-  if (where == Where::kBody) return "body";
-  if (where == Where::kRoad) return "road";
-  return setting.place == 0 ? "front" : "rear";
-}
-
-std::string get_where(const Kit& kit, const FaultSetting& setting) {
-  std::string place = get_place(kit, setting);
-  if (!place.empty()) return place;
-  switch (get_info(setting.fault).where) {
-    case Where::kTire:
-      return "tire";
-    case Where::kBody:
-      return "body";
-    case Where::kRoad:
-      return "road";
-    default:
-      return "strut";
+Trial grade_trial(const Kit& kit, std::uint64_t seed, const std::vector<FaultSetting>& faults) {
+  const Detector detector(kit, draw_truth(kit, seed));
+  std::vector<Graded> graded;
+  for (FaultSetting s : faults) {
+    s.peak = find_peak(kit, detector.truth(), s);
+    graded.push_back(grade_fault(detector, s, 0.0));
   }
+  return make_trial(detector, graded);
 }
 
 }  // namespace strut::hidden

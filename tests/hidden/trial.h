@@ -3,14 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
-#include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "tests/hidden/detect.h"
-#include "tests/hidden/kit.h"
+#include "tests/hidden/imitation.h"
 
 namespace strut::hidden {
 
@@ -23,10 +18,10 @@ Category draw_category(std::uint64_t seed);
 
 struct HiddenFault {
   FaultSetting setting;
-  SignalToNoise noise;  // of this fault alone
-  double target = 0.0;  // of noise.ratio
-  /// The ratio without the part within the error of the surveys.
-  double beyond_survey = 0.0;
+  double ratio = 0.0;   // of signal to noise, of this fault alone: grades it
+  double target = 0.0;  // of the ratio
+  /// Other known causes that these runs cannot tell from this one.
+  std::vector<CauseName> twins;
 };
 
 struct Trial {
@@ -36,43 +31,25 @@ struct Trial {
   std::vector<HiddenFault> faults;
   std::vector<Clock> clocks;  // of each run
   std::vector<double> bias;   // of each sensor
+  /// Ratio of all hidden faults beyond the best imitation by one known cause, and by two that are
+  /// not the hidden pair.
+  double beyond_one = 0.0, beyond_two = 0.0;
+  std::vector<double> bounds;  // of each of the kit's parameters, 1 sigma in its unit; may be empty
+
   /// Grade of the fault that is harder to detect; '-' where nothing is hidden.
   char get_grade() const;
-  /// The grade by HiddenFault::beyond_survey.
-  char get_grade_beyond_survey() const;
-  std::vector<double> bounds;  // of each of the kit's parameters, 1 sigma in its unit; may be empty
 };
 
-/// Draws trials of a kit; keeps their common data. Safe to use from several threads.
-class Sampler {
- public:
-  explicit Sampler(const Kit& kit);
-  Trial draw(std::uint64_t seed) const;
-  const Kit& kit() const { return kit_; }
+/// Parameters, speeds and road of a trial, without faults.
+Truth draw_truth(const Kit& kit, std::uint64_t seed);
 
- private:
-  Truth draw_truth(std::uint64_t seed) const;
-  std::vector<FaultSetting> draw_faults(std::uint64_t seed, Category category) const;
-  HiddenFault size_fault(FaultSetting setting, double target, const Truth& without,
-                         const std::vector<std::vector<Signal>>& base) const;
-  SignalToNoise measure(const FaultSetting& setting, const Truth& without,
-                        const std::vector<std::vector<Signal>>& base) const;
-  const Detector& get_detector(double roughness) const;
+/// Faults of a trial at the start values of their magnitudes.
+std::vector<FaultSetting> draw_faults(const Kit& kit, std::uint64_t seed);
 
-  Kit kit_;
-  std::vector<double> classes_;  // m^3
-  std::vector<std::unique_ptr<Detector>> detectors_;
-};
+/// The whole trial, its faults sized at its own truth.
+Trial draw_trial(const Kit& kit, std::uint64_t seed);
 
-/// Min and max magnitude of a fault's search.
-std::pair<double, double> find_bracket(const Kit& kit, Fault fault);
-
-/// The place of a fault as in a vehicle file: an axle, "body", "road", a channel; "" where a stand
-/// has only one.
-std::string get_place(const Kit& kit, const FaultSetting& setting);
-
-/// The place of a fault as in a verdict's where.place: as above, and on a stand "strut", "tire",
-/// "body" or "road".
-std::string get_where(const Kit& kit, const FaultSetting& setting);
+/// The trial of a seed with given faults instead of those that it would draw, graded anew.
+Trial grade_trial(const Kit& kit, std::uint64_t seed, const std::vector<FaultSetting>& faults);
 
 }  // namespace strut::hidden

@@ -61,12 +61,23 @@ std::vector<Claim> get_claims(const JsonTree& tree, const std::string& key) {
   return claims;
 }
 
+std::vector<CauseName> get_names(const JsonTree& tree, const std::string& key) {
+  std::vector<CauseName> names;
+  for (const auto& entry : tree.get_child(key)) {
+    names.push_back(
+        {entry.second.get<std::string>("effect"), entry.second.get<std::string>("place")});
+  }
+  return names;
+}
+
 TrueTrial get_truth(const fs::path& path, const JsonTree& tree) {
   TrueTrial trial;
   trial.name = path.stem().string();
   trial.kit = tree.get<std::string>("kit", "");
   trial.category = tree.get<std::string>("category", "");
-  trial.grade = tree.get<std::string>("grade_beyond_survey").front();
+  trial.grade = tree.get<std::string>("grade").front();
+  trial.beyond_one = tree.get<double>("beyond_one");
+  trial.beyond_two = tree.get<double>("beyond_two");
   trial.roughness = tree.get<double>("roughness", 0.0);
   if (trial.category.empty()) throw std::runtime_error(path.string() + ": category: is missing");
   for (const auto& entry : tree.get_child("faults")) {
@@ -74,7 +85,7 @@ TrueTrial get_truth(const fs::path& path, const JsonTree& tree) {
     trial.faults.push_back({f.get<std::string>("fault"), f.get<std::string>("effect"),
                             f.get<std::string>("place"), f.get<std::string>("parameter"),
                             f.get<double>("magnitude"), f.get<std::string>("grade").front(),
-                            f.get<std::string>("where")});
+                            f.get<std::string>("where"), get_names(f, "twins")});
   }
   for (const auto& [name, value] : tree.get_child("parameters")) {
     trial.parameters[name] = value.get_value<double>();

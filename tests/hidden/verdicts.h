@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/hidden/imitation.h"
 #include "tests/jobs/parse_json.h"
 
 namespace strut::hidden {
@@ -35,7 +36,8 @@ struct TrueFault {
   std::string fault, effect, place, parameter;
   double magnitude = 0.0;
   char grade = 'D';
-  std::string where;  // the place as in a verdict's where.place
+  std::string where;             // the place as in a verdict's where.place
+  std::vector<CauseName> twins;  // other causes that the trial's runs cannot tell from it
 };
 
 struct TrueTrial {
@@ -45,6 +47,8 @@ struct TrueTrial {
   std::vector<TrueFault> faults;
   std::map<std::string, double> parameters;
   std::map<std::string, double> bounds;  // Cramer-Rao bounds of the parameters, 1 sigma
+  /// Ratio beyond the best imitation by one known cause, and by two that are not the hidden pair.
+  double beyond_one = 0.0, beyond_two = 0.0;
 };
 
 /// Throws std::runtime_error with the file's name for another format.
