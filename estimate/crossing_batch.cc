@@ -91,6 +91,7 @@ void run_tasks(const std::vector<MeasuredRun>& runs, const std::vector<CrossingT
   for (std::size_t i = 0; i < prepared.size(); ++i) {
     if (!prepared[i]) continue;
     cases.push_back(std::move(*prepared[i]));
+    cases.back().longest_step = std::min(cases.back().longest_step, tasks[begin + i].longest_step);
     numbers.push_back(begin + i);
   }
   const std::vector<LaneRun> simulated =

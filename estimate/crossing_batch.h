@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace strut {
 struct CrossingTask {
   std::size_t run = 0;
   Case setup;
+  /// Longest step [s]; the setup's effects may need a shorter one.
+  double longest_step = std::numeric_limits<double>::infinity();
 };
 
 /// Samples of a run's compared channels: [MeasuredRun::channels][sample].

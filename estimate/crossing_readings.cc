@@ -12,6 +12,7 @@
 #include "estimate/crossing_batch.h"
 #include "estimate/hit_time.h"
 #include "model/error/model_error.h"
+#include "model/longest_step.h"
 #include "model_files/parameters.h"
 
 namespace strut {
@@ -146,6 +147,17 @@ std::vector<CrossingResult> CrossingReadings::simulate(const std::vector<Crossin
   return results;
 }
 
+/// Lets both sides of each difference take equal steps, or the difference would include that of the
+/// steps.
+void match_steps(const std::vector<RunVariant>& variants, std::vector<CrossingTask>& tasks) {
+  for (std::size_t k = 0; k + 1 < tasks.size(); ++k) {
+    if (variants[k].unknown == kNoUnknown) continue;
+    tasks[k].longest_step = tasks[k + 1].longest_step =
+        std::min(calc_longest_step(tasks[k].setup), calc_longest_step(tasks[k + 1].setup));
+    ++k;
+  }
+}
+
 /// Simulates the variants and their sensors; returns why one failed, empty if none did.
 std::string CrossingReadings::sample_variants(const std::vector<double>& values,
                                               const std::vector<RunVariant>& variants,
@@ -153,10 +165,11 @@ std::string CrossingReadings::sample_variants(const std::vector<double>& values,
   std::vector<CrossingTask> tasks;
   tasks.reserve(variants.size());
   for (const RunVariant& v : variants) {
-    tasks.push_back({v.run, {}});
+    tasks.push_back({.run = v.run, .setup = {}});
     std::string failure = try_setup(v.run, set_variant(values, v), tasks.back().setup);
     if (!failure.empty()) return failure;
   }
+  match_steps(variants, tasks);
   std::vector<CrossingResult> results = simulate(tasks);
   sampled.reserve(tasks.size());
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -267,7 +280,7 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
       Case car = remove_sensors(point.setup);
       point.car = first;
       while (point.car < cars.size() && !(cars[point.car].setup == car)) ++point.car;
-      if (point.car == cars.size()) cars.push_back({run, std::move(car)});
+      if (point.car == cars.size()) cars.push_back({.run = run, .setup = std::move(car)});
     }
   }
   const std::vector<CrossingResult> results = simulate(cars);

@@ -10,30 +10,15 @@
 #include "base/parallel/team.h"
 #include "base/text/format_number.h"
 #include "estimate/sampled_curve.h"
-#include "model/effects/strut_numbers.h"
 #include "model/error/model_error.h"
 #include "model/kernel/simulation.h"
+#include "model/longest_step.h"
 #include "model/rig/rig_system.h"
 #include "model/sensor/sensors.h"
 #include "model_files/read_rig.h"
 
 namespace strut {
 namespace {
-
-/// The sampling with as many more steps as a lost stroke of the strut needs: a short stroke is
-/// crossed in a fraction of a millisecond, and a longer step would pass over it. Masses do not
-/// respond to the shortest strokes; a dynamometer's force shows them all.
-DrivenSampling refine(DrivenSampling sampling, const RigSpec& spec) {
-  constexpr double kStepsOfContact = 4.0;
-  const RigInfo& info = get_rig_info(spec.kind);
-  const double max_refinement = info.masses.empty() ? 16.0 : 8.0;
-  const EffectValues values{spec.effects, info};
-  const double play = make_strut_effect_numbers(values, "", {}).series.play;
-  if (play <= 0.0) return sampling;
-  const double longest = kStepsOfContact / calc_contact_rate(play);
-  sampling.step /= std::clamp(std::ceil(sampling.step / longest), 1.0, max_refinement);
-  return sampling;
-}
 
 bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
   return a.failure.empty() && b.failure.empty() && a.run == b.run &&
@@ -109,9 +94,8 @@ DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
 
 DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& options) {
   const double n = static_cast<double>(run.times.size() - 1);
-  const double mean = run.times.back() / n, mode = run.setup.calc_fastest_mode();
-  const double longest =
-      mode > 0.0 ? std::min(options.longest_step, 0.1 / mode) : options.longest_step;
+  const double mean = run.times.back() / n;
+  const double longest = std::min(options.longest_step, calc_longest_step(run.setup.rig().rig));
   DrivenSampling s;
   s.even = true;
   for (std::size_t i = 0; i < run.times.size() && s.even; ++i) {
@@ -128,7 +112,8 @@ DrivenTask::DrivenTask(const MeasuredRun& measured, std::size_t index,
     : run(&measured), run_index(index) {
   try {
     variant = make_variant(measured, index, unknowns, values);
-    sampling = refine(choose_sampling(measured, options), variant.rig);
+    sampling = choose_sampling(measured, options);
+    sampling.step = shorten_step(sampling.step, calc_longest_step(variant.rig));
   } catch (const InputError& e) {  // out of a parameter's range
     failure = fmt::format("{}: {}", measured.name, e.what());
   }

@@ -1,5 +1,5 @@
 // Runs that recorded inputs drive, simulated in many variants, as many at once as the processor has
-// SIMD lanes, in steps short enough for the lost stroke of a worn strut.
+// SIMD lanes, in the steps that their models need (model/longest_step.h).
 #pragma once
 
 #include <array>

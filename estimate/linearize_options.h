@@ -22,8 +22,8 @@ struct LinearizeOptions {
   /// The interpolation error over a bump at 20 m/s is a tenth of a standard deviation of MEMS
   /// sensors at 1000/s, 3 % of one at 2000/s.
   double rate = 2000.0;
-  /// Maximum step of a run that recorded inputs drive [s]. A step is also at most a tenth of a
-  /// radian of the fastest natural mode, where the phase error of RK4 is 1e-6.
+  /// Maximum step of a run that recorded inputs drive [s], where its model needs no shorter one
+  /// (model/longest_step.h).
   double longest_step = 2e-3;
   /// Step h of the central differences as a fraction of the scale. Short, since readings near a
   /// contact event are kinked in the unknowns: at 1e-4 the speed moves an event across them. The

@@ -4,19 +4,31 @@
 
 #include "base/error/check.h"
 #include "base/parallel/team.h"
+#include "model/longest_step.h"
 
 namespace strut {
 namespace {
 
 using Group = std::vector<std::size_t>;
 
+/// The steps that the effects of a case need.
+StepOptions choose_steps(StepOptions step, const PreparedCase& c) {
+  step.step = shorten_step(step.step, c.longest_step);
+  if (step.coarse_step > 0.0) {
+    step.coarse_step = std::max(step.step, shorten_step(step.coarse_step, c.longest_step));
+  }
+  return step;
+}
+
 /// Groups cases that may share lanes, at most `width` a group, in order.
-std::vector<Group> group_cases(const std::vector<PreparedCase>& cases, Closure closure,
-                               std::size_t width) {
+std::vector<Group> group_cases(const std::vector<PreparedCase>& cases,
+                               const IntegrateOptions& options, std::size_t width) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto fits = [&](const Group& group) {
-      return group.size() < width && may_share_lanes(cases[group.front()], cases[i], closure);
+      const PreparedCase& first = cases[group.front()];
+      return group.size() < width && may_share_lanes(first, cases[i], options.closure) &&
+             choose_steps(options.step, first) == choose_steps(options.step, cases[i]);
     };
     const auto found = std::find_if(groups.begin(), groups.end(), fits);
     if (found == groups.end()) {
@@ -36,8 +48,10 @@ LaneResults run_group(const std::vector<PreparedCase>& cases, const Group& group
   std::vector<const PreparedCase*> pointers;
   pointers.reserve(group.size());
   for (const std::size_t i : group) pointers.push_back(&cases[i]);
+  IntegrateOptions options = integrate.options;
+  options.step = choose_steps(options.step, cases[group.front()]);
   return list_kernels().front().run_lanes(pointers.data(), static_cast<int>(pointers.size()),
-                                          integrate.options, plan);
+                                          options, plan);
 }
 
 }  // namespace
@@ -55,7 +69,7 @@ std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,
                                   int threads) {
   const bool in_lanes = integrate.solver == Solver::kLanes;
   const auto width = static_cast<std::size_t>(in_lanes ? list_kernels().front().lanes : 1);
-  const std::vector<Group> groups = group_cases(cases, integrate.options.closure, width);
+  const std::vector<Group> groups = group_cases(cases, integrate.options, width);
   std::vector<LaneRun> runs(cases.size());
   share_items(threads, groups.size(), [&](std::size_t g, int /*thread*/) {
     const auto results =

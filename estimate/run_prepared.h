@@ -25,7 +25,8 @@ struct LaneRun {
 
 /// Runs all cases and returns them in the same order; results do not depend on the number of
 /// threads. A single case also runs in a lane: lanes agree with each other bit by bit, with double
-/// only to 1e-9, which a difference would magnify. A failed run reports its status.
+/// only to 1e-9, which a difference would magnify. Steps are halved where the effects of a case
+/// need it (PreparedCase::longest_step). A failed run reports its status.
 std::vector<LaneRun> run_prepared(const std::vector<PreparedCase>& cases,
                                   const SolverOptions& integrate, const SamplePlan& plan,
                                   int threads = 1);

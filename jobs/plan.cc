@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <optional>
 
+#include "base/text/format_number.h"
 #include "io/format/json.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/arguments.h"
@@ -94,6 +96,20 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
             << "\n";
 }
 
+void warn_of_step(const SweepRequest& request) {
+  if (request.integrate.solver == Solver::kCvode) return;
+  const StepOptions& step = request.integrate.options.step;
+  constexpr double kBelow = 0.95;  // rounded to two digits, still short enough
+  const double longest = find_longest_step(request);
+  const bool is_step = step.step > longest * (1.0 + 1e-9);
+  if (!is_step && step.coarse_step <= longest * (1.0 + 1e-9)) return;
+  print_note(fmt::format(
+      "warning: {}: integrate.{} = {} s: too long to resolve the effects of some cases, which need "
+      "at most {:.2g} s",
+      request.path.string(), is_step ? "step" : "coarse_step",
+      format_number(is_step ? step.step : step.coarse_step), kBelow * longest));
+}
+
 void warn(const SweepEstimate& estimate) {
   if (estimate.without_event == estimate.measured) {
     print_note(
@@ -150,6 +166,7 @@ int run_plan(const Arguments& arguments) {
   if (!dry) folder = make_sweep_folder(arguments.text("output"), plan);
   const SweepEstimate estimate = estimate_time(plan);
   arguments.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
+  warn_of_step(plan.request());
   warn(estimate);
   if (folder) {
     print_note(folder->root.string() + ": planned");

@@ -52,7 +52,9 @@ Arguments describe_simulate() {
   arguments.add_option(
       "integrator", ArgumentValue::one_of(list_names(kIntegrators)),
       "rk4 (default); abm4: Adams-Bashforth-Moulton; cvode: SUNDIALS, tolerance 1e-12");
-  arguments.add_option("step", "S", "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001)");
+  arguments.add_option(
+      "step", "S",
+      "step of rk4 and abm4 [s], in (0, 0.02] (default 0.001, or what the effects need)");
   arguments.add_option(
       "coarse-step", "S",
       "longer step [s], from --step to 0.02, away from the bump (default: --step)");

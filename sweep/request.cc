@@ -9,7 +9,9 @@
 #include "base/error/input_error.h"
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
+#include "model/longest_step.h"
 #include "model_files/find_channel.h"
+#include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"
 #include "model_files/read_vehicle.h"
 #include "sweep/case_order.h"
@@ -85,8 +87,10 @@ double find_longest_duration(const SweepRequest& request) {
   return longest;
 }
 
-SolverOptions read_integrate(const std::optional<Table>& table, double longest_duration) {
+SolverOptions read_integrate(const std::optional<Table>& table, double longest_duration,
+                             double longest_step) {
   SolverOptions request;
+  request.options.step.step = shorten_step(request.options.step.step, longest_step);
   if (!table) return request;
   const auto method =
       static_cast<Integrator>(table->choice_or("method", 0, list_names(kIntegrators)));
@@ -187,12 +191,31 @@ SweepRequest read_request(const std::filesystem::path& path) {
   request.grid = read_grid(root.table("grid"), request.sample.method, request.base);
   read_by(sample, request.grid, request.sample);
   limit_default_strata(sample, request.grid, request.sample);
-  request.integrate = read_integrate(root.find_table("integrate"), find_longest_duration(request));
+  request.integrate = read_integrate(root.find_table("integrate"), find_longest_duration(request),
+                                     find_longest_step(request));
   read_record(root.table("record"), request);
   read_shards(root.find_table("shards"), request);
   request.shuffle = request.sample.method == SampleMethod::kGrid && find_slow_axes(request).empty();
   document.check_all_read();
   return request;
+}
+
+double find_longest_step(const SweepRequest& request) {
+  // The step is monotone in every parameter. Twice, since a friction's speed matters only once its
+  // force is on.
+  constexpr int kPasses = 2;
+  Case stiffest = request.base;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (const Axis& axis : request.grid.axes()) {
+      if (!find_parameter(axis.name).is_effect) continue;
+      for (const double end : {axis.from, axis.last()}) {
+        Case c = stiffest;
+        set_parameter(c, axis.name, end);
+        if (calc_longest_step(c) <= calc_longest_step(stiffest)) stiffest = std::move(c);
+      }
+    }
+  }
+  return calc_longest_step(stiffest);
 }
 
 SamplePlan make_sample_plan(const SweepRequest& request) {

@@ -49,6 +49,10 @@ struct SweepRequest {
 /// value and what is allowed.
 SweepRequest read_request(const std::filesystem::path& path);
 
+/// Longest step [s] that resolves the effects of every case (model/longest_step.h): the default
+/// step is halved to it.
+double find_longest_step(const SweepRequest& request);
+
 /// Samples that the simulations of this request record.
 SamplePlan make_sample_plan(const SweepRequest& request);
 

@@ -16,6 +16,7 @@
 #include "jobs/simulate/run_file.h"
 #include "jobs/simulate/run_report.h"
 #include "jobs/simulate/step_check.h"
+#include "model/longest_step.h"
 #include "model_files/parameters.h"
 #include "sweep/simulate_case.h"
 
@@ -141,8 +142,9 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
 
 }  // namespace
 
-int run_car(const Arguments& arguments, const SimulateOptions& options) {
-  const Case input = load_case(options.source);
+int run_car(const Arguments& arguments, const SimulateOptions& given) {
+  const Case input = load_case(given.source);
+  const SimulateOptions options = adapt_steps(given, calc_longest_step(input));
   const RunFormat format = check_output(options);
   const double duration = input.maneuver.duration;
   check_rate(options.rate, duration);

@@ -7,7 +7,9 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
+#include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
+#include "model/longest_step.h"
 #include "report/page_file.h"
 #include "sweep/step_count.h"
 
@@ -26,6 +28,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
   StepOptions& step = integrate.step;
   step.step = arguments.number_or("step", step.step,
                                   {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
+  options.chose_step = arguments.has("step");
   step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
   step.stepper = options.integrator == Integrator::kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
   step.locate_events = !arguments.is_on("no-events");
@@ -45,6 +48,14 @@ void check_report(const SimulateOptions& options) {
         fmt::format("--output = {}: among the figures of --report; name another folder",
                     options.output.string()));
   }
+}
+
+void warn_of_step(const SimulateOptions& options, const char* name, double step, double longest) {
+  constexpr double kBelow = 0.95;  // rounded to two digits, still short enough
+  if (step <= longest * (1.0 + 1e-9)) return;
+  print_note(fmt::format(
+      "warning: {} = {} s: too long to resolve the effects of {}, which need at most {:.2g} s",
+      name, format_number(step), options.source.vehicle.string(), kBelow * longest));
 }
 
 }  // namespace
@@ -101,6 +112,15 @@ void check_step_count(const SimulateOptions& options, double duration) {
   if (!fault.empty()) {
     throw InputError(fmt::format("--step = {} s: {}", format_number(step), fault));
   }
+}
+
+SimulateOptions adapt_steps(SimulateOptions options, double longest) {
+  if (options.integrator == Integrator::kCvode) return options;
+  StepOptions& step = options.integrate.step;
+  if (!options.chose_step) step.step = shorten_step(step.step, longest);
+  warn_of_step(options, "--step", step.step, longest);
+  warn_of_step(options, "--coarse-step", step.coarse_step, longest);
+  return options;
 }
 
 RunFormat check_output(const SimulateOptions& options) {

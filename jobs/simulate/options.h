@@ -23,7 +23,8 @@ struct SimulateOptions {
   std::filesystem::path report;  // folder; empty: none
   Integrator integrator = Integrator::kRk4;
   IntegrateOptions integrate;
-  double rate = 1000.0;  // Hz
+  bool chose_step = false;  // --step is given
+  double rate = 1000.0;     // Hz
   bool kinematics = false, json = false;
   bool force = false;  // the output may be replaced
 
@@ -45,6 +46,10 @@ void check_rate(double rate, double duration);
 
 /// Throws InputError if a run of `duration` [s] would take too many steps.
 void check_step_count(const SimulateOptions& options, double duration);
+
+/// The options with the steps that a model needs whose effects allow at most `longest` [s]: halves
+/// the default step, and warns about longer ones that were asked for.
+SimulateOptions adapt_steps(SimulateOptions options, double longest);
 
 /// Checks the output file and returns its format. Throws InputError, EnvironmentError.
 RunFormat check_output(const SimulateOptions& options);

@@ -8,6 +8,7 @@
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
 #include "jobs/simulate/run_file.h"
+#include "model/longest_step.h"
 #include "model/rig/rig_system.h"
 #include "model/sensor/read_out.h"
 #include "model_files/parameters.h"
@@ -64,11 +65,12 @@ void describe_run(const SimulateOptions& options, const RigSpec& rig, RunRecord&
 
 }  // namespace
 
-int run_rig(const Arguments& arguments, const SimulateOptions& options) {
-  if (options.integrator == Integrator::kCvode) {
+int run_rig(const Arguments& arguments, const SimulateOptions& given) {
+  if (given.integrator == Integrator::kCvode) {
     throw InputError("--integrator = cvode: for cars only; must be rk4 or abm4 for a rig");
   }
-  const RigSpec rig = load_rig(options.source);
+  const RigSpec rig = load_rig(given.source);
+  const SimulateOptions options = adapt_steps(given, calc_longest_step(rig));
   const RigManeuver maneuver = read_rig_maneuver(options.source.maneuver, rig.kind);
   const RunFormat format = check_output(options);
   check_rate(options.rate, maneuver.duration);

@@ -18,6 +18,8 @@ struct StepOptions {
   double step = 1e-3;         // s
   bool locate_events = true;  // end steps at contact events
   double coarse_step = 0.0;   // s, where the system needs no fine step; 0: `step` everywhere
+
+  bool operator==(const StepOptions&) const = default;
 };
 
 struct SamplePlan {

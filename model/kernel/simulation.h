@@ -1,6 +1,7 @@
 // Simulation of cases: from specifications to results. Instruction sets are hidden behind Kernel.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct PreparedCase {
   double bump_center = 0.0;  // m, world x
   double trigger_x = 0.0;    // m, world x of the snapshot's line
   double duration = 0.0;     // s
+  double longest_step = std::numeric_limits<double>::infinity();  // s, that its effects need
   EffectSettings sensors{};  // effects of channels, for ReadOut; the simulation ignores them
   CornerForceMaps force_maps{};
 };

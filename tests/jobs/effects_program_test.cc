@@ -65,6 +65,31 @@ TEST_CASE("A rig's effect from its file and by a setting give one run", "[io][ef
   CHECK(from_file != simulate(plain, ""));
 }
 
+TEST_CASE("A strut that loses stroke is simulated in steps that resolve the stroke",
+          "[io][effects]") {
+  const test::TemporaryFolder folder;
+  const auto simulate = [&](const std::string& rig, const std::string& more) {
+    return test::run_program("simulate " + (kExamples / "rigs" / rig).string() + " " +
+                             (kExamples / "rigs/maneuvers/dynamometer.toml").string() +
+                             " --force --rate 100 -o " + (folder / "run.csv").string() + more);
+  };
+  const std::string stroke = " --set damper_leak=1e-4";
+  const test::Outcome automatic = simulate("damper_dyno.toml", stroke);
+  REQUIRE(automatic.code == 0);
+  CHECK(automatic.messages.find("warning") == std::string::npos);
+  const std::string resolved = test::read_text(folder / "run.csv");
+  const test::Outcome coarse = simulate("damper_dyno.toml", stroke + " --step 1e-3");
+  REQUIRE(coarse.code == 0);
+  CHECK(coarse.messages.find("--step = 0.001 s: too long to resolve the effects") !=
+        std::string::npos);
+  CHECK(test::read_text(folder / "run.csv") != resolved);
+  // Contact time 0.196 ms: halving 1 ms ends at an eighth.
+  CHECK(simulate("damper_dyno.toml", stroke + " --step 1.25e-4").messages.find("warning") ==
+        std::string::npos);
+  CHECK(test::read_text(folder / "run.csv") == resolved);
+  CHECK(simulate("damper_dyno.toml", " --step 1e-3").messages.find("warning") == std::string::npos);
+}
+
 /// Columns of a CSV file by name.
 std::map<std::string, std::vector<double>> read_columns(const std::string& path) {
   std::ifstream file(path);

@@ -47,6 +47,27 @@ TEST_CASE("The paper's sweep file reads as the paper's sweep", "[unit][io]") {
   CHECK(count_samples(samples) == 0);
 }
 
+TEST_CASE("The default step of a sweep resolves the effects of all its cases", "[unit]") {
+  const Replacements no_step = {{"step    = 1e-3", ""}};
+  const auto find_default = [&](const std::string& axes) {
+    return read_sweep_text(make_grid_text(axes, no_step)).integrate.options.step.step;
+  };
+  CHECK(find_default("rear_stiffness = { from = 40000, to = 35500, step = -500 }") == 1e-3);
+  CHECK(find_default("rear_joint_play = { from = 2e-3, to = 1e-2, count = 3 }") == 1e-3);
+  // The contact time of the smallest play is 0.2 ms.
+  CHECK(find_default("rear_joint_play = { from = 1e-2, to = 1e-4, count = 3 }") == 1.25e-4);
+  // 2000 N over 5 mm/s on a wheel of some 40 kg: 0.1 ms, where both ends meet.
+  CHECK(find_default("front_strut_friction_speed = { from = 5e-3, to = 0.1, count = 3 }\n"
+                     "front_strut_friction_force = { from = 0, to = 2000, count = 3 }") < 2e-4);
+}
+
+TEST_CASE("A step that is given stays, and the longest one is known", "[unit]") {
+  const SweepRequest request =
+      read_sweep_text(make_grid_text("rear_joint_play = { from = 1e-2, to = 1e-4, count = 3 }"));
+  CHECK(request.integrate.options.step.step == 1e-3);
+  CHECK(find_longest_step(request) < 2.5e-4);
+}
+
 TEST_CASE("Keys that a sweep file leaves out have their defaults", "[unit][io]") {
   const std::string text = make_sweep_text();
   const std::size_t begin = text.find("[sample]"), end = text.find("[record]");
