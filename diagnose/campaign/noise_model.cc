@@ -1,7 +1,13 @@
 #include "diagnose/campaign/noise_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <unsupported/Eigen/FFT>
 #include <vector>
 
 namespace strut {
@@ -15,6 +21,13 @@ constexpr double kGain = 70.0;  // sum of their squares
 constexpr double kFreedom = static_cast<double>(kBlock) / 2.63;
 /// Ratio of median to mean of a chi-square of so many degrees (E. B. Wilson, M. M. Hilferty, 1931).
 constexpr double kCube = 1.0 - 2.0 / (9.0 * kFreedom), kMedianRatio = kCube * kCube * kCube;
+
+/// The bands of calc_floor, in frequencies of a block.
+constexpr std::size_t kFirst = 8, kBand = 4, kBands = 6;
+/// Ratio of median to mean of a band's power: that of a chi-square of 3.6 degrees, since neighbors
+/// under the window are correlated by 0.67, 0.19 and 0.02.
+constexpr double kBandCube = 1.0 - 2.0 / (9.0 * 3.6);
+constexpr double kBandMedian = kBandCube * kBandCube * kBandCube;
 
 /// Squares of the differences without a missing sample.
 std::vector<double> calc_squares(std::span<const double> values) {
@@ -65,7 +78,56 @@ double find_quantum(std::span<const double> values) {
   return quantum;
 }
 
+/// Power of white noise in each of the kBands bands of a block.
+std::array<double, kBands> calc_band_powers(std::span<const double> block,
+                                            const std::vector<double>& window, double weight) {
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  fft.SetFlag(Eigen::FFT<double>::Unscaled);
+  std::vector<double> faded(block.begin(), block.end());
+  const double mean = std::accumulate(faded.begin(), faded.end(), 0.0) / kBlock;
+  for (std::size_t i = 0; i < kBlock; ++i) faded[i] = window[i] * (faded[i] - mean);
+  std::vector<std::complex<double>> spectrum;
+  fft.fwd(spectrum, faded);
+  std::array<double, kBands> powers{};
+  for (std::size_t k = 0; k < kBands * kBand; ++k) {
+    powers[k / kBand] += std::norm(spectrum[kFirst + k]) / (weight * kBand);
+  }
+  return powers;
+}
+
+/// Power per sample of the white noise that the quietest band allows; infinity where a record is
+/// shorter than a block.
+double calc_floor(std::span<const double> values) {
+  std::vector<double> window(kBlock);
+  double weight = 0.0;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const double turn = 2.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) / kBlock;
+    window[i] = 0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2.0 * turn) -
+                0.01168 * std::cos(3.0 * turn);
+    weight += window[i] * window[i];
+  }
+  std::array<std::vector<double>, kBands> powers;
+  for (std::size_t begin = 0; begin + kBlock <= values.size(); begin += kBlock) {
+    const auto of_block = calc_band_powers(values.subspan(begin, kBlock), window, weight);
+    for (std::size_t b = 0; b < kBands; ++b) powers[b].push_back(of_block[b]);
+  }
+  double floor = std::numeric_limits<double>::infinity();
+  for (std::vector<double>& band : powers) {
+    if (!band.empty()) floor = std::min(floor, calc_median(std::move(band)) / kBandMedian);
+  }
+  return floor;
+}
+
 }  // namespace
+
+double estimate_input_noise(std::span<const double> values) {
+  constexpr double kNotWhite = 0.5;  // ratio of powers
+  const NoiseEstimate differences = estimate_noise(values);
+  const double sigma = differences.sigma, floor = calc_floor(values);
+  if (!(floor < kNotWhite * sigma * sigma)) return sigma;
+  return std::max(std::sqrt(floor), differences.quantum / std::sqrt(12.0));
+}
 
 NoiseEstimate estimate_noise(std::span<const double> values) {
   NoiseEstimate estimate;

@@ -265,14 +265,31 @@ void add_source(const Eigen::MatrixXcd& source, NoiseSpectrum& s) {
   }
 }
 
-/// The response to one wrong sample of an input, on its way through whatever smooths it.
+/// The run with inputs of zero but for a sample of `pulse` at `begin` in input number `input`, on
+/// its way through whatever smooths it: the readings of all channels. Throws InputError.
+std::vector<std::vector<double>> simulate_input_pulse(MeasuredRun run, std::size_t input,
+                                                      std::size_t begin, double pulse) {
+  std::vector<InputSignal>& inputs = run.setup.rig().inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    std::vector<double> samples(run.times.size(), 0.0);
+    if (i == input) samples[begin] = pulse;
+    inputs[i] =
+        make_sampled_input(inputs[i].channel, run.times, samples, run.input_noise[i].half_width);
+  }
+  RunCurves curves = simulate_run(run, {}, {});
+  if (!curves.failure.empty()) throw InputError(curves.failure);
+  return std::move(curves.channel);
+}
+
+/// Responses to one wrong sample of each input: differences against the run without it, which a
+/// mass without a spring spends falling.
 NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
                                    const std::vector<Unknown>& unknowns,
                                    const std::vector<double>& values) {
   NoiseSpectrum s = make_white(data, run);
   MeasuredRun measured = set_unknowns(data.runs[run], unknowns, values);
   const std::vector<double> times = measured.times;
-  auto& [rig, inputs] = measured.setup.rig();
+  RigSpec& rig = measured.setup.rig().rig;
   rig.effects.clear();
   rig.force_maps.clear();
   rig.initial_position = {};
@@ -280,25 +297,21 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
   const std::size_t longest =
       std::min(times.size(), static_cast<std::size_t>(kLongestResponse / s.interval) + 2);
   measured.times.resize(longest);
-  for (std::size_t input = 0; input < inputs.size(); ++input) {
+  const auto rest = simulate_input_pulse(measured, 0, 0, 0.0);
+  for (std::size_t input = 0; input < measured.input_noise.size(); ++input) {
     const InputNoise noise = measured.input_noise[input];
     if (!(noise.sigma > 0.0)) continue;
     const auto begin =
         std::min(longest / 4, static_cast<std::size_t>(2.0 * noise.half_width / s.interval) + 4);
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      std::vector<double> pulse(longest, 0.0);
-      if (i == input) pulse[begin] = noise.sigma;
-      inputs[i] = make_sampled_input(inputs[i].channel, measured.times, pulse,
-                                     measured.input_noise[i].half_width);
-    }
-    const RunCurves curves = simulate_run(measured, {}, {});
-    if (!curves.failure.empty()) throw InputError(curves.failure);
+    const auto response = simulate_input_pulse(measured, input, begin, noise.sigma);
     Eigen::MatrixXcd source = make_source(s, s.samples);
     for (std::size_t k = 0; k < data.channels(run).size(); ++k) {
-      std::vector<double> series =
-          curves.channel[static_cast<std::size_t>(data.channels(run)[k].channel)];
-      const double rest = series.front();
-      for (double& v : series) v = std::isnan(v) ? 0.0 : v - rest;
+      const auto channel = static_cast<std::size_t>(data.channels(run)[k].channel);
+      std::vector<double> series = response[channel];
+      for (std::size_t t = 0; t < series.size(); ++t) {
+        series[t] -= rest[channel][t];
+        if (std::isnan(series[t])) series[t] = 0.0;
+      }
       const Spectrum of = calc_transform(series, s.samples);
       for (Eigen::Index f = 0; f < source.cols(); ++f) {
         source(static_cast<Eigen::Index>(k), f) = of[static_cast<std::size_t>(f)];

@@ -51,6 +51,34 @@ TEST_CASE("The stated uncertainty of an estimated noise is its standard deviatio
   CHECK(std::abs(sum / kDraws) < test::tolerance(0.005));
 }
 
+/// A sum of tones up to a third of a sampling rate of 600 Hz, as an oscillator is driven by, with
+/// noise.
+std::vector<double> make_fast_input(double sigma) {
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    const double t = static_cast<double>(i) / 600.0;
+    double y = sigma * test::calc_test_normal(7, 0, i);
+    for (double f = 0.7; f < 200.0; f += 1.3) y += 0.01 * std::sin(6.283 * f * t + f * f);
+    values.push_back(y);
+  }
+  return values;
+}
+
+TEST_CASE("Fast motion of an input on purpose does not count as its noise", "[statistical]") {
+  for (const double sigma : {1e-5, 1e-4, 1e-3}) {
+    INFO(sigma);
+    const std::vector<double> values = make_fast_input(sigma);
+    CHECK(estimate_noise(values).sigma > 10.0 * sigma);
+    // 156 blocks of 3.6 degrees know a band's power to 7 %.
+    CHECK(estimate_input_noise(values) == Approx(sigma).epsilon(test::tolerance(0.15)));
+  }
+}
+
+TEST_CASE("The noise of a slow input is that of its differences", "[unit]") {
+  const std::vector<double> values = make_readings(1e-4, false);
+  CHECK(estimate_input_noise(values) == estimate_noise(values).sigma);
+}
+
 TEST_CASE("A blow in a fifth of a record does not count as noise", "[unit]") {
   CHECK(estimate_noise(make_readings(1e-4, true)).sigma ==
         Approx(1e-4).epsilon(test::tolerance(0.25)));  // the median moves up by a tenth of blocks
