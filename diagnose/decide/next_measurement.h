@@ -9,10 +9,9 @@
 
 namespace strut {
 
-/// Returns a sentence. With a group: of several possible runs (other speeds and bumps; other
-/// amplitudes of a rig) the one in which the best two hypotheses, as fitted to the existing runs,
-/// differ most, relative to the sensors' noise. Without a group: a run that would confirm the
-/// verdict.
+/// Returns a sentence. With a group: the possible run (possible_runs.h) that separates the best two
+/// hypotheses most, if by at least 3 standard deviations (separation.h); none where the existing
+/// runs should do so. Without a group: a run that would confirm the verdict.
 std::string propose_measurement(const CampaignData& data, const Selection& selection,
                                 const std::vector<Cause>& group);
 
