@@ -109,7 +109,7 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
     times.push_back(table.times[i] - table.times.front());
     values.push_back(gain * column.values[i]);
   }
-  noise.sigma = c.noise ? *c.noise : estimate_input_noise(values);
+  noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
   // Masses smooth their inputs; a strut's force follows the velocity itself.
   const bool smooths = !data.model().masses.empty();
   noise.half_width = c.smooth  ? *c.smooth

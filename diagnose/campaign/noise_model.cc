@@ -24,9 +24,11 @@ constexpr double kCube = 1.0 - 2.0 / (9.0 * kFreedom), kMedianRatio = kCube * kC
 
 /// The bands of calc_floor, in frequencies of a block.
 constexpr std::size_t kFirst = 8, kBand = 4, kBands = 6;
+/// Ratio of the quietest band's power to that of the differences below which these are motion.
+constexpr double kNotWhite = 0.1;
 /// Ratio of median to mean of a band's power: that of a chi-square of 3.6 degrees, since neighbors
 /// under the window are correlated by 0.67, 0.19 and 0.02.
-constexpr double kBandCube = 1.0 - 2.0 / (9.0 * 3.6);
+constexpr double kBandFreedom = 3.6, kBandCube = 1.0 - 2.0 / (9.0 * kBandFreedom);
 constexpr double kBandMedian = kBandCube * kBandCube * kBandCube;
 
 /// Squares of the differences without a missing sample.
@@ -96,8 +98,8 @@ std::array<double, kBands> calc_band_powers(std::span<const double> block,
   return powers;
 }
 
-/// Power per sample of the white noise that the quietest band allows; infinity where a record is
-/// shorter than a block.
+/// Power per sample of the white noise that the quietest band allows; infinity where no block is
+/// without a missing sample.
 double calc_floor(std::span<const double> values) {
   std::vector<double> window(kBlock);
   double weight = 0.0;
@@ -109,7 +111,10 @@ double calc_floor(std::span<const double> values) {
   }
   std::array<std::vector<double>, kBands> powers;
   for (std::size_t begin = 0; begin + kBlock <= values.size(); begin += kBlock) {
-    const auto of_block = calc_band_powers(values.subspan(begin, kBlock), window, weight);
+    const auto block = values.subspan(begin, kBlock);
+    if (!std::all_of(block.begin(), block.end(), [](double v) { return std::isfinite(v); }))
+      continue;
+    const auto of_block = calc_band_powers(block, window, weight);
     for (std::size_t b = 0; b < kBands; ++b) powers[b].push_back(of_block[b]);
   }
   double floor = std::numeric_limits<double>::infinity();
@@ -121,14 +126,6 @@ double calc_floor(std::span<const double> values) {
 
 }  // namespace
 
-double estimate_input_noise(std::span<const double> values) {
-  constexpr double kNotWhite = 0.5;  // ratio of powers
-  const NoiseEstimate differences = estimate_noise(values);
-  const double sigma = differences.sigma, floor = calc_floor(values);
-  if (!(floor < kNotWhite * sigma * sigma)) return sigma;
-  return std::max(std::sqrt(floor), differences.quantum / std::sqrt(12.0));
-}
-
 NoiseEstimate estimate_noise(std::span<const double> values) {
   NoiseEstimate estimate;
   const std::vector<double> means = calc_block_means(calc_squares(values));
@@ -138,6 +135,11 @@ NoiseEstimate estimate_noise(std::span<const double> values) {
   // The standard error of the median of m blocks is 1.25 / sqrt(m) of that of one block.
   const double blocks = std::max(1.0, static_cast<double>(means.size()));
   estimate.uncertainty = 0.5 * 1.25 * std::sqrt(2.0 / (kFreedom * blocks));
+  const double floor = calc_floor(values);
+  if (floor < kNotWhite * estimate.sigma * estimate.sigma) {
+    estimate.sigma = std::sqrt(floor);
+    estimate.uncertainty *= std::sqrt(kFreedom / kBandFreedom);
+  }
   if (estimate.sigma < rounding) {
     estimate.sigma = rounding;
     estimate.source = NoiseSource::kQuantized;

@@ -35,14 +35,13 @@ struct NoiseEstimate {
 /// bump or a stop. White noise is measured to 2 % in 10000 samples. (Differences of order k as a
 /// noise estimate: P. Hall, J. W. Kay, D. M. Titterington, Biometrika 77 (1990).) Sigma is at least
 /// that of the rounding to the sensor's quantum q, q / sqrt(12). Missing samples (NaN) are ignored.
+///
+/// Motion that is fast on purpose, up to a third of the sampling rate, is in the differences, too.
+/// White noise has the same power in every band: where the quietest of six bands between an eighth
+/// and a half of the sampling rate (Blackman-Harris windows of 64 samples, whose leakage is 92 dB
+/// down, median over the record) has less than a tenth of the power that the differences suggest,
+/// the noise is that band's. Recordings of real machines, with noise that is not white, have more
+/// than a fourth of it there.
 NoiseEstimate estimate_noise(std::span<const double> values);
-
-/// Sigma of the white noise of a recorded input without missing samples. An input may be driven
-/// fast on purpose, up to a third of the sampling rate, and its differences are then signal. White
-/// noise has the same power in every band: where the quietest of six bands between an eighth and a
-/// half of the sampling rate (Blackman-Harris windows of 64 samples, whose leakage is 92 dB down,
-/// median over the record) has less than half of the power that the differences suggest, that band
-/// is the noise. At least that of rounding.
-double estimate_input_noise(std::span<const double> values);
 
 }  // namespace strut

@@ -234,6 +234,38 @@ TEST_CASE("A separation is promised from three standard deviations on", "[unit]"
   CHECK(propose(91.0).find("standard deviations") == std::string::npos);
 }
 
+TEST_CASE("A car's proposal names a bump and a speed", "[unit]") {
+  CampaignData data = make_crossings();
+  for (MeasuredRun& run : data.runs) {
+    run.times.clear();
+    for (int i = 0; i < 400; ++i) run.times.push_back(0.005 * i);
+    run.channels = {{CarChannel::kBodyAccelerationZ, 0.0, std::vector<double>(400, 0.0)}};
+  }
+  const auto propose = [&](double sigma) {
+    for (MeasuredRun& run : data.runs) run.channels[0].sigma = sigma;
+    Selection selection = make_selection(data, 0.0);
+    selection.extended.spectra[0].sigma = {sigma};
+    std::vector<Candidate>& candidates = selection.rounds[0].candidates;
+    Unknown front, rear;
+    front.name = "front_damping";
+    rear.name = "rear_damping";
+    candidates[0].shared = {{front}, {2100.0}};
+    candidates[1].shared = {{rear}, {2100.0}};
+    const Cause a{EffectName::kDamperAsymmetry, "", 0.5, 0.0, {}};
+    const Cause b{EffectName::kDamperBlowOff, "", 0.5, 0.0, {}};
+    return propose_measurement(data, selection, {a, b});
+  };
+  CHECK(propose(100.0).find("no speed or bump") == 0);
+  CHECK(propose(1e-4).find("standard deviations") == std::string::npos);
+  // Noise at which the existing run separates them by 1 sigma at most, and 9 km/h more by 3.
+  std::string proposal;
+  for (double sigma = 10.0; sigma > 1e-3 && proposal.find("km/h: ") == std::string::npos;
+       sigma /= 1.3) {
+    proposal = propose(sigma);
+  }
+  CHECK(proposal.find(" standard deviations (") != std::string::npos);
+}
+
 TEST_CASE("Without a group no amplitude is proposed that a crank cannot make", "[unit]") {
   const CampaignData crank = make_stand({{0.018, 1.0}, {0.018, 2.0}}),
                      plate = make_stand({{0.002, 1.0}, {0.008, 1.0}});
