@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <utility>
 
 namespace strut::hidden {
@@ -134,18 +135,35 @@ VectorXd Detector::project(const VectorXd& deviation) const {
 }
 
 VectorXd Detector::fit(const VectorXd& deviation) const {
-  // Gauss and Newton with the tangents at the truth, which a wheel that lands bends.
+  // Gauss and Newton with the tangents at the truth, which a wheel that lands bends: steps are
+  // halved until they improve.
   constexpr int kSteps = 8;
-  VectorXd x = VectorXd::Zero(jacobian_.cols()), residual = deviation, best = project(deviation);
+  VectorXd x = VectorXd::Zero(jacobian_.cols()), residual = deviation;
   for (int i = 0; i < kSteps; ++i) {
-    x += root_.triangularView<Eigen::Upper>().solve(orthonormal_.transpose() * residual);
-    residual = deviation - calc_deviation({}, x);
-    const VectorXd now = project(residual);
-    const double change = now.norm() - best.norm();
-    if (i == 0 || change < 0.0) best = now;
-    if (std::fabs(change) < 0.01 * best.norm()) break;
+    const double before = residual.norm();
+    VectorXd step = root_.triangularView<Eigen::Upper>().solve(orthonormal_.transpose() * residual);
+    if (!improve(deviation, step, x, residual)) break;
+    if (before - residual.norm() < 0.005 * before) break;
   }
-  return best;
+  return project(residual);
+}
+
+bool Detector::improve(const VectorXd& deviation, VectorXd step, VectorXd& x,
+                       VectorXd& residual) const {
+  constexpr int kHalvings = 5;
+  for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
+    VectorXd tried;
+    try {
+      tried = deviation - calc_deviation({}, x + step);
+    } catch (const std::runtime_error&) {
+      continue;  // no car: a speed or a rate far off
+    }
+    if (!(tried.norm() < residual.norm())) continue;
+    x += step;
+    residual = tried;
+    return true;
+  }
+  return false;
 }
 
 SignalToNoise Detector::calc(const FaultSetting& fault) const {

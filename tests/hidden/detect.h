@@ -67,6 +67,10 @@ class Detector {
   const std::vector<double>& bounds() const { return bounds_; }
 
  private:
+  /// Takes a step of the adjustments, halved until the residual falls; false where it does not.
+  bool improve(const Eigen::VectorXd& deviation, Eigen::VectorXd step, Eigen::VectorXd& x,
+               Eigen::VectorXd& residual) const;
+
   Kit kit_;
   Truth truth_;
   std::vector<Nuisance> nuisances_;
