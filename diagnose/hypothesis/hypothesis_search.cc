@@ -108,7 +108,7 @@ class Search {
     struct Shares {
       double least, factor;
     };
-    const Shares shares = ground_.has_inputs ? Shares{0.03, 0.62} : Shares{0.05, 0.4};
+    const Shares shares = ground_.has_inputs ? Shares{0.02, 0.7} : Shares{0.05, 0.4};
     std::vector<Eigen::VectorXd> tried;
     std::vector<std::vector<double>> points;
     for (double share = 1.0; share > 0.9 * shares.least; share *= shares.factor) {
