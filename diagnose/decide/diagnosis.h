@@ -29,6 +29,8 @@ struct Cause {
   double probability = 0.0;
   double delta_chi2 = 0.0;  // fall of chi2 with the effect
   std::vector<CauseParameter> parameters;
+  EffectChange change = EffectChange::kAdded;
+  bool converged = true;  // the fit from which probability and delta chi2 follow
 };
 
 bool is_same(const Cause& a, const Cause& b);

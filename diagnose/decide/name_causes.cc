@@ -27,6 +27,8 @@ CauseParameter make_parameter_of(const CampaignData& data, const Hypothesis& h, 
 Cause make_cause(const CampaignData& data, const Candidate& candidate, double probability) {
   Cause cause{
       candidate.hypothesis.effect, candidate.hypothesis.place, probability, candidate.gain, {}};
+  cause.change = candidate.hypothesis.change;
+  cause.converged = candidate.converged;
   for (std::size_t i = 0; i < candidate.values.size(); ++i) {
     cause.parameters.push_back(
         make_parameter_of(data, candidate.hypothesis, i, candidate.values[i], candidate.sigma[i]));

@@ -12,7 +12,8 @@ namespace {
 std::string join_causes(const std::vector<Cause>& causes, const std::string& between) {
   std::string text;
   for (const Cause& cause : causes) {
-    text += (text.empty() ? "" : between) + describe_effect(cause.effect, cause.place);
+    text +=
+        (text.empty() ? "" : between) + describe_effect(cause.effect, cause.place, cause.change);
   }
   return text;
 }

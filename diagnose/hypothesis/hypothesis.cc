@@ -1,11 +1,13 @@
 #include "diagnose/hypothesis/hypothesis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
 #include "base/math/spread.h"
 #include "base/names/corners.h"
+#include "base/names/name_table.h"
 #include "diagnose/baseline/model_states.h"
 #include "diagnose/hypothesis/search_starts.h"
 #include "model/effects/names.h"
@@ -13,6 +15,11 @@
 
 namespace strut {
 namespace {
+
+constexpr std::array<Named<EffectChange>, 3> kChanges = {{{EffectChange::kAdded, "added"},
+                                                          {EffectChange::kChanged, "changed"},
+                                                          {EffectChange::kRemoved, "removed"}}};
+static_assert(names_all(kChanges, EffectChange::kRemoved));
 
 std::string find_axle(const std::string& place) {
   const auto found = std::find_if(kAxleNames.begin(), kAxleNames.end(),
@@ -139,6 +146,8 @@ std::vector<std::vector<double>> make_beginnings(
 }
 
 }  // namespace
+
+const char* get_name(EffectChange change) { return find_name(kChanges, change); }
 
 std::string describe_effect(const std::string& effect, const std::string& place,
                             EffectChange change) {

@@ -25,6 +25,9 @@ enum class EffectChange {
   kRemoved,  // switches it off
 };
 
+/// "added", "changed", "removed"
+const char* get_name(EffectChange change);
+
 /// "damper_asymmetry at rear"; without the place on a rig. An effect of the model file: "another
 /// damper_asymmetry at rear", "without damper_asymmetry at rear".
 std::string describe_effect(const std::string& effect, const std::string& place,

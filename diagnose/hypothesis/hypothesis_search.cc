@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "estimate/fit.h"
+
 namespace strut {
 namespace {
 
@@ -164,14 +166,14 @@ class Search {
       if (renew && !linearize()) return;
       fit_.distance = calc_distance();
       if (fit_.distance <= effort.distance) {
-        fit_.converged = is_fresh_;
+        fit_.converged = is_fresh_ && fit_.distance <= kFitTolerance;
         if (is_fresh_) return;
         renew = true;
         continue;
       }
       const double ratio = improve();
       if (ratio == 0.0 && is_fresh_) {
-        fit_.converged = fit_.distance <= kMaxKink;
+        fit_.converged = fit_.distance <= kKinkTolerance;
         return;
       }
       renew = !ground_.has_inputs || ratio < kEnough;
@@ -359,8 +361,6 @@ class Search {
       fit_.sigma.push_back(c.is_logarithm ? sigma * value : sigma * c.unit);
     }
   }
-
-  static constexpr double kMaxKink = 0.5;  // distance of a minimum with a kink, as kKinkTolerance
 
   const SearchGround& ground_;
   ReadingModel& model_;

@@ -17,10 +17,9 @@ Json make_cause(const Cause& cause) {
   for (const CauseParameter& p : cause.parameters) {
     parameters[p.key] = make_estimate(p.value, p.low, p.high, p.unit);
   }
-  return Json{{"effect", cause.effect},
-              {"place", cause.place},
-              {"probability", cause.probability},
-              {"chi2_gain", cause.delta_chi2},
+  return Json{{"effect", cause.effect},           {"place", cause.place},
+              {"change", get_name(cause.change)}, {"converged", cause.converged},
+              {"probability", cause.probability}, {"chi2_gain", cause.delta_chi2},
               {"parameters", parameters}};
 }
 

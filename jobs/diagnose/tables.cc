@@ -18,6 +18,7 @@ std::string describe_interval(double low, double high) {
 }
 
 std::string describe_parameters(const Cause& cause) {
+  if (cause.change == EffectChange::kRemoved) return "not there";
   std::string text;
   for (const CauseParameter& p : cause.parameters) {
     const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
@@ -28,10 +29,10 @@ std::string describe_parameters(const Cause& cause) {
 }
 
 std::vector<std::string> make_cause_row(const Cause& cause, const std::string& role) {
-  return {cause.effect,
+  return {describe_effect(cause.effect, "", cause.change),
           cause.place,
           role,
-          describe_parameters(cause),
+          describe_parameters(cause) + (cause.converged ? "" : "; not converged"),
           fmt::format("{:.3f}", cause.probability),
           fmt::format("{:.1f}", cause.delta_chi2)};
 }
