@@ -23,8 +23,7 @@ struct HypothesisFit {
   /// Distance to the minimum of the linear model, in standard deviations for noise as large as the
   /// residuals.
   double distance = 0.0;
-  bool converged =
-      false;  // distance within SearchEffort::distance, or no step lowers chi2 (a kink)
+  bool converged = false;  // within kFitTolerance, or kKinkTolerance where no step lowers chi2
   long simulations = 0;
 };
 

@@ -32,7 +32,8 @@ std::vector<std::string> make_cause_row(const Cause& cause, const std::string& r
   return {describe_effect(cause.effect, "", cause.change),
           cause.place,
           role,
-          describe_parameters(cause) + (cause.converged ? "" : "; not converged"),
+          describe_parameters(cause) +
+              (cause.converged || role == "runner-up" ? "" : "; not converged"),
           fmt::format("{:.3f}", cause.probability),
           fmt::format("{:.1f}", cause.delta_chi2)};
 }
