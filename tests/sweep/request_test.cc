@@ -47,8 +47,11 @@ TEST_CASE("The paper's sweep file reads as the paper's sweep", "[unit][io]") {
   CHECK(count_samples(samples) == 0);
 }
 
+const std::pair<std::string, std::string> kByFirstAxis = {"by     = \"front_stiffness\"", ""},
+                                          kAllStrata = {"strata = 10", "strata = 1"};
+
 TEST_CASE("The default step of a sweep resolves the effects of all its cases", "[unit]") {
-  const Replacements no_step = {{"step    = 1e-3", ""}};
+  const Replacements no_step = {kByFirstAxis, kAllStrata, {"step    = 1e-3", ""}};
   const auto find_default = [&](const std::string& axes) {
     return read_sweep_text(make_grid_text(axes, no_step)).integrate.options.step.step;
   };
@@ -62,8 +65,8 @@ TEST_CASE("The default step of a sweep resolves the effects of all its cases", "
 }
 
 TEST_CASE("A step that is given stays, and the longest one is known", "[unit]") {
-  const SweepRequest request =
-      read_sweep_text(make_grid_text("rear_joint_play = { from = 1e-2, to = 1e-4, count = 3 }"));
+  const SweepRequest request = read_sweep_text(make_grid_text(
+      "rear_joint_play = { from = 1e-2, to = 1e-4, count = 3 }", {kByFirstAxis, kAllStrata}));
   CHECK(request.integrate.options.step.step == 1e-3);
   CHECK(find_longest_step(request) < 2.5e-4);
 }
