@@ -243,8 +243,10 @@ Linearization CrossingReadings::linearize(const std::vector<double>& values) {
     const std::size_t run = variants[k].run;
     if (variants[k].unknown == kNoUnknown) {
       base = k;
-      fill_residual(run, values, read_run(run, sampled[k], get_hit_time(unknowns_, values, run)),
-                    out.residual);
+      const std::vector<double> readings =
+          read_run(run, sampled[k], get_hit_time(unknowns_, values, run));
+      fill_residual(run, values, readings, out.residual);
+      fill_sensor_columns(run, readings, out);
       fill_hit_time(run, sampled[k], values, out);
     } else {
       fill_column(variants[k], variants[k + 1], sampled[base], sampled[k], sampled[k + 1], values,
@@ -252,7 +254,6 @@ Linearization CrossingReadings::linearize(const std::vector<double>& values) {
       ++k;  // the lower side
     }
   }
-  fill_bias_columns(out);
   fill_priors(values, out);
   return out;
 }

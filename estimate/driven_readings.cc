@@ -99,12 +99,12 @@ Linearization DrivenReadings::linearize(const std::vector<double>& values) {
   for (std::size_t k = 0; k < variants.size(); ++k) {
     if (variants[k].unknown == kNoUnknown) {
       fill_residual(variants[k].run, values, simulated[k].readings, out.residual);
+      fill_sensor_columns(variants[k].run, simulated[k].readings, out);
     } else {
       fill_column(variants[k], variants[k + 1], simulated[k], simulated[k + 1], out);
       ++k;  // the lower side
     }
   }
-  fill_bias_columns(out);
   fill_priors(values, out);
   return out;
 }

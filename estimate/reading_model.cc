@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error/input_error.h"
+#include "estimate/sensor_error.h"
 
 namespace strut {
 
@@ -69,32 +70,48 @@ Linearization ReadingModel::make_linearization(std::string failure) const {
           Eigen::MatrixXd::Zero(row_count(), static_cast<Eigen::Index>(unknowns_.size()))};
 }
 
+ReadingModel::ChannelReadings ReadingModel::collect_channel(
+    std::size_t run, std::size_t channel, const std::vector<double>& simulated) const {
+  ChannelReadings collected;
+  for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
+    if (readings_[k].channel != channel) continue;
+    collected.rows.push_back(k);
+    collected.times.push_back(runs_[run].times[readings_[k].time]);
+    collected.values.push_back(simulated[k - begin_row(run)]);
+  }
+  return collected;
+}
+
 void ReadingModel::fill_residual(std::size_t run, const std::vector<double>& values,
                                  const std::vector<double>& simulated,
                                  Eigen::VectorXd& residual) const {
-  std::vector<double> bias(runs_[run].channels.size(), 0.0);
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const Unknown& u = unknowns_[i];
-    if (u.kind != UnknownKind::kBias || !belongs(u, run)) continue;
-    for (std::size_t c = 0; c < bias.size(); ++c) {
-      if (runs_[run].channels[c].channel == u.channel) bias[c] += values[i];
+  for (std::size_t channel = 0; channel < runs_[run].channels.size(); ++channel) {
+    const MeasuredChannel& c = runs_[run].channels[channel];
+    ChannelReadings at = collect_channel(run, channel, simulated);
+    add_sensor_error(collect_sensor_error(unknowns_, values, run, c.channel), at.times, at.values);
+    for (std::size_t i = 0; i < at.rows.size(); ++i) {
+      const double measured = c.values[readings_[at.rows[i]].time];
+      residual(static_cast<Eigen::Index>(at.rows[i])) = (at.values[i] - measured) / c.sigma;
     }
-  }
-  for (std::size_t k = begin_row(run); k < begin_row(run + 1); ++k) {
-    const MeasuredChannel& c = get_channel(readings_[k]);
-    const double reading = simulated[k - begin_row(run)] + bias[readings_[k].channel];
-    residual(static_cast<Eigen::Index>(k)) = (reading - c.values[readings_[k].time]) / c.sigma;
   }
 }
 
-void ReadingModel::fill_bias_columns(Linearization& out) const {
-  for (std::size_t i = 0; i < unknowns_.size(); ++i) {
-    const Unknown& u = unknowns_[i];
-    if (u.kind != UnknownKind::kBias) continue;
-    for (std::size_t k = 0; k < readings_.size(); ++k) {
-      const MeasuredChannel& c = get_channel(readings_[k]);
-      if (c.channel != u.channel || !belongs(u, readings_[k].run)) continue;
-      out.jacobian(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = u.scale / c.sigma;
+void ReadingModel::fill_sensor_columns(std::size_t run, const std::vector<double>& simulated,
+                                       Linearization& out) const {
+  for (std::size_t channel = 0; channel < runs_[run].channels.size(); ++channel) {
+    const MeasuredChannel& c = runs_[run].channels[channel];
+    const ChannelReadings at = collect_channel(run, channel, simulated);
+    const std::vector<double> rates = calc_rates(at.times, at.values);
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+      const Unknown& u = unknowns_[i];
+      if (!is_sensor_error(u) || u.channel != c.channel || !belongs(u, run)) continue;
+      for (std::size_t k = 0; k < at.rows.size(); ++k) {
+        const double slope = u.kind == UnknownKind::kSensorGain   ? at.values[k]
+                             : u.kind == UnknownKind::kSensorSkew ? -rates[k]
+                                                                  : 1.0;
+        out.jacobian(static_cast<Eigen::Index>(at.rows[k]), static_cast<Eigen::Index>(i)) =
+            slope * u.scale / c.sigma;
+      }
     }
   }
 }

@@ -108,11 +108,13 @@ class ReadingModel {
 
   /// Makes a linearization of zeros or, with a `failure`, one that failed.
   Linearization make_linearization(std::string failure) const;
-  /// Fills in the residuals of a run from its simulated readings, to which it adds the biases.
+  /// Fills in the residuals of a run from its simulated readings, to which it adds the errors of
+  /// the sensors.
   void fill_residual(std::size_t run, const std::vector<double>& values,
                      const std::vector<double>& simulated, Eigen::VectorXd& residual) const;
-  /// Fills in the columns of the biases.
-  void fill_bias_columns(Linearization& out) const;
+  /// Fills in the columns of the errors of a run's sensors.
+  void fill_sensor_columns(std::size_t run, const std::vector<double>& simulated,
+                           Linearization& out) const;
   /// Fills in the residuals of the priors, after those of the readings; fill_priors also their
   /// derivatives.
   void fill_prior_residuals(const std::vector<double>& values, Eigen::VectorXd& residual) const;
@@ -126,7 +128,14 @@ class ReadingModel {
   long simulation_count_ = 0;
 
  private:
+  /// Simulated readings of one channel of a run.
+  struct ChannelReadings {
+    std::vector<std::size_t> rows;
+    std::vector<double> times, values;
+  };
   void add_reading_rows(std::size_t run, std::size_t time);
+  ChannelReadings collect_channel(std::size_t run, std::size_t channel,
+                                  const std::vector<double>& simulated) const;
 
   std::vector<std::size_t> begin_ = {0};
 };

@@ -12,6 +12,7 @@
 #include "estimate/hit_time.h"
 #include "estimate/run_prepared.h"
 #include "estimate/sampled_curve.h"
+#include "estimate/sensor_error.h"
 #include "model/channel/car_channels.h"
 #include "model/error/model_error.h"
 #include "model/sensor/sensors.h"
@@ -102,10 +103,9 @@ RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unkno
                          ? simulate_driven(run, unknowns, values)
                          : simulate_crossing(run, unknowns, values);
   if (!curves.failure.empty()) return curves;
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const Unknown& u = unknowns[i];
-    if (u.kind != UnknownKind::kBias || !belongs(u, 0)) continue;
-    for (double& value : curves.channel[static_cast<std::size_t>(u.channel)]) value += values[i];
+  for (std::size_t c = 0; c < curves.channel.size(); ++c) {
+    add_sensor_error(collect_sensor_error(unknowns, values, 0, static_cast<int>(c)), run.times,
+                     curves.channel[c]);
   }
   return curves;
 }

@@ -19,6 +19,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr char kGainSuffix[] = "_gain", kBiasSuffix[] = "_bias";
+constexpr char kGainErrorSuffix[] = "_gain_error", kSkewSuffix[] = "_skew";
 
 /// In units of the scale: distance of the lower bound from an open end of the allowed range, and
 /// largest upper bound.
@@ -127,6 +128,17 @@ Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& pri
   return u;
 }
 
+Unknown make_sensor_unknown(UnknownKind kind, const ModelInfo& model, int run, int channel,
+                            double sigma) {
+  Unknown u = make_bias(model, run, channel, {0.0, sigma});
+  const bool is_gain = kind == UnknownKind::kSensorGain;
+  u.kind = kind;
+  u.name = model.channels[static_cast<std::size_t>(channel)].name +
+           (is_gain ? kGainErrorSuffix : kSkewSuffix);
+  u.unit = is_gain ? "1" : "s";
+  return u;
+}
+
 Unknown make_map_unknown(const std::string& name, std::shared_ptr<const ForceMap> part,
                          const Prior& prior) {
   Unknown u;
@@ -190,6 +202,8 @@ MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unkno
         break;
       case UnknownKind::kHitTime:
       case UnknownKind::kBias:
+      case UnknownKind::kSensorGain:
+      case UnknownKind::kSensorSkew:
         break;
     }
   }

@@ -18,6 +18,8 @@ enum class UnknownKind {
   kInputGain,     // factor on a recorded input
   kInitialState,  // initial offset of a mass from rest [m], or its initial velocity [m/s]
   kForceMap,      // factor on a part of a strut's force map
+  kSensorGain,    // relative error of a channel's gain (estimate/sensor_error.h)
+  kSensorSkew,    // delay of a channel against the others [s]
 };
 
 /// Gaussian prior; an infinite sigma is no prior.
@@ -35,7 +37,7 @@ struct Unknown {
   std::string name;     // "front_stiffness", "hit_time", "imu_rate_y_bias"
   std::string unit;     // "1" if dimensionless
   int run = kEveryRun;  // index of its run, or kEveryRun: one value for all runs
-  int channel = -1;     // kBias: index in ModelInfo::channels
+  int channel = -1;     // of a sensor's error: index in ModelInfo::channels
   int input = -1;       // kInputGain: index in ModelInfo::inputs
   int state = -1;      // kInitialState: index in the list of all masses' positions, then velocities
   double start = 0.0;  // initial guess
@@ -50,10 +52,16 @@ inline bool belongs(const Unknown& u, std::size_t run) {
   return u.run == kEveryRun || static_cast<std::size_t>(u.run) == run;
 }
 
-/// Whether the simulation depends on an unknown: not on hit times and biases, which only affect the
-/// readings.
+/// Whether an unknown is an error of a channel's sensor (estimate/sensor_error.h).
+inline bool is_sensor_error(const Unknown& u) {
+  return u.kind == UnknownKind::kBias || u.kind == UnknownKind::kSensorGain ||
+         u.kind == UnknownKind::kSensorSkew;
+}
+
+/// Whether the simulation depends on an unknown: not on hit times and errors of sensors, which only
+/// affect the readings.
 inline bool is_simulated(const Unknown& u) {
-  return u.kind != UnknownKind::kHitTime && u.kind != UnknownKind::kBias;
+  return u.kind != UnknownKind::kHitTime && !is_sensor_error(u);
 }
 
 /// Makes a parameter within its plausible range, with its value in the run's setup as initial guess
@@ -73,6 +81,11 @@ inline constexpr char kHitTimeName[] = "hit_time";
 
 /// Makes the bias of a channel, without bounds. sigma > 0, may be infinite.
 Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);
+
+/// Makes the relative error of a channel's gain or its skew [s], kSensorGain or kSensorSkew, around
+/// 0, without bounds. sigma > 0.
+Unknown make_sensor_unknown(UnknownKind kind, const ModelInfo& model, int run, int channel,
+                            double sigma);
 
 /// Makes the factor on a part of the force map at the part's location; starts at prior.mean,
 /// without bounds.

@@ -5,23 +5,30 @@
 
 #include "base/error/input_error.h"
 #include "estimate/search_start.h"
+#include "estimate/sensor_error.h"
 
 namespace strut {
 namespace {
 
-void shift_readings(std::vector<MeasuredChannel>& channels, const Unknown& bias, double value) {
-  for (MeasuredChannel& c : channels) {
-    if (c.channel != bias.channel) continue;
-    for (double& reading : c.values) reading -= value;
+/// The error of a channel's sensor that all runs share.
+SensorError collect_shared_error(const SharedValues& shared, int channel) {
+  return collect_sensor_error(shared.unknowns, shared.values, 0, channel);
+}
+
+/// Removes the shared errors of the sensors from the readings.
+void correct_readings(const SharedValues& shared, MeasuredRun& run) {
+  for (MeasuredChannel& c : run.channels) {
+    const SensorError error = collect_shared_error(shared, c.channel);
+    add_sensor_error({-error.gain, -error.skew, -error.bias}, run.times, c.values);
   }
 }
 
-/// Adds shared biases to the simulated channels, for comparison with the readings.
-void add_shared_biases(const SharedValues& shared, RunCurves& curves) {
-  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
-    const Unknown& u = shared.unknowns[i];
-    if (u.kind != UnknownKind::kBias) continue;
-    for (double& v : curves.channel[static_cast<std::size_t>(u.channel)]) v += shared.values[i];
+/// Adds the shared errors of the sensors to the simulated channels, for comparison with the
+/// readings.
+void add_shared_errors(const SharedValues& shared, const std::vector<double>& times,
+                       RunCurves& curves) {
+  for (std::size_t c = 0; c < curves.channel.size(); ++c) {
+    add_sensor_error(collect_shared_error(shared, static_cast<int>(c)), times, curves.channel[c]);
   }
 }
 
@@ -42,10 +49,7 @@ void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& eva
 CampaignData pin_run(const CampaignData& data, std::size_t run, const SharedValues& shared) {
   CampaignData one = take_run(data, run);
   one.runs[0] = set_unknowns(std::move(one.runs[0]), shared.unknowns, shared.values);
-  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
-    const Unknown& u = shared.unknowns[i];
-    if (u.kind == UnknownKind::kBias) shift_readings(one.runs[0].channels, u, shared.values[i]);
-  }
+  correct_readings(shared, one.runs[0]);
   return one;
 }
 
@@ -95,7 +99,7 @@ RunEvaluation evaluate_run(const CampaignData& data, std::size_t run, const Shar
   evaluation.curves = simulate_run(one.runs[0], evaluation.unknowns, evaluation.values);
   evaluation.failure = evaluation.curves.failure;
   if (!evaluation.failure.empty()) return evaluation;
-  add_shared_biases(shared, evaluation.curves);
+  add_shared_errors(shared, data.times(run), evaluation.curves);
   fill_residual(data, run, evaluation);
   return evaluation;
 }

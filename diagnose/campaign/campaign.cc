@@ -150,6 +150,13 @@ void read_fit(const Table& root, CampaignFit& fit) {
   }
 }
 
+void read_noise(const Table& root, CampaignNoise& noise) {
+  const auto table = root.find_table("noise");
+  if (!table) return;
+  noise.sensor.gain = table->number_or("gain", noise.sensor.gain, at_least(0.0, "1"));
+  noise.sensor.skew = table->number_or("skew", noise.sensor.skew, at_least(0.0, "s"));
+}
+
 CampaignRun read_run(const Table& table, const Campaign& campaign) {
   CampaignRun run;
   run.name = table.text("file");
@@ -219,6 +226,7 @@ Campaign read_campaign(const std::filesystem::path& path) {
   campaign.info = &read_model_info(campaign.model);
   read_columns(root, campaign);
   read_fit(root, campaign.fit);
+  read_noise(root, campaign.noise);
   read_runs(root, campaign);
   document.check_all_read();
   return campaign;

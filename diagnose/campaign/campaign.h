@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimate/sensor_error.h"
 #include "estimate/unknown.h"
 #include "model/info/model_info.h"
 
@@ -48,6 +49,11 @@ struct CampaignRun {
   std::optional<std::pair<double, double>> window;  // on the file's clock [s]
 };
 
+/// What the recording's instruments may err by beyond white noise; 0: not at all.
+struct CampaignNoise {
+  SensorTolerance sensor{1e-3, 2e-5};
+};
+
 /// The parameters that the baseline may adjust, fixes, and has priors for.
 struct CampaignFit {
   std::vector<std::string> free;
@@ -61,6 +67,7 @@ struct Campaign {
   CampaignColumn time;
   std::vector<CampaignColumn> columns;  // without time
   CampaignFit fit;
+  CampaignNoise noise;
   std::vector<CampaignRun> runs;
 
   std::size_t count(RunUse use) const;

@@ -310,6 +310,23 @@ void add_gains(const CampaignData& data, const std::vector<MeasuredRun>& runs,
   }
 }
 
+/// Adds the gain errors and skews of all channels of the runs.
+void add_sensor_errors(const CampaignData& data, const std::vector<MeasuredRun>& runs,
+                       std::vector<Unknown>& unknowns) {
+  const SensorTolerance& tolerance = data.campaign.noise.sensor;
+  const auto add = [&](UnknownKind kind, int channel, double sigma) {
+    if (!(sigma > 0.0)) return;
+    Unknown u = make_sensor_unknown(kind, data.model(), kEveryRun, channel, sigma);
+    if (!is_among(unknowns, u.name)) unknowns.push_back(std::move(u));
+  };
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      add(UnknownKind::kSensorGain, c.channel, tolerance.gain);
+      add(UnknownKind::kSensorSkew, c.channel, tolerance.skew);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Unknown> make_free_unknowns(const CampaignData& data,
@@ -326,6 +343,7 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
       }
     }
     add_gains(data, runs, unknowns);
+    if (!unknowns.empty()) add_sensor_errors(data, runs, unknowns);
     return unknowns;
   });
 }

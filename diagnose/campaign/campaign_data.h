@@ -46,8 +46,9 @@ bool meets_bump(const CampaignData& data, std::size_t run);
 /// as campaign.h, measured_table.h and check_campaign_data.h say.
 CampaignData read_campaign_data(const std::filesystem::path& path);
 
-/// The unknowns that all of `runs` share: those of `[fit] free`, with their priors, and the gains
-/// of inputs that are not known exactly.
+/// The unknowns that all of `runs` share: those of `[fit] free`, with their priors, the gains of
+/// inputs that are not known exactly and, where there are any of these, the gain errors and skews
+/// of the sensors.
 std::vector<Unknown> make_free_unknowns(const CampaignData& data,
                                         const std::vector<std::size_t>& runs);
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -72,24 +73,33 @@ SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const doub
 
 double choose_half_width(std::span<const double> times, std::span<const double> values,
                          double sigma) {
-  constexpr double kMost = 1.7;  // of the noise's rms
+  constexpr std::array kWidths = {3, 4, 6, 8, 12, 16, 24, 32};  // in intervals
+  constexpr double kClear = 1.7;                                // of the noise's rms
+  constexpr double kMaxRemoved = 0.1;                           // of sigma
   // Leverage of the middle of 2 m + 1 even readings in a cubic: what noise leaves there.
   const auto calc_left = [](double m) {
     const double n = 2.0 * m + 1.0;
     return std::sqrt(1.0 - 3.0 * (3.0 * n * n - 7.0) / (4.0 * n * (n * n - 4.0)));
   };
   const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-  double best = 0.0;
-  for (const int m : {3, 4, 6, 8, 12, 16, 24, 32}) {
+  double max_width = std::numeric_limits<double>::infinity(), best = 0.0;
+  for (const int m : kWidths) {
     const double half_width = m * interval;
     if (half_width * 4.0 > times.back() - times.front()) break;
     const SmoothCurve curve = calc_local_cubic(times, values, half_width);
     std::vector<double> left(values.size());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = values[i] - curve.value[i];
-    if (calc_rms(left) > kMost * sigma * calc_left(m)) break;
+    const double noise = sigma * calc_left(m), rms = calc_rms(left);
     best = half_width;
+    if (rms <= kClear * noise) continue;
+    const double removed = std::sqrt(rms * rms - noise * noise);
+    max_width = half_width * std::pow(kMaxRemoved * sigma / removed, 0.25);
+    break;
   }
-  return best;
+  if (best <= max_width) return best;
+  const auto narrower = [&](int m) { return m * interval <= max_width; };
+  const auto found = std::find_if(kWidths.rbegin(), kWidths.rend(), narrower);
+  return found == kWidths.rend() ? 0.0 : *found * interval;
 }
 
 double calc_second_rate_gain(double half_width, double interval) {

@@ -21,10 +21,11 @@ enum class CurveEnds { kNone, kOneSided };
 SmoothCurve calc_local_cubic(std::span<const double> times, std::span<const double> values,
                              double half_width, CurveEnds ends = CurveEnds::kNone);
 
-/// The widest half width [s] that takes nothing but noise away: what local cubics leave of the
-/// readings has an rms of at most 1.7 times that of white noise `sigma` (hum is not white); 0 where
-/// even the narrowest takes more. Of an input whose rate drives forces, the noise of the rate falls
-/// as width^-1.5.
+/// The widest half width [s] of local cubics that remove at most sigma / 10 (rms) of the signal
+/// itself; 0 where even the narrowest remove more. What is removed beyond white noise `sigma` is
+/// measured at the first width where it is clear, and falls with the fourth power of the width.
+/// Even a little of it is coherent over thousands of readings and biases what is fitted to them. Of
+/// an input whose rate drives forces, the noise of the rate falls as width^-1.5.
 double choose_half_width(std::span<const double> times, std::span<const double> values,
                          double sigma);
 

@@ -8,8 +8,20 @@
 namespace strut {
 namespace {
 
+/// The color of a channel's sensor in the runs of a fit; white where none of them has the channel.
+SensorColor find_color(const std::vector<NoiseSpectrum>& fitted, int channel) {
+  for (const NoiseSpectrum& s : fitted) {
+    for (const SensorColor& color : s.color) {
+      if (color.channel == channel) return color;
+    }
+  }
+  return {};
+}
+
 /// What a run kept apart has in common with those of a fit.
-void share_noise(const std::vector<NoiseSpectrum>& fitted, NoiseSpectrum& kept) {
+void share_noise(const std::vector<NoiseSpectrum>& fitted,
+                 const std::vector<MeasuredChannel>& channels, NoiseSpectrum& kept) {
+  for (const MeasuredChannel& c : channels) kept.color.push_back(find_color(fitted, c.channel));
   kept.level = fitted.front().level;
   kept.response_error = fitted.front().response_error;
   for (std::size_t b = 0; b < kept.excess.size(); ++b) {
@@ -29,7 +41,7 @@ HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, in
     const CampaignData one = pin_run(data, runs_[i], shared);
     const std::vector<Unknown> unknowns = make_run_unknowns(one, {0}, shared.unknowns);
     noise_[i] = make_noise_spectra(one, {0}, unknowns, list_starts(unknowns)).front();
-    share_noise(base.spectra, noise_[i]);
+    share_noise(base.spectra, one.channels(0), noise_[i]);
   });
 }
 

@@ -1,10 +1,11 @@
 // The joint noise of all channels of a run. The noise of the sensors is independent; the road's
 // roughness, and the measurement noise of a rig's inputs, act on all channels through the model.
 //
-//   S(f) = diag(sigma^2) + sum_lm C_lm(f) h_l(f) h_m(f)^*
+//   S(f) = diag(sigma^2 (1 + color(f))) + sum_lm C_lm(f) h_l(f) h_m(f)^*
 //
-// h_l: response of the channels to one source l, as amplitudes of the unitary discrete transform;
-// C: cross-spectra of the sources. Sources of a car: the road under its wheels, with the density
+// color: drift and mains of the sensors (sensor_color.h); h_l: response of the channels to one
+// source l, as amplitudes of the unitary discrete transform; C: cross-spectra of the sources.
+// Sources of a car: the road under its wheels, with the density
 //
 //   G(n) = G0 (n / n0)^-2, n0 = 0.1 1/m (ISO 8608)
 //
@@ -29,6 +30,7 @@
 
 #include "base/math/eigen_abi.h"
 #include "diagnose/baseline/baseline.h"
+#include "diagnose/noise/sensor_color.h"
 
 namespace strut {
 
@@ -37,9 +39,10 @@ inline constexpr std::array<double, 7> kNoiseBands = {0.5, 1.0, 3.0, 8.0, 20.0, 
 std::size_t find_noise_band(double frequency);
 
 struct NoiseSpectrum {
-  std::size_t samples = 0;    // of the transform, from the start of the run
-  double interval = 0.0;      // s, between samples
-  std::vector<double> sigma;  // of each channel's white noise
+  std::size_t samples = 0;         // of the transform, from the start of the run
+  double interval = 0.0;           // s, between samples
+  std::vector<double> sigma;       // of each channel's white noise
+  std::vector<SensorColor> color;  // of each channel's sensor; empty: white
   /// Covariance of the channels by their common sources, per unit of `level`, at the frequencies
   /// 0, 1, ... / (samples * interval), in a record tapered as `fades` says. Zero at frequencies
   /// beyond its end.

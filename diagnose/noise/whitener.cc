@@ -20,6 +20,12 @@ Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index fre
   const auto channels = static_cast<Eigen::Index>(spectrum.sigma.size());
   Eigen::MatrixXcd covariance = Eigen::MatrixXcd::Identity(channels, channels);
   const auto at = static_cast<std::size_t>(frequency);
+  const double step = 1.0 / (static_cast<double>(spectrum.samples) * spectrum.interval);
+  for (std::size_t c = 0; c < spectrum.color.size(); ++c) {
+    const double hertz = step * static_cast<double>(std::max<std::size_t>(at, 1));
+    covariance.diagonal()(static_cast<Eigen::Index>(c)) +=
+        calc_color(spectrum.color[c], hertz, spectrum.samples, spectrum.interval);
+  }
   if (at >= spectrum.common.size()) return covariance;
   const Eigen::VectorXd sigma = Eigen::Map<const Eigen::VectorXd>(spectrum.sigma.data(), channels);
   const Eigen::VectorXd scale = std::sqrt(spectrum.level) * sigma.cwiseInverse();
