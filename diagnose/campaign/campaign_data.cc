@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/error/check.h"
 #include "base/error/input_error.h"
@@ -310,13 +311,15 @@ void add_gains(const CampaignData& data, const std::vector<MeasuredRun>& runs,
   }
 }
 
-/// Adds the gain errors and skews of all channels of the runs.
+/// Adds the gain errors and skews of all channels of the runs. Recorded inputs have errors as large
+/// as those of the outputs; a linear rig responds to them as if they were the outputs' own.
 void add_sensor_errors(const CampaignData& data, const std::vector<MeasuredRun>& runs,
                        std::vector<Unknown>& unknowns) {
   const SensorTolerance& tolerance = data.campaign.noise.sensor;
   const auto add = [&](UnknownKind kind, int channel, double sigma) {
     if (!(sigma > 0.0)) return;
-    Unknown u = make_sensor_unknown(kind, data.model(), kEveryRun, channel, sigma);
+    const double both = data.has_inputs() ? std::numbers::sqrt2 * sigma : sigma;
+    Unknown u = make_sensor_unknown(kind, data.model(), kEveryRun, channel, both);
     if (!is_among(unknowns, u.name)) unknowns.push_back(std::move(u));
   };
   for (const MeasuredRun& run : runs) {
