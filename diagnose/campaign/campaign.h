@@ -51,7 +51,7 @@ struct CampaignRun {
 
 /// What the recording's instruments may err by beyond white noise; 0: not at all.
 struct CampaignNoise {
-  SensorTolerance sensor{1e-3, 2e-5};
+  SensorTolerance sensor;
 };
 
 /// The parameters that the baseline may adjust, fixes, and has priors for.
