@@ -7,6 +7,7 @@
 #include "base/error/input_error.h"
 #include "diagnose/decide/effect_round.h"
 #include "diagnose/decide/extended_unknowns.h"
+#include "diagnose/decide/probability.h"
 
 namespace strut {
 namespace {
@@ -269,8 +270,10 @@ class Selector {
     }
     if (gain / round.misfit < round.threshold) return false;
     if (!is_certain(round) && round.candidates.front().stability < options_.stability) return false;
-    const double first = selection_.rounds.front().candidates.front().gain;
-    return selection_.causes.empty() || is_certain(round) || gain > options_.second_share * first;
+    if (selection_.causes.empty()) return true;
+    const double share =
+        is_certain(round) ? ProbabilityOptions{}.form_error : options_.second_share;
+    return gain > share * selection_.rounds.front().candidates.front().gain;
   }
 
   bool accept(const SelectRound& round) {

@@ -43,7 +43,8 @@ struct SelectOptions {
   double hold_out_share = 0.3, stability = 0.5;
   /// A cause with this many times the threshold is exempt from both, and needs only some
   /// improvement of the held-out runs: its first-order score may be lower than its fit's delta
-  /// chi2, and the held-out runs may have smaller amplitudes.
+  /// chi2, and the held-out runs may have smaller amplitudes. Beside a first cause it has to
+  /// explain more than that one's form error (probability.h) in place of second_share.
   double certain = 3.0;
   /// Where the model's error dominates the noise: minimum fraction of the residual that a cause
   /// removes; half as much of that of the held-out runs.
