@@ -1,6 +1,7 @@
 #include "model/longest_step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -52,15 +53,23 @@ double calc_longest_step(const RigSpec& rig) {
   return std::min({linear, guide, calc_strut_step(numbers, mass)});
 }
 
-double calc_longest_step(const Case& c) {
+double calc_longest_step(const VehicleSpec& vehicle,
+                         std::span<const StrutEffectNumbers<double>, kCorners> struts) {
   double longest = kUnlimited;
   for (int corner = 0; corner < kCorners; ++corner) {
-    const StrutEffectNumbers<double> numbers =
-        make_strut_effect_numbers({c.vehicle.effects, get_car_info()}, kCornerNames[corner], {});
-    const double wheel = c.vehicle.suspension[axle_of(corner)].wheel_mass;
-    longest = std::min(longest, calc_strut_step(numbers, wheel));
+    const double wheel = vehicle.suspension[axle_of(corner)].wheel_mass;
+    longest = std::min(longest, calc_strut_step(struts[corner], wheel));
   }
   return longest;
+}
+
+double calc_longest_step(const Case& c) {
+  const EffectValues values{c.vehicle.effects, get_car_info()};
+  std::array<StrutEffectNumbers<double>, kCorners> struts{};
+  for (int corner = 0; corner < kCorners; ++corner) {
+    struts[corner] = make_strut_effect_numbers(values, kCornerNames[corner], {});
+  }
+  return calc_longest_step(c.vehicle, struts);
 }
 
 double shorten_step(double step, double longest) {

@@ -2,7 +2,10 @@
 // by any stable step; contacts and friction of an effect have times of their own.
 #pragma once
 
+#include <span>
+
 #include "model/car/case.h"
+#include "model/force/strut_effects.h"
 #include "model/rig/rig_spec.h"
 
 namespace strut {
@@ -20,6 +23,9 @@ double calc_longest_step(const RigSpec& rig);
 
 /// Longest step [s] that resolves a car's effects. m: the axle's wheel.
 double calc_longest_step(const Case& c);
+/// The same where the numbers of its struts' effects, by corner, are made already.
+double calc_longest_step(const VehicleSpec& vehicle,
+                         std::span<const StrutEffectNumbers<double>, kCorners> struts);
 
 /// Steps [s] below this resolve strokes that no other part of the model notices.
 inline constexpr double kShortestContact = 5e-5;

@@ -97,7 +97,7 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   prepared.bump_center = calc_bump_center(car, c.maneuver);
   prepared.trigger_x = prepared.bump_center + snapshot_offset;
   prepared.duration = c.maneuver.duration;
-  prepared.longest_step = calc_longest_step(c);
+  prepared.longest_step = calc_longest_step(c.vehicle, vehicle.numbers.effects);
   prepared.sensors = list_sensor_settings(c.vehicle.effects);
 
   check_springs(c.vehicle, car);
