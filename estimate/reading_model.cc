@@ -101,16 +101,13 @@ void ReadingModel::fill_sensor_columns(std::size_t run, const std::vector<double
   for (std::size_t channel = 0; channel < runs_[run].channels.size(); ++channel) {
     const MeasuredChannel& c = runs_[run].channels[channel];
     const ChannelReadings at = collect_channel(run, channel, simulated);
-    const std::vector<double> rates = calc_rates(at.times, at.values);
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
       const Unknown& u = unknowns_[i];
       if (!is_sensor_error(u) || u.channel != c.channel || !belongs(u, run)) continue;
+      const std::vector<double> slopes = calc_error_slopes(u.kind, at.times, at.values);
       for (std::size_t k = 0; k < at.rows.size(); ++k) {
-        const double slope = u.kind == UnknownKind::kSensorGain   ? at.values[k]
-                             : u.kind == UnknownKind::kSensorSkew ? -rates[k]
-                                                                  : 1.0;
         out.jacobian(static_cast<Eigen::Index>(at.rows[k]), static_cast<Eigen::Index>(i)) =
-            slope * u.scale / c.sigma;
+            slopes[k] * u.scale / c.sigma;
       }
     }
   }

@@ -36,8 +36,11 @@ SensorError collect_sensor_error(const std::vector<Unknown>& unknowns,
 void add_sensor_error(const SensorError& error, std::span<const double> times,
                       std::span<double> values);
 
-/// Rates of change of a curve at its own, uneven, increasing times: parabolas through three
-/// samples, lines at the ends; error h^2 y''' / 6 inside. 0 where a sample is not finite or alone.
-std::vector<double> calc_rates(std::span<const double> times, std::span<const double> values);
+/// Derivatives of a channel's readings by an error of its sensor (is_sensor_error): 1 by its bias,
+/// y by its gain, -dy/dt by its skew. dy/dt: parabolas through three samples at their own,
+/// increasing times, lines at the ends; error h^2 y''' / 6 inside; 0 where a sample is not finite
+/// or alone.
+std::vector<double> calc_error_slopes(UnknownKind kind, std::span<const double> times,
+                                      std::span<const double> values);
 
 }  // namespace strut

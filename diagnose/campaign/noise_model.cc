@@ -82,10 +82,8 @@ double find_quantum(std::span<const double> values) {
 
 /// Power of white noise in each of the kBands bands of a block.
 std::array<double, kBands> calc_band_powers(std::span<const double> block,
-                                            const std::vector<double>& window, double weight) {
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  fft.SetFlag(Eigen::FFT<double>::Unscaled);
+                                            const std::vector<double>& window, double weight,
+                                            Eigen::FFT<double>& fft) {
   std::vector<double> faded(block.begin(), block.end());
   const double mean = std::accumulate(faded.begin(), faded.end(), 0.0) / kBlock;
   for (std::size_t i = 0; i < kBlock; ++i) faded[i] = window[i] * (faded[i] - mean);
@@ -109,12 +107,15 @@ double calc_floor(std::span<const double> values) {
                 0.01168 * std::cos(3.0 * turn);
     weight += window[i] * window[i];
   }
+  Eigen::FFT<double> fft;  // makes its tables for the first block only
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  fft.SetFlag(Eigen::FFT<double>::Unscaled);
   std::array<std::vector<double>, kBands> powers;
   for (std::size_t begin = 0; begin + kBlock <= values.size(); begin += kBlock) {
     const auto block = values.subspan(begin, kBlock);
     if (!std::all_of(block.begin(), block.end(), [](double v) { return std::isfinite(v); }))
       continue;
-    const auto of_block = calc_band_powers(block, window, weight);
+    const auto of_block = calc_band_powers(block, window, weight, fft);
     for (std::size_t b = 0; b < kBands; ++b) powers[b].push_back(of_block[b]);
   }
   double floor = std::numeric_limits<double>::infinity();

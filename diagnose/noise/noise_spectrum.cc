@@ -308,10 +308,7 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
     for (std::size_t k = 0; k < data.channels(run).size(); ++k) {
       const auto channel = static_cast<std::size_t>(data.channels(run)[k].channel);
       std::vector<double> series = response[channel];
-      for (std::size_t t = 0; t < series.size(); ++t) {
-        series[t] -= rest[channel][t];
-        if (std::isnan(series[t])) series[t] = 0.0;
-      }
+      for (std::size_t t = 0; t < series.size(); ++t) series[t] -= rest[channel][t];
       const Spectrum of = calc_transform(series, s.samples);
       for (Eigen::Index f = 0; f < source.cols(); ++f) {
         source(static_cast<Eigen::Index>(k), f) = of[static_cast<std::size_t>(f)];
