@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iostream>
 #include <optional>
 
-#include "base/text/format_number.h"
 #include "io/format/json.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/arguments.h"
@@ -14,6 +12,7 @@
 #include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
+#include "jobs/cli/step_warning.h"
 #include "model_files/parameters.h"
 #include "sweep/case_order.h"
 #include "sweep/folder.h"
@@ -99,15 +98,12 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
 void warn_of_step(const SweepRequest& request) {
   if (request.integrate.solver == Solver::kCvode) return;
   const StepOptions& step = request.integrate.options.step;
-  constexpr double kBelow = 0.95;  // rounded to two digits, still short enough
   const double longest = find_longest_step(request);
-  const bool is_step = step.step > longest * (1.0 + 1e-9);
-  if (!is_step && step.coarse_step <= longest * (1.0 + 1e-9)) return;
-  print_note(fmt::format(
-      "warning: {}: integrate.{} = {} s: too long to resolve the effects of some cases, which need "
-      "at most {:.2g} s",
-      request.path.string(), is_step ? "step" : "coarse_step",
-      format_number(is_step ? step.step : step.coarse_step), kBelow * longest));
+  const auto warn = [&](const char* key, double value) {
+    return warn_of_long_step(fmt::format("{}: integrate.{}", request.path.string(), key), value,
+                             "some cases", longest);
+  };
+  if (!warn("step", step.step)) warn("coarse_step", step.coarse_step);
 }
 
 void warn(const SweepEstimate& estimate) {

@@ -7,8 +7,8 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
-#include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
+#include "jobs/cli/step_warning.h"
 #include "model/longest_step.h"
 #include "report/page_file.h"
 #include "sweep/step_count.h"
@@ -48,14 +48,6 @@ void check_report(const SimulateOptions& options) {
         fmt::format("--output = {}: among the figures of --report; name another folder",
                     options.output.string()));
   }
-}
-
-void warn_of_step(const SimulateOptions& options, const char* name, double step, double longest) {
-  constexpr double kBelow = 0.95;  // rounded to two digits, still short enough
-  if (step <= longest * (1.0 + 1e-9)) return;
-  print_note(fmt::format(
-      "warning: {} = {} s: too long to resolve the effects of {}, which need at most {:.2g} s",
-      name, format_number(step), options.source.vehicle.string(), kBelow * longest));
 }
 
 }  // namespace
@@ -118,8 +110,9 @@ SimulateOptions adapt_steps(SimulateOptions options, double longest) {
   if (options.integrator == Integrator::kCvode) return options;
   StepOptions& step = options.integrate.step;
   if (!options.chose_step) step.step = shorten_step(step.step, longest);
-  warn_of_step(options, "--step", step.step, longest);
-  warn_of_step(options, "--coarse-step", step.coarse_step, longest);
+  const std::string model = options.source.vehicle.string();
+  warn_of_long_step("--step", step.step, model, longest);
+  warn_of_long_step("--coarse-step", step.coarse_step, model, longest);
   return options;
 }
 
