@@ -9,6 +9,7 @@
 #include "diagnose/decide/select.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/tolerance.h"
+#include "tests/support/whitened_baseline.h"
 
 namespace strut {
 namespace {
@@ -54,12 +55,6 @@ CampaignData read_corner(const TemporaryFolder& folder, const QuarterTruth& trut
   return read_campaign_data(test::write_campaign(folder, text));
 }
 
-WhitenedFit fit_base(const CampaignData& data) {
-  const Baseline baseline = calibrate_baseline(data);
-  return fit_whitened(data, baseline.runs, measure_noise(data, baseline), baseline.fit.unknowns,
-                      baseline.fit.values, baseline.shared_count(), 1);
-}
-
 const Hypothesis& find_hypothesis(const std::vector<Hypothesis>& list, const std::string& effect) {
   const auto found = std::find_if(list.begin(), list.end(),
                                   [&](const Hypothesis& h) { return h.effect == effect; });
@@ -72,38 +67,39 @@ std::vector<Hypothesis> list_all(const CampaignData& data, const WhitenedFit& fi
   return list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns);
 }
 
+/// A corner with friction, and its fit without.
+struct FrictionSearch {
+  TemporaryFolder folder;
+  CampaignData data = read_corner(folder, make_corner());
+  WhitenedFit base = test::fit_whitened_baseline(data);
+  TestBench bench{data, base, 1};
+  Hypothesis friction = find_hypothesis(list_all(data, base), "strut_friction");
+};
+
 TEST_CASE("The fit of an effect converges from far starts, or says that it has not", "[unit]") {
-  const TemporaryFolder folder;
-  const CampaignData data = read_corner(folder, make_corner());
-  const WhitenedFit base = fit_base(data);
-  const TestBench bench(data, base, 1);
-  const Hypothesis friction = find_hypothesis(list_all(data, base), "strut_friction");
+  const FrictionSearch search;
   for (const double force : {3.0, 40.0, 1500.0}) {
     INFO(force);
-    const HypothesisFit fit = bench.fit(friction, {force, 0.03});
+    const HypothesisFit fit = search.bench.fit(search.friction, {force, 0.03});
     REQUIRE(fit.failure.empty());
     CHECK(fit.converged);
     CHECK(fit.distance <= 0.1);
-    const double found = fit.values[base.fit.unknowns.size()];
+    const double found = fit.values[search.base.fit.unknowns.size()];
     // The law is the catalogue's: four standard errors, of 1 N with the sensors' tolerances.
     CHECK(std::abs(found - kFriction) < tolerance(4.0 * fit.sigma[0]));
     CHECK(fit.sigma[0] < 1.5);
   }
-  const HypothesisFit one_step = bench.fit(friction, {3.0, 0.03}, {1, 0.1});
+  const HypothesisFit one_step = search.bench.fit(search.friction, {3.0, 0.03}, {1, 0.1});
   CHECK_FALSE(one_step.converged);
   CHECK(one_step.distance > 0.1);
 }
 
 TEST_CASE("A fit that goes on from values ends where one search does", "[unit]") {
-  const TemporaryFolder folder;
-  const CampaignData data = read_corner(folder, make_corner());
-  const WhitenedFit base = fit_base(data);
-  const TestBench bench(data, base, 1);
-  const Hypothesis friction = find_hypothesis(list_all(data, base), "strut_friction");
+  const FrictionSearch search;
   const std::vector<double> start = {40.0, 0.02};
-  const HypothesisFit whole = bench.fit(friction, start);
-  const HypothesisFit first = bench.fit(friction, start, {2, 0.1});
-  const HypothesisFit rest = bench.fit(friction, start, {60, 0.1}, first.values);
+  const HypothesisFit whole = search.bench.fit(search.friction, start);
+  const HypothesisFit first = search.bench.fit(search.friction, start, {2, 0.1});
+  const HypothesisFit rest = search.bench.fit(search.friction, start, {60, 0.1}, first.values);
   CHECK(first.gain < whole.gain);
   CHECK(rest.converged);
   // Both within a tenth of a standard error of the minimum, where chi2 is 0.01 above it.

@@ -15,6 +15,7 @@
 #include "model_files/read_rig.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/tolerance.h"
+#include "tests/support/whitened_baseline.h"
 
 namespace strut {
 namespace {
@@ -314,17 +315,11 @@ CampaignData simulate_campaign(const test::TemporaryFolder& folder, const ForceM
   return read_campaign_data(test::write_campaign(folder, text));
 }
 
-WhitenedFit fit_base(const CampaignData& data) {
-  const Baseline baseline = calibrate_baseline(data);
-  return fit_whitened(data, baseline.runs, measure_noise(data, baseline), baseline.fit.unknowns,
-                      baseline.fit.values, baseline.shared_count(), 1);
-}
-
 TEST_CASE("A map hidden in the program's own readings is found", "[regression][slow]") {
   const test::TemporaryFolder folder;
   const ForceMap truth = make_known_map();
   const CampaignData data = simulate_campaign(folder, {truth});
-  const WhitenedFit base = fit_base(data);
+  const WhitenedFit base = test::fit_whitened_baseline(data);
   const VisitedStates states = list_visited_states(data, base.runs, base.shared()).front();
   const auto fit = fit_force_map(data, base, states);
   REQUIRE(fit);
@@ -366,7 +361,7 @@ TEST_CASE("Readings without a map get none", "[regression][slow]") {
   for (const std::uint64_t seed : {21U, 31U, 41U}) {
     const test::TemporaryFolder folder;
     const CampaignData data = simulate_campaign(folder, {}, seed);
-    const WhitenedFit base = fit_base(data);
+    const WhitenedFit base = test::fit_whitened_baseline(data);
     for (const VisitedStates& states : list_visited_states(data, base.runs, base.shared())) {
       CHECK_FALSE(fit_force_map(data, base, states));
     }

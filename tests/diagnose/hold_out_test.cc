@@ -6,6 +6,7 @@
 #include "diagnose/noise/whitened_fit.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/tolerance.h"
+#include "tests/support/whitened_baseline.h"
 
 namespace strut {
 namespace {
@@ -22,10 +23,7 @@ Judged fit_base() {
   truth.noise = 2e-5;
   test::write_two_runs(folder, truth);
   CampaignData data = read_campaign_data(test::write_campaign(folder));
-  const Baseline baseline = calibrate_baseline(data);
-  WhitenedFit base =
-      fit_whitened(data, baseline.runs, measure_noise(data, baseline), baseline.fit.unknowns,
-                   baseline.fit.values, baseline.shared_count(), 1);
+  WhitenedFit base = test::fit_whitened_baseline(data);
   return {std::move(data), std::move(base)};
 }
 

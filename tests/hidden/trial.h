@@ -21,7 +21,7 @@ struct HiddenFault {
   double ratio = 0.0;   // of signal to noise, of this fault alone: grades it
   double target = 0.0;  // of the ratio
   /// Other known causes that these runs cannot tell from this one.
-  std::vector<CauseName> twins;
+  std::vector<CauseName> twins{};
 };
 
 struct Trial {
