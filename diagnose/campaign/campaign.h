@@ -49,7 +49,7 @@ struct CampaignRun {
   std::optional<std::pair<double, double>> window;  // on the file's clock [s]
 };
 
-/// What the recording's instruments may err by beyond white noise; 0: not at all.
+/// Errors of a recording's sensors beyond white noise.
 struct CampaignNoise {
   SensorTolerance sensor;
 };

@@ -56,13 +56,13 @@ std::vector<double> scale_beginning(const CampaignData& data, const Hypothesis& 
 /// not stay so.
 std::vector<double> make_beginning(const CampaignData& data, const Hypothesis& h,
                                    const HypothesisTrial& trial, const Gain& gain) {
-  constexpr double kMost = 10.0;
-  return scale_beginning(data, h, trial, gain.amplitude.cwiseMax(-kMost).cwiseMin(kMost));
+  constexpr double kMax = 10.0;
+  return scale_beginning(data, h, trial, gain.amplitude.cwiseMax(-kMax).cwiseMin(kMax));
 }
 
 std::vector<double> make_weights(std::size_t count) { return std::vector<double>(count, 1.0); }
 
-/// Share of the runs without which the hypothesis is still within a factor of the best.
+/// Fraction of the runs without each of which the hypothesis is still within a factor of the best.
 double calc_stability(const Evidence& evidence, const std::vector<bool>& one_sided,
                       std::size_t hypothesis) {
   constexpr double kStays = 0.8;
@@ -125,7 +125,7 @@ Candidate rename(Candidate twin, const Hypothesis& h) {
   return twin;
 }
 
-/// chi2 that no cause may claim: a share of the noise's power, sensors' and road's.
+/// chi2 that no cause may claim: a fraction of the power of the noise, of the sensors and the road.
 double calc_negligible(const CampaignData& data, const SelectOptions& options,
                        const Whitener& whitener) {
   const double share = data.has_inputs() ? options.negligible : options.negligible_car;
@@ -144,7 +144,7 @@ double calc_negligible(const CampaignData& data, const SelectOptions& options,
   return power;
 }
 
-/// What all fits of a round need.
+/// Input of all fits of a round.
 struct Round {
   const CampaignData& data;
   const WhitenedFit& now;
@@ -416,8 +416,8 @@ double calc_null_threshold(const Evidence& evidence, const Score& score,
                            const std::vector<bool>& one_sided, std::size_t nulls,
                            double confidence) {
   constexpr std::uint64_t kSeed = 1;
-  // Of correlations: effects differ in size by orders, and rounding of the largest is not to be
-  // taken for noise of the smallest.
+  // The root of the correlation matrix: effects differ in size by orders of magnitude, and rounding
+  // errors of the largest must not count as noise of the smallest.
   const Eigen::VectorXd sigma = score.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd unit = sigma.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * score.covariance *

@@ -69,7 +69,7 @@ SharedValues switch_off(const CampaignData& data, const Candidate& c) {
   return plain;
 }
 
-/// What all runs share in the fit without hypotheses, each known as well as it tells.
+/// Adds the shared unknowns of the fit without hypotheses, with its standard errors as priors.
 void add_shared(const FitResult& fit, std::size_t count, Rivals& rivals) {
   for (std::size_t i = 0; i < count; ++i) {
     Unknown u = fit.unknowns[i];

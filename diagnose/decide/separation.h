@@ -1,4 +1,4 @@
-// How far a run would set two hypotheses apart.
+// Separation of two hypotheses by a run that could be recorded.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ namespace strut {
 /// the model of `a` with its effect off.
 struct Rivals {
   SharedValues a, b, plain;
-  double misfit = 1.0;          // SelectRound::misfit
-  std::vector<Unknown> shared;  // what a fit of the model without them adjusts in all runs,
-                                // known as well as the existing runs tell
-  std::vector<double> values;   // at `a`
+  double misfit = 1.0;  // SelectRound::misfit
+  /// Shared unknowns of the fit without both, with priors from the existing runs.
+  std::vector<Unknown> shared;
+  std::vector<double> values;  // at `a`
 };
 
 /// The rivals `a` and `b` of a round. Nothing where it did not fit both.

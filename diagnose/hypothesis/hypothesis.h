@@ -18,7 +18,7 @@ struct HypothesisParameter {
                          // false: it only shapes the effect
 };
 
-/// How a hypothesis changes the model file.
+/// Change of the model file by a hypothesis.
 enum class EffectChange {
   kAdded,    // switches an effect on
   kChanged,  // frees the parameters of an effect that the file switches on

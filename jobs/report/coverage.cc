@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::int64_t kMaxLevels = 20, kBins = 10;
 
-CaseCount make_layers(const Plan& plan) {
+CaseCount make_strata(const Plan& plan) {
   CaseCount count{"stratum by " + make_words(plan.request().sample.by), {}, {}, {}};
-  for (std::size_t layer = 0; layer < plan.strata().size(); ++layer) {
-    count.centers.push_back(static_cast<double>(layer + 1));
+  for (std::size_t stratum = 0; stratum < plan.strata().size(); ++stratum) {
+    count.centers.push_back(static_cast<double>(stratum + 1));
   }
   return count;
 }
@@ -61,7 +61,7 @@ std::vector<CaseCount> count_cases(Dataset& dataset, const Plan& plan) {
   const SweepRequest& request = plan.request();
   const std::vector<Axis>& axes = request.grid.axes();
   const std::vector<ColumnInfo>& columns = dataset.schema().parameters;
-  std::vector<CaseCount> counts = {make_layers(plan)};
+  std::vector<CaseCount> counts = {make_strata(plan)};
   for (std::size_t a = 0; a < axes.size(); ++a) {
     counts.push_back(make_bins(request, axes[a], columns[a].unit));
   }
@@ -87,7 +87,7 @@ Chart make_coverage_chart(const std::vector<CaseCount>& counts) {
   Chart chart{"coverage", {}, 2};
   chart.panel_height = 260;
   chart.caption =
-      "Cases simulated so far by layer and by each parameter of the grid, and how many of them "
+      "Cases simulated so far by stratum and by each parameter of the grid, and how many of them "
       "failed.";
   for (const CaseCount& count : counts) {
     ChartPanel panel{{count.label}, {"cases"}, {}};

@@ -157,16 +157,16 @@ ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const S
   return section;
 }
 
-ReportTable make_layer_table(const Plan& plan) {
-  ReportTable table{"Layers by " + plan.request().sample.by,
+ReportTable make_stratum_table(const Plan& plan) {
+  ReportTable table{"Strata by " + plan.request().sample.by,
                     {"stratum", "from", "to", "cases", "drawn"},
                     {},
                     {},
                     0};
-  for (const Stratum& layer : plan.strata()) {
-    table.rows.push_back({std::to_string(table.rows.size() + 1), round(layer.lower),
-                          round(layer.upper), format_count(layer.population),
-                          format_count(layer.drawn)});
+  for (const Stratum& stratum : plan.strata()) {
+    table.rows.push_back({std::to_string(table.rows.size() + 1), round(stratum.lower),
+                          round(stratum.upper), format_count(stratum.population),
+                          format_count(stratum.drawn)});
   }
   return table;
 }
@@ -177,7 +177,7 @@ ReportTable make_fact_table(const Plan& plan) {
   return table;
 }
 
-ReportSection make_layers(const Plan& plan) { return {"Coverage", {}, {make_layer_table(plan)}}; }
+ReportSection make_strata(const Plan& plan) { return {"Coverage", {}, {make_stratum_table(plan)}}; }
 
 Chart make_failure_chart(const SweepStatus& status) {
   ChartSeries bars{"", SeriesKind::kBars, 2};
@@ -236,7 +236,7 @@ void write_sweep_report(const SweepFolder& folder) {
   page.lead = {format_count(status.done) + " of " + format_count(status.cases) + " cases of " +
                plan.request().base.vehicle.name + " are simulated, " + format_count(status.failed) +
                " failed."};
-  page.sections = {make_progress(folder, plan, status), make_layers(plan),
+  page.sections = {make_progress(folder, plan, status), make_strata(plan),
                    make_failures(status, drawer)};
   if (status.shards_present > 0) {
     Dataset dataset({folder.root}, {.partial = true});

@@ -19,7 +19,7 @@ namespace strut::hidden {
 /// A grade of the signal-to-noise ratio s: A >= 30, B >= 10, C >= 5, D below.
 char find_grade(double ratio);
 
-/// What a fit of the baseline may adjust. (Biases are removed with the means.)
+/// Unknowns that a fit of the baseline adjusts, without biases, which are removed with the means.
 struct Nuisance {
   enum class Kind { kFactor, kSpeed, kTime };
   Kind kind = Kind::kFactor;

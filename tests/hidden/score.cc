@@ -163,7 +163,7 @@ void add_two(const TrueTrial& trial, const Verdict& v, Score& score) {
 
 void add_unknown(const TrueTrial& trial, const Verdict& v, Score& score) {
   const bool flagged = is_flagged(v);
-  // What a known cause imitates cannot be flagged.
+  // A cause that a known one imitates cannot be flagged.
   const char grade = find_grade(trial.beyond_one);
   score.cells[Metric::kUnknownFlagged][grade].add(flagged);
   score.cells[Metric::kMapExplained70][grade].add(flagged && v.map_share.value_or(0.0) >= 0.70);

@@ -251,7 +251,7 @@ TEST_CASE("A sweep's report tells its cases, layers and snapshots", "[io][slow]"
   test::check_page((root / "report.html").string(), 7);
   const std::string text = test::read_text(root / "report.html");
   CHECK_THAT(text, Contains("90 of 90 cases") && Contains("No case failed.") &&
-                       Contains("Layers by front_stiffness") && Contains("body_velocity_z"));
+                       Contains("Strata by front_stiffness") && Contains("body_velocity_z"));
   CHECK(run_program("verify " + root.string()).code == 0);
 }
 
