@@ -113,7 +113,7 @@ Honesty ask_oracle(const Detector& detector, const Noise& noise, FaultSetting fa
   honesty.ratio = detector.calc(fault).ratio;
   const VectorXd hidden = detector.calc_deviation({fault});
   for (int i = 0; i < pairs; ++i) {
-    const VectorXd errors = noise.draw(static_cast<std::uint64_t>(9400 + i));
+    const VectorXd errors = noise.draw(9400 + static_cast<std::uint64_t>(i));
     for (const double sign : {1.0, -1.0}) {
       const VectorXd readings = hidden + sign * errors;
       const double improvement =
