@@ -11,6 +11,7 @@
 #include "base/text/format_number.h"
 #include "estimate/crossing_batch.h"
 #include "estimate/hit_time.h"
+#include "estimate/jump_difference.h"
 #include "model/error/model_error.h"
 #include "model/longest_step.h"
 #include "model_files/parameters.h"
@@ -202,7 +203,7 @@ void CrossingReadings::fill_hit_time(std::size_t run, const SampledRun& base,
 }
 
 /// Fills in a column by central differences. The step is short, so a column whose second difference
-/// is as large as its first is rounding error and becomes zero.
+/// is as large as its first is rounding error and becomes zero; jumps do not count.
 void CrossingReadings::fill_column(const RunVariant& upper, const RunVariant& lower,
                                    const SampledRun& base, const SampledRun& above_run,
                                    const SampledRun& below_run, const std::vector<double>& values,
@@ -220,7 +221,9 @@ void CrossingReadings::fill_column(const RunVariant& upper, const RunVariant& lo
     const double above = read(above_run, readings_[k], hit_time).value;
     const double below = read(below_run, readings_[k], hit_time).value;
     const double here = read(base, readings_[k], hit_time).value;
-    const double slope = (above - below) / sigma, bend = (above - 2.0 * here + below) / sigma;
+    const double rise = (here - below) / sigma, next = (above - here) / sigma;
+    const double slope = centered ? calc_jump_free_difference(rise, next) : rise + next;
+    const double bend = slope == rise + next ? next - rise : 0.0;
     slopes += slope * slope;
     bends += bend * bend;
     out.jacobian(static_cast<Eigen::Index>(k), column) =

@@ -61,7 +61,8 @@ void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
   } else if (diagnosis.is_extended()) {
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
                  fmt::format("with vehicle = \"{}\"", folder.extended_model().string()));
-  } else if (diagnosis.kind == VerdictKind::kAdequate || diagnosis.next_measurement.empty()) {
+  } else if (diagnosis.verdict.kind == VerdictKind::kAdequate ||
+             diagnosis.next_measurement.empty()) {
     suggest_page(folder.report().string());
   } else {
     suggest_again(arguments, "with one more run: " + diagnosis.next_measurement);
@@ -113,7 +114,7 @@ int run_diagnose(const Arguments& arguments) {
   if (arguments.is_on("json")) {
     std::cout << json;
   } else {
-    std::cout << make_diagnose_text(diagnosis) << "\n" << folder.report().string() << "\n";
+    std::cout << make_diagnose_text(data, diagnosis) << "\n" << folder.report().string() << "\n";
   }
   suggest_next_step(arguments, folder, data, diagnosis);
   return diagnosis.is_whole ? kExitDone : kExitNegative;

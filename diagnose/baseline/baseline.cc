@@ -1,5 +1,7 @@
 #include "diagnose/baseline/baseline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -42,6 +44,28 @@ void fill_residual(const CampaignData& data, std::size_t run, RunEvaluation& eva
     for (std::size_t t = 0; t < residual.size(); ++t) residual[t] = c.values[t] - simulated[t];
     evaluation.residual.push_back(std::move(residual));
   }
+}
+
+/// Why the residuals cannot be judged, or "". A simulation may begin late or end early, by the hit
+/// time or the maneuver's duration; it may not have gaps, nor miss a tenth of its start.
+std::string find_gap(const CampaignData& data, std::size_t run, const RunEvaluation& evaluation) {
+  constexpr double kMaxLate = 0.1;
+  for (std::size_t k = 0; k < data.channels(run).size(); ++k) {
+    const MeasuredChannel& c = data.channels(run)[k];
+    const auto& simulated = evaluation.curves.channel[static_cast<std::size_t>(c.channel)];
+    const auto is_simulated = [](double value) { return std::isfinite(value); };
+    const auto first = std::find_if(simulated.begin(), simulated.end(), is_simulated);
+    const auto end = std::find_if(simulated.rbegin(), simulated.rend(), is_simulated).base();
+    const bool is_late = static_cast<double>(first - simulated.begin()) >
+                         kMaxLate * static_cast<double>(simulated.size());
+    if (!is_late && std::all_of(first, end, is_simulated)) continue;
+    const auto missing = std::count_if(simulated.begin(), simulated.end(),
+                                       [](double value) { return !std::isfinite(value); });
+    return fmt::format("{}: {}: {} of {} simulated samples are not finite",
+                       data.campaign.runs[run].name, data.info(c.channel).name, missing,
+                       simulated.size());
+  }
+  return "";
 }
 
 }  // namespace
@@ -100,7 +124,8 @@ RunEvaluation evaluate_run(const CampaignData& data, std::size_t run, const Shar
   evaluation.failure = evaluation.curves.failure;
   if (!evaluation.failure.empty()) return evaluation;
   add_shared_errors(shared, data.times(run), evaluation.curves);
-  fill_residual(data, run, evaluation);
+  evaluation.failure = find_gap(data, run, evaluation);
+  if (evaluation.failure.empty()) fill_residual(data, run, evaluation);
   return evaluation;
 }
 

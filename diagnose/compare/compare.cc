@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
+#include "diagnose/noise/whitened_fit.h"
 #include "model_files/parameters.h"
 
 namespace strut {
 namespace {
 
 ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std::size_t k,
-                                  const RunEvaluation& evaluation,
+                                  const RunEvaluation& evaluation, const NoiseFloor& floor,
                                   const std::vector<StateCurve>& states,
                                   const std::vector<TimeWindow>& windows) {
   const MeasuredChannel& measured = data.channels(run)[k];
@@ -27,7 +29,9 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
   c.mean = calc_mean(residual);
   c.sigma = measured.sigma;
   c.chi2_per_reading = (c.rms / c.sigma) * (c.rms / c.sigma);
-  c.limit = calc_adequate_limit(c.count, data.find_noise(c.channel).uncertainty);
+  c.adequacy = {floor, c.count, c.rms};
+  const double limit = c.adequacy.calc_limit() * floor.sigma / c.sigma;
+  c.limit = limit * limit;
   c.neighbor_correlation = calc_neighbor_correlation(residual);
   c.windows = calc_window_residuals(times, residual, c.measured_spread, windows);
   c.bands = calc_band_residuals(times, residual, measured.values, c.sigma);
@@ -39,32 +43,55 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
   return c;
 }
 
-}  // namespace
-
-double calc_adequate_limit(std::size_t count, double noise_uncertainty) {
-  if (count == 0) return 1.0;
-  const double widened = 1.0 + 2.0 * noise_uncertainty;
-  return widened * widened * (1.0 + kAdequateSigmas * std::sqrt(2.0 / static_cast<double>(count)));
+/// Whether the fit of a run's own values, which takes the noise for white, can be held against
+/// their priors: not where a rough road moves the channels.
+bool is_mostly_white(const std::vector<NoiseFloor>& floors) {
+  return std::all_of(floors.begin(), floors.end(),
+                     [](const NoiseFloor& floor) { return floor.common_fraction < 0.5; });
 }
 
-bool Comparison::is_adequate() const {
-  return std::all_of(runs.begin(), runs.end(), [](const RunComparison& run) {
-    const auto& channels = run.calibrated.channels;
-    return !channels.empty() &&
-           std::all_of(channels.begin(), channels.end(),
-                       [](const ChannelComparison& c) { return c.is_adequate(); });
-  });
+}  // namespace
+
+void add_misfits(const CampaignData& data, const std::vector<PriorConflict>& conflicts,
+                 std::vector<Misfit>& misfits) {
+  for (const PriorConflict& c : conflicts) {
+    if (c.calc_distance() > kMaxDistance) misfits.push_back({c.run, describe_conflict(data, c)});
+  }
+}
+
+void add_misfits(const CampaignData& data, std::size_t run, const ModelComparison& model,
+                 std::vector<Misfit>& misfits) {
+  std::string failure = model.evaluation.failure;
+  if (failure.empty() && model.channels.empty()) {
+    failure = data.campaign.runs[run].name + ": no channel is compared";
+  }
+  if (!failure.empty()) {
+    misfits.push_back({run, std::move(failure)});
+    return;
+  }
+  for (const ChannelComparison& c : model.channels) {
+    if (c.is_adequate()) continue;
+    misfits.push_back({run, "", c.channel, c.adequacy.calc_times_noise(), c.adequacy.calc_limit(),
+                       c.rms, c.nrmse});
+  }
+  add_misfits(data, model.conflicts, misfits);
 }
 
 ModelComparison compare_run(const CampaignData& data, std::size_t run, const SharedValues& shared,
+                            const std::vector<NoiseFloor>& floors,
                             const std::vector<TimeWindow>& windows, int threads) {
-  ModelComparison result{evaluate_run(data, run, shared, threads), {}};
+  ModelComparison result{evaluate_run(data, run, shared, threads), {}, {}};
   if (!result.evaluation.failure.empty()) return result;
+  if (is_mostly_white(floors)) {
+    result.conflicts =
+        list_prior_conflicts(result.evaluation.unknowns, result.evaluation.values, run);
+  }
   const std::vector<StateCurve> states = list_states(data, result.evaluation.curves);
   const std::size_t count = data.channels(run).size();
   result.channels.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    result.channels.push_back(compare_channel(data, run, k, result.evaluation, states, windows));
+    result.channels.push_back(
+        compare_channel(data, run, k, result.evaluation, floors[k], states, windows));
   }
   return result;
 }
@@ -77,16 +104,24 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
     comparison.not_identifiable =
         describe_null_directions(baseline.fit.widened, baseline.fit.unknowns);
   }
+  const NoiseFloors floors = calc_noise_floors(data, baseline.runs, measure_noise(data, baseline),
+                                               baseline.calibrated, threads);
+  comparison.conflicts =
+      list_prior_conflicts(baseline.calibrated.unknowns, baseline.calibrated.values, 0);
+  add_misfits(data, comparison.conflicts, comparison.misfits);
   for (std::size_t r = 0; r < data.run_count(); ++r) {
     RunComparison run;
     run.run = r;
     run.windows = make_time_windows(data, r);
-    run.nominal = compare_run(data, r, baseline.nominal, run.windows, threads);
-    run.calibrated = compare_run(data, r, baseline.calibrated, run.windows, threads);
+    run.nominal = compare_run(data, r, baseline.nominal, floors[r], run.windows, threads);
+    run.calibrated = compare_run(data, r, baseline.calibrated, floors[r], run.windows, threads);
     run.balance = calc_body_balance(
         set_unknowns(data.runs[r], baseline.calibrated.unknowns, baseline.calibrated.values));
     run.car_balance =
         calc_car_balance(data, r, baseline.calibrated, run.calibrated.evaluation, threads);
+    add_misfits(data, r, run.calibrated, comparison.misfits);
+    comparison.conflicts.insert(comparison.conflicts.end(), run.calibrated.conflicts.begin(),
+                                run.calibrated.conflicts.end());
     comparison.runs.push_back(std::move(run));
   }
   return comparison;

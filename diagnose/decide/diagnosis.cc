@@ -3,29 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
+#include "base/error/check.h"
 #include "base/math/normal.h"
-#include "base/names/name_table.h"
 #include "base/text/format_number.h"
 #include "diagnose/decide/improvement.h"
-#include "diagnose/decide/name_causes.h"
 #include "diagnose/decide/next_measurement.h"
 #include "diagnose/decide/sentence.h"
 #include "diagnose/discrepancy/leftover.h"
 
 namespace strut {
 namespace {
-
-constexpr std::array<Named<VerdictKind>, 5> kVerdicts = {
-    {{VerdictKind::kAdequate, "adequate"},
-     {VerdictKind::kNamed, "named"},
-     {VerdictKind::kGroup, "group"},
-     {VerdictKind::kFormIncomplete, "form_incomplete"},
-     {VerdictKind::kUnknown, "unknown"}}};
-static_assert(names_all(kVerdicts, VerdictKind::kUnknown));
 
 /// Fits a force map if the remaining residual may be a force in a strut. The extended model then
 /// has the map beside the causes or, if it does better without them, instead.
@@ -51,19 +42,30 @@ std::optional<UnknownForce> find_force(const CampaignData& data, const DiagnoseO
   return force;
 }
 
-std::vector<ParameterChange> list_changes(const Selection& selection) {
+std::vector<ParameterChange> list_changes(const CampaignData& data, const Selection& selection,
+                                          const std::vector<CausePosition>& positions) {
   std::vector<ParameterChange> changes;
+  const std::vector<GroupValue> group = list_group_values(selection, positions);
   const WhitenedFit &before = selection.base, &after = selection.extended;
   for (std::size_t i = 0; i < before.shared_count; ++i) {
     const Unknown& u = before.fit.unknowns[i];
-    const double spread = kNormal95 * before.fit.widened.sigma[i];
-    ParameterChange c{u.name, u.unit, before.fit.values[i], 0.0, 0.0, 0.0, 0.0, 0.0};
-    c.before_low = c.before - spread;
-    c.before_high = c.before + spread;
-    const double after_spread = kNormal95 * after.fit.widened.sigma[i];
-    c.after = after.fit.values[i];
-    c.after_low = c.after - after_spread;
-    c.after_high = c.after + after_spread;
+    ParameterChange c;
+    c.name = u.name;
+    c.unit = u.unit;
+    c.nominal = get_nominal(data, u);
+    const auto fill = [&](const FitResult& fit, double& value, double& low, double& high) {
+      const double spread = kNormal95 * fit.widened.sigma[i];
+      value = fit.values[i];
+      low = value - spread;
+      high = value + spread;
+      return static_cast<bool>(fit.at_bound[i]);
+    };
+    c.before_at_bound = fill(before.fit, c.before, c.before_low, c.before_high);
+    c.after_at_bound = fill(after.fit, c.after, c.after_low, c.after_high);
+    // Half as wide again: the members differ by more than each is uncertain.
+    c.differs = group[i].high - group[i].low > 1.5 * (c.after_high - c.after_low);
+    c.after_low = group[i].low;
+    c.after_high = group[i].high;
     changes.push_back(std::move(c));
   }
   return changes;
@@ -85,14 +87,13 @@ void fill_largest(const ChannelComparison& c, Where& where) {
   if (state != c.states.end()) where.depends_on = state->state;
 }
 
-/// Where the calibrated model, without any extension, is worst.
-Where find_worst(const CampaignData& data, const Selection& selection) {
+/// Where the calibrated model, without any extension, is worst; of the runs for fitting first.
+Where find_largest(const CampaignData& data, const std::vector<DiagnosedRun>& runs) {
   Where where;
   double max_excess = 0.0;
-  const SharedValues shared = selection.base.shared();
-  for (const std::size_t r : data.list_runs(RunUse::kFit)) {
-    const ModelComparison run = compare_run(data, r, shared, make_time_windows(data, r));
-    for (const ChannelComparison& c : run.channels) {
+  for (const DiagnosedRun& run : runs) {
+    if (data.campaign.runs[run.run].use != RunUse::kFit) continue;
+    for (const ChannelComparison& c : run.before.channels) {
       if (c.chi2_per_reading / c.limit <= max_excess) continue;
       max_excess = c.chi2_per_reading / c.limit;
       where.channel = data.info(c.channel).name;
@@ -114,16 +115,16 @@ std::string find_place(const Leftover& left) {
 
 Where find_where(const CampaignData& data, const Diagnosis& diagnosis) {
   const Selection& selection = diagnosis.selection;
-  Where where = find_worst(data, selection);
+  Where where = find_largest(data, diagnosis.runs);
   where.place = selection.is_left ? find_place(selection.left) : "";
   if (diagnosis.force) {
     where.place = name_strut(diagnosis.force->place);
     where.depends_on =
         fmt::format("{} {}", diagnosis.force->states.describe(), diagnosis.force->depends.words);
   }
-  if (diagnosis.kind == VerdictKind::kUnknown || diagnosis.kind == VerdictKind::kFormIncomplete) {
-    where.band = describe(selection.left.band);
-  }
+  const VerdictKind kind = diagnosis.verdict.kind;
+  const bool remains = kind == VerdictKind::kUnknown || kind == VerdictKind::kFormIncomplete;
+  if (remains && selection.left.band.to > 0.0) where.band = describe(selection.left.band);
   return where;
 }
 
@@ -154,24 +155,107 @@ void check_results(Diagnosis& diagnosis) {
   }
   if (diagnosis.is_extended()) check_convergence(selection.extended, "extended", diagnosis);
   for (const DiagnosedRun& run : diagnosis.runs) {
-    for (const RunEvaluation* model : {&run.before, &run.after}) {
-      if (model->failure.empty()) continue;
-      diagnosis.notes.push_back(model->failure);
+    for (const ModelComparison* model : {&run.before, &run.after}) {
+      if (model->evaluation.failure.empty()) continue;
+      diagnosis.notes.push_back(model->evaluation.failure);
       diagnosis.is_whole = false;
     }
   }
 }
 
-}  // namespace
-
-const char* get_name(VerdictKind kind) { return find_name(kVerdicts, kind); }
-
-bool is_same(const Cause& a, const Cause& b) { return a.effect == b.effect && a.place == b.place; }
-
-bool is_in(const std::vector<Cause>& causes, const Cause& cause) {
-  return std::any_of(causes.begin(), causes.end(),
-                     [&](const Cause& other) { return is_same(other, cause); });
+/// Gives up the causes and the map: the extended model is the calibrated one.
+void withdraw(const CampaignData& data, const DiagnoseOptions& options, Diagnosis& diagnosis) {
+  Selection& s = diagnosis.selection;
+  s.causes.clear();
+  s.round_of.clear();
+  s.gains.clear();
+  s.extended = s.base;
+  s.hold_out_after = s.hold_out_before;
+  diagnosis.force.reset();
+  TestBench bench(data, s.base, options.threads);
+  s.left = measure_leftover(data, bench);
+  s.is_left = s.left.significance >= LeftoverOptions{}.significant;
 }
+
+/// Fits the force map, claims what is more probable than a cause outside of the catalogue, and
+/// withdraws the rest from the extended model.
+void claim(const CampaignData& data, const DiagnoseOptions& options, Diagnosis& diagnosis) {
+  Selection& selection = diagnosis.selection;
+  if (selection.is_left) diagnosis.force = find_force(data, options, selection);
+  diagnosis.verdict =
+      make_claim(data.model(), selection, diagnosis.force ? diagnosis.force->fraction : 0.0);
+  if (selection.causes.empty() || !diagnosis.verdict.positions.empty()) return;
+  withdraw(data, options, diagnosis);
+  diagnosis.force = find_force(data, options, selection);
+}
+
+/// Withdraws an extension that makes the held-out runs worse.
+void check_improvement(const CampaignData& data, const DiagnoseOptions& options,
+                       Diagnosis& diagnosis) {
+  if (!diagnosis.is_extended() || is_improved(diagnosis.improvement)) return;
+  diagnosis.notes.push_back(fmt::format("withdrawn, since the held-out runs became worse: {}",
+                                        describe_extension(diagnosis)));
+  diagnosis.verdict.reject(1.0);
+  withdraw(data, options, diagnosis);
+  for (DiagnosedRun& run : diagnosis.runs) run.after = run.before;
+  diagnosis.improvement = calc_improvement(data, diagnosis.selection, diagnosis.runs);
+}
+
+void judge_models(const CampaignData& data, Diagnosis& diagnosis) {
+  Verdict& verdict = diagnosis.verdict;
+  // Those of the effects' own parameters are not stated.
+  const SharedValues base = diagnosis.selection.base.shared();
+  SharedValues after = diagnosis.selection.extended.shared();
+  after.unknowns.resize(base.unknowns.size());
+  diagnosis.conflicts = list_prior_conflicts(after.unknowns, after.values, 0);
+  for (const DiagnosedRun& run : diagnosis.runs) {
+    add_misfits(data, run.run, run.before, diagnosis.misfits_before);
+    add_misfits(data, run.run, run.after, verdict.misfits);
+    diagnosis.conflicts.insert(diagnosis.conflicts.end(), run.after.conflicts.begin(),
+                               run.after.conflicts.end());
+  }
+  verdict.conclude(diagnosis.selection.is_left, diagnosis.force.has_value());
+}
+
+/// Checks that the effects of the extended model beyond the file's are those of the verdict.
+void check_extension(const Diagnosis& diagnosis) {
+  const Selection& s = diagnosis.selection;
+  const std::vector<Cause> causes = diagnosis.verdict.list_causes();
+  STRUT_CHECK(causes.size() == s.causes.size(), "the extended model has causes without a claim");
+  for (const Hypothesis& h : s.causes) {
+    STRUT_CHECK(is_in(causes, Cause{h.effect, h.place, 0.0, 0.0, {}, h.change}),
+                h.describe() + " is not claimed");
+    for (const HypothesisParameter& p : h.parameters) {
+      STRUT_CHECK(is_among(s.extended.fit.unknowns, p.name), p.name + " was not fitted");
+    }
+  }
+}
+
+/// Names of the held-out runs that contradict the model, each once.
+std::string list_contradicting(const CampaignData& data, const std::vector<Misfit>& misfits) {
+  std::string names;
+  std::size_t last = data.run_count();
+  for (const Misfit& m : misfits) {
+    if (m.run != last) names += (names.empty() ? "" : ", ") + data.campaign.runs[m.run].name;
+    last = m.run;
+  }
+  return names;
+}
+
+std::string propose_next(const CampaignData& data, const Diagnosis& diagnosis) {
+  const Verdict& verdict = diagnosis.verdict;
+  if (!verdict.misfits.empty() && !diagnosis.selection.is_left &&
+      are_held_out(data, verdict.misfits)) {
+    return fmt::format("none is needed yet: use {} for fitting, too, where the cause shows",
+                       list_contradicting(data, verdict.misfits));
+  }
+  for (const CausePosition& p : verdict.positions) {
+    if (p.close > 1) return propose_measurement(data, diagnosis.selection, p.list_close());
+  }
+  return propose_measurement(data, diagnosis.selection, {});
+}
+
+}  // namespace
 
 Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& options) {
   Diagnosis diagnosis;
@@ -179,19 +263,25 @@ Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& opt
   select.threads = options.threads;
   select.progress = options.progress;
   diagnosis.selection = select_causes(data, select);
-  Selection& selection = diagnosis.selection;
-  if (selection.is_left) diagnosis.force = find_force(data, options, selection);
-  name_causes(data, diagnosis);
-  diagnosis.parameters = list_changes(selection);
+  claim(data, options, diagnosis);
+  if (options.progress) options.progress("measuring the improvement");
+  diagnosis.runs = evaluate_runs(data, diagnosis, options.threads);
+  diagnosis.improvement = calc_improvement(data, diagnosis.selection, diagnosis.runs);
+  check_improvement(data, options, diagnosis);
+  judge_models(data, diagnosis);
+  check_verdict(diagnosis.verdict, diagnosis.force.has_value());
+  check_extension(diagnosis);
+  check_results(diagnosis);
+  const Selection& selection = diagnosis.selection;
+  diagnosis.parameters = list_changes(data, selection, diagnosis.verdict.positions);
+  if (diagnosis.is_extended()) {
+    diagnosis.secants = list_secants(data, selection, diagnosis.verdict.positions);
+  }
   const FitResult& extended = selection.extended.fit;
   diagnosis.not_identifiable = describe_null_directions(extended.widened, extended.unknowns);
-  if (options.progress) options.progress("measuring the improvement");
-  diagnosis.runs = evaluate_hold_out(data, selection, options.threads);
-  check_results(diagnosis);
-  diagnosis.improvement = calc_improvement(data, selection, diagnosis.runs);
   diagnosis.where = find_where(data, diagnosis);
-  diagnosis.next_measurement = propose_measurement(data, selection, diagnosis.group);
-  diagnosis.sentence = write_sentence(diagnosis);
+  diagnosis.next_measurement = propose_next(data, diagnosis);
+  diagnosis.sentence = write_sentence(data, diagnosis);
   return diagnosis;
 }
 

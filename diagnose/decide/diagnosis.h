@@ -10,37 +10,22 @@
 
 #include "diagnose/compare/compare.h"
 #include "diagnose/decide/fit_force_map.h"
-#include "diagnose/decide/select.h"
+#include "diagnose/decide/shared_law.h"
+#include "diagnose/decide/verdict.h"
 #include "diagnose/discrepancy/map_shape.h"
 
 namespace strut {
 
-enum class VerdictKind { kAdequate, kNamed, kGroup, kFormIncomplete, kUnknown };
-/// "adequate", "named", "group", "form_incomplete", "unknown"
-const char* get_name(VerdictKind kind);
-
-struct CauseParameter {
-  std::string key, unit;                      // as in a model file: "asymmetry"
-  double value = 0.0, low = 0.0, high = 0.0;  // with 95 % interval
-};
-
-struct Cause {
-  std::string effect, place;
-  double probability = 0.0;
-  double delta_chi2 = 0.0;  // fall of chi2 with the effect
-  std::vector<CauseParameter> parameters;
-  EffectChange change = EffectChange::kAdded;
-  bool converged = true;  // the fit from which probability and delta chi2 follow
-};
-
-bool is_same(const Cause& a, const Cause& b);
-bool is_in(const std::vector<Cause>& causes, const Cause& cause);
-
 /// A parameter of the model before and after the extension, with 95 % intervals.
 struct ParameterChange {
   std::string name, unit;
+  double nominal = 0.0;  // in the model's file
   double before = 0.0, before_low = 0.0, before_high = 0.0;
   double after = 0.0, after_low = 0.0, after_high = 0.0;
+  bool before_at_bound = false, after_at_bound = false;  // held by a bound of its range
+  /// Whether members of a group give it clearly different values; the interval after the extension
+  /// contains those of all members.
+  bool differs = false;
 };
 
 /// One channel over all held-out runs.
@@ -57,6 +42,7 @@ struct Improvement {
   /// the floor with its tolerance, summed over channels in units of their floors. Null where no
   /// channel exceeds its floor before.
   std::optional<double> explained;
+  double excess_before = 0.0, excess_after = 0.0;                  // the sums over channels
   double log_likelihood_before = 0.0, log_likelihood_after = 0.0;  // per sample
   double log_odds = 0.0;  // of the extended against the calibrated model, over all samples
 };
@@ -75,35 +61,34 @@ struct UnknownForce {
   double fraction = 0.0;  // of the held-out runs' excess over noise that the map removes
 };
 
-/// Curves of one run for the report: measured, and the readings of the calibrated and the extended
-/// model.
+/// One run with the user's nominal model, the calibrated one, and the extended one; the last equals
+/// the calibrated one where there is no extension.
 struct DiagnosedRun {
   std::size_t run = 0;
-  RunEvaluation before, after;
+  ModelComparison nominal, before, after;
 };
 
 struct Diagnosis {
-  VerdictKind kind = VerdictKind::kAdequate;
-  std::string sentence;           // the verdict in words
-  std::vector<Cause> causes;      // accepted, the largest first
-  std::vector<Cause> group;       // all that the data cannot distinguish, causes included; or empty
-  std::vector<Cause> runners_up;  // other fitted candidates
-  double unknown_share = 0.0;     // probability that the cause is none of the catalogue
+  Verdict verdict;
+  std::string sentence;  // the verdict in words
   Where where;
   std::optional<UnknownForce> force;  // of the extended model, in addition to the causes
   std::vector<ParameterChange> parameters;
+  std::vector<StrutSecant> secants;  // of the extended model; empty without one
   Improvement improvement;
   std::vector<std::string> not_identifiable;
   std::string next_measurement;
   Selection selection;
-  std::vector<DiagnosedRun> runs;
-  std::vector<std::string> notes;  // for the user
+  std::vector<DiagnosedRun> runs;        // all of the campaign, in its order
+  std::vector<Misfit> misfits_before;    // of the calibrated model
+  std::vector<PriorConflict> conflicts;  // of the extended model
+  std::vector<std::string> notes;        // for the user
   /// Whether every held-out run could be simulated, and the calibration converged or is close to
   /// its minimum compared with the delta chi2 of the causes.
   bool is_whole = true;
 
   /// Whether there is an extended model.
-  bool is_extended() const { return !causes.empty() || force.has_value(); }
+  bool is_extended() const { return !verdict.positions.empty() || force.has_value(); }
 };
 
 struct DiagnoseOptions {

@@ -1,10 +1,13 @@
 #include "diagnose/decide/improvement.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "base/math/spread.h"
+#include "diagnose/baseline/time_windows.h"
 
 namespace strut {
 namespace {
@@ -12,7 +15,8 @@ namespace {
 /// Sums over the runs, for one channel.
 struct ChannelSums {
   int channel = 0;  // index in ModelInfo::channels
-  double before = 0.0, after = 0.0, floor = 0.0, spread = 0.0, count = 0.0;
+  double before = 0.0, after = 0.0, floor = 0.0, common = 0.0, tolerance = 0.0, spread = 0.0,
+         count = 0.0;
 };
 
 /// Excess error over the floors, each channel in units of its own.
@@ -20,35 +24,35 @@ struct Excess {
   double before = 0.0, after = 0.0;
 };
 
-double sum_squares(const std::vector<double>& residual) {
-  double sum = 0.0;
-  for (const double r : residual) {
-    if (std::isfinite(r)) sum += r * r;
-  }
-  return sum;
-}
-
 ChannelSums& find_sums(std::vector<ChannelSums>& sums, int channel) {
   const auto found = std::find_if(sums.begin(), sums.end(),
                                   [&](const ChannelSums& s) { return s.channel == channel; });
   return found != sums.end() ? *found : sums.emplace_back(ChannelSums{channel});
 }
 
-std::vector<ChannelSums> sum_channels(const CampaignData& data, const Selection& selection,
+bool is_held_out(const CampaignData& data, const DiagnosedRun& run) {
+  return data.campaign.runs[run.run].use == RunUse::kHoldOut;
+}
+
+std::vector<ChannelSums> sum_channels(const CampaignData& data,
                                       const std::vector<DiagnosedRun>& runs) {
   std::vector<ChannelSums> sums;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const DiagnosedRun& run = runs[i];
-    if (!run.before.failure.empty() || !run.after.failure.empty()) continue;
-    for (std::size_t k = 0; k < data.channels(run.run).size(); ++k) {
-      const MeasuredChannel& c = data.channels(run.run)[k];
-      ChannelSums& s = find_sums(sums, c.channel);
-      const auto count = static_cast<double>(count_readings(run.before.residual[k]));
-      s.before += sum_squares(run.before.residual[k]);
-      s.after += sum_squares(run.after.residual[k]);
-      s.floor += count * calc_noise_variance(selection.judge->get_noise(i), k);
-      const double spread = calc_spread(c.values);
-      s.spread += count * spread * spread;
+  for (const DiagnosedRun& run : runs) {
+    if (!is_held_out(data, run) || run.before.channels.empty() || run.after.channels.empty()) {
+      continue;
+    }
+    for (std::size_t k = 0; k < run.before.channels.size(); ++k) {
+      const ChannelComparison &before = run.before.channels[k], &after = run.after.channels[k];
+      ChannelSums& s = find_sums(sums, before.channel);
+      const auto count = static_cast<double>(before.count);
+      const NoiseFloor& floor = before.adequacy.floor;
+      s.before += count * before.rms * before.rms;
+      s.after += count * after.rms * after.rms;
+      s.floor += count * floor.sigma * floor.sigma;
+      s.common += count * floor.sigma * floor.sigma * floor.common_fraction;
+      s.tolerance +=
+          count * floor.sigma * floor.sigma * floor.common_fraction * floor.common_tolerance;
+      s.spread += count * before.measured_spread * before.measured_spread;
       s.count += count;
     }
   }
@@ -68,15 +72,6 @@ ChannelImprovement make_channel(const CampaignData& data, const ChannelSums& s) 
     c.nrmse_after = c.rms_after / spread;
   }
   return c;
-}
-
-/// Relative tolerance of a channel's rms over its floor for a perfect model: the level of the noise
-/// is uncertain by `noise.uncertainty`, the number of readings is finite, and roads differ.
-double calc_floor_tolerance(const ChannelSums& s, const NoiseEstimate& noise) {
-  constexpr double kRoad = 0.1;
-  const double sensor_variance = noise.sigma * noise.sigma;
-  const double road = 1.0 - std::min(1.0, sensor_variance * s.count / s.floor);
-  return 2.0 * std::hypot(noise.uncertainty, 1.0 / std::sqrt(2.0 * s.count)) + kRoad * road;
 }
 
 void add_excess(const ChannelImprovement& c, double tolerance, Excess& excess) {
@@ -109,12 +104,24 @@ void fill_likelihood(const Selection& selection, Improvement& improvement) {
 
 }  // namespace
 
-std::vector<DiagnosedRun> evaluate_hold_out(const CampaignData& data, const Selection& selection,
-                                            int threads) {
+std::vector<DiagnosedRun> evaluate_runs(const CampaignData& data, const Diagnosis& diagnosis,
+                                        int threads) {
+  const WhitenedFit& base = diagnosis.selection.base;
+  const SharedValues before = base.shared(), after = diagnosis.selection.extended.shared();
+  SharedValues nominal = before;
+  for (std::size_t i = 0; i < nominal.values.size(); ++i) {
+    nominal.values[i] = get_nominal(data, nominal.unknowns[i]);
+  }
+  const NoiseFloors floors = calc_noise_floors(data, base.runs, base.spectra, before, threads);
   std::vector<DiagnosedRun> runs;
-  for (const std::size_t r : data.list_runs(RunUse::kHoldOut)) {
-    runs.push_back({r, evaluate_run(data, r, selection.base.shared(), threads),
-                    evaluate_run(data, r, selection.extended.shared(), threads)});
+  for (std::size_t r = 0; r < data.run_count(); ++r) {
+    const std::vector<TimeWindow> windows = make_time_windows(data, r);
+    const auto compare = [&](const SharedValues& shared) {
+      return compare_run(data, r, shared, floors[r], windows, threads);
+    };
+    DiagnosedRun run{r, compare(nominal), compare(before), {}};
+    run.after = diagnosis.is_extended() ? compare(after) : run.before;
+    runs.push_back(std::move(run));
   }
   return runs;
 }
@@ -123,15 +130,44 @@ Improvement calc_improvement(const CampaignData& data, const Selection& selectio
                              const std::vector<DiagnosedRun>& runs) {
   Improvement improvement;
   Excess excess;
-  for (const ChannelSums& s : sum_channels(data, selection, runs)) {
+  for (const ChannelSums& s : sum_channels(data, runs)) {
     if (!(s.count > 0.0)) continue;
     improvement.channels.push_back(make_channel(data, s));
-    const double tolerance = calc_floor_tolerance(s, data.find_noise(s.channel));
-    add_excess(improvement.channels.back(), tolerance, excess);
+    const NoiseFloor floor{std::sqrt(s.floor / s.count), s.common / s.floor,
+                           data.find_noise(s.channel).uncertainty,
+                           s.common > 0.0 ? s.tolerance / s.common : 0.0};
+    add_excess(improvement.channels.back(),
+               calc_floor_tolerance(floor, static_cast<std::size_t>(s.count)), excess);
   }
   improvement.explained = calc_explained(excess);
+  improvement.excess_before = excess.before;
+  improvement.excess_after = excess.after;
   fill_likelihood(selection, improvement);
   return improvement;
+}
+
+bool is_improved(const Improvement& improvement) {
+  constexpr double kTolerance = 0.05;  // of a floor: less is scatter
+  return improvement.log_odds > 0.0 &&
+         improvement.excess_after <= improvement.excess_before + kTolerance;
+}
+
+std::vector<std::string> list_worsened(const CampaignData& data,
+                                       const std::vector<DiagnosedRun>& runs) {
+  constexpr double kWorse = 1.05;
+  std::vector<std::string> worsened;
+  for (const DiagnosedRun& run : runs) {
+    if (!is_held_out(data, run)) continue;
+    for (std::size_t k = 0; k < run.after.channels.size() && k < run.before.channels.size(); ++k) {
+      const ChannelComparison &before = run.before.channels[k], &after = run.after.channels[k];
+      if (after.is_adequate() || after.rms <= kWorse * before.rms) continue;
+      worsened.push_back(fmt::format("{} in {}, from {:.3g} to {:.3g} times its noise",
+                                     data.info(after.channel).name, name_run(data, run.run),
+                                     before.adequacy.calc_times_noise(),
+                                     after.adequacy.calc_times_noise()));
+    }
+  }
+  return worsened;
 }
 
 }  // namespace strut

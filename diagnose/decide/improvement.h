@@ -7,13 +7,23 @@
 
 namespace strut {
 
-/// The held-out runs with the calibrated and the extended model.
-std::vector<DiagnosedRun> evaluate_hold_out(const CampaignData& data, const Selection& selection,
-                                            int threads);
+/// Every run with the nominal, the calibrated and the extended model, judged by the noise of the
+/// calibrated one.
+std::vector<DiagnosedRun> evaluate_runs(const CampaignData& data, const Diagnosis& diagnosis,
+                                        int threads);
 
-/// The improvement by channel over the runs of evaluate_hold_out. The noise floor of a channel is
-/// the residual of a perfect model: noise of the sensor and, for a car, the measured roughness.
+/// The improvement by channel over the held-out ones of `runs`. The noise floor of a channel is the
+/// residual of a perfect model: noise of the sensor and, for a car, the measured roughness.
 Improvement calc_improvement(const CampaignData& data, const Selection& selection,
                              const std::vector<DiagnosedRun>& runs);
+
+/// Whether an extension makes the held-out runs better: they become more likely, and the sum of
+/// their channels' excess errors does not grow by more than a twentieth of a floor.
+bool is_improved(const Improvement& improvement);
+
+/// Channels of held-out runs that exceed their noise and have become worse by more than a
+/// twentieth.
+std::vector<std::string> list_worsened(const CampaignData& data,
+                                       const std::vector<DiagnosedRun>& runs);
 
 }  // namespace strut

@@ -2,44 +2,69 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "base/text/format_number.h"
+#include "diagnose/decide/improvement.h"
 
 namespace strut {
 namespace {
 
-std::string join_causes(const std::vector<Cause>& causes, const std::string& between) {
+std::string join(const std::vector<std::string>& parts, const std::string& between) {
   std::string text;
-  for (const Cause& cause : causes) {
-    text +=
-        (text.empty() ? "" : between) + describe_effect(cause.effect, cause.place, cause.change);
-  }
+  for (const std::string& part : parts) text += (text.empty() ? "" : between) + part;
   return text;
 }
 
+std::vector<std::string> list_names(const std::vector<Cause>& causes) {
+  std::vector<std::string> names;
+  for (const Cause& cause : causes)
+    names.push_back(describe_effect(cause.effect, cause.place, cause.change));
+  return names;
+}
+
+/// "damper_asymmetry at rear", or "one of A, B, which these runs cannot distinguish"
+std::string describe_position(const CausePosition& position) {
+  const std::vector<std::string> names = list_names(position.list_close());
+  if (names.size() == 1) return names.front();
+  return fmt::format("one of {}, {}", join(names, ", "),
+                     position.is_limited_by_form
+                         ? "between which the remaining error of the model does not decide"
+                         : "which these runs cannot distinguish");
+}
+
+/// "Cause: A." or "Causes, which act together: A; and one of B, C, which ..."
+std::string describe_claim(const std::vector<CausePosition>& positions) {
+  std::vector<std::string> parts;
+  for (const CausePosition& p : positions) parts.push_back(describe_position(p));
+  return fmt::format("{}: {}.", parts.size() > 1 ? "Causes, which act together" : "Cause",
+                     join(parts, "; and "));
+}
+
+/// "97 %", "99.6 %": 100 only where nothing remains.
 std::string format_percent_of(double fraction) {
-  return format_rounded(std::round(100.0 * fraction)) + " %";
+  const double percent = 100.0 * fraction;
+  return percent > 99.0 && percent < 100.0 ? fmt::format("{:.1f} %", std::min(percent, 99.9))
+                                           : fmt::format("{:.0f} %", percent);
 }
 
 /// "Adding it removes 97 % of the excess error on the held-out runs."
-std::string describe_improvement(const Diagnosis& diagnosis, const std::string& added) {
-  const std::optional<double>& explained = diagnosis.improvement.explained;
+std::string describe_improvement(const Diagnosis& diagnosis) {
+  constexpr double kVisible = 0.005;
+  const Improvement& improvement = diagnosis.improvement;
+  const std::string added = describe_extension(diagnosis);
   // The readings of all channels together show what no channel shows alone.
-  if (!explained) {
-    return fmt::format("Adding {} makes the held-out runs exp({}) times as likely.", added,
-                       format_rounded(std::round(diagnosis.improvement.log_odds)));
+  if (!improvement.explained || *improvement.explained < kVisible) {
+    return fmt::format("Adding {} makes the held-out runs exp({:.3g}) times as likely.", added,
+                       improvement.log_odds);
   }
   return fmt::format("Adding {} removes {} of the excess error on the held-out runs.", added,
-                     format_percent_of(*explained));
+                     format_percent_of(*improvement.explained));
 }
 
-std::string describe_map(const UnknownForce& force) {
-  return fmt::format("Its force map removes {} of the remaining excess error on the held-out runs.",
-                     format_percent_of(force.fraction));
-}
-
-/// The residual of the extended model: its dependence, or its place and band.
+/// The dependence of the force map, or the place and band of the residual of the model with all
+/// that is claimed.
 std::string describe_residual(const Diagnosis& diagnosis) {
   if (diagnosis.force) {
     const std::string& place = diagnosis.force->place;
@@ -47,45 +72,64 @@ std::string describe_residual(const Diagnosis& diagnosis) {
                        place.empty() ? "strut" : place + " struts", diagnosis.force->depends.words);
   }
   const Where& where = diagnosis.where;
+  if (where.band.empty()) return "";
   return where.place.empty() ? "at " + where.band
                              : fmt::format("acting at {}, at {}", where.place, where.band);
+}
+
+/// " Incomplete: ..." with the channel that remains furthest above its noise.
+std::string describe_remainder(const CampaignData& data, const Diagnosis& diagnosis) {
+  std::string text;
+  const Misfit* worst = find_worst(diagnosis.verdict.misfits);
+  const std::string residual = describe_residual(diagnosis);
+  if (!residual.empty()) text += residual;
+  if (worst != nullptr) text += (text.empty() ? "" : "; ") + describe_misfit(data, *worst);
+  const std::vector<std::string> worsened = list_worsened(data, diagnosis.runs);
+  if (!worsened.empty()) text += "; it worsens " + join(worsened, ", ");
+  return text;
+}
+
+/// The sentence where no effect of the catalogue is claimed.
+std::string describe_unknown(const CampaignData& data, const Diagnosis& diagnosis) {
+  const Verdict& verdict = diagnosis.verdict;
+  if (!diagnosis.selection.is_left && are_held_out(data, verdict.misfits)) {
+    return fmt::format(
+        "Cause: unknown. The calibrated model agrees with the runs for fitting, but not with the "
+        "held-out runs: {}. The runs for fitting do not show the cause.",
+        describe_misfit(data, *find_worst(verdict.misfits)));
+  }
+  const std::string remainder = describe_remainder(data, diagnosis);
+  const std::string unknown =
+      "Cause: none of the catalogue" + (remainder.empty() ? "" : "; " + remainder) + ".";
+  return diagnosis.force ? unknown + " " + describe_improvement(diagnosis) : unknown;
 }
 
 }  // namespace
 
 std::string name_strut(const std::string& place) { return place.empty() ? "strut" : place; }
 
-std::string write_sentence(const Diagnosis& diagnosis) {
-  const std::string causes = join_causes(diagnosis.causes, " and ");
-  const bool are_several = diagnosis.causes.size() > 1;
-  const char* head = are_several ? "Causes" : "Cause";
-  const char* them = are_several ? "them" : "it";
-  switch (diagnosis.kind) {
+std::string describe_extension(const Diagnosis& diagnosis) {
+  std::vector<std::string> parts = list_names(diagnosis.verdict.list_causes());
+  if (diagnosis.force) parts.emplace_back("the force map");
+  return join(parts, " and ");
+}
+
+std::string write_sentence(const CampaignData& data, const Diagnosis& diagnosis) {
+  const Verdict& verdict = diagnosis.verdict;
+  switch (verdict.kind) {
     case VerdictKind::kAdequate:
-      return "The calibrated model is adequate: neither an effect of the catalogue nor anything "
-             "else exceeds the noise.";
+      return "The calibrated model is adequate: every channel of every run agrees with it within "
+             "its noise, and no effect of the catalogue exceeds the noise.";
     case VerdictKind::kNamed:
-      return fmt::format("{}: {}. {}", head, causes, describe_improvement(diagnosis, them));
     case VerdictKind::kGroup:
-      return fmt::format("Cause: one of {}, which these runs cannot distinguish. {}",
-                         join_causes(diagnosis.group, ", "),
-                         describe_improvement(diagnosis, causes));
+      return describe_claim(verdict.positions) + " " + describe_improvement(diagnosis);
     case VerdictKind::kFormIncomplete:
-      return fmt::format(
-          "{}: {}, but the remaining residual exceeds noise: {}. {}", head, causes,
-          describe_residual(diagnosis),
-          diagnosis.force ? describe_map(*diagnosis.force) : describe_improvement(diagnosis, them));
+      return fmt::format("{} Incomplete: {}. {}", describe_claim(verdict.positions),
+                         describe_remainder(data, diagnosis), describe_improvement(diagnosis));
     case VerdictKind::kUnknown:
       break;
   }
-  const std::string unknown = "Cause: none of the catalogue; " + describe_residual(diagnosis);
-  const std::string nearest = causes.empty() ? "" : "; nearest: " + causes;
-  if (diagnosis.force) {
-    return fmt::format("{}{}. {}", unknown, nearest, describe_map(*diagnosis.force));
-  }
-  return causes.empty()
-             ? unknown + "."
-             : fmt::format("{}{}. {}", unknown, nearest, describe_improvement(diagnosis, them));
+  return describe_unknown(data, diagnosis);
 }
 
 }  // namespace strut

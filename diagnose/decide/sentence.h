@@ -7,8 +7,12 @@
 
 namespace strut {
 
-/// One or two sentences, from all other parts of the diagnosis.
-std::string write_sentence(const Diagnosis& diagnosis);
+/// A few sentences: the claim, what it does not explain, and the measured improvement. From all
+/// other parts of the diagnosis.
+std::string write_sentence(const CampaignData& data, const Diagnosis& diagnosis);
+
+/// The causes of the extended model and its force map: "damper_asymmetry at rear and a force map"
+std::string describe_extension(const Diagnosis& diagnosis);
 
 /// The name of a location in a sentence: "strut" for a rig's only strut, which has none in its
 /// file.

@@ -1,34 +1,23 @@
 #include "diagnose/noise/hold_out.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
+#include "diagnose/noise/noise_floor.h"
 #include "estimate/fit.h"
 #include "model/error/model_error.h"
 
 namespace strut {
 namespace {
 
-/// The color of a channel's sensor in the runs of a fit; white where none of them has the channel.
-SensorColor find_color(const std::vector<NoiseSpectrum>& fitted, int channel) {
-  for (const NoiseSpectrum& s : fitted) {
-    for (const SensorColor& color : s.color) {
-      if (color.channel == channel) return color;
-    }
-  }
-  return {};
-}
-
-/// What a run kept apart has in common with those of a fit.
-void share_noise(const std::vector<NoiseSpectrum>& fitted,
-                 const std::vector<MeasuredChannel>& channels, NoiseSpectrum& kept) {
-  for (const MeasuredChannel& c : channels) kept.color.push_back(find_color(fitted, c.channel));
-  kept.level = fitted.front().level;
-  kept.response_error = fitted.front().response_error;
-  for (std::size_t b = 0; b < kept.excess.size(); ++b) {
-    double sum = 0.0;
-    for (const NoiseSpectrum& s : fitted) sum += s.excess[b];
-    kept.excess[b] = sum / static_cast<double>(fitted.size());
-  }
+/// Throws InputError where a fit of a run does not have finite results.
+void check_finite(const CampaignData& data, const HoldOutRun& run) {
+  if (std::isfinite(run.chi2) && std::isfinite(run.log_likelihood)) return;
+  throw InputError(fmt::format("{}: its chi2 is {}, its log-likelihood {}; expected finite numbers",
+                               data.campaign.runs[run.run].name, run.chi2, run.log_likelihood));
 }
 
 }  // namespace
@@ -38,10 +27,7 @@ HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, in
   noise_.resize(runs_.size());
   const SharedValues shared = base.shared();
   share_items(threads, runs_.size(), [&](std::size_t i, int /*thread*/) {
-    const CampaignData one = pin_run(data, runs_[i], shared);
-    const std::vector<Unknown> unknowns = make_run_unknowns(one, {0}, shared.unknowns);
-    noise_[i] = make_noise_spectra(one, {0}, unknowns, list_starts(unknowns)).front();
-    share_noise(base.spectra, one.channels(0), noise_[i]);
+    noise_[i] = make_spectrum_of_run(data, runs_[i], base.spectra, shared);
   });
 }
 
@@ -68,11 +54,13 @@ HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) co
   WhitenedModel whitened(*model, whitener);
   const FitResult fit = fit_readings(whitened);
   HoldOutRun run;
+  run.run = runs_[i];
   run.chi2 = fit.chi2;
   run.count = whitener.whitened_count();
   run.expected = static_cast<double>(run.count) * whitener.get_share(0);
   // Priors weigh what is unknown about the run.
   run.log_likelihood = -0.5 * fit.chi2 - whitener.get_log_determinant(0);
+  check_finite(data_, run);
   return run;
 }
 

@@ -1,6 +1,9 @@
 #include "diagnose/noise/whitened_fit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/error/input_error.h"
@@ -148,6 +151,23 @@ void fit_crossing(ReadingModel& model, const std::vector<double>& start, Whitene
   }
 }
 
+/// Throws InputError where chi2 is not finite, with the run and the channel of the first residual
+/// that is not.
+void check_finite(const CampaignData& data, ReadingModel& model, const WhitenedFit& result) {
+  if (std::isfinite(result.fit.chi2)) return;
+  const Evaluation at = model.evaluate(result.fit.values);
+  if (!at.failure.empty()) throw InputError(at.failure);
+  for (std::size_t i = 0; i < model.reading_count(); ++i) {
+    if (std::isfinite(at.residual(static_cast<Eigen::Index>(i)))) continue;
+    const ReadingPlace& place = model.readings()[i];
+    const std::size_t run = result.runs[place.run];
+    throw InputError(fmt::format(
+        "{}: {}: the residual at {:.6g} s is not finite", data.campaign.runs[run].name,
+        data.info(data.channels(run)[place.channel].channel).name, data.times(run)[place.time]));
+  }
+  throw InputError(fmt::format("{}: chi2 of the fit is not finite", data.campaign.path.string()));
+}
+
 }  // namespace
 
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
@@ -164,6 +184,7 @@ WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t
   } else {
     fit_crossing(*model, start, result);
   }
+  check_finite(data, *model, result);
   return result;
 }
 

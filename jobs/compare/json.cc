@@ -74,6 +74,7 @@ Json make_channel(const ChannelComparison& c) {
               {"nrmse", c.nrmse},
               {"mean", c.mean},
               {"noise", c.sigma},
+              {"noise_floor", c.adequacy.floor.sigma},
               {"chi2_per_reading", c.chi2_per_reading},
               {"limit", c.limit},
               {"adequate", c.is_adequate()},

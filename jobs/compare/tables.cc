@@ -43,7 +43,7 @@ std::string describe_error(const ChannelComparison* c) {
 ReportTable make_channel_table(const CampaignData& data, const Comparison& comparison) {
   ReportTable table{
       "Residuals: rms relative to the measured channel's standard deviation",
-      {"run", "use", "channel", "nominal", "calibrated", "rms", "noise", "chi2/n", "adequate"}};
+      {"run", "use", "channel", "nominal", "calibrated", "rms", "noise", "rms/noise", "adequate"}};
   table.text_columns = 3;
   for (const RunComparison& run : comparison.runs) {
     for (const MeasuredChannel& measured : data.channels(run.run)) {
@@ -54,9 +54,10 @@ ReportTable make_channel_table(const CampaignData& data, const Comparison& compa
       std::vector<std::string> row = {entry.name, get_name(entry.use), info.name,
                                       describe_error(before), describe_error(after)};
       if (after != nullptr) {
-        row.insert(row.end(),
-                   {format_short(after->rms) + " " + info.unit, format_short(after->sigma),
-                    format_short(after->chi2_per_reading), after->is_adequate() ? "yes" : "no"});
+        row.insert(row.end(), {format_short(after->rms) + " " + info.unit,
+                               format_short(after->adequacy.floor.sigma),
+                               format_short(after->adequacy.calc_times_noise()),
+                               after->is_adequate() ? "yes" : "no"});
       } else {
         row.insert(row.end(), {"", "", "", ""});
       }
@@ -183,21 +184,13 @@ std::string make_verdict_text(const CampaignData& data, const Comparison& compar
   if (comparison.is_adequate()) {
     return "Adequate: the calibrated model agrees with every channel within its noise.";
   }
-  const ChannelComparison* worst = nullptr;
-  std::size_t where = 0;
-  for (const RunComparison& run : comparison.runs) {
-    for (const ChannelComparison& c : run.calibrated.channels) {
-      const double excess = c.chi2_per_reading / c.limit;
-      if (worst != nullptr && excess <= worst->chi2_per_reading / worst->limit) continue;
-      worst = &c;
-      where = run.run;
-    }
-  }
-  if (worst == nullptr) return "Not adequate: no run could be simulated.";
+  const Misfit& worst = *find_worst(comparison.misfits);
+  if (!worst.failure.empty()) return "Not adequate: " + describe_misfit(data, worst) + ".";
   return fmt::format(
-      "Not adequate: the residual of the calibrated model is {} of {} in {}, {} times its noise.",
-      format_percent(worst->nrmse), data.info(worst->channel).name, data.campaign.runs[where].name,
-      format_short(std::sqrt(worst->chi2_per_reading)));
+      "Not adequate: the residual of the calibrated model is {} of {} in {}, {:.3g} times its "
+      "noise.",
+      format_percent(worst.nrmse), data.info(worst.channel).name, name_run(data, worst.run),
+      worst.times_noise);
 }
 
 std::vector<ReportTable> make_compare_tables(const CampaignData& data,

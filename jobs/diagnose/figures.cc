@@ -137,7 +137,7 @@ void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
     auto panel = panels.begin();
     for (const ChannelSum& sum : {model.struts[0].deflection, model.struts[0].velocity}) {
       ChartSeries points{"measured", SeriesKind::kPoints, 1};
-      add_points(calc_sum(sum, run.before.curves.channel), c.values, points);
+      add_points(calc_sum(sum, run.before.evaluation.curves.channel), c.values, points);
       (panel++)->series.push_back(std::move(points));
     }
   }
@@ -149,7 +149,7 @@ Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
   chart.caption =
       fmt::format("Forces of the models over the motion, as read by their sensors, in {}.",
                   data.campaign.runs[run.run].name);
-  for (const ForceLaw& law : list_laws(data, run.before.curves)) {
+  for (const ForceLaw& law : list_laws(data, run.before.evaluation.curves)) {
     chart.panels.push_back({{law.x_label}, {law.y_label}, {}});
   }
   add_measured_force(data, run, chart.panels);
@@ -210,16 +210,16 @@ std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
     }
     if (!bars.x.empty()) panel.series.push_back(std::move(bars));
   };
-  add(diagnosis.causes, "cause", 1);
-  add(diagnosis.group, "not distinguished", 6);
-  add(diagnosis.runners_up, "runner-up", 5);
+  add(diagnosis.verdict.list_causes(), "cause", 1);
+  add(diagnosis.verdict.list_group(), "not distinguished", 6);
+  add(diagnosis.verdict.list_runners_up(), "runner-up", 5);
   if (panel.series.empty()) return {};
   panel.x.categories.emplace_back("none of the catalogue");
   panel.series.push_back({"unknown",
                           SeriesKind::kBars,
                           4,
                           {static_cast<double>(panel.x.categories.size())},
-                          {diagnosis.unknown_share}});
+                          {diagnosis.verdict.unknown_share}});
   panel.series.back().width = kBarWidth;
   panel.y.range = {0.0, 1.0};
   Chart chart{"probabilities", {std::move(panel)}};

@@ -11,7 +11,9 @@ namespace strut {
 namespace {
 
 std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
-  std::vector<std::string> lead = {diagnosis.sentence};
+  std::vector<std::string> lead = {
+      fmt::format("[{}] {}", get_badge(diagnosis.verdict.kind), diagnosis.sentence)};
+  for (const std::string& line : describe_effects(diagnosis.verdict)) lead.push_back(line);
   const std::string where = make_where_text(diagnosis.where);
   if (!where.empty()) lead.push_back(where);
   if (!diagnosis.next_measurement.empty()) {
@@ -57,7 +59,8 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
   ReportSection map{"Force map"};
   drawer.draw_all(make_map_charts(diagnosis), map);
   if (!map.figures.empty()) sections.push_back(std::move(map));
-  sections.push_back({"Improvement on held-out runs", {}, {make_improvement_table(diagnosis)}});
+  sections.push_back(
+      {"Improvement on held-out runs", {}, {make_improvement_table(data, diagnosis)}});
   drawer.draw_all(make_improvement_charts(diagnosis), sections.back());
   for (const DiagnosedRun& run : diagnosis.runs) {
     if (data.campaign.runs[run.run].use != RunUse::kHoldOut) continue;
@@ -71,6 +74,7 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
   add_list("Not identifiable from these runs", diagnosis.not_identifiable, sections);
   std::vector<std::string> notes = data.notes;
   notes.insert(notes.end(), diagnosis.notes.begin(), diagnosis.notes.end());
+  for (const PriorConflict& c : diagnosis.conflicts) notes.push_back(describe_conflict(data, c));
   add_list("Notes", notes, sections);
   return page;
 }

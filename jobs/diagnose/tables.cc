@@ -5,16 +5,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/format_number.h"
 #include "jobs/diagnose/force_map.h"
+#include "model/effects/catalogue.h"
 
 namespace strut {
 namespace {
 
 constexpr std::size_t kMaxOnTerminal = 4;  // runners-up
 
-std::string describe_interval(double low, double high) {
-  if (!std::isfinite(low) || !std::isfinite(high)) return "open";
-  return format_short(low) + " to " + format_short(high);
+/// "0.300 (0.298 to 0.302)": to the second digit of the interval.
+std::string describe_interval(double value, double low, double high) {
+  if (!std::isfinite(value)) return "";
+  if (!std::isfinite(low) || !std::isfinite(high)) return format_significant(value) + " (open)";
+  const double error = 0.5 * (high - low);
+  return fmt::format("{} ({} to {})", format_to_error(value, error), format_to_error(low, error),
+                     format_to_error(high, error));
 }
 
 std::string describe_parameters(const Cause& cause) {
@@ -22,34 +28,75 @@ std::string describe_parameters(const Cause& cause) {
   std::string text;
   for (const CauseParameter& p : cause.parameters) {
     const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
-    text += fmt::format("{}{} = {}{} ({})", text.empty() ? "" : "; ", p.key, format_short(p.value),
-                        unit, describe_interval(p.low, p.high));
+    text += fmt::format("{}{} = {}{}{}", text.empty() ? "" : "; ", p.key,
+                        describe_interval(p.value, p.low, p.high), unit,
+                        p.at_bound ? ", at a limit" : "");
   }
   return text;
 }
 
 std::vector<std::string> make_cause_row(const Cause& cause, const std::string& role) {
+  const bool is_rejected = role == "runner-up" || role == "not claimed";
   return {describe_effect(cause.effect, "", cause.change),
           cause.place,
           role,
-          describe_parameters(cause) +
-              (cause.converged || role == "runner-up" ? "" : "; not converged"),
+          describe_parameters(cause) + (cause.converged || is_rejected ? "" : "; not converged"),
           fmt::format("{:.3f}", cause.probability),
-          fmt::format("{:.1f}", cause.delta_chi2)};
+          format_significant(cause.delta_chi2)};
 }
 
-std::string describe_likelihood(const Improvement& improvement) {
-  return fmt::format("Log-likelihood per held-out sample: {} -> {}",
-                     format_short(improvement.log_likelihood_before),
-                     format_short(improvement.log_likelihood_after));
-}
-
-std::string describe_explained(const Improvement& improvement) {
-  if (improvement.explained) {
-    return fmt::format("Explained fraction of the excess over noise: {:.1f} %",
-                       100.0 * *improvement.explained);
+void add_positions(const std::vector<CausePosition>& positions, ReportTable& table) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const CausePosition& p = positions[i];
+    const std::string number = positions.size() > 1 ? fmt::format(" {}", i + 1) : "";
+    table.rows.push_back(make_cause_row(p.get_cause(), "cause" + number));
+    for (std::size_t k = 0; k < p.close; ++k) {
+      if (k == p.chosen) continue;
+      table.rows.push_back(make_cause_row(
+          p.candidates[k], number.empty() ? "not distinguished" : "or, for" + number));
+    }
   }
-  return "No single channel exceeded its noise before: only the likelihood shows the improvement.";
+}
+
+std::vector<std::string> make_improvement_notes(const Improvement& improvement) {
+  std::vector<std::string> notes;
+  if (improvement.explained) {
+    notes.push_back(
+        fmt::format("Explained fraction of the excess over noise, all held-out runs: {:.1f} %",
+                    100.0 * *improvement.explained));
+  } else {
+    notes.emplace_back(
+        "No single channel exceeded its noise before: only the likelihood shows the improvement.");
+  }
+  notes.push_back(fmt::format("Log-likelihood per held-out sample: {} -> {}",
+                              format_significant(improvement.log_likelihood_before),
+                              format_significant(improvement.log_likelihood_after)));
+  return notes;
+}
+
+ReportTable make_secant_table(const std::vector<StrutSecant>& secants) {
+  ReportTable table{"Secants of the strut's force over its motion, all effects included",
+                    {"strut", "stiffness [N/m]", "damping [N s/m]"}};
+  for (const StrutSecant& s : secants) {
+    const GroupValue &k = s.stiffness, &c = s.damping;
+    table.rows.push_back({s.place.empty() ? "strut" : s.place,
+                          describe_interval(k.value, k.low, k.high),
+                          describe_interval(c.value, c.low, c.high)});
+  }
+  return table;
+}
+
+const ChannelComparison* find_channel(const ModelComparison& model, int channel) {
+  for (const ChannelComparison& c : model.channels) {
+    if (c.channel == channel) return &c;
+  }
+  return nullptr;
+}
+
+/// "0.000102 (2.69 %)": rms, and relative to the measured spread.
+std::string describe_error(const ChannelComparison* c) {
+  if (c == nullptr) return "failed";
+  return fmt::format("{} ({:.3g} %)", format_significant(c->rms), 100.0 * c->nrmse);
 }
 
 }  // namespace
@@ -63,74 +110,122 @@ std::string make_where_text(const Where& where) {
   if (!where.channel.empty()) text += " in " + where.channel;
   if (!details.empty()) text += fmt::format(" ({})", details);
   if (!where.depends_on.empty()) text += ", depending on " + where.depends_on;
-  return text.empty() ? "" : fmt::format("The residual of the baseline is largest{}.", text);
+  return text.empty()
+             ? ""
+             : fmt::format(
+                   "The residual of the calibrated model in the runs for fitting is largest{}.",
+                   text);
+}
+
+std::vector<std::string> describe_effects(const Verdict& verdict) {
+  constexpr std::size_t kMax = 6;
+  std::vector<std::string> lines, names;
+  for (const CausePosition& p : verdict.positions) {
+    for (const Cause& cause : p.list_close()) {
+      const bool is_new = std::find(names.begin(), names.end(), cause.effect) == names.end();
+      const EffectInfo* effect = find_effect(cause.effect);
+      if (!is_new || effect == nullptr || lines.size() == kMax) continue;
+      names.push_back(cause.effect);
+      lines.push_back(fmt::format("{}: {}; {} (docs/effects.md#{})", effect->name,
+                                  effect->description, effect->equation, effect->name));
+    }
+  }
+  return lines;
 }
 
 std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis, std::size_t max_runners_up) {
+  const Verdict& verdict = diagnosis.verdict;
   ReportTable table{"Causes and their probabilities",
                     {"effect", "place", "", "parameters (95 %)", "probability", "delta chi2"}};
   table.text_columns = 4;
-  for (const Cause& cause : diagnosis.causes) table.rows.push_back(make_cause_row(cause, "cause"));
-  for (const Cause& cause : diagnosis.group) {
-    if (is_in(diagnosis.causes, cause)) continue;
-    table.rows.push_back(make_cause_row(cause, "not distinguished"));
-  }
-  const std::size_t shown = std::min(max_runners_up, diagnosis.runners_up.size());
+  add_positions(verdict.positions, table);
+  const std::vector<Cause> runners_up = verdict.list_runners_up();
+  const std::size_t shown = std::min(max_runners_up, runners_up.size());
   for (std::size_t i = 0; i < shown; ++i) {
-    table.rows.push_back(make_cause_row(diagnosis.runners_up[i], "runner-up"));
+    table.rows.push_back(
+        make_cause_row(runners_up[i], verdict.positions.empty() ? "not claimed" : "runner-up"));
   }
-  if (shown < diagnosis.runners_up.size()) {
+  if (shown < runners_up.size()) {
     table.notes.push_back(
-        fmt::format("{} more runners-up are in verdict.json", diagnosis.runners_up.size() - shown));
+        fmt::format("{} more runners-up are in verdict.json", runners_up.size() - shown));
   }
-  if (table.rows.empty() && diagnosis.unknown_share == 0.0) return {};
+  if (table.rows.empty() && verdict.unknown_share == 0.0) return {};
   table.rows.push_back(
-      {"none of the catalogue", "", "", "", fmt::format("{:.3f}", diagnosis.unknown_share), ""});
+      {"none of the catalogue", "", "", "", fmt::format("{:.3f}", verdict.unknown_share), ""});
   return {std::move(table)};
 }
 
-ReportTable make_improvement_table(const Diagnosis& diagnosis) {
-  const Improvement& improvement = diagnosis.improvement;
-  ReportTable table{
-      "Error on the held-out runs: rms, and relative to the measured spread",
-      {"channel", "unit", "baseline", "extended", "noise", "baseline, rel.", "extended, rel."}};
-  table.text_columns = 2;
-  for (const ChannelImprovement& c : improvement.channels) {
-    table.rows.push_back({c.channel, c.unit, format_short(c.rms_before), format_short(c.rms_after),
-                          format_short(c.noise_floor), format_percent(c.nrmse_before),
-                          format_percent(c.nrmse_after)});
+ReportTable make_improvement_table(const CampaignData& data, const Diagnosis& diagnosis) {
+  const bool is_extended = diagnosis.is_extended();
+  ReportTable table{"Error on the held-out runs: rms, and relative to the measured spread",
+                    {"run", "channel", "unit", "noise", "nominal", "calibrated"}};
+  table.text_columns = 3;
+  if (is_extended) table.header.emplace_back("extended");
+  table.header.emplace_back("adequate");
+  for (const DiagnosedRun& run : diagnosis.runs) {
+    const CampaignRun& entry = data.campaign.runs[run.run];
+    if (entry.use != RunUse::kHoldOut) continue;
+    for (const MeasuredChannel& measured : data.channels(run.run)) {
+      const ChannelInfo& info = data.info(measured.channel);
+      const ChannelComparison* last = find_channel(run.after, measured.channel);
+      std::vector<std::string> row = {
+          entry.name,
+          info.name,
+          info.unit,
+          last == nullptr ? "" : format_significant(last->adequacy.floor.sigma),
+          describe_error(find_channel(run.nominal, measured.channel)),
+          describe_error(find_channel(run.before, measured.channel))};
+      if (is_extended) row.push_back(describe_error(last));
+      row.emplace_back(last != nullptr && last->is_adequate() ? "yes" : "no");
+      table.rows.push_back(std::move(row));
+    }
   }
-  if (diagnosis.is_extended()) {
-    table.notes.push_back(describe_explained(improvement));
-    table.notes.push_back(describe_likelihood(improvement));
-  }
+  if (is_extended) table.notes = make_improvement_notes(diagnosis.improvement);
   return table;
 }
 
 std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis) {
   if (diagnosis.parameters.empty()) return {};
   ReportTable table{"Parameters of the model, with 95 % intervals",
-                    {"parameter", "unit", "baseline", "95 %", "extended", "95 %"}};
+                    {"parameter", "unit", "nominal", "calibrated"}};
   table.text_columns = 2;
-  const auto describe = [](double value, double low, double high) {
-    return std::isfinite(value) ? describe_interval(low, high) : "";
+  if (diagnosis.is_extended()) table.header.emplace_back("extended");
+  const auto describe = [](double value, double low, double high, bool at_bound) {
+    return describe_interval(value, low, high) + (at_bound ? ", at a limit" : "");
   };
+  bool differ = false;
   for (const ParameterChange& p : diagnosis.parameters) {
-    table.rows.push_back({p.name, p.unit, format_short(p.before),
-                          describe(p.before, p.before_low, p.before_high), format_short(p.after),
-                          describe(p.after, p.after_low, p.after_high)});
+    std::vector<std::string> row = {
+        p.name, p.unit, std::isfinite(p.nominal) ? format_number(p.nominal) : "",
+        describe(p.before, p.before_low, p.before_high, p.before_at_bound)};
+    if (diagnosis.is_extended()) {
+      row.push_back(describe(p.after, p.after_low, p.after_high, p.after_at_bound) +
+                    (p.differs ? " *" : ""));
+    }
+    differ = differ || p.differs;
+    table.rows.push_back(std::move(row));
   }
-  return {std::move(table)};
+  if (differ) {
+    table.notes.emplace_back(
+        "*: differs between the effects that are not distinguished; the interval contains all");
+  }
+  std::vector<ReportTable> tables = {std::move(table)};
+  if (!diagnosis.secants.empty()) tables.push_back(make_secant_table(diagnosis.secants));
+  return tables;
 }
 
-std::string make_diagnose_text(const Diagnosis& diagnosis) {
-  std::string text = diagnosis.sentence + "\n";
+std::string make_diagnose_text(const CampaignData& data, const Diagnosis& diagnosis) {
+  std::string text =
+      fmt::format("[{}] {}\n", get_badge(diagnosis.verdict.kind), diagnosis.sentence);
+  for (const std::string& line : describe_effects(diagnosis.verdict)) text += line + "\n";
   const std::string where = make_where_text(diagnosis.where);
   if (!where.empty()) text += where + "\n";
+  for (const PriorConflict& c : diagnosis.conflicts) text += describe_conflict(data, c) + "\n";
   for (const ReportTable& table : make_cause_tables(diagnosis, kMaxOnTerminal)) {
     text += "\n" + make_text(table);
   }
-  text += "\n" + make_text(make_improvement_table(diagnosis));
+  text += "\n" + make_text(make_improvement_table(data, diagnosis));
+  for (const ReportTable& table : make_parameter_tables(diagnosis)) text += "\n" + make_text(table);
   if (!diagnosis.next_measurement.empty()) {
     text += fmt::format("\nNext measurement: {}\n", diagnosis.next_measurement);
   }
@@ -138,8 +233,8 @@ std::string make_diagnose_text(const Diagnosis& diagnosis) {
 }
 
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run) {
-  std::vector<ModelCurves> models = {{"baseline", 5, &run.before}};
-  if (diagnosis.is_extended()) models.push_back({"extended", 2, &run.after});
+  std::vector<ModelCurves> models = {{"baseline", 5, &run.before.evaluation}};
+  if (diagnosis.is_extended()) models.push_back({"extended", 2, &run.after.evaluation});
   return models;
 }
 

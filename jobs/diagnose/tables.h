@@ -18,13 +18,16 @@ std::string make_where_text(const Where& where);
 /// nothing was fitted.
 std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis,
                                            std::size_t max_runners_up = 12);
-/// Errors by channel over the held-out runs.
-ReportTable make_improvement_table(const Diagnosis& diagnosis);
+/// Errors of the nominal, the calibrated and the extended model by held-out run and channel.
+ReportTable make_improvement_table(const CampaignData& data, const Diagnosis& diagnosis);
+/// What each claimed effect is, with its law and its place in the documentation.
+std::vector<std::string> describe_effects(const Verdict& verdict);
 /// Parameters before and after the extension; empty where none is free.
 std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis);
 
-/// The text for the terminal: verdict, probabilities, improvement, next measurement.
-std::string make_diagnose_text(const Diagnosis& diagnosis);
+/// The text for the terminal: verdict, effects, probabilities, errors, parameters, next
+/// measurement.
+std::string make_diagnose_text(const CampaignData& data, const Diagnosis& diagnosis);
 
 /// The curves of the baseline and, where there is one, the extended model.
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run);

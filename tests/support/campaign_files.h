@@ -31,6 +31,7 @@ struct QuarterTruth {
   double hum = 0.0;              // m, a tone of 31.2 Hz in the sensor of the unsprung position
   double lost_stroke = 0.0;      // m, play before the damper, hard at both ends
   double jitter = 0.0;           // s, 1 sigma of the times of all samples but the first
+  double stop_gap = 1.0;         // m of compression before a stop of 50 kN/m touches
 };
 
 struct QuarterRecord {
@@ -69,8 +70,9 @@ inline QuarterRecord record_quarter_car(const QuarterTruth& truth, double durati
     const double length = x[1] - x[0], speed = x[3] - x[2];
     const bool is_loose = speed > 0.0 ? joint < half_play : joint > -half_play;
     const double damping = is_loose ? 0.0 : truth.damping;
+    const double stop = 5e4 * std::max(0.0, -length - truth.stop_gap);
     const double strut =
-        -truth.stiffness * length - truth.cubic * length * length * length - damping * speed -
+        stop - truth.stiffness * length - truth.cubic * length * length * length - damping * speed -
         (truth.friction + truth.stroke_friction * std::abs(length)) * std::tanh(speed / 0.01);
     const double tire = truth.tire_stiffness * (calc_test_road(truth, t, duration) - x[0]) +
                         truth.tire_damping * (road_rate(t) - x[2]);
