@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error/input_error.h"
 #include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
 #include "diagnose/noise/whitened_fit.h"
@@ -48,6 +49,21 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
 bool is_mostly_white(const std::vector<NoiseFloor>& floors) {
   return std::all_of(floors.begin(), floors.end(),
                      [](const NoiseFloor& floor) { return floor.common_fraction < 0.5; });
+}
+
+/// Where nothing is free, the runs' own values are fitted for the measurement of the noise.
+NoiseFloors measure_floors(const CampaignData& data, const Baseline& baseline, int threads) {
+  try {
+    Baseline fitted = baseline;
+    if (!baseline.is_fitted) {
+      fitted.fit = fit_readings(*make_reading_model(
+          data, baseline.runs, make_run_unknowns(data, baseline.runs, {}), threads));
+    }
+    return calc_noise_floors(data, baseline.runs, measure_noise(data, fitted), baseline.calibrated,
+                             threads);
+  } catch (const InputError&) {  // comparing the runs reports the failure
+    return list_sensor_floors(data);
+  }
 }
 
 }  // namespace
@@ -104,8 +120,7 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
     comparison.not_identifiable =
         describe_null_directions(baseline.fit.widened, baseline.fit.unknowns);
   }
-  const NoiseFloors floors = calc_noise_floors(data, baseline.runs, measure_noise(data, baseline),
-                                               baseline.calibrated, threads);
+  const NoiseFloors floors = measure_floors(data, baseline, threads);
   comparison.conflicts =
       list_prior_conflicts(baseline.calibrated.unknowns, baseline.calibrated.values, 0);
   add_misfits(data, comparison.conflicts, comparison.misfits);

@@ -121,6 +121,12 @@ NoiseSpectrum make_spectrum_of_run(const CampaignData& data, std::size_t run,
   return spectrum;
 }
 
+NoiseFloors list_sensor_floors(const CampaignData& data) {
+  NoiseFloors floors;
+  for (std::size_t r = 0; r < data.run_count(); ++r) floors.push_back(list_sensor_floors(data, r));
+  return floors;
+}
+
 NoiseFloors calc_noise_floors(const CampaignData& data, const std::vector<std::size_t>& runs,
                               const std::vector<NoiseSpectrum>& spectra, const SharedValues& shared,
                               int threads) {

@@ -40,6 +40,9 @@ NoiseFloors calc_noise_floors(const CampaignData& data, const std::vector<std::s
                               const std::vector<NoiseSpectrum>& spectra, const SharedValues& shared,
                               int threads);
 
+/// The floors by the sensors alone, where the model cannot be simulated.
+NoiseFloors list_sensor_floors(const CampaignData& data);
+
 /// The spectrum of a run that was not fitted, with the roughness and the excess of the fitted ones.
 /// Throws InputError where the run cannot be simulated.
 NoiseSpectrum make_spectrum_of_run(const CampaignData& data, std::size_t run,
