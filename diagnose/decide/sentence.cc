@@ -49,17 +49,27 @@ std::string format_percent_of(double fraction) {
                                            : fmt::format("{:.0f} %", percent);
 }
 
-/// "Adding it removes 97 % of the excess error on the held-out runs."
+/// "Adding A and B", or "The extended model (without A)" where an effect of the file is another.
+std::string describe_change(const Diagnosis& diagnosis) {
+  const std::vector<Cause> causes = diagnosis.verdict.list_causes();
+  const bool are_added = std::all_of(causes.begin(), causes.end(), [](const Cause& cause) {
+    return cause.change == EffectChange::kAdded;
+  });
+  const std::string extension = describe_extension(diagnosis);
+  return are_added ? "Adding " + extension : fmt::format("The extended model ({})", extension);
+}
+
+/// "Adding A removes 97 % of the excess error on the held-out runs."
 std::string describe_improvement(const Diagnosis& diagnosis) {
   constexpr double kVisible = 0.005;
   const Improvement& improvement = diagnosis.improvement;
-  const std::string added = describe_extension(diagnosis);
+  const std::string change = describe_change(diagnosis);
   // The readings of all channels together show what no channel shows alone.
   if (!improvement.explained || *improvement.explained < kVisible) {
-    return fmt::format("Adding {} makes the held-out runs exp({:.3g}) times as likely.", added,
+    return fmt::format("{} makes the held-out runs exp({:.3g}) times as likely.", change,
                        improvement.log_odds);
   }
-  return fmt::format("Adding {} removes {} of the excess error on the held-out runs.", added,
+  return fmt::format("{} removes {} of the excess error on the held-out runs.", change,
                      format_percent_of(*improvement.explained));
 }
 
