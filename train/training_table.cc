@@ -138,7 +138,7 @@ std::string find_difference(const TrainedModel& model, const Training& training,
   // The limits decide at which epoch a training ends, and with it the weights.
   for (const NamedTexts& wanted :
        {training.make_checkpoint().started_with, describe_limits(request.options)}) {
-    const std::string difference = compare_texts(model.options, wanted);
+    std::string difference = compare_texts(model.options, wanted);
     if (!difference.empty()) return difference;
   }
   return compare_data(model, training, request);

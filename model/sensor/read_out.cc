@@ -11,6 +11,7 @@ int to_int(std::size_t i) { return static_cast<int>(i); }
 
 std::vector<double> list_sample_times(const SamplePlan& plan, int count) {
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) times.push_back(calc_sample_time(plan, static_cast<double>(i)));
   return times;
 }
