@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "base/error/check.h"
-#include "base/math/normal.h"
 #include "base/text/format_number.h"
 #include "diagnose/decide/improvement.h"
 #include "diagnose/decide/next_measurement.h"
+#include "diagnose/decide/parameter_changes.h"
 #include "diagnose/decide/sentence.h"
 #include "diagnose/discrepancy/leftover.h"
 
@@ -40,35 +40,6 @@ std::optional<UnknownForce> find_force(const CampaignData& data, const DiagnoseO
       place, *find_force_map(maps, place), std::move(found->states), {}, found->share};
   force.depends = measure_dependence(force.map, force.states);
   return force;
-}
-
-std::vector<ParameterChange> list_changes(const CampaignData& data, const Selection& selection,
-                                          const std::vector<CausePosition>& positions) {
-  std::vector<ParameterChange> changes;
-  const std::vector<GroupValue> group = list_group_values(selection, positions);
-  const WhitenedFit &before = selection.base, &after = selection.extended;
-  for (std::size_t i = 0; i < before.shared_count; ++i) {
-    const Unknown& u = before.fit.unknowns[i];
-    ParameterChange c;
-    c.name = u.name;
-    c.unit = u.unit;
-    c.nominal = get_nominal(data, u);
-    const auto fill = [&](const FitResult& fit, double& value, double& low, double& high) {
-      const double spread = kNormal95 * fit.widened.sigma[i];
-      value = fit.values[i];
-      low = value - spread;
-      high = value + spread;
-      return static_cast<bool>(fit.at_bound[i]);
-    };
-    c.before_at_bound = fill(before.fit, c.before, c.before_low, c.before_high);
-    c.after_at_bound = fill(after.fit, c.after, c.after_low, c.after_high);
-    // Half as wide again: the members differ by more than each is uncertain.
-    c.differs = group[i].high - group[i].low > 1.5 * (c.after_high - c.after_low);
-    c.after_low = group[i].low;
-    c.after_high = group[i].high;
-    changes.push_back(std::move(c));
-  }
-  return changes;
 }
 
 /// Time, band and state in which a channel's residual is largest.
@@ -273,7 +244,7 @@ Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& opt
   check_extension(diagnosis);
   check_results(diagnosis);
   const Selection& selection = diagnosis.selection;
-  diagnosis.parameters = list_changes(data, selection, diagnosis.verdict.positions);
+  diagnosis.parameters = list_parameter_changes(data, selection, diagnosis.verdict.positions);
   if (diagnosis.is_extended()) {
     diagnosis.secants = list_secants(data, selection, diagnosis.verdict.positions);
   }

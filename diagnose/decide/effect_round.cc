@@ -1,42 +1,15 @@
 #include "diagnose/decide/effect_round.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
-#include "base/math/normal.h"
 #include "base/parallel/team.h"
 #include "diagnose/decide/extended_unknowns.h"
+#include "diagnose/decide/rank_trials.h"
 
 namespace strut {
 namespace {
-
-struct RankedTrial {
-  std::size_t trial;
-  Gain gain;
-};
-
-/// The best trial of each hypothesis, best first.
-std::vector<RankedTrial> rank(const Evidence& evidence, const Score& score,
-                              const std::vector<bool>& one_sided) {
-  std::map<std::size_t, RankedTrial> best;
-  for (std::size_t t = 0; t < evidence.trials.size(); ++t) {
-    const HypothesisTrial& trial = evidence.trials[t];
-    const Gain gain = calc_gain(score, trial.columns, one_sided[trial.hypothesis]);
-    const auto found = best.find(trial.hypothesis);
-    if (found != best.end() && found->second.gain.chi2 >= gain.chi2) continue;
-    best[trial.hypothesis] = {t, gain};
-  }
-  std::vector<RankedTrial> list;
-  list.reserve(best.size());
-  for (const auto& [hypothesis, ranked] : best) list.push_back(ranked);
-  std::stable_sort(list.begin(), list.end(), [](const RankedTrial& a, const RankedTrial& b) {
-    return a.gain.chi2 > b.gain.chi2;
-  });
-  return list;
-}
 
 /// The reference moved by the start's difference from it times `amplitude`, within what is allowed.
 std::vector<double> scale_beginning(const CampaignData& data, const Hypothesis& h,
@@ -58,27 +31,6 @@ std::vector<double> make_beginning(const CampaignData& data, const Hypothesis& h
                                    const HypothesisTrial& trial, const Gain& gain) {
   constexpr double kMax = 10.0;
   return scale_beginning(data, h, trial, gain.amplitude.cwiseMax(-kMax).cwiseMin(kMax));
-}
-
-std::vector<double> make_weights(std::size_t count) { return std::vector<double>(count, 1.0); }
-
-/// Fraction of the runs without each of which the hypothesis is still within a factor of the best.
-double calc_stability(const Evidence& evidence, const std::vector<bool>& one_sided,
-                      std::size_t hypothesis) {
-  constexpr double kStays = 0.8;
-  if (evidence.run_count() < 2) return 1.0;
-  double stays = 0.0;
-  for (std::size_t r = 0; r < evidence.run_count(); ++r) {
-    std::vector<double> weights = make_weights(evidence.run_count());
-    weights[r] = 0.0;
-    const Score score = calc_score(evidence, weights);
-    const std::vector<RankedTrial> ranked = rank(evidence, score, one_sided);
-    const auto own = std::find_if(ranked.begin(), ranked.end(), [&](const RankedTrial& t) {
-      return evidence.trials[t.trial].hypothesis == hypothesis;
-    });
-    if (own != ranked.end() && own->gain.chi2 >= kStays * ranked.front().gain.chi2) ++stays;
-  }
-  return stays / static_cast<double>(evidence.run_count());
 }
 
 /// All that runs share at a hypothesis' fit.
@@ -123,25 +75,6 @@ Candidate rename(Candidate twin, const Hypothesis& h) {
     twin.shared.unknowns[first + i].name = h.parameters[i].name;
   }
   return twin;
-}
-
-/// chi2 that no cause may claim: a fraction of the power of the noise, of the sensors and the road.
-double calc_negligible(const CampaignData& data, const SelectOptions& options,
-                       const Whitener& whitener) {
-  const double share = data.has_inputs() ? options.negligible : options.negligible_car;
-  double power = share * static_cast<double>(whitener.whitened_count());
-  if (data.has_inputs()) return power;
-  for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
-    const NoiseSpectrum& s = whitener.spectra()[r];
-    double ratio = 0.0;  // of the road's power to the sensors', mean over channels
-    for (std::size_t c = 0; c < s.sigma.size(); ++c) {
-      ratio += s.level * calc_common_variance(s, c) /
-               (s.sigma[c] * s.sigma[c] * static_cast<double>(s.sigma.size()));
-    }
-    const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);
-    power += options.negligible_road * ratio * count;
-  }
-  return power;
 }
 
 /// Input of all fits of a round.
@@ -246,52 +179,12 @@ void try_removal(const Round& round, Fitted& fitted) {
   const std::vector<double>& none = removal.beginnings.front();
   Fitted removed =
       keep_fit(round, removal, round.bench.fit(removal, none, round.options.convergence), none);
-  const double misfit =
-      std::max(1.0, (round.now.fit.chi2 - c.gain) / static_cast<double>(round.now.fit.degrees));
-  if (removed.candidate.values.empty() || removed.candidate.gain < c.gain - kSigmas * misfit) {
-    return;
-  }
+  const double least = c.gain - kSigmas * calc_misfit(round.now.fit, c.gain);
+  if (removed.candidate.values.empty() || removed.candidate.gain < least) return;
   removed.candidate.score = c.score;
   removed.candidate.stability = c.stability;
   removed.candidate.simulations += c.simulations;
   fitted = std::move(removed);
-}
-
-/// Cosine of the responses to two trials at the sizes that their scores ask for, beside what the
-/// free parameters absorb.
-double calc_cosine(const Score& score, const HypothesisTrial& a, const Eigen::VectorXd& sizes_a,
-                   const HypothesisTrial& b, const Eigen::VectorXd& sizes_b) {
-  const auto calc_product = [&](const HypothesisTrial& s, const Eigen::VectorXd& x,
-                                const HypothesisTrial& t, const Eigen::VectorXd& y) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < s.columns.size(); ++i) {
-      for (std::size_t j = 0; j < t.columns.size(); ++j) {
-        sum += x(static_cast<Eigen::Index>(i)) * y(static_cast<Eigen::Index>(j)) *
-               score.covariance(static_cast<Eigen::Index>(s.columns[i]),
-                                static_cast<Eigen::Index>(t.columns[j]));
-      }
-    }
-    return sum;
-  };
-  const double aa = calc_product(a, sizes_a, a, sizes_a), bb = calc_product(b, sizes_b, b, sizes_b);
-  return aa > 0.0 && bb > 0.0 ? calc_product(a, sizes_a, b, sizes_b) / std::sqrt(aa * bb) : 0.0;
-}
-
-/// The classes of the ranked: the number of the first whose response is the same.
-std::vector<std::size_t> list_classes(const Evidence& evidence, const Score& score,
-                                      const std::vector<RankedTrial>& ranked) {
-  constexpr double kSame = 0.995;
-  std::vector<std::size_t> classes;
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
-    std::size_t first = 0;
-    while (first < i &&
-           calc_cosine(score, evidence.trials[ranked[first].trial], ranked[first].gain.amplitude,
-                       evidence.trials[ranked[i].trial], ranked[i].gain.amplitude) < kSame) {
-      ++first;
-    }
-    classes.push_back(first < i ? classes[first] : i);
-  }
-  return classes;
 }
 
 /// The best of the ranked, and the one that is wanted in any case.
@@ -355,6 +248,35 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
 
 }  // namespace
 
+double calc_threshold(const Evidence& evidence, const Score& score,
+                      const std::vector<bool>& one_sided, const SelectOptions& options,
+                      double negligible) {
+  const double null =
+      calc_null_threshold(evidence, score, one_sided, options.nulls, options.confidence);
+  return std::max(options.margin * null, negligible);
+}
+
+double calc_negligible(bool has_inputs, const SelectOptions& options, const Whitener& whitener) {
+  const double share = has_inputs ? options.negligible : options.negligible_car;
+  double power = share * static_cast<double>(whitener.whitened_count());
+  if (has_inputs) return power;
+  for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
+    const NoiseSpectrum& s = whitener.spectra()[r];
+    double ratio = 0.0;  // of the road's power to the sensors', mean over channels
+    for (std::size_t c = 0; c < s.sigma.size(); ++c) {
+      ratio += s.level * calc_common_variance(s, c) /
+               (s.sigma[c] * s.sigma[c] * static_cast<double>(s.sigma.size()));
+    }
+    const auto count = static_cast<double>(whitener.run_begin()[r + 1] - whitener.run_begin()[r]);
+    power += options.negligible_road * ratio * count;
+  }
+  return power;
+}
+
+double calc_misfit(const FitResult& fit, double gain) {
+  return std::max(1.0, (fit.chi2 - gain) / static_cast<double>(fit.degrees));
+}
+
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round_options) {
   TestBench bench(data, now, options.threads);
@@ -365,16 +287,15 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   one_sided.reserve(hypotheses.size());
   for (const Hypothesis& h : hypotheses) one_sided.push_back(is_one_sided(data, h));
   const Evidence evidence = bench.gather(hypotheses);
-  const Score score = calc_score(evidence, make_weights(evidence.run_count()));
+  const Score score = calc_score(evidence, std::vector<double>(evidence.run_count(), 1.0));
   SelectRound result;
   if (round_options.is_final) {
     result.threshold =
-        std::max(options.margin * calc_null_threshold(evidence, score, one_sided, options.nulls,
-                                                      options.confidence),
-                 calc_negligible(data, options, bench.whitener()));
+        calc_threshold(evidence, score, one_sided, options,
+                       calc_negligible(data.has_inputs(), options, bench.whitener()));
   }
   const Round round{data, now, options, bench, hypotheses, evidence};
-  std::vector<RankedTrial> all = rank(evidence, score, one_sided);
+  std::vector<RankedTrial> all = rank_trials(evidence, score, one_sided);
   if (!all.empty()) result.best_score = all.front().gain.chi2;
   const std::vector<RankedTrial> ranked =
       choose(evidence, hypotheses, std::move(all), round_options, 0.3 * result.threshold);
@@ -392,7 +313,7 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   std::stable_sort(result.candidates.begin(), result.candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
   const double most = result.candidates.empty() ? 0.0 : result.candidates.front().gain;
-  result.misfit = std::max(1.0, (now.fit.chi2 - most) / static_cast<double>(now.fit.degrees));
+  result.misfit = calc_misfit(now.fit, most);
   result.simulations += bench.simulation_count();
   return result;
 }
@@ -410,38 +331,6 @@ WhitenedFit adopt(const CampaignData& data, const WhitenedFit& now, const Candid
   fit.fit.chi2 = now.fit.chi2 - candidate.gain;
   fit.fit.degrees = now.fit.degrees - static_cast<long>(candidate.values.size());
   return fit;
-}
-
-double calc_null_threshold(const Evidence& evidence, const Score& score,
-                           const std::vector<bool>& one_sided, std::size_t nulls,
-                           double confidence) {
-  constexpr std::uint64_t kSeed = 1;
-  // The root of the correlation matrix: effects differ in size by orders of magnitude, and rounding
-  // errors of the largest must not count as noise of the smallest.
-  const Eigen::VectorXd sigma = score.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::VectorXd unit = sigma.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.asDiagonal() * score.covariance *
-                                                              unit.asDiagonal());
-  const Eigen::MatrixXd root = sigma.asDiagonal() * solver.eigenvectors() *
-                               solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  std::vector<double> most;
-  most.reserve(nulls);
-  Score null = score;
-  for (std::size_t i = 0; i < nulls; ++i) {
-    Eigen::VectorXd normal(root.cols());
-    for (Eigen::Index k = 0; k < normal.size(); ++k) {
-      normal(k) = calc_normal(kSeed, i, static_cast<std::uint64_t>(k));
-    }
-    null.gradient = root * normal;
-    double best = 0.0;
-    for (const HypothesisTrial& trial : evidence.trials) {
-      best = std::max(best, calc_gain(null, trial.columns, one_sided[trial.hypothesis]).chi2);
-    }
-    most.push_back(best);
-  }
-  std::sort(most.begin(), most.end());
-  return most[std::min(nulls - 1,
-                       static_cast<std::size_t>(confidence * static_cast<double>(nulls)))];
 }
 
 }  // namespace strut

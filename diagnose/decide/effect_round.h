@@ -12,6 +12,18 @@ struct RoundOptions {
   std::vector<double> values{};
 };
 
+/// Threshold of a candidate's delta chi2 over the misfit: that of the null distribution with its
+/// margin, at least `negligible`.
+double calc_threshold(const Evidence& evidence, const Score& score,
+                      const std::vector<bool>& one_sided, const SelectOptions& options,
+                      double negligible);
+
+/// chi2 that no cause may claim: a fraction of the power of the noise, of the sensors and the road.
+double calc_negligible(bool has_inputs, const SelectOptions& options, const Whitener& whitener);
+
+/// chi2 over its expectation once a fit's is lower by `gain`, at least 1.
+double calc_misfit(const FitResult& fit, double gain);
+
 /// Tests every effect beside those of `now`. Throws InputError where `now` cannot be simulated.
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "diagnose/decide/judge_force_map.h"
 #include "diagnose/discrepancy/map_prior.h"
 
 namespace strut {
@@ -203,27 +204,6 @@ bool has_corner_map(const ForceMaps& maps, const std::string& axle) {
   });
 }
 
-/// Sums over the runs held out; all must have been simulated.
-struct Judgment {
-  bool is_whole = true;
-  double chi2 = 0.0, log_likelihood = 0.0, expected = 0.0;
-
-  explicit Judgment(const std::vector<HoldOutRun>& runs) {
-    for (const HoldOutRun& run : runs) {
-      is_whole = is_whole && run.failure.empty();
-      chi2 += run.chi2;
-      log_likelihood += run.log_likelihood;
-      expected += run.expected;
-    }
-  }
-  /// What a model leaves over what noise does, at least 1: readings count as many times less.
-  double misfit() const { return std::max(1.0, chi2 / expected); }
-  /// ln of the odds of this against another.
-  double calc_log_odds(const Judgment& other) const {
-    return (log_likelihood - other.log_likelihood) / misfit();
-  }
-};
-
 }  // namespace
 
 std::optional<WhitenedFit> fit_force_map(const CampaignData& data, const WhitenedFit& base,
@@ -248,7 +228,7 @@ std::optional<WhitenedFit> fit_force_map(const CampaignData& data, const Whitene
 
 std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Selection& selection,
                                             const ForceMapOptions& options) {
-  const Judgment before(selection.hold_out_before), now(selection.hold_out_after);
+  const HoldOutSum before(selection.hold_out_before), now(selection.hold_out_after);
   if (!now.is_whole || now.expected == 0.0) return std::nullopt;
   std::optional<ForceMapFit> best;
   for (const bool replaces : {false, true}) {
@@ -263,17 +243,14 @@ std::optional<ForceMapFit> choose_force_map(const CampaignData& data, const Sele
       if (!fit) continue;
       ForceMapFit map{std::move(states), replaces, std::move(*fit), {}, 0.0};
       map.judged = selection.judge->judge(map.fit.shared());
-      const Judgment judged(map.judged);
-      if (!judged.is_whole || judged.calc_log_odds(now) < options.log_odds) continue;
-      // Where noise happens to be small, more than all of it is taken.
-      map.share = std::min(1.0, (now.chi2 - judged.chi2) / std::max(now.chi2 - now.expected, 1e-9));
-      if (map.share < options.least_share) continue;
-      const double fall = before.chi2 - judged.chi2;
-      if (replaces && before.chi2 - now.chi2 > options.causes_share * fall) continue;
+      const HoldOutSum judged(map.judged);
+      map.share = calc_removed_share(now, judged);
+      if (!is_map_confirmed(now, judged, options)) continue;
+      if (replaces && !explains_causes(before, now, judged, options)) continue;
       if (best) {
         // What was named stays unless a map alone is clearly better.
         const double margin = replaces && !best->replaces_causes ? options.log_odds : 0.0;
-        if (judged.calc_log_odds(Judgment(best->judged)) <= margin) continue;
+        if (judged.calc_log_odds(HoldOutSum(best->judged)) <= margin) continue;
       }
       best = std::move(map);
     }

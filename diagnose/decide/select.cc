@@ -5,18 +5,12 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "diagnose/decide/acceptance.h"
 #include "diagnose/decide/effect_round.h"
 #include "diagnose/decide/extended_unknowns.h"
-#include "diagnose/decide/probability.h"
 
 namespace strut {
 namespace {
-
-double sum_chi2(const std::vector<HoldOutRun>& runs) {
-  double sum = 0.0;
-  for (const HoldOutRun& run : runs) sum += run.failure.empty() ? run.chi2 : 1e300;
-  return sum;
-}
 
 class Selector {
  public:
@@ -98,9 +92,7 @@ class Selector {
     selection_.left = measure_leftover(data_, bench, options_.leftover);
     selection_.simulations += bench.simulation_count();
     selection_.is_left = selection_.left.significance >= options_.leftover.significant;
-    // A round's best that was large but explains too little for a cause of its own is left, too.
-    if (!last_.candidates.empty() && !last_.accepted && !selection_.causes.empty() &&
-        last_.candidates.front().gain / last_.misfit > 2.0 * last_.threshold) {
+    if (is_residual(selection_, last_)) {
       selection_.is_left = true;
       selection_.left.energy = std::max(selection_.left.energy, last_.candidates.front().gain);
     }
@@ -204,7 +196,7 @@ class Selector {
     round_options.values = get_values(kept.extended, removed);
     SelectRound round = test_effects(data_, selection_.extended, options_, round_options);
     const long simulations = selection_.simulations + round.simulations;
-    const bool is_needed = is_large(round);
+    const bool is_needed = is_large(selection_, round, options_);
     const bool is_best = is_needed && is_same_effect(round.candidates.front().hypothesis, removed);
     bool is_replaced = !is_needed;
     if (is_needed && !is_best) {
@@ -254,48 +246,16 @@ class Selector {
     return values;
   }
 
-  /// Whether the best of a round gains far more than it needs.
-  bool is_certain(const SelectRound& round) const {
-    return round.candidates.front().gain > options_.certain * round.threshold * round.misfit;
-  }
-
-  /// Whether the best of a round is large enough to be fitted in full.
-  bool is_large(const SelectRound& round) const {
-    if (round.candidates.empty()) return false;
-    const WhitenedFit& now = selection_.extended;
-    const double gain = round.candidates.front().gain;
-    if (now.is_dominated) {
-      return gain > options_.dominated_share * now.fit.chi2 ||
-             round.pair_gain > 2.0 * options_.dominated_share * now.fit.chi2;
-    }
-    if (gain / round.misfit < round.threshold) return false;
-    if (!is_certain(round) && round.candidates.front().stability < options_.stability) return false;
-    if (selection_.causes.empty()) return true;
-    const double share =
-        is_certain(round) ? ProbabilityOptions{}.form_error : options_.second_share;
-    return gain > share * selection_.rounds.front().candidates.front().gain;
-  }
-
   bool accept(const SelectRound& round) {
-    if (!is_large(round)) return false;
+    if (!is_large(selection_, round, options_)) return false;
     const Candidate& best = round.candidates.front();
     const ExtendedUnknowns e =
         extend(data_, selection_.extended, best.hypothesis, best.base_values, best.values);
     tell("fitting with " + best.hypothesis.describe());
-    const bool was_dominated = selection_.extended.is_dominated;
     WhitenedFit fit = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
                                    e.unknowns, e.values, e.shared_count, options_.threads);
     std::vector<HoldOutRun> judged = judge(fit);
-    const double before = sum_chi2(selection_.hold_out_after), after = sum_chi2(judged);
-    double wanted = 0.5 * options_.dominated_share * before;
-    if (!was_dominated) {
-      double readings = 0.0;
-      for (const HoldOutRun& run : judged) readings += run.expected;
-      wanted = is_certain(round) ? 0.0
-                                 : options_.hold_out_share * best.gain * readings /
-                                       static_cast<double>(selection_.extended.fit.degrees);
-    }
-    if (before - after <= wanted) return false;
+    if (!is_confirmed(selection_, round, judged, options_)) return false;
     selection_.extended = std::move(fit);
     selection_.hold_out_after = std::move(judged);
     selection_.causes.push_back(best.hypothesis);

@@ -98,10 +98,4 @@ struct Selection {
 
 Selection select_causes(const CampaignData& data, const SelectOptions& options);
 
-/// The quantile `confidence` of the best delta chi2 of all trials under the null hypothesis, from
-/// `nulls` draws. Trials that are `one_sided` have only the sign of their start.
-double calc_null_threshold(const Evidence& evidence, const Score& score,
-                           const std::vector<bool>& one_sided, std::size_t nulls,
-                           double confidence);
-
 }  // namespace strut

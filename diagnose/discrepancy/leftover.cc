@@ -22,13 +22,7 @@ struct Cell {
     count += other.count;
     allowed += other.allowed;
   }
-  /// In standard deviations of noise: the cube root of chi2 is nearly normal (E. B. Wilson and M.
-  /// M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931)).
-  double calc_significance() const {
-    if (count < 1.0) return 0.0;
-    const double variance = 2.0 / (9.0 * count);
-    return (std::cbrt(chi2 / allowed) - (1.0 - variance)) / std::sqrt(variance);
-  }
+  double calc_significance() const { return calc_chi2_significance(chi2, allowed, count); }
 };
 
 /// The bands of the noise, and lines two steps of the shortest run's spectrum wide, half over each
@@ -211,6 +205,12 @@ void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& 
 }
 
 }  // namespace
+
+double calc_chi2_significance(double chi2, double allowed, double count) {
+  if (count < 1.0) return 0.0;
+  const double variance = 2.0 / (9.0 * count);
+  return (std::cbrt(chi2 / allowed) - (1.0 - variance)) / std::sqrt(variance);
+}
 
 double calc_road_ratio(const NoiseSpectrum& s, std::size_t band) {
   double sum = 0.0, count = 0.0;

@@ -37,6 +37,11 @@ struct LeftoverOptions {
   double road_tolerance = 0.1;
 };
 
+/// Excess of chi2 of `count` degrees of freedom in standard deviations of noise, where its mean may
+/// be `allowed`: the cube root of chi2 is nearly normal (E. B. Wilson and M. M. Hilferty, Proc.
+/// Natl. Acad. Sci. 17 (1931)). 0 for less than one degree.
+double calc_chi2_significance(double chi2, double allowed, double count);
+
 /// Ratio of the power of the road to that of the sensors in a band of a run, mean over the
 /// channels.
 double calc_road_ratio(const NoiseSpectrum& spectrum, std::size_t band);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "diagnose/decide/probability.h"
-#include "diagnose/decide/select.h"
+#include "diagnose/decide/rank_trials.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/tolerance.h"
 

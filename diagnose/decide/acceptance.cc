@@ -1,0 +1,63 @@
+#include "diagnose/decide/acceptance.h"
+
+#include "diagnose/decide/probability.h"
+
+namespace strut {
+namespace {
+
+/// Fall of the held-out runs' chi2 that a candidate must exceed.
+double calc_wanted_fall(const Selection& selection, const SelectRound& round,
+                        const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
+  const WhitenedFit& now = selection.extended;
+  if (now.is_dominated) {
+    return 0.5 * options.dominated_share * sum_chi2(selection.hold_out_after);
+  }
+  if (is_certain(round, options)) return 0.0;
+  double readings = 0.0;
+  for (const HoldOutRun& run : judged) readings += run.expected;
+  return options.hold_out_share * round.candidates.front().gain * readings /
+         static_cast<double>(now.fit.degrees);
+}
+
+}  // namespace
+
+bool is_certain(const SelectRound& round, const SelectOptions& options) {
+  return round.candidates.front().gain > options.certain * round.threshold * round.misfit;
+}
+
+bool is_large(const Selection& selection, const SelectRound& round, const SelectOptions& options) {
+  if (round.candidates.empty()) return false;
+  const WhitenedFit& now = selection.extended;
+  const Candidate& best = round.candidates.front();
+  if (now.is_dominated) {
+    return best.gain > options.dominated_share * now.fit.chi2 ||
+           round.pair_gain > 2.0 * options.dominated_share * now.fit.chi2;
+  }
+  if (best.gain / round.misfit < round.threshold) return false;
+  if (!is_certain(round, options) && best.stability < options.stability) return false;
+  if (selection.causes.empty()) return true;
+  const double share =
+      is_certain(round, options) ? ProbabilityOptions{}.form_error : options.second_share;
+  return best.gain > share * selection.rounds.front().candidates.front().gain;
+}
+
+double sum_chi2(const std::vector<HoldOutRun>& runs) {
+  constexpr double kFailed = 1e300;
+  double sum = 0.0;
+  for (const HoldOutRun& run : runs) sum += run.failure.empty() ? run.chi2 : kFailed;
+  return sum;
+}
+
+bool is_confirmed(const Selection& selection, const SelectRound& round,
+                  const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
+  const double fall = sum_chi2(selection.hold_out_after) - sum_chi2(judged);
+  return fall > calc_wanted_fall(selection, round, judged, options);
+}
+
+bool is_residual(const Selection& selection, const SelectRound& last) {
+  constexpr double kLarge = 2.0;  // times the threshold
+  return !last.candidates.empty() && !last.accepted && !selection.causes.empty() &&
+         last.candidates.front().gain / last.misfit > kLarge * last.threshold;
+}
+
+}  // namespace strut

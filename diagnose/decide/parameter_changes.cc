@@ -1,0 +1,40 @@
+#include "diagnose/decide/parameter_changes.h"
+
+#include <utility>
+
+#include "base/math/normal.h"
+#include "diagnose/decide/shared_law.h"
+
+namespace strut {
+
+std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
+                                                    const Selection& selection,
+                                                    const std::vector<CausePosition>& positions) {
+  std::vector<ParameterChange> changes;
+  const std::vector<GroupValue> group = list_group_values(selection, positions);
+  const WhitenedFit &before = selection.base, &after = selection.extended;
+  for (std::size_t i = 0; i < before.shared_count; ++i) {
+    const Unknown& u = before.fit.unknowns[i];
+    ParameterChange c;
+    c.name = u.name;
+    c.unit = u.unit;
+    c.nominal = get_nominal(data, u);
+    const auto fill = [&](const FitResult& fit, double& value, double& low, double& high) {
+      const double spread = kNormal95 * fit.widened.sigma[i];
+      value = fit.values[i];
+      low = value - spread;
+      high = value + spread;
+      return static_cast<bool>(fit.at_bound[i]);
+    };
+    c.before_at_bound = fill(before.fit, c.before, c.before_low, c.before_high);
+    c.after_at_bound = fill(after.fit, c.after, c.after_low, c.after_high);
+    // Half as wide again: the members differ by more than each is uncertain.
+    c.differs = group[i].high - group[i].low > 1.5 * (c.after_high - c.after_low);
+    c.after_low = group[i].low;
+    c.after_high = group[i].high;
+    changes.push_back(std::move(c));
+  }
+  return changes;
+}
+
+}  // namespace strut
