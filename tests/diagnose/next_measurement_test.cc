@@ -10,6 +10,7 @@
 #include "diagnose/decide/possible_runs.h"
 #include "diagnose/decide/separation.h"
 #include "model/effects/names.h"
+#include "tests/support/strut_stand.h"
 #include "tests/support/test_car.h"
 
 namespace strut {
@@ -17,50 +18,11 @@ namespace {
 
 using test::tolerance;
 
-constexpr double kDuration = 4.0, kInterval = 0.005, kSigma = 1.5;  // s, s, N
-constexpr double kDamping = 1000.0;                                 // N s/m
-
-void add_run(const MeasuredRun& run, CampaignData& data) {
-  CampaignRun entry;
-  entry.name = run.name;
-  data.campaign.runs.push_back(entry);
-  data.tables.emplace_back();
-  data.runs.push_back(run);
-}
-
-/// A strut on a stand that moves it by `amplitude` [m] at `frequency` [Hz]; its force is read.
-MeasuredRun make_stand_run(const std::string& name, double amplitude, double frequency) {
-  RigSpec rig;
-  rig.kind = RigKind::kStrutRig;
-  rig.damping = kDamping;
-  MeasuredRun run{name, Model(RigCase{rig, {}}), {}, {}};
-  std::vector<double> motion;
-  for (int i = 0; i * kInterval < kDuration; ++i) {
-    run.times.push_back(i * kInterval);
-    motion.push_back(amplitude * std::sin(2.0 * std::numbers::pi * frequency * i * kInterval));
-  }
-  run.setup.rig().inputs = {make_signal("displacement", run.times, motion, Interpolation::kSpline)};
-  run.input_noise = {{}};
-  run.channels = {{StrutRigChannel::kForce, kSigma, std::vector<double>(run.times.size(), 0.0)}};
-  return run;
-}
-
-CampaignData make_stand(const std::vector<std::pair<double, double>>& motions) {
-  CampaignData data;
-  data.campaign.info = &get_rig_info(RigKind::kStrutRig);
-  for (const auto& [amplitude, frequency] : motions) {
-    add_run(make_stand_run("run_" + std::to_string(data.run_count()), amplitude, frequency), data);
-  }
-  return data;
-}
-
-NoiseSpectrum make_white_noise(const MeasuredRun& run) {
-  NoiseSpectrum noise;
-  noise.samples = run.times.size();
-  noise.interval = kInterval;
-  noise.sigma = {kSigma};
-  return noise;
-}
+using test::add_run;
+using test::kStandDamping;
+using test::kStandSigma;
+using test::make_stand;
+using test::make_white_noise;
 
 SharedValues set_damping(double damping) {
   Unknown u;
@@ -70,9 +32,9 @@ SharedValues set_damping(double damping) {
 
 /// Two dampers that differ by `difference` of `effect` times the nominal one, and the nominal one.
 Rivals make_rivals(double effect, double difference) {
-  return {set_damping(kDamping * (1.0 + effect)),
-          set_damping(kDamping * (1.0 + effect + difference)),
-          set_damping(kDamping),
+  return {set_damping(kStandDamping * (1.0 + effect)),
+          set_damping(kStandDamping * (1.0 + effect + difference)),
+          set_damping(kStandDamping),
           1.0,
           {},
           {}};
@@ -95,7 +57,7 @@ TEST_CASE("The separation promised is that of two forces known in closed form", 
   const auto count = static_cast<double>(data.runs[0].times.size());
   const double speed = 2.0 * std::numbers::pi * kFrequency * kAmplitude / std::sqrt(2.0);  // rms
   const auto expect = [&](double part) {
-    return count * std::pow(part * kDamping * speed / kSigma, 2.0);
+    return count * std::pow(part * kStandDamping * speed / kStandSigma, 2.0);
   };
   Rivals rivals = make_rivals(0.2, 0.005);
   // The spline of 200 points a period errs by 1e-6, its ends by more.
@@ -114,13 +76,13 @@ TEST_CASE("What a fit adjusts does not separate", "[unit]") {
   const CampaignData data = make_stand({{0.02, 1.0}});
   Rivals rivals = make_rivals(0.2, 0.05);
   rivals.shared = {make_shared_unknown(data.runs, "damping")};
-  rivals.values = {kDamping * 1.2};
+  rivals.values = {kStandDamping * 1.2};
   const NoiseSpectrum noise = make_white_noise(data.runs[0]);
   const double bound = bound_chi2_between(data, noise, rivals);
   CHECK(bound > 100.0);
   CHECK(calc_chi2_between(data, noise, rivals, rivals.a, rivals.b) < 1e-6 * bound);
   // The existing runs know the damping to a thousandth of the difference.
-  rivals.shared[0].prior = {kDamping * 1.2, 1e-3 * 0.05 * kDamping};
+  rivals.shared[0].prior = {kStandDamping * 1.2, 1e-3 * 0.05 * kStandDamping};
   CHECK(calc_chi2_between(data, noise, rivals, rivals.a, rivals.b) ==
         Approx(bound).epsilon(tolerance(1e-2)));
 }
@@ -204,7 +166,7 @@ Selection make_selection(const CampaignData& data, double fraction) {
     Candidate c;
     c.hypothesis.effect = effect;
     c.hypothesis.parameters = {{"damping", "", false}};
-    c.shared = set_damping(kDamping * (1.0 + value));
+    c.shared = set_damping(kStandDamping * (1.0 + value));
     round.candidates.push_back(std::move(c));
   }
   selection.rounds.push_back(std::move(round));
@@ -215,7 +177,8 @@ TEST_CASE("A separation is promised from three standard deviations on", "[unit]"
   const CampaignData data = make_stand({{0.002, 1.0}, {0.008, 1.0}});
   const auto count = static_cast<double>(data.runs[0].times.size());
   // Standard deviations by which the first run separates dampers that differ by all of it.
-  const double whole = std::sqrt(0.5 * count) * kDamping * 2.0 * std::numbers::pi * 0.002 / kSigma;
+  const double whole =
+      std::sqrt(0.5 * count) * kStandDamping * 2.0 * std::numbers::pi * 0.002 / kStandSigma;
   const auto propose = [&](double sigmas) {
     const Cause a{EffectName::kDamperAsymmetry, "", 0.5, 0.0, {}};
     const Cause b{EffectName::kDamperBlowOff, "", 0.5, 0.0, {}};
@@ -232,6 +195,27 @@ TEST_CASE("A separation is promised from three standard deviations on", "[unit]"
         "11.6 standard deviations (2.9 in the existing runs)");
   // No run of which the existing ones have enough.
   CHECK(propose(91.0).find("standard deviations") == std::string::npos);
+}
+
+TEST_CASE("A separation that a fit adjusts away is not promised", "[unit]") {
+  const CampaignData data = make_stand({{0.002, 1.0}, {0.008, 1.0}});
+  const auto count = static_cast<double>(data.runs[0].times.size());
+  // As above; the existing runs know the damping half as well as the first at 4 times its amplitude
+  // would, which takes sqrt(2) of its separation.
+  const double whole =
+      std::sqrt(0.5 * count) * kStandDamping * 2.0 * std::numbers::pi * 0.002 / kStandSigma;
+  const auto propose = [&](double sigmas) {
+    Selection selection = make_selection(data, sigmas / whole);
+    selection.base.shared_count = 1;
+    selection.base.fit.unknowns = {make_shared_unknown(data.runs, "damping")};
+    selection.base.fit.widened.sigma = {kStandDamping / (4.0 * whole)};
+    const Cause a{EffectName::kDamperAsymmetry, "", 0.5, 0.0, {}};
+    const Cause b{EffectName::kDamperBlowOff, "", 0.5, 0.0, {}};
+    return propose_measurement(data, selection, {a, b});
+  };
+  CHECK(propose(1.0).find("no amplitude that the recorded runs show") == 0);  // 2.8
+  CHECK(propose(1.1).find("by 3.1 standard deviations (1.1 in the existing runs)") !=
+        std::string::npos);
 }
 
 TEST_CASE("A car's proposal names a bump and a speed", "[unit]") {
@@ -264,6 +248,21 @@ TEST_CASE("A car's proposal names a bump and a speed", "[unit]") {
     proposal = propose(sigma);
   }
   CHECK(proposal.find(" standard deviations (") != std::string::npos);
+}
+
+TEST_CASE("The priors of rivals are as wide as the intervals of the calibrated model", "[unit]") {
+  const CampaignData data = make_stand({{0.002, 1.0}});
+  Selection selection = make_selection(data, 0.1);
+  selection.base.shared_count = 1;
+  selection.base.fit.unknowns = {make_shared_unknown(data.runs, "damping")};
+  selection.base.fit.uncertainty.sigma = {2.0};
+  selection.base.fit.widened.sigma = {7.0};
+  const auto rivals = find_rivals(data, selection, EffectName::kDamperAsymmetry, "",
+                                  EffectName::kDamperBlowOff, "");
+  REQUIRE(rivals);
+  REQUIRE(rivals->shared.size() == 1);
+  CHECK(rivals->shared[0].prior.mean == kStandDamping);
+  CHECK(rivals->shared[0].prior.sigma == 7.0);
 }
 
 TEST_CASE("Without a group no amplitude is proposed that a crank cannot make", "[unit]") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/strut_stand.h"
 #include "tests/support/tolerance.h"
 
 namespace strut {
@@ -55,6 +56,37 @@ TEST_CASE("The interval of a parameter contains that of every member of a group"
   CHECK(both.low == alone.low);
   // The extended model's, and the difference between the members in their own round.
   CHECK(both.high == Approx(10.2 + 20.5 + 0.195996).epsilon(tolerance(1e-6)));
+}
+
+TEST_CASE("The interval of a secant is that of the calibrated model's parameter, over the group",
+          "[unit]") {
+  const CampaignData data = test::make_stand({{0.01, 1.0}});
+  const Unknown damping = make_shared_unknown(data.runs, "damping");
+  Selection s;
+  s.base.shared_count = s.extended.shared_count = 1;
+  s.base.runs = {0};
+  s.base.fit.unknowns = s.extended.fit.unknowns = {damping};
+  s.base.fit.values = {1030.0};
+  s.extended.fit.values = {1000.0};
+  s.base.fit.uncertainty.sigma = {1.0};
+  s.base.fit.widened.sigma = {3.0};
+  s.rounds.resize(1);
+  s.rounds[0].candidates = {make_candidate("a", 0.0), make_candidate("b", 0.0)};
+  s.rounds[0].candidates[0].shared = {{damping}, {990.0}};
+  s.rounds[0].candidates[1].shared = {{damping}, {1030.0}};
+  s.round_of = {0};
+  CausePosition position;
+  position.candidates = {{"a", "", 0.5, 9.0, {}}, {"b", "", 0.5, 9.0, {}}};
+  position.close = 2;
+  const std::vector<StrutSecant> secants = list_secants(data, s, {position});
+  REQUIRE(secants.size() == 1);
+  const GroupValue& found = secants.front().damping;
+  // The spline through 200 points a period errs by 1e-6, its ends by more.
+  CHECK(found.value == Approx(1000.0).margin(tolerance(0.01)));
+  CHECK(found.low == Approx(1000.0 - 5.8799).margin(tolerance(0.02)));
+  CHECK(found.high == Approx(1000.0 + 40.0 + 5.8799).margin(tolerance(0.02)));
+  // What is not fitted has no error.
+  CHECK(secants.front().stiffness.high - secants.front().stiffness.low < tolerance(0.01));
 }
 
 }  // namespace

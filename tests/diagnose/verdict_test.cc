@@ -180,6 +180,56 @@ TEST_CASE("Two equal fits share the probability", "[unit]") {
   CHECK(v.list_group()[1].probability == Approx(0.49).epsilon(tolerance(1e-12)));
 }
 
+/// A selection of the first of two candidates that differ by this many log odds.
+Selection make_pair(double odds) {
+  // Half of the difference of chi2, blurred by 1 + 0.004 * 100.
+  const double gain = 100.0 - 2.0 * 1.4 * odds;
+  Selection s;
+  s.rounds.resize(2);
+  s.rounds[0].candidates = {make_candidate(*find_effect("sensor_delay"), 100.0),
+                            make_candidate(*find_effect("sensor_lowpass"), gain)};
+  s.rounds[0].candidates[1].alias = 1;
+  s.causes = {s.rounds[0].candidates[0].hypothesis};
+  s.round_of = {0};
+  s.gains = {100.0};
+  return s;
+}
+
+TEST_CASE("Candidates within log odds of 3 are a group, others share the probability by odds",
+          "[unit]") {
+  CHECK(make_claim(get_campaign().model(), make_pair(2.9)).list_group().size() == 2);
+  const Verdict v = make_claim(get_campaign().model(), make_pair(3.1));
+  CHECK(v.list_group().empty());
+  REQUIRE(v.positions.size() == 1);
+  const double ratio = std::exp(-3.1);
+  CHECK(v.positions[0].candidates[0].probability ==
+        Approx(0.98 / (1.0 + ratio)).epsilon(tolerance(1e-9)));
+  CHECK(v.positions[0].candidates[1].probability ==
+        Approx(0.98 * ratio / (1.0 + ratio)).epsilon(tolerance(1e-9)));
+}
+
+TEST_CASE("A group is limited by the model's form from twice the expected chi2 on", "[unit]") {
+  Selection s = make_pair(0.0);
+  s.rounds[0].misfit = 1.9;
+  CHECK_FALSE(make_claim(get_campaign().model(), s).positions[0].is_limited_by_form);
+  s.rounds[0].misfit = 2.1;
+  CHECK(make_claim(get_campaign().model(), s).positions[0].is_limited_by_form);
+}
+
+TEST_CASE("A verdict is complete only without a map and without a residual", "[unit]") {
+  using K = VerdictKind;
+  // Causes, group, map, residual of the fitted runs, adequate.
+  CHECK(judge({false, false, false, false, true}) == K::kAdequate);
+  CHECK(judge({false, false, false, false, false}) == K::kUnknown);
+  CHECK(judge({false, false, false, true, true}) == K::kUnknown);
+  CHECK(judge({false, false, true, false, true}) == K::kUnknown);
+  CHECK(judge({true, false, false, false, true}) == K::kNamed);
+  CHECK(judge({true, true, false, false, true}) == K::kGroup);
+  CHECK(judge({true, true, true, false, true}) == K::kFormIncomplete);
+  CHECK(judge({true, false, false, true, true}) == K::kFormIncomplete);
+  CHECK(judge({true, false, false, false, false}) == K::kFormIncomplete);
+}
+
 TEST_CASE("A cause that leaves more than it takes is not claimed", "[unit]") {
   Selection s;
   s.rounds.resize(2);
@@ -216,6 +266,27 @@ TEST_CASE("The interval of a cause's parameter is 1.96 standard errors to either
   CHECK_FALSE(p.at_bound);
 }
 
+TEST_CASE("The interval of a claimed cause is widened by the misfit", "[unit]") {
+  Selection s;
+  s.rounds.resize(2);
+  s.rounds[0].candidates = {make_candidate(*find_effect("damper_asymmetry"), 100.0)};
+  s.causes = {s.rounds[0].candidates[0].hypothesis};
+  s.round_of = {0};
+  s.gains = {100.0};
+  s.extended.shared_count = 1;
+  Unknown u;
+  u.name = s.causes[0].parameters[0].name;
+  s.extended.fit.unknowns = {u};
+  s.extended.fit.values = {0.25};
+  s.extended.fit.uncertainty.sigma = {0.01};
+  s.extended.fit.widened.sigma = {0.03};
+  const CauseParameter p =
+      make_claim(get_campaign().model(), s).list_causes()[0].parameters.front();
+  CHECK(p.value == 0.25);
+  CHECK(p.low == Approx(0.25 - 0.0587989).epsilon(tolerance(1e-6)));
+  CHECK(p.high == Approx(0.25 + 0.0587989).epsilon(tolerance(1e-6)));
+}
+
 TEST_CASE("An extension is an improvement only where the held-out runs agree", "[unit]") {
   Improvement better;
   better.log_odds = 10.0;
@@ -227,6 +298,19 @@ TEST_CASE("An extension is an improvement only where the held-out runs agree", "
   CHECK_FALSE(is_improved(unlikely));
   worse.excess_after = 3.0;
   CHECK_FALSE(is_improved(worse));
+}
+
+TEST_CASE("Errors of the held-out runs may grow by a twentieth of a floor", "[unit]") {
+  Improvement i;
+  i.log_odds = 1e-3;
+  i.excess_before = 2.0;
+  i.excess_after = 2.049;
+  CHECK(is_improved(i));
+  i.excess_after = 2.051;
+  CHECK_FALSE(is_improved(i));
+  i.excess_after = 2.0;
+  i.log_odds = -1e-3;
+  CHECK_FALSE(is_improved(i));
 }
 
 TEST_CASE("Held-out log odds favor the model under which the runs are more likely", "[unit]") {
@@ -286,7 +370,9 @@ TEST_CASE("The stated improvement is the measured one", "[unit]") {
 
 TEST_CASE("A channel that an extension worsens is told", "[unit]") {
   CHECK(list_worsened(get_campaign(), {make_run(3.0, 1.0)}).empty());
-  CHECK(list_worsened(get_campaign(), {make_run(0.8, 1.0)}).empty());  // within its noise
+  CHECK(list_worsened(get_campaign(), {make_run(0.8, 1.0)}).empty());    // within its noise
+  CHECK(list_worsened(get_campaign(), {make_run(10.0, 10.4)}).empty());  // by a twentieth
+  CHECK(list_worsened(get_campaign(), {make_run(10.0, 10.6)}).size() == 1);
   const auto worsened = list_worsened(get_campaign(), {make_run(10.5, 17.0)});
   REQUIRE(worsened.size() == 1);
   CHECK_THAT(worsened.front(), Contains("b.csv (held out), from 10.5 to 17 times its noise"));

@@ -1,0 +1,138 @@
+// The rules that make a candidate a cause, each on both sides of its limit.
+#include "diagnose/decide/acceptance.h"
+
+#include <catch2/catch.hpp>
+
+namespace strut {
+namespace {
+
+/// A round whose best candidate is alone; threshold and misfit make 30 of delta chi2 large, and 90
+/// certain.
+SelectRound make_round(double gain, double stability = 1.0) {
+  SelectRound round;
+  Candidate c;
+  c.gain = gain;
+  c.stability = stability;
+  round.candidates = {c};
+  round.threshold = 20.0;
+  round.misfit = 1.5;
+  return round;
+}
+
+HoldOutRun make_held_out(double chi2) {
+  HoldOutRun run;
+  run.chi2 = chi2;
+  run.expected = 500.0;
+  return run;
+}
+
+/// A fit of 1000 degrees of freedom, with a held-out run of 500 readings.
+Selection make_selection() {
+  Selection s;
+  s.extended.fit.chi2 = 1200.0;
+  s.extended.fit.degrees = 1000;
+  s.hold_out_after = {make_held_out(700.0)};
+  return s;
+}
+
+Selection make_selection_with_cause(double first_gain) {
+  Selection s = make_selection();
+  s.causes.resize(1);
+  s.rounds = {make_round(first_gain)};
+  return s;
+}
+
+bool is_large(const Selection& selection, const SelectRound& round) {
+  return is_large(selection, round, SelectOptions{});
+}
+
+TEST_CASE("A candidate is large from the threshold times the misfit on", "[unit]") {
+  const Selection s = make_selection();
+  CHECK_FALSE(is_large(s, make_round(29.9)));
+  CHECK(is_large(s, make_round(30.1)));
+  CHECK_FALSE(is_large(s, SelectRound{}));
+}
+
+TEST_CASE("A candidate has to be among the best without each of half of the runs, or certain",
+          "[unit]") {
+  const Selection s = make_selection();
+  CHECK_FALSE(is_large(s, make_round(60.0, 0.49)));
+  CHECK(is_large(s, make_round(60.0, 0.51)));
+  CHECK_FALSE(is_large(s, make_round(89.9, 0.0)));
+  CHECK(is_large(s, make_round(90.1, 0.0)));
+}
+
+TEST_CASE("A second cause explains a tenth of the first, or more than its form error", "[unit]") {
+  CHECK_FALSE(is_large(make_selection_with_cause(510.0), make_round(50.0)));
+  CHECK(is_large(make_selection_with_cause(490.0), make_round(50.0)));
+  // Certain: 0.4 % of the first.
+  CHECK_FALSE(is_large(make_selection_with_cause(51000.0), make_round(200.0)));
+  CHECK(is_large(make_selection_with_cause(49000.0), make_round(200.0)));
+}
+
+TEST_CASE("Where the model's error dominates, a cause removes 15 % of it, a pair twice that",
+          "[unit]") {
+  Selection s = make_selection();
+  s.extended.is_dominated = true;
+  s.extended.fit.chi2 = 1e5;
+  CHECK_FALSE(is_large(s, make_round(14900.0)));
+  CHECK(is_large(s, make_round(15100.0)));
+  SelectRound pair = make_round(5000.0);
+  pair.pair_gain = 29900.0;
+  CHECK_FALSE(is_large(s, pair));
+  pair.pair_gain = 30100.0;
+  CHECK(is_large(s, pair));
+}
+
+/// Whether a candidate is confirmed by a fall of the held-out runs' chi2.
+bool is_confirmed_by(double fall, const Selection& selection, const SelectRound& round) {
+  const double before = sum_chi2(selection.hold_out_after);
+  return is_confirmed(selection, round, {make_held_out(before - fall)}, SelectOptions{});
+}
+
+TEST_CASE("Held-out runs confirm a cause by 0.3 of its delta chi2 per reading", "[unit]") {
+  const Selection s = make_selection();
+  // 0.3 * 60 * 500 / 1000
+  CHECK_FALSE(is_confirmed_by(8.9, s, make_round(60.0)));
+  CHECK(is_confirmed_by(9.1, s, make_round(60.0)));
+  CHECK_FALSE(is_confirmed_by(-100.0, s, make_round(60.0)));
+}
+
+TEST_CASE("Held-out runs veto even a certain cause that makes them worse", "[unit]") {
+  const Selection s = make_selection();
+  CHECK(is_confirmed_by(0.1, s, make_round(91.0)));
+  CHECK_FALSE(is_confirmed_by(0.0, s, make_round(91.0)));
+  CHECK_FALSE(is_confirmed_by(-0.1, s, make_round(1e6)));
+}
+
+TEST_CASE("Where the model's error dominates, half of its fraction has to leave the held-out runs",
+          "[unit]") {
+  Selection s = make_selection();
+  s.extended.is_dominated = true;
+  s.hold_out_after = {make_held_out(2e4)};
+  // 0.5 * 0.15 * 20000
+  CHECK_FALSE(is_confirmed_by(1490.0, s, make_round(1e6)));
+  CHECK(is_confirmed_by(1510.0, s, make_round(1e6)));
+}
+
+TEST_CASE("A held-out run that cannot be simulated confirms nothing", "[unit]") {
+  const Selection s = make_selection();
+  HoldOutRun failed;
+  failed.failure = "lost contact";
+  CHECK(sum_chi2({make_held_out(3.0), make_held_out(4.0)}) == 7.0);
+  CHECK(sum_chi2({make_held_out(3.0), failed}) > 1e200);
+  CHECK_FALSE(is_confirmed(s, make_round(1e6), {failed}, SelectOptions{}));
+}
+
+TEST_CASE("A rejected candidate of twice the threshold is residual of the causes", "[unit]") {
+  const Selection s = make_selection_with_cause(1e5);
+  CHECK_FALSE(is_residual(s, make_round(59.9)));
+  CHECK(is_residual(s, make_round(60.1)));
+  CHECK_FALSE(is_residual(make_selection(), make_round(60.1)));  // no cause whose form it would be
+  SelectRound accepted = make_round(60.1);
+  accepted.accepted = true;
+  CHECK_FALSE(is_residual(s, accepted));
+}
+
+}  // namespace
+}  // namespace strut
