@@ -58,6 +58,24 @@ TEST_CASE("A value more than three standard deviations from its stated prior is 
   CHECK(conflicts.front().calc_distance() == Approx(24.5).epsilon(tolerance(1e-9)));
 }
 
+TEST_CASE("A value more than five standard deviations from its stated prior contradicts the model",
+          "[unit]") {
+  PriorConflict stated;
+  stated.is_shared = true;
+  stated.name = "damping";
+  stated.mean = 1000.0;
+  stated.sigma = 10.0;
+  const auto count_misfits = [&](double value) {
+    stated.value = value;
+    std::vector<Misfit> misfits;
+    add_misfits(CampaignData{}, {stated}, misfits);
+    return misfits.size();
+  };
+  CHECK(count_misfits(1049.0) == 0);
+  CHECK(count_misfits(1051.0) == 1);
+  CHECK(count_misfits(949.0) == 1);
+}
+
 /// A rig whose strut meets a stop in the held-out run alone.
 CampaignData make_stopped(const test::TemporaryFolder& folder) {
   test::QuarterTruth truth;

@@ -1,7 +1,11 @@
 // Held-out runs as the judge of models, by one noise for all.
 #include "diagnose/noise/hold_out.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 #include "diagnose/noise/whitened_fit.h"
 #include "tests/support/campaign_files.h"
@@ -53,6 +57,31 @@ TEST_CASE("Held-out runs have the noise of the fitted ones", "[unit]") {
   CHECK(judge.get_noise(0).excess[band] == 3.0);
   CHECK(judge.get_noise(0).level == 0.7);
   CHECK(judge.get_noise(0).response_error == 0.1);
+}
+
+TEST_CASE("The likelihood of a held-out run has the determinant of its noise", "[unit]") {
+  Judged j = fit_base();
+  const auto measure_rest = [&](double excess) {
+    std::vector<double>& bands = j.base.spectra.front().excess;
+    std::fill(bands.begin(), bands.end(), excess);
+    const HoldOutRun run = HoldOutJudge(j.data, j.base, 1).judge(j.base.shared()).front();
+    REQUIRE(run.failure.empty());
+    return std::pair{run.log_likelihood + 0.5 * run.chi2, static_cast<double>(run.count)};
+  };
+  // Noise e times as large: the density of each whitened number is e times lower.
+  const auto [rest, count] = measure_rest(1.0);
+  const double louder = measure_rest(std::exp(2.0)).first;
+  CHECK(count > 1000.0);
+  CHECK(rest - louder == Approx(count).epsilon(test::tolerance(1e-9)));
+}
+
+TEST_CASE("The excess of a held-out run is the mean of the fitted ones", "[unit]") {
+  Judged j = fit_base();
+  const std::size_t band = find_noise_band(5.0);
+  j.base.spectra.push_back(j.base.spectra.front());
+  j.base.spectra[0].excess[band] = 3.0;
+  j.base.spectra[1].excess[band] = 2.0;
+  CHECK(HoldOutJudge(j.data, j.base, 1).get_noise(0).excess[band] == 2.5);
 }
 
 TEST_CASE("A held-out run that cannot be simulated is reported and does not end a diagnosis",

@@ -49,6 +49,38 @@ TEST_CASE("Drift of a sensor is measured by its corner frequency", "[statistical
   CHECK(sum == Approx(truth.corner).epsilon(test::tolerance(0.2)));
 }
 
+/// rms of drift over sigma, of the candidates, by the largest posterior of periodogram values at
+/// 0.5, 1, 1.5 and 2 Hz in 8 samples every 0.25 s.
+double find_most_likely_drift(const std::vector<double>& power) {
+  double best = 0.0, most = -1e9;
+  for (const double rms : {0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5}) {
+    // Its mean square is the integral of f_c / f over both halves: 2 f_c dt (ln 4 + 0.5772).
+    const double corner = rms * rms / (0.5 * (std::log(4.0) + 0.5772156649));
+    double posterior = -0.5 * std::pow(rms / 0.25, 2.0);
+    for (std::size_t k = 1; k <= 4; ++k) {
+      const double expected = 1.0 + corner / (0.5 * static_cast<double>(k));
+      posterior -= std::log(expected) + power[k] / expected;
+    }
+    if (posterior <= most) continue;
+    most = posterior;
+    best = corner;
+  }
+  return best;
+}
+
+TEST_CASE("Drift is as large as a prior of a quarter of sigma makes likely", "[unit]") {
+  // The lowest frequency alone would ask for the largest drift, against which the prior speaks.
+  for (const double lowest : {1.0, 2.0, 3.0, 4.0, 5.0, 8.0}) {
+    const std::vector<double> power = {0.0, lowest, 1.0, 1.0, 1.0};
+    const ResidualSpectrum s{8, 0.25, power, std::vector<double>(5, 1.0)};
+    INFO(lowest);
+    CHECK(estimate_color(0, std::vector{s}).corner ==
+          Approx(find_most_likely_drift(power)).epsilon(test::tolerance(1e-9)));
+  }
+  CHECK(find_most_likely_drift({0.0, 4.0, 1.0, 1.0, 1.0}) <
+        find_most_likely_drift({0.0, 8.0, 1.0, 1.0, 1.0}));
+}
+
 TEST_CASE("White noise has next to no color", "[statistical]") {
   int lines = 0;
   double corner = 0.0;

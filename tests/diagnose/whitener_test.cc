@@ -117,6 +117,17 @@ TEST_CASE("Without sources whitening keeps every sum of squares", "[unit]") {
         Approx(-0.5 * noise.squaredNorm()).epsilon(test::tolerance(1e-12)));
 }
 
+TEST_CASE("The log determinant is that of the readings' covariance over time", "[unit]") {
+  // At every frequency the covariance 1 + w w' over the channels has the determinant 1 + w'w, and
+  // 240 samples have 240 numbers per channel: half of ln(1 + 9 + 25 + 49) for each.
+  const ConstantModel model(1);
+  const Whitener whitener(model, {make_spectrum()});
+  const double expected = 0.5 * kSamples * std::log(84.0);
+  CHECK(whitener.get_log_determinant(0) == Approx(expected).epsilon(test::tolerance(1e-12)));
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(kSamples * kChannels);
+  CHECK(whitener.calc_log_likelihood(none, 0) == Approx(-expected).epsilon(test::tolerance(1e-12)));
+}
+
 TEST_CASE("The common part of a source weighs little, the rest as much as sensors allow",
           "[unit]") {
   const ConstantModel model(1);
@@ -155,6 +166,43 @@ TEST_CASE("Noise in excess of a spectrum is counted by run and band", "[unit]") 
   const std::size_t band = find_noise_band(30.0);
   CHECK(spectra[0].excess[band] == Approx(1.0).margin(test::tolerance(0.2)));
   CHECK(spectra[1].excess[band] == Approx(9.0).margin(test::tolerance(1.8)));
+}
+
+TEST_CASE("Noise below its spectrum is no negative excess", "[unit]") {
+  const ConstantModel model(1);
+  std::vector<NoiseSpectrum> spectra = {make_spectrum()};
+  spectra[0].common.clear();
+  const Whitener whitener(model, spectra);
+  // At most a twentieth of sqrt(1 + 49) sigmas.
+  count_excess(whitener, 0.05 * whitener.apply(draw_noise(1)), spectra);
+  for (const double excess : spectra[0].excess) CHECK(excess == 1.0);
+}
+
+TEST_CASE("The roughness of several level runs is that of a quiet one", "[unit]") {
+  // Levels in units of 1e-5 m^3, by run.
+  const std::vector<double> levels = {100.0, 1.0, 10.0, 0.1};
+  const std::size_t runs = levels.size();
+  const ConstantModel model(runs);
+  std::vector<NoiseSpectrum> spectra(runs, make_spectrum());
+  for (NoiseSpectrum& s : spectra) {
+    for (Eigen::MatrixXcd& common : s.common) common *= 1e5;
+  }
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(runs * kSamples * kChannels));
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < runs; ++r) {
+    for (std::size_t t = 0; t < kSamples; ++t) {
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        const double source = test::calc_test_normal(r, 99, (t + kSamples - c) % kSamples);
+        residual(row++) =
+            test::calc_test_normal(r, c, t) + std::sqrt(levels[r]) * get_weight(c) * source;
+      }
+    }
+  }
+  const Roughness roughness =
+      fit_roughness(model, spectra, std::vector<bool>(runs, true), residual);
+  // The second lowest of four; levels are tried in steps of 1.8, and 240 samples know it to 10 %.
+  CHECK(roughness.level > 0.5e-5);
+  CHECK(roughness.level < 2e-5);
 }
 
 TEST_CASE("Missing readings do not make noise look smaller", "[unit]") {
