@@ -8,6 +8,7 @@
 #include "diagnose/decide/acceptance.h"
 #include "diagnose/decide/effect_round.h"
 #include "diagnose/decide/extended_unknowns.h"
+#include "model/effects/names.h"
 
 namespace strut {
 namespace {
@@ -38,7 +39,7 @@ class Selector {
         selection_.base.is_dominated ? options_.most_causes_dominated : options_.most_causes;
     constexpr int kPasses = 2;
     for (int pass = 0; pass < kPasses; ++pass) {
-      while (static_cast<int>(selection_.causes.size()) < most && add()) {
+      while (static_cast<int>(selection_.causes.size()) < most && add(most)) {
       }
       last_ = selection_.rounds.back();
       if (!reconsider()) break;
@@ -98,17 +99,37 @@ class Selector {
     }
   }
 
-  /// One round; whether a cause was added.
-  bool add() {
+  /// One round, or two; whether causes were added.
+  bool add(int most) {
+    test_beside_causes();
+    if (accept(Confirmation::kAlone)) return true;
+    const auto left = static_cast<std::size_t>(most) - selection_.causes.size();
+    return selection_.extended.is_dominated && left >= 2 && add_pair();
+  }
+
+  void test_beside_causes() {
     tell("testing every effect" +
          (selection_.causes.empty() ? "" : " beside " + selection_.causes.back().describe()));
     SelectRound round = test_effects(data_, selection_.extended, options_, {options_.fitted});
     look_ahead(round);
     selection_.simulations += round.simulations;
     selection_.rounds.push_back(std::move(round));
-    const bool accepted = accept(selection_.rounds.back());
-    selection_.rounds.back().accepted = accepted;
-    return accepted;
+  }
+
+  /// Two causes that the held-out runs confirm together, though not the first alone: play does not
+  /// help where the friction behind it is missing.
+  bool add_pair() {
+    const Selection kept = selection_;
+    if (!(kept.rounds.back().pair_gain > 0.0) || !accept(Confirmation::kLater)) return false;
+    test_beside_causes();
+    if (accept(Confirmation::kLater) &&
+        is_confirmed(kept, selection_.rounds.back(), selection_.hold_out_after, options_)) {
+      return true;
+    }
+    const long simulations = selection_.simulations;
+    selection_ = kept;
+    selection_.simulations = simulations;
+    return false;
   }
 
   /// The best alone may be a third effect that imitates two others together. For the best of each
@@ -135,6 +156,7 @@ class Selector {
       most = gain;
       best = pairs[i].candidate;
     }
+    round.pair_gain = first;
     if (most < kBetter * first || most - first < round.threshold * round.misfit) return;
     std::rotate(round.candidates.begin(), round.candidates.begin() + static_cast<long>(best),
                 round.candidates.begin() + static_cast<long>(best) + 1);
@@ -154,7 +176,10 @@ class Selector {
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < round.candidates.size() && pairs.size() < count; ++i) {
       const Candidate& c = round.candidates[i];
-      if (std::find(classes.begin(), classes.end(), c.alias) != classes.end()) continue;
+      // Beside friction a worn joint is no twin of a lost stroke.
+      const bool is_joint = c.hypothesis.effect == EffectName::kJointPlay;
+      if (!is_joint && std::find(classes.begin(), classes.end(), c.alias) != classes.end())
+        continue;
       classes.push_back(c.alias);
       const SelectRound beside = test_beside(c, 0);
       round.simulations += beside.simulations;
@@ -201,9 +226,8 @@ class Selector {
     bool is_replaced = !is_needed;
     if (is_needed && !is_best) {
       selection_.rounds.push_back(round);
-      is_replaced = accept(selection_.rounds.back()) &&
+      is_replaced = accept(Confirmation::kAlone) &&
                     sum_chi2(selection_.hold_out_after) < sum_chi2(kept.hold_out_after);
-      selection_.rounds.back().accepted = is_replaced;
     }
     if (!is_replaced) {
       selection_ = kept;
@@ -246,7 +270,11 @@ class Selector {
     return values;
   }
 
-  bool accept(const SelectRound& round) {
+  enum class Confirmation { kAlone, kLater };
+
+  /// Makes the best of the last round a cause if it is large and the held-out runs confirm it.
+  bool accept(Confirmation confirmation) {
+    SelectRound& round = selection_.rounds.back();
     if (!is_large(selection_, round, options_)) return false;
     const Candidate& best = round.candidates.front();
     const ExtendedUnknowns e =
@@ -255,7 +283,11 @@ class Selector {
     WhitenedFit fit = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
                                    e.unknowns, e.values, e.shared_count, options_.threads);
     std::vector<HoldOutRun> judged = judge(fit);
-    if (!is_confirmed(selection_, round, judged, options_)) return false;
+    if (confirmation == Confirmation::kAlone &&
+        !is_confirmed(selection_, round, judged, options_)) {
+      return false;
+    }
+    round.accepted = true;
     selection_.extended = std::move(fit);
     selection_.hold_out_after = std::move(judged);
     selection_.causes.push_back(best.hypothesis);

@@ -76,8 +76,7 @@ struct SelectRound {
   double threshold = 0.0;             // of Candidate::gain
   bool accepted = false;              // the best candidate became a cause
   double misfit = 1.0;                // chi2 over its expectation, by which gains are divided
-  /// Delta chi2 of the first candidate and another effect together, if it leads the candidates for
-  /// that reason.
+  /// Delta chi2 of the first candidate and another effect together, where pairs were looked for.
   double pair_gain = 0.0;
   double best_score = 0.0;  // delta chi2 to first order of the best hypothesis
   long simulations = 0;

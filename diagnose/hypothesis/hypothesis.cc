@@ -163,7 +163,11 @@ bool is_same_effect(const Hypothesis& a, const Hypothesis& b) {
   return a.effect == b.effect && a.place == b.place;
 }
 
-bool are_identical(const Hypothesis& a, const Hypothesis& b) {
+bool are_identical(const Hypothesis& a, const Hypothesis& b, const EffectSettings& on) {
+  const bool has_friction = std::any_of(on.begin(), on.end(), [](const EffectSetting& setting) {
+    return setting.effect == EffectName::kStrutFriction;
+  });
+  if (has_friction) return false;
   const auto is_stroke = [](const Hypothesis& h) {
     return h.effect == EffectName::kDamperLeak || h.effect == EffectName::kJointPlay;
   };
@@ -202,12 +206,14 @@ std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h
 
 bool is_plausible(const CampaignData& data, const Hypothesis& h,
                   const std::vector<double>& values) {
-  constexpr double kMaxTypical = 10.0;
-  if (data.has_inputs()) return true;
+  constexpr double kMaxTypical = 10.0, kMargin = 1e-3;
   const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
-    if (p.switches &&
+    if (!p.switches || values[i] == p.neutral) continue;
+    const double margin = kMargin * (p.high - p.low);
+    if (values[i] < p.low + margin || values[i] > p.high - margin) return false;
+    if (!data.has_inputs() &&
         std::abs(values[i] - p.neutral) > kMaxTypical * std::abs(p.typical - p.neutral)) {
       return false;
     }

@@ -50,8 +50,8 @@ struct Hypothesis {
 bool is_same_effect(const Hypothesis& a, const Hypothesis& b);
 
 /// Whether the model gives both the same equations, so that no data tell them apart: a lost stroke
-/// and a joint's play of one strut.
-bool are_identical(const Hypothesis& a, const Hypothesis& b);
+/// and a joint's play of one strut without dry friction. `on`: the effects of the base.
+bool are_identical(const Hypothesis& a, const Hypothesis& b, const EffectSettings& on);
 
 /// The hypothesis that an effect of the model file is not there: its switching parameters are
 /// neutral, and nothing of it is free.

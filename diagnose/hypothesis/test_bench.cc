@@ -40,6 +40,7 @@ TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threa
       unknowns_(fit.fit.unknowns),
       values_(fit.fit.values),
       shared_count_(fit.shared_count),
+      effects_on_(list_effects_on(data, fit.shared())),
       threads_(threads) {
   const auto model = make_reading_model(data_, runs_, unknowns_, threads_);
   whitener_ = std::make_unique<Whitener>(*model, fit.spectra);
@@ -99,7 +100,7 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypot
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const Hypothesis& hypothesis = hypotheses[h];
     const auto twin = std::find_if(trials.begin(), trials.end(), [&](const HypothesisTrial& trial) {
-      return are_identical(hypotheses[trial.hypothesis], hypothesis);
+      return are_identical(hypotheses[trial.hypothesis], hypothesis, effects_on_);
     });
     if (twin != trials.end()) {
       const std::size_t other = twin->hypothesis;

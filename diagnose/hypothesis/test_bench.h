@@ -57,6 +57,7 @@ class TestBench {
   std::vector<Unknown> unknowns_;
   std::vector<double> values_;
   std::size_t shared_count_;
+  EffectSettings effects_on_;  // of the fit
   int threads_;
   std::unique_ptr<Whitener> whitener_;
   Eigen::VectorXd residual_;  // whitened, then priors

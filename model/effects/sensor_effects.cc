@@ -28,8 +28,8 @@ EffectInfo make_sensor_delay() {
           "y(t - tau)",
           "1 to 10 ms on a vehicle's bus",
           kOnChannel,
-          {make_switch("delay", "s", "tau: time by which the reading is late; < 0: early", -0.2,
-                       0.2, 2e-3)}};
+          {make_switch("delay", "s", "tau: time by which the reading is late; < 0: early", -0.03,
+                       0.03, 2e-3)}};
 }
 
 EffectInfo make_sensor_lowpass() {
@@ -38,7 +38,7 @@ EffectInfo make_sensor_lowpass() {
           "T dz/dt + z = y",
           "first-order filter, corner frequency 1 / (2 pi T)",
           kOnChannel,
-          {make_switch("time", "s", "T: time constant", 0.0, 0.5, 2e-3)}};
+          {make_switch("time", "s", "T: time constant", 0.0, 0.03, 2e-3)}};
 }
 
 EffectInfo make_sensor_position() {

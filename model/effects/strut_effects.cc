@@ -25,7 +25,7 @@ EffectInfo make_damper_blow_off() {
           kOnStrut,
           {make_switch("loss", "1", "r: fraction of the rate lost far above the knee; < 0: gained",
                        -10.0, 0.98, 0.3),
-           make_shape("knee", "m/s", "v_b: speed of the knee", 0.1, 0.005, 2.0, 0.1)}};
+           make_shape("knee", "m/s", "v_b: speed of the knee", 0.1, 0.03, 2.0, 0.1)}};
 }
 
 EffectInfo make_damper_hysteresis() {
@@ -34,14 +34,14 @@ EffectInfo make_damper_hysteresis() {
           "tau dF/dt + F = f(v), f: the damper's law with all other effects",
           "first-order lag; 1 ms (force), 40 ms (frequency selective) in Project Chrono's FEDA",
           kOnStrut,
-          {make_switch("lag", "s", "tau: time constant of the lag", 0.0, 0.1, 2e-3)}};
+          {make_switch("lag", "s", "tau: time constant of the lag", 0.0, 0.05, 2e-3)}};
 }
 
 EffectInfo make_damper_leak() {
   return {EffectName::kDamperLeak,
           "a damper short of oil loses stroke: after each reversal it gives no force until it has "
-          "moved that far; joint_play in another size: no data tell the two apart, and where both "
-          "are on, their lengths add",
+          "moved that far; joint_play in another size: only the strut's dry friction, which still "
+          "acts, tells the two apart, and where both are on, their lengths add",
           "F = f(w), du/dt = v - w, w = r (u - clamp(u, -s / 2, s / 2)), "
           "r^2 = (1 / 1 ms)^2 + (0.5 m/s / s)^2",
           "dead zone in series with the damper, behind it a contact that yields within 1 ms "
@@ -69,11 +69,12 @@ EffectInfo make_strut_friction() {
   return {
       EffectName::kStrutFriction,
       "dry friction of seals, guide and bushings",
-      "F = F_c tanh(v / v_s), explicit steps need h F_c / (v_s m) < 2.7",
+      "F = F_c tanh(v / v_s), behind a joint_play F_c tanh(w / v_s); explicit steps need "
+      "h F_c / (v_s m) < 2.7",
       "regularized Coulomb friction; 20 to 150 N an axle, mostly in the struts: Deubel and Prokop, "
       "2022",
       kOnStrut,
-      {make_switch("force", "N", "F_c: sliding friction", 0.0, 2000.0, 50.0),
+      {make_switch("force", "N", "F_c: sliding friction", 0.0, 2e4, 50.0),
        make_shape("speed", "m/s", "v_s: speed over which it builds up", 0.01, 1e-3, 0.2, 0.01)}};
 }
 
@@ -106,14 +107,15 @@ EffectInfo make_top_mount_compliance() {
           kOnStrut,
           {make_switch("compliance", "m/N", "kappa: 1 / stiffness of the mount", 0.0, 1e-2, 3e-6),
            make_shape("relaxation", "s", "tau_m: damping over stiffness of the mount", 2e-3, 2e-4,
-                      0.1, 2e-3)}};
+                      0.03, 2e-3)}};
 }
 
 EffectInfo make_joint_play() {
   return {EffectName::kJointPlay,
           "a worn joint between damper and body or wheel: after a reversal the damper stands until "
-          "the rod has crossed the play; damper_leak in another size: no data tell the two apart, "
-          "and where both are on, their lengths add",
+          "the rod has crossed the play; damper_leak in another size: only the strut's dry "
+          "friction, which is behind the joint, tells the two apart, and where both are on, their "
+          "lengths add",
           "F = f(w), du/dt = v - w, w = r (u - clamp(u, -p / 2, p / 2)), "
           "r^2 = (1 / 1 ms)^2 + (0.5 m/s / p)^2",
           "dead zone in series with the damper, behind it a contact that yields within 1 ms, at "

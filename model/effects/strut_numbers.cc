@@ -35,10 +35,11 @@ StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
            get(EffectName::kDamperBlowOff, "knee"),
            get(EffectName::kDamperFade, "loss"),
            get(EffectName::kDamperFade, "rate")};
-  n.series = {get(EffectName::kJointPlay, "play") + get(EffectName::kDamperLeak, "stroke"),
+  const double joint_play = get(EffectName::kJointPlay, "play");
+  n.series = {joint_play + get(EffectName::kDamperLeak, "stroke"),
               get(EffectName::kDamperHysteresis, "lag"),
               get(EffectName::kTopMountCompliance, "compliance"),
-              get(EffectName::kTopMountCompliance, "relaxation")};
+              get(EffectName::kTopMountCompliance, "relaxation"), joint_play};
   n.spring = {strut.stiffness * get(EffectName::kProgressiveSpring, "cubic"), length};
   n.stop = {get(EffectName::kBumpStop, "stiffness"), get(EffectName::kBumpStop, "progression"),
             length - get(EffectName::kBumpStop, "gap")};

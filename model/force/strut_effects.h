@@ -61,9 +61,8 @@ struct DryFriction {
   T force;          // F_c, N
   T inverse_speed;  // 1 / v_s, s/m
 
-  T calc_force(const LineState<T>& line) const {
-    return force * calc_tanh(-line.rate * inverse_speed);
-  }
+  T calc_force(const T& speed) const { return force * calc_tanh(speed * inverse_speed); }
+  T calc_force(const LineState<T>& line) const { return calc_force(-line.rate); }
   T calc_energy(const LineState<T>&) const { return T(0.0); }
 };
 
@@ -112,6 +111,9 @@ template <class T>
 struct ShapedDamper {
   DamperLaw<T> law;
   DamperSeries<T> series;
+  /// Beside a damper with states, at the strut's speed v; behind a worn joint at the damper's w.
+  DryFriction<T> friction;
+  bool has_friction = false;
 };
 
 template <class T>
@@ -132,12 +134,13 @@ struct StrutEffects {
       list.add(corner, element);
       ++count;
     };
-    const ShapedDamper<T> damper{numbers.law, numbers.series};
+    const bool has_friction = (bits & kSeriesDamper) != 0 && (bits & kDryFriction) != 0;
+    const ShapedDamper<T> damper{numbers.law, numbers.series, numbers.friction, has_friction};
     add_if(kSeriesDamper, series, damper);
     if ((bits & kSeriesDamper) == 0) add_if(kShapedDamper, shaped, damper);
     add_if(kCubicSpring, std::get<0>(added), numbers.spring);
     add_if(kBumpStop, std::get<1>(added), numbers.stop);
-    add_if(kDryFriction, std::get<2>(added), numbers.friction);
+    if (!has_friction) add_if(kDryFriction, std::get<2>(added), numbers.friction);
     add_if(kGasForce, std::get<3>(added), numbers.gas);
   }
   void add_bar(int left_corner, const AntiRollBar<T>& bar) {
@@ -205,6 +208,10 @@ void add_shaped_dampers(const ElementList<ShapedDamper<T>>& list,
       states.decay[Corners + c] = s.mount_decay;
       states.rate[2 * Corners + c] = s.joint_rate;
       states.decay[2 * Corners + c] = s.joint_decay;
+    }
+    if (damper.has_friction) {
+      const T rubbing = select(damper.series.joint_play > T(0.0), speed, -rate);
+      force += damper.friction.calc_force(rubbing);
     }
     out[corner].damper_force += force;
     out[corner].generalized += force * motion[corner].length_q[kDamperLine];

@@ -210,11 +210,7 @@ class RigSystem {
                           rig_.numbers.gravity;
   }
 
-  T calc_guide_force(const T& velocity) const {
-    LineState<T> line{};
-    line.rate = velocity;
-    return rig_.numbers.guide.calc_force(line);
-  }
+  T calc_guide_force(const T& velocity) const { return rig_.numbers.guide.calc_force(-velocity); }
 
   void observe_quarter_car(const T& t, const T* x, T* out) const {
     using C = QuarterCarChannel;

@@ -193,19 +193,27 @@ bool has_cause(const Selection& selection, const std::vector<std::string>& effec
   });
 }
 
-/// Alone, a delay of 29 ms explains most; beside it the three laws are not found.
-TEST_CASE("Three laws in series are found though another effect explains more than each",
+double get_fitted(const Selection& selection, const std::string& name) {
+  const FitResult& fit = selection.extended.fit;
+  for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
+    if (fit.unknowns[i].name == name) return fit.values[i];
+  }
+  return 0.0;
+}
+
+/// Alone, a delay of 29 ms explains most; beside it neither law is found. The force's own lag of
+/// 4 ms is a twentieth of what the two leave.
+TEST_CASE("Friction behind a play is found though another effect explains more than each",
           "[unit][slow]") {
   const TemporaryFolder folder;
   const CampaignData data = read_series(folder);
   SelectOptions options;
   options.threads = 2;
   const Selection selection = select_causes(data, options);
-  CHECK(selection.causes.size() == 3);
-  CHECK(has_cause(selection, {"damper_leak", "joint_play"}));
-  CHECK(has_cause(selection, {"damper_blow_off", "strut_friction"}));
-  CHECK(has_cause(selection,
-                  {"damper_hysteresis", "sensor_lowpass", "sensor_delay", "top_mount_compliance"}));
+  CHECK(has_cause(selection, {"joint_play"}));
+  CHECK(has_cause(selection, {"strut_friction"}));
+  CHECK(get_fitted(selection, "joint_play") == Approx(2e-3).epsilon(tolerance(0.2)));
+  CHECK(get_fitted(selection, "strut_friction_force") == Approx(400.0).epsilon(tolerance(0.05)));
   const SelectRound& first = selection.rounds.front();
   CHECK(first.pair_gain > first.candidates.front().gain);
   CHECK(first.candidates.front().gain < first.candidates[1].gain);

@@ -207,6 +207,36 @@ TEST_CASE("A damper that loses a stroke is without force until the rod has cross
   CHECK(free >= static_cast<int>(p / v / 5e-4) - 1);
 }
 
+TEST_CASE("Dry friction is behind a worn joint, but acts on while a damper loses its stroke",
+          "[unit][reference][rigs]") {
+  const double p = 4e-3, v = 0.2, turn = 0.1, c = 1500.0, friction = 40.0, slow = 1e-3;
+  const InputSignal input = make_signal("displacement", {0.0, turn, 0.4}, {v * turn, 0.0, 0.3 * v},
+                                        Interpolation::kLinear);
+  const auto run = [&](const EffectSettings& stroke) {
+    EffectSettings effects = stroke;
+    effects.push_back({"strut_friction", "", {friction, slow}});
+    return simulate_rig(make_rig(RigKind::kStrutRig, effects), {input}, make_options(1e-5),
+                        make_plan(0.3, 5e-4));
+  };
+  const LaneResults worn = run({{"joint_play", "", {p}}});
+  const LaneResults leaking = run({{"damper_leak", "", {p}}});
+  const LaneResults both = run({{"joint_play", "", {0.5 * p}}, {"damper_leak", "", {0.5 * p}}});
+  int behind = 0;
+  for (int i = 0; i <= 600; ++i) {
+    const double t = 5e-4 * i - turn;
+    if (std::fabs(t) < 1e-9) continue;
+    const double damper = t < 0.0 ? -c * v : calc_reversed_force(t, v, c, p);
+    const double rubs = friction * std::tanh(damper / c / slow);
+    const double small = tolerance(1e-5 / calc_contact_time(p) * (c * v + friction * v / slow));
+    CHECK(std::fabs(worn.get_sample(i, Strut::kDamperForce) - damper - rubs) < small);
+    CHECK(std::fabs(both.get_sample(i, Strut::kDamperForce) - damper - rubs) < small);
+    CHECK(std::fabs(leaking.get_sample(i, Strut::kDamperForce) - damper -
+                    std::copysign(friction, t)) < small);
+    behind += std::fabs(rubs) < 1e-9 ? 1 : 0;
+  }
+  CHECK(behind >= static_cast<int>(p / v / 5e-4) - 1);
+}
+
 TEST_CASE("A joint's play only takes energy", "[unit][property][rigs]") {
   const double p = GENERATE(1e-4, 1e-3, 5e-3);
   RigSpec spec = make_rig(RigKind::kSingleMass, {{"joint_play", "", {p}}});
