@@ -19,8 +19,10 @@ std::string join(const std::vector<std::string>& parts, const std::string& betwe
 
 std::vector<std::string> list_names(const std::vector<Cause>& causes) {
   std::vector<std::string> names;
-  for (const Cause& cause : causes)
+  names.reserve(causes.size());
+  for (const Cause& cause : causes) {
     names.push_back(describe_effect(cause.effect, cause.place, cause.change));
+  }
   return names;
 }
 
@@ -37,6 +39,7 @@ std::string describe_position(const CausePosition& position) {
 /// "Cause: A." or "Causes, which act together: A; and one of B, C, which ..."
 std::string describe_claim(const std::vector<CausePosition>& positions) {
   std::vector<std::string> parts;
+  parts.reserve(positions.size());
   for (const CausePosition& p : positions) parts.push_back(describe_position(p));
   return fmt::format("{}: {}.", parts.size() > 1 ? "Causes, which act together" : "Cause",
                      join(parts, "; and "));

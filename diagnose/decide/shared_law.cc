@@ -79,6 +79,7 @@ std::vector<std::pair<std::string, Slopes>> calc_secants(const CampaignData& dat
     }
   }
   std::vector<std::pair<std::string, Slopes>> secants;
+  secants.reserve(motions.size());
   for (const StrutMotionForce& m : motions) {
     secants.emplace_back(m.place, fit_slopes(m.deflection, m.velocity, m.force));
   }

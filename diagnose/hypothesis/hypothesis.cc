@@ -210,13 +210,11 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h,
   const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
-    if (!p.switches || values[i] == p.neutral) continue;
-    const double margin = kMargin * (p.high - p.low);
-    if (values[i] < p.low + margin || values[i] > p.high - margin) return false;
-    if (!data.has_inputs() &&
-        std::abs(values[i] - p.neutral) > kMaxTypical * std::abs(p.typical - p.neutral)) {
-      return false;
-    }
+    if (!p.switches) continue;
+    const double size = std::abs(values[i] - p.neutral);
+    const double most = values[i] < p.neutral ? p.neutral - p.low : p.high - p.neutral;
+    if (size > 0.0 && size > (1.0 - kMargin) * most) return false;
+    if (!data.has_inputs() && size > kMaxTypical * std::abs(p.typical - p.neutral)) return false;
   }
   return true;
 }

@@ -71,8 +71,9 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
                                         const EffectSettings& model_effects,
                                         const std::vector<Unknown>& free = {});
 
-/// Whether these values are plausible for a car: every switching parameter within ten times its
-/// typical size. Always true for a rig, which has no typical size.
+/// Whether these values are plausible: no switching parameter is at the limit of its range, where
+/// a fit would leave it; of a car every one is within ten times its typical size. A rig has no
+/// typical size.
 bool is_plausible(const CampaignData& data, const Hypothesis& h, const std::vector<double>& values);
 
 /// Whether a place is one corner of an axle: "front_left", ...

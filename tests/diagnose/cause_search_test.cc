@@ -193,6 +193,23 @@ bool has_cause(const Selection& selection, const std::vector<std::string>& effec
   });
 }
 
+TEST_CASE("A size at the limit of its range is not plausible", "[unit]") {
+  const TemporaryFolder folder;
+  const CampaignData data = read_series(folder);
+  const auto is_possible = [&](const char* effect, const std::vector<double>& values) {
+    Hypothesis h;
+    h.effect = effect;
+    return is_plausible(data, h, values);
+  };
+  CHECK(is_possible("damper_blow_off", {0.5, 0.03}));  // a shape may be at its limit
+  CHECK_FALSE(is_possible("damper_blow_off", {0.98, 0.1}));
+  CHECK_FALSE(is_possible("damper_asymmetry", {-0.9}));
+  CHECK(is_possible("damper_asymmetry", {-0.89}));
+  CHECK_FALSE(is_possible("damper_hysteresis", {0.05}));
+  CHECK(is_possible("damper_hysteresis", {0.0}));
+  CHECK(is_possible("strut_friction", {0.01, 1e-3}));  // small beside a range up to 20 kN
+}
+
 double get_fitted(const Selection& selection, const std::string& name) {
   const FitResult& fit = selection.extended.fit;
   for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {

@@ -80,7 +80,12 @@ int calc_bound(const Gate& gate, const Cell& cell) {
   };
   if (gate.at_least) return std::min(count(usual.low), cell.hits - 1);
   // Who comes nearer to a target from below has not become worse.
-  return std::max({count(usual.high), cell.hits + 1, static_cast<int>(gate.target * cell.total)});
+  const double target = gate.target * cell.total;
+  // Of few intervals all may hold.
+  const double most = gate.metric == Metric::kEffectCovered || gate.metric == Metric::kBaseCovered
+                          ? std::ceil(target)
+                          : std::floor(target);
+  return std::max({count(usual.high), cell.hits + 1, static_cast<int>(most)});
 }
 
 std::vector<QuantityLimit> make_quantity_limits(const Score& score) {
