@@ -63,6 +63,7 @@ std::string make_error(const std::string& text) {
 
 std::string join_quoted(const std::vector<std::string>& words) {
   std::vector<std::string> quoted;
+  quoted.reserve(words.size());
   for (const std::string& word : words) quoted.push_back(quote_if_needed(word));
   return fmt::format("{}", fmt::join(quoted, " "));
 }

@@ -55,7 +55,7 @@ void ProgressLine::work() {
 
 std::string format_progress(std::int64_t done, std::int64_t total, const std::string& what,
                             double seconds) {
-  const std::string line = fmt::format("{}/{} {}", format_count(done), format_count(total), what);
+  std::string line = fmt::format("{}/{} {}", format_count(done), format_count(total), what);
   if (done <= 0 || done >= total) return line;
   const double remaining = static_cast<double>(total - done) / static_cast<double>(done);
   return fmt::format("{}, {} to go", line, format_duration(remaining * seconds));
