@@ -40,7 +40,7 @@ using Take = std::function<void(std::size_t, const DrivenResult&)>;
 /// Simulates tasks [first, end), which may share lanes, together. A single task takes a lane, too,
 /// so that its result has the same bits.
 void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, std::size_t end,
-                       const Take& take) {
+                       const std::vector<int>& channels, const Take& take) {
   const DrivenTask& common = tasks[first];
   StepOptions step;
   step.step = common.sampling.step;
@@ -50,6 +50,7 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
       common.run->times.back() +
       (common.sampling.even ? 0.0 : static_cast<double>(kCurveSamples) * common.sampling.interval);
   plan.snapshot = false;
+  plan.recorded = channels;
   std::vector<const RigSpec*> specs;
   specs.reserve(end - first);
   for (std::size_t i = first; i < end; ++i) specs.push_back(&tasks[i].variant.rig);
@@ -64,7 +65,7 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
       take(first, DrivenResult(fmt::format("{}: {}", common.run->name, e.what())));
       return;
     }
-    for (std::size_t i = first; i < end; ++i) simulate_together(tasks, i, i + 1, take);
+    for (std::size_t i = first; i < end; ++i) simulate_together(tasks, i, i + 1, channels, take);
   }
 }
 
@@ -120,46 +121,34 @@ DrivenTask::DrivenTask(const MeasuredRun& measured, std::size_t index,
 }
 
 DrivenResult::DrivenResult(const DrivenTask& task, const LaneResults& results, int lane)
-    : run_(task.run),
-      sampling_(task.sampling),
-      channels_(task.run->setup.info().channels.size()),
-      count_(static_cast<std::size_t>(results.sample_count)) {
+    : run_(task.run), sampling_(task.sampling) {
   if (!results.is_done(lane)) {
     failure_ = fmt::format("{}: the simulation ends at t = {} s: the motion is not finite",
                            run_->name, format_rounded(results.get_failure_time(lane)));
     return;
   }
-  history_.resize(count_ * channels_);
-  for (std::size_t i = 0; i < history_.size(); ++i) {
-    history_[i] =
-        results.get_sample(static_cast<int>(i / channels_), static_cast<int>(i % channels_), lane);
+  const RigSpec& rig = task.variant.rig;
+  for (std::size_t i = 0; i < results.recorded.size(); ++i) {
+    const auto channel = static_cast<std::size_t>(results.recorded[i]);
+    history_.push_back(read_sensor(rig.effects, get_rig_info(rig.kind).channels[channel].name,
+                                   sampling_.interval,
+                                   results.get_history(static_cast<int>(i), lane)));
   }
-  read_sensors(task.variant.rig);
 }
 
-double DrivenResult::read(std::size_t time, std::size_t channel) const {
-  const auto get = [&](std::size_t sample) { return history_[sample * channels_ + channel]; };
+double DrivenResult::read(std::size_t time, std::size_t column) const {
+  const std::vector<double>& series = history_[column];
   if (sampling_.even) {
-    STRUT_CHECK(time < count_, "a sample at every reading");
-    return get(time);
+    STRUT_CHECK(time < series.size(), "a sample at every reading");
+    return series[time];
   }
-  STRUT_CHECK(count_ >= kCurveSamples, "samples to interpolate");
-  return interpolate_samples(get, count_, run_->times[time] / sampling_.interval);
+  STRUT_CHECK(series.size() >= kCurveSamples, "samples to interpolate");
+  const auto get = [&](std::size_t sample) { return series[sample]; };
+  return interpolate_samples(get, series.size(), run_->times[time] / sampling_.interval);
 }
 
-/// Replaces the channels by the readings of their sensors.
-void DrivenResult::read_sensors(const RigSpec& spec) {
-  if (spec.effects.empty()) return;
-  for (std::size_t c = 0; c < channels_; ++c) {
-    std::vector<double> series(count_);
-    for (std::size_t i = 0; i < count_; ++i) series[i] = history_[i * channels_ + c];
-    series = read_sensor(spec.effects, get_rig_info(spec.kind).channels[c].name, sampling_.interval,
-                         std::move(series));
-    for (std::size_t i = 0; i < count_; ++i) history_[i * channels_ + c] = series[i];
-  }
-}
-
-void simulate_tasks(const std::vector<DrivenTask>& tasks, int threads, const Take& take) {
+void simulate_tasks(const std::vector<DrivenTask>& tasks, const std::vector<int>& channels,
+                    int threads, const Take& take) {
   const auto width = static_cast<std::size_t>(list_kernels().front().lanes);
   std::vector<std::size_t> begin;  // of each batch
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -170,7 +159,7 @@ void simulate_tasks(const std::vector<DrivenTask>& tasks, int threads, const Tak
   share_items(threads, begin.size(), [&](std::size_t k, int /*thread*/) {
     const std::size_t first = begin[k], end = k + 1 < begin.size() ? begin[k + 1] : tasks.size();
     if (tasks[first].failure.empty()) {
-      simulate_together(tasks, first, end, take);
+      simulate_together(tasks, first, end, channels, take);
     } else {
       take(first, DrivenResult(tasks[first].failure));
     }

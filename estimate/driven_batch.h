@@ -55,22 +55,21 @@ class DrivenResult {
   DrivenResult(const DrivenTask& task, const LaneResults& results, int lane);
 
   const std::string& failure() const { return failure_; }
-  /// Interpolates where the samples are not at the run's times. Needs a result without failure.
-  double read(std::size_t time, std::size_t channel) const;
+  /// Interpolates where the samples are not at the run's times. `column` counts the channels that
+  /// were asked for. Needs a result without failure.
+  double read(std::size_t time, std::size_t column) const;
 
  private:
-  void read_sensors(const RigSpec& rig);
-
   std::string failure_;
   const MeasuredRun* run_ = nullptr;
   DrivenSampling sampling_;
-  std::size_t channels_ = 0, count_ = 0;
-  std::vector<double> history_;  // [sample][channel]
+  std::vector<std::vector<double>> history_;  // [column][sample]
 };
 
-/// Simulates each task and passes its result to `take`, once and from any thread, with the task's
-/// number. A task's result depends on no other task. Histories are long, so none outlives its call.
-void simulate_tasks(const std::vector<DrivenTask>& tasks, int threads,
-                    const std::function<void(std::size_t, const DrivenResult&)>& take);
+/// Simulates each task and passes its result, of `channels` of the rig, to `take`, once and from
+/// any thread, with the task's number. A task's result depends on no other task. Histories are
+/// long, so none outlives its call.
+void simulate_tasks(const std::vector<DrivenTask>& tasks, const std::vector<int>& channels,
+                    int threads, const std::function<void(std::size_t, const DrivenResult&)>& take);
 
 }  // namespace strut

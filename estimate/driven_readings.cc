@@ -1,6 +1,7 @@
 #include "estimate/driven_readings.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "estimate/driven_batch.h"
@@ -44,6 +45,7 @@ class DrivenReadings final : public ReadingModel {
                    const Simulated& below, Linearization& out) const;
 
   LinearizeOptions options_;
+  std::vector<int> recorded_;  // channels that any run compares, ascending
 };
 
 DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
@@ -53,21 +55,32 @@ DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknow
     add_readings(r, [](double) { return true; });
   }
   finish();
+  std::set<int> compared;
+  for (const std::vector<int>& channels : this->channels()) {
+    compared.insert(channels.begin(), channels.end());
+  }
+  recorded_.assign(compared.begin(), compared.end());
 }
 
 std::vector<DrivenReadings::Simulated> DrivenReadings::simulate(
     const std::vector<DrivenTask>& tasks) {
   std::vector<Simulated> simulated(tasks.size());
-  simulate_tasks(tasks, options_.threads, [&](std::size_t k, const DrivenResult& result) {
-    simulated[k].failure = result.failure();
-    if (!result.failure().empty()) return;
-    const std::size_t run = tasks[k].run_index;
-    simulated[k].readings.reserve(begin_row(run + 1) - begin_row(run));
-    for (std::size_t i = begin_row(run); i < begin_row(run + 1); ++i) {
-      const auto channel = static_cast<std::size_t>(get_channel(readings_[i]).channel);
-      simulated[k].readings.push_back(result.read(readings_[i].time, channel));
-    }
-  });
+  const auto find_column = [&](const ReadingPlace& place) {
+    const auto found =
+        std::lower_bound(recorded_.begin(), recorded_.end(), get_channel(place).channel);
+    return static_cast<std::size_t>(found - recorded_.begin());
+  };
+  simulate_tasks(tasks, recorded_, options_.threads,
+                 [&](std::size_t k, const DrivenResult& result) {
+                   simulated[k].failure = result.failure();
+                   if (!result.failure().empty()) return;
+                   const std::size_t run = tasks[k].run_index;
+                   simulated[k].readings.reserve(begin_row(run + 1) - begin_row(run));
+                   for (std::size_t i = begin_row(run); i < begin_row(run + 1); ++i) {
+                     simulated[k].readings.push_back(
+                         result.read(readings_[i].time, find_column(readings_[i])));
+                   }
+                 });
   simulation_count_ += static_cast<long>(tasks.size());
   return simulated;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/error/input_error.h"
 #include "base/text/range.h"
@@ -83,12 +84,13 @@ RunCurves simulate_driven(const MeasuredRun& run, const std::vector<Unknown>& un
   const DrivenTask task(run, 0, unknowns, values, {});
   if (!task.failure.empty()) throw InputError(task.failure);
   RunCurves curves;
-  simulate_tasks({task}, 1, [&](std::size_t, const DrivenResult& result) {
+  std::vector<int> channels(run.setup.info().channels.size());
+  std::iota(channels.begin(), channels.end(), 0);
+  simulate_tasks({task}, channels, 1, [&](std::size_t, const DrivenResult& result) {
     curves.failure = result.failure();
     if (!curves.failure.empty()) return;
-    const std::size_t count = run.setup.info().channels.size();
-    curves.channel.assign(count, std::vector<double>(run.times.size()));
-    for (std::size_t c = 0; c < count; ++c) {
+    curves.channel.assign(channels.size(), std::vector<double>(run.times.size()));
+    for (std::size_t c = 0; c < channels.size(); ++c) {
       for (std::size_t t = 0; t < run.times.size(); ++t) curves.channel[c][t] = result.read(t, c);
     }
   });

@@ -103,7 +103,7 @@ void Whitener::apply_run(std::size_t r, const Eigen::VectorXd& column,
   const Run& run = runs_[r];
   const std::size_t channels = run.rows.size(), count = run.fade.size();
   const auto kept = static_cast<Eigen::Index>(run.factor.size());
-  Eigen::FFT<double> fft;
+  thread_local Eigen::FFT<double> fft;  // keeps its tables
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   fft.SetFlag(Eigen::FFT<double>::Unscaled);
   Eigen::MatrixXcd spectrum(static_cast<Eigen::Index>(channels), kept);

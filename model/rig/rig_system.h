@@ -33,6 +33,7 @@ template <class T>
 class RigSystem {
  public:
   static constexpr int kCapacity = 2 * kRigCoordinates + kStatesPerStrut;
+  static constexpr bool kSamplesStepEnds = true;
   using Mask = MaskOf<T>;
 
   /// `inputs` by assign_rig_inputs. Rig and signals must outlive the system.

@@ -4,6 +4,8 @@
 // threads share one. Before the first and after the last sample the signal is constant.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -62,12 +64,11 @@ struct SignalPoint {
   T value, rate, second_rate;  // [u], [u/s], [u/s^2] in the signal's unit u
 };
 
-/// The signal at t [s]; at a sample, the piece of the interval that begins there.
+/// Index of the first number of the cell of `held` [s], a time from the first to the last sample.
 template <class T>
-SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
+T find_cell(const InputSignal& signal, const T& held) {
   constexpr double kStride = 5.0;
   const double last_bin = static_cast<double>(signal.bins.size()) - 1.0;
-  const T held = min(max(t, T(signal.begin)), T(signal.end));
   // Comparisons, not min and max: a NaN must end in bin 0, not outside the table.
   T bin = floor((held - T(signal.begin)) * T(signal.inverse_bin));
   bin = select(bin > T(0.0), bin, T(0.0));
@@ -77,11 +78,28 @@ SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
   for (int i = 0; i < signal.search_steps; ++i) {
     at += select(gather(table, at + T(kStride)) <= held, T(kStride), T(0.0));
   }
+  return at;
+}
+
+/// The signal at t [s]; at a sample, the piece of the interval that begins there.
+template <class T>
+SignalPoint<T> calc_signal(const InputSignal& signal, const T& t) {
+  const T held = min(max(t, T(signal.begin)), T(signal.end));
+  const auto* table = reinterpret_cast<const double*>(signal.cells.data());
+  std::array<T, 5> cell;  // begin, then the coefficients
+  const double first = get_lane(held, 0);
+  if (all((held >= T(first)) & (held <= T(first)))) {  // one look-up serves all lanes
+    table += static_cast<std::ptrdiff_t>(find_cell(signal, first));
+    for (std::size_t i = 0; i < cell.size(); ++i) cell[i] = T(table[i]);
+  } else {
+    const T at = find_cell(signal, held);
+    for (std::size_t i = 0; i < cell.size(); ++i) cell[i] = gather(table + i, at);
+  }
+  const auto& [begin, c0, c1, c2, c3] = cell;
   const auto inside = (t >= T(signal.begin)) & (t <= T(signal.end));
-  const T s = held - gather(table, at);
-  const T c1 = gather(table + 2, at), c2 = gather(table + 3, at), c3 = gather(table + 4, at);
+  const T s = held - begin;
   const T rate = c1 + s * (T(2.0) * c2 + s * (T(3.0) * c3));
-  return {gather(table + 1, at) + s * (c1 + s * (c2 + s * c3)), select(inside, rate, T(0.0)),
+  return {c0 + s * (c1 + s * (c2 + s * c3)), select(inside, rate, T(0.0)),
           select(inside, T(2.0) * c2 + T(6.0) * c3 * s, T(0.0))};
 }
 
