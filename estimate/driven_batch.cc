@@ -22,7 +22,8 @@ namespace {
 
 bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
   return a.failure.empty() && b.failure.empty() && a.run == b.run &&
-         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step;
+         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step &&
+         a.sampling.fine_step == b.sampling.fine_step;
 }
 
 /// The run's inputs times their gains.
@@ -43,7 +44,8 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
                        const std::vector<int>& channels, const Take& take) {
   const DrivenTask& common = tasks[first];
   StepOptions step;
-  step.step = common.sampling.step;
+  step.step = common.sampling.fine_step;
+  if (common.sampling.fine_step < common.sampling.step) step.coarse_step = common.sampling.step;
   SamplePlan plan;
   plan.interval = common.sampling.interval;
   plan.duration =
@@ -96,7 +98,7 @@ DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
 DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& options) {
   const double n = static_cast<double>(run.times.size() - 1);
   const double mean = run.times.back() / n;
-  const double longest = std::min(options.longest_step, calc_longest_step(run.setup.rig().rig));
+  const double longest = std::min(options.longest_step, calc_longest_settled_step(run.setup.rig().rig));
   DrivenSampling s;
   s.even = true;
   for (std::size_t i = 0; i < run.times.size() && s.even; ++i) {
@@ -114,7 +116,8 @@ DrivenTask::DrivenTask(const MeasuredRun& measured, std::size_t index,
   try {
     variant = make_variant(measured, index, unknowns, values);
     sampling = choose_sampling(measured, options);
-    sampling.step = shorten_step(sampling.step, calc_longest_step(variant.rig));
+    sampling.step = shorten_step(sampling.step, calc_longest_settled_step(variant.rig));
+    sampling.fine_step = shorten_step(sampling.step, calc_longest_step(variant.rig));
   } catch (const InputError& e) {  // out of a parameter's range
     failure = fmt::format("{}: {}", measured.name, e.what());
   }

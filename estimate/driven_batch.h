@@ -30,6 +30,7 @@ DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
 /// enough to interpolate.
 struct DrivenSampling {
   double interval = 0.0, step = 0.0;  // s; whole steps lie between samples
+  double fine_step = 0.0;             // s, where a joint crosses its play; divides `step`
   bool even = false;
 };
 

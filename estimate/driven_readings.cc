@@ -18,6 +18,8 @@ void match_steps(const std::vector<RunVariant>& variants, std::vector<DrivenTask
     if (upper.failure.empty() && lower.failure.empty()) {
       upper.sampling.step = lower.sampling.step =
           std::min(upper.sampling.step, lower.sampling.step);
+      upper.sampling.fine_step = lower.sampling.fine_step =
+          std::min(upper.sampling.fine_step, lower.sampling.fine_step);
     }
     ++k;
   }

@@ -19,18 +19,22 @@ double calc_friction_step(const DryFriction<double>& friction, double mass) {
   return friction.force > 0.0 ? mass / (friction.force * friction.inverse_speed) : kUnlimited;
 }
 
+double calc_contact_step(const StrutEffectNumbers<double>& n) {
+  constexpr double kContactTimes = 1.2;
+  if (!(n.series.play > 0.0)) return kUnlimited;
+  return std::max(kContactTimes / calc_contact_rate(n.series.play), kShortestContact);
+}
+
 /// `mass` [kg]: infinite where the motion is given.
+double calc_settled_step(const StrutEffectNumbers<double>& n, double mass) {
+  constexpr double kStopRadians = 0.2;
+  const double friction = calc_friction_step(n.friction, mass);
+  if (!(n.stop.stiffness > 0.0)) return friction;
+  return std::min(friction, kStopRadians * std::sqrt(mass / n.stop.stiffness));
+}
+
 double calc_strut_step(const StrutEffectNumbers<double>& n, double mass) {
-  constexpr double kStopRadians = 0.2, kContactTimes = 1.2;
-  double longest = calc_friction_step(n.friction, mass);
-  if (n.series.play > 0.0) {
-    const double contact = kContactTimes / calc_contact_rate(n.series.play);
-    longest = std::min(longest, std::max(contact, kShortestContact));
-  }
-  if (n.stop.stiffness > 0.0) {
-    longest = std::min(longest, kStopRadians * std::sqrt(mass / n.stop.stiffness));
-  }
-  return longest;
+  return std::min(calc_settled_step(n, mass), calc_contact_step(n));
 }
 
 double calc_moved_mass(const RigSpec& rig) {
@@ -40,17 +44,23 @@ double calc_moved_mass(const RigSpec& rig) {
   return 1.0 / (1.0 / rig.sprung_mass + 1.0 / rig.unsprung_mass);
 }
 
+StrutEffectNumbers<double> make_numbers(const RigSpec& rig) {
+  return make_strut_effect_numbers({rig.effects, get_rig_info(rig.kind)}, PlaceName::kRig, {});
+}
+
 }  // namespace
 
 double calc_longest_step(const RigSpec& rig) {
+  return std::min(calc_longest_settled_step(rig), calc_contact_step(make_numbers(rig)));
+}
+
+double calc_longest_settled_step(const RigSpec& rig) {
   constexpr double kModeRadians = 0.1;
-  const RigInfo& info = get_rig_info(rig.kind);
-  const double mass = calc_moved_mass(rig), mode = info.calc_fastest_mode(rig);
-  const StrutEffectNumbers<double> numbers =
-      make_strut_effect_numbers({rig.effects, info}, PlaceName::kRig, {});
+  const double mass = calc_moved_mass(rig);
+  const double mode = get_rig_info(rig.kind).calc_fastest_mode(rig);
   const double linear = mode > 0.0 ? kModeRadians / mode : kUnlimited;
   const double guide = calc_friction_step({rig.guide_friction, 1.0 / rig.guide_speed}, mass);
-  return std::min({linear, guide, calc_strut_step(numbers, mass)});
+  return std::min({linear, guide, calc_settled_step(make_numbers(rig), mass)});
 }
 
 double calc_longest_step(const VehicleSpec& vehicle,

@@ -20,6 +20,8 @@ namespace strut {
 ///
 /// m: the mass that the strut moves (of two the reduced one).
 double calc_longest_step(const RigSpec& rig);
+/// The same while no joint crosses its play (RigSystem::wants_fine_step): without 1.2 / r.
+double calc_longest_settled_step(const RigSpec& rig);
 
 /// Longest step [s] that resolves a car's effects. m: the axle's wheel.
 double calc_longest_step(const Case& c);

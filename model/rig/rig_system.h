@@ -105,6 +105,25 @@ class RigSystem {
   }
   bool cross(int /*guard*/, Mask /*lanes*/) { return false; }
 
+  /// Whether a joint is crossing its play, has just crossed it, or may begin to within a coarse
+  /// step: elsewhere the contact follows the strut's speed, and the exponential formulas follow the
+  /// contact. Fine steps go on to the end of the coarse step in which they began, so that samples
+  /// remain at ends of steps.
+  Mask wants_fine_step(const T* x, const T& coarse_step) const {
+    constexpr double kSettled = 0.05, kMargin = 1.5, kOnGrid = 1e-6;
+    if (!rig_.effects.has_states()) return T(1.0) < T(0.0);
+    const DamperSeries<T>& series = rig_.numbers.effects.series;
+    DamperSeriesState<T> state;
+    state.joint = x[2 * count_ + 2];
+    const T speed = calc_strut_speed(x), behind = calc_joint_speed(series, speed, state);
+    const auto inside = abs(state.joint) <= T(0.5) * series.play;
+    const auto settles = abs(behind - speed) > T(kSettled) * abs(speed);
+    const auto reverses = abs(speed) < T(kMargin) * coarse_step * abs(calc_strut_acceleration());
+    const T steps = time_ / coarse_step;
+    const auto off_grid = abs(steps - floor(steps + T(0.5))) > T(kOnGrid);
+    return (series.play > T(0.0)) & (inside | settles | reverses | off_grid);
+  }
+
   /// Constant, because a rig has no snapshot.
   T get_trigger() const { return T(1.0); }
   Mask has_failed() const { return failed_; }
@@ -138,6 +157,7 @@ class RigSystem {
     input = {gain * input.value, gain * input.rate, gain * input.second_rate};
   }
   void update_inputs(const T& t) {
+    time_ = t;
     ws_.input.fill({0.0, 0.0, 0.0});
     if (inputs_[0]) update_first_input(t);
     if (inputs_[1]) ws_.input[1] = calc_signal(*inputs_[1], t);
@@ -147,14 +167,14 @@ class RigSystem {
 
   void settle_strut(T* x) {
     update_inputs(T(0.0));
-    const T speed = calc_start_speed(x);
+    const T speed = calc_strut_speed(x);
     const StrutEffectNumbers<T>& numbers = rig_.numbers.effects;
     x[2 * count_] = x[2 * count_ + 1] = numbers.law.calc_rate(speed, calc_warming()) * speed;
     x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
   }
 
-  /// Initial speed of the strut [m/s], positive in compression.
-  T calc_start_speed(const T* x) const {
+  /// Speed of the strut [m/s], positive in compression, under the inputs of the last evaluation.
+  T calc_strut_speed(const T* x) const {
     switch (rig_.layout.kind) {
       case RigKind::kQuarterCar:
         return x[2 + kUnsprung] - x[2 + kSprung];
@@ -166,6 +186,21 @@ class RigSystem {
         break;
     }
     return ws_.input[0].rate - x[1];
+  }
+
+  /// Its derivative [m/s^2] at the last evaluation.
+  T calc_strut_acceleration() const {
+    switch (rig_.layout.kind) {
+      case RigKind::kQuarterCar:
+        return ws_.acceleration[kUnsprung] - ws_.acceleration[kSprung];
+      case RigKind::kStrutRig:
+        return ws_.input[0].second_rate;
+      case RigKind::kSingleMass:
+        return -ws_.acceleration[0];
+      case RigKind::kGuidedMass:
+        break;
+    }
+    return ws_.input[0].second_rate - ws_.acceleration[0];
   }
 
   T calc_warming() const {
@@ -273,6 +308,7 @@ class RigSystem {
   bool on_ground_;
   RigWorkspace<T> ws_{};
   StrutStates<T> states_;
+  T time_{};  // of the last evaluation, s
   Mask failed_{};
 };
 

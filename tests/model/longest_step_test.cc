@@ -25,19 +25,25 @@ RigSpec make_rig(RigKind kind, const EffectSettings& effects) {
   return rig;
 }
 
-/// A channel over two seconds of a sine with 20 mm on a stand, 2 mm on a road.
-std::vector<double> simulate(const RigSpec& rig, int channel, double step) {
+/// Two seconds of a sine with 20 mm on a stand, 2 mm on a road.
+LaneResults run(const RigSpec& rig, double step, double coarse_step) {
   const bool is_stand = rig.kind == RigKind::kStrutRig;
   const std::vector<InputSignal> inputs = {make_chirp(get_rig_info(rig.kind).inputs.front().name,
                                                       is_stand ? 0.02 : 0.002, 1.0, 4.0, 2.0)};
   StepOptions options;
   options.step = step;
+  options.coarse_step = coarse_step;
   SamplePlan plan;
   plan.duration = 2.0;
   plan.interval = 0.002;
-  const LaneResults run = simulate_rig(rig, inputs, options, plan);
-  REQUIRE(run.is_done());
-  return run.get_history(channel);
+  LaneResults results = simulate_rig(rig, inputs, options, plan);
+  REQUIRE(results.is_done());
+  return results;
+}
+
+std::vector<double> simulate(const RigSpec& rig, int channel, double step,
+                             double coarse_step = 0.0) {
+  return run(rig, step, coarse_step).get_history(channel);
 }
 
 double measure_distance(const std::vector<double>& a, const std::vector<double>& b) {
@@ -46,10 +52,10 @@ double measure_distance(const std::vector<double>& a, const std::vector<double>&
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// Error of a step as a fraction of the effect.
-double measure_error(RigSpec rig, int channel, double step) {
+/// Error of steps as a fraction of the effect.
+double measure_error(RigSpec rig, int channel, double step, double coarse_step = 0.0) {
   const std::vector<double> exact = simulate(rig, channel, kExactStep);
-  const double error = measure_distance(simulate(rig, channel, step), exact);
+  const double error = measure_distance(simulate(rig, channel, step, coarse_step), exact);
   rig.effects.clear();
   return error / measure_distance(simulate(rig, channel, kExactStep), exact);
 }
@@ -82,6 +88,27 @@ TEST_CASE("The default step misses a lost stroke that the longest step resolves"
   CHECK(measure_error(rig, StrutRigChannel::kForce, kDefaultStep) > 0.5);
   CHECK(measure_error(rig, StrutRigChannel::kForce,
                       shorten_step(kDefaultStep, calc_longest_step(rig))) < test::tolerance(0.04));
+}
+
+TEST_CASE("Fine steps are taken only where a joint crosses its play", "[reference]") {
+  for (const RigKind kind : {RigKind::kStrutRig, RigKind::kQuarterCar}) {
+    const int channel = kind == RigKind::kStrutRig ? int{StrutRigChannel::kForce}
+                                                   : int{QuarterCarChannel::kSprungAcceleration};
+    for (const double play : {2e-5, 1e-4, 3e-4}) {
+      const RigSpec rig = make_rig(kind, {{"joint_play", "", {play}}});
+      const double coarse = shorten_step(kDefaultStep, calc_longest_settled_step(rig));
+      const double fine = shorten_step(coarse, calc_longest_step(rig));
+      INFO("kind " << static_cast<int>(kind) << ", play " << play << " m: steps of " << fine << " s");
+      REQUIRE(fine < coarse);
+      const double alone = measure_error(rig, channel, fine);
+      CHECK(measure_error(rig, channel, fine, coarse) < alone + test::tolerance(0.005));
+      const LaneResults mixed = run(rig, fine, coarse);
+      const auto share = static_cast<double>(mixed.derivative_count) /
+                         static_cast<double>(run(rig, fine, 0.0).derivative_count);
+      CHECK(share < fine / coarse + 0.25);
+      CHECK(std::abs(mixed.get_sample(500, 0) - 1.0) < 1e-9);  // samples stay on their times
+    }
+  }
 }
 
 TEST_CASE("Plain models and soft effects need no step of their own", "[unit]") {
