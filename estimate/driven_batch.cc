@@ -22,8 +22,7 @@ namespace {
 
 bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
   return a.failure.empty() && b.failure.empty() && a.run == b.run &&
-         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step &&
-         a.sampling.fine_step == b.sampling.fine_step;
+         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step;
 }
 
 /// The run's inputs times their gains.
@@ -44,8 +43,7 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
                        const std::vector<int>& channels, const Take& take) {
   const DrivenTask& common = tasks[first];
   StepOptions step;
-  step.step = common.sampling.fine_step;
-  if (common.sampling.fine_step < common.sampling.step) step.coarse_step = common.sampling.step;
+  step.step = common.sampling.step;
   SamplePlan plan;
   plan.interval = common.sampling.interval;
   plan.duration =
@@ -54,11 +52,17 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
   plan.snapshot = false;
   plan.recorded = channels;
   std::vector<const RigSpec*> specs;
-  specs.reserve(end - first);
-  for (std::size_t i = first; i < end; ++i) specs.push_back(&tasks[i].variant.rig);
+  std::vector<double> fine_steps;
+  for (std::size_t i = first; i < end; ++i) {
+    specs.push_back(&tasks[i].variant.rig);
+    fine_steps.push_back(tasks[i].sampling.fine_step);
+    step.step = std::min(step.step, tasks[i].sampling.fine_step);
+  }
+  if (step.step < common.sampling.step) step.coarse_step = common.sampling.step;
   try {
-    const LaneResults lanes = list_kernels().front().run_rigs(
-        specs.data(), static_cast<int>(specs.size()), scale_inputs(common), step, plan);
+    const LaneResults lanes = list_kernels().front().run_rigs(specs.data(), fine_steps.data(),
+                                                              static_cast<int>(specs.size()),
+                                                              scale_inputs(common), step, plan);
     for (std::size_t i = first; i < end; ++i) {
       take(i, DrivenResult(tasks[i], lanes, static_cast<int>(i - first)));
     }
@@ -98,7 +102,8 @@ DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
 DrivenSampling choose_sampling(const MeasuredRun& run, const LinearizeOptions& options) {
   const double n = static_cast<double>(run.times.size() - 1);
   const double mean = run.times.back() / n;
-  const double longest = std::min(options.longest_step, calc_longest_settled_step(run.setup.rig().rig));
+  const double longest =
+      std::min(options.longest_step, calc_longest_settled_step(run.setup.rig().rig));
   DrivenSampling s;
   s.even = true;
   for (std::size_t i = 0; i < run.times.size() && s.even; ++i) {

@@ -126,23 +126,32 @@ void improve(Fitted& fitted, Fitted other) {
 /// The first fit of one effect, values empty where it cannot be simulated.
 Fitted fit_first(const Round& round, const RankedTrial& ranked,
                  const std::vector<double>& beginning) {
-  constexpr double kNear = 0.02;
-  const HypothesisTrial& trial = round.evidence.trials[ranked.trial];
-  const Hypothesis& h = round.hypotheses[trial.hypothesis];
-  const auto fit = [&](const std::vector<double>& start) {
-    return keep_fit(round, h, round.bench.fit(h, start, round.options.screening), start);
-  };
-  Fitted fitted = fit(beginning);
-  // Far from what the score promised: another valley, and none of the sizes that a search begins
-  // with was in the right one. Near the base the score cannot be wrong.
-  if (round.data.has_inputs() &&
-      (fitted.candidate.values.empty() || fitted.candidate.gain < 0.5 * ranked.gain.chi2)) {
-    const auto ones = Eigen::VectorXd::Constant(ranked.gain.amplitude.size(), kNear);
-    improve(fitted,
-            fit(scale_beginning(round.data, h, trial, ones.cwiseProduct(ranked.gain.amplitude))));
-  }
+  const Hypothesis& h = round.hypotheses[round.evidence.trials[ranked.trial].hypothesis];
+  Fitted fitted =
+      keep_fit(round, h, round.bench.fit(h, beginning, round.options.screening), beginning);
   fitted.candidate.score = ranked.gain.chi2;
   return fitted;
+}
+
+/// A fit far from what the score promised is in another valley, and none of the sizes that a search
+/// begins with was in the right one. Near the base the score cannot be wrong, so a fit begins
+/// there, if what it promises comes near `most`, the largest gain of all.
+void fit_near_base(const Round& round, const RankedTrial& ranked, double most, Fitted& fitted) {
+  constexpr double kSize = 0.02, kKept = 0.5;
+  if (!round.data.has_inputs() || ranked.gain.chi2 < kKept * most) return;
+  if (!fitted.candidate.values.empty() && fitted.candidate.gain > kKept * ranked.gain.chi2) return;
+  const HypothesisTrial& trial = round.evidence.trials[ranked.trial];
+  const Hypothesis& h = round.hypotheses[trial.hypothesis];
+  const std::vector<double> near =
+      scale_beginning(round.data, h, trial, kSize * ranked.gain.amplitude);
+  improve(fitted, keep_fit(round, h, round.bench.fit(h, near, round.options.screening), near));
+  fitted.candidate.score = ranked.gain.chi2;
+}
+
+double find_most(const std::vector<Fitted>& fitted) {
+  double most = 0.0;
+  for (const Fitted& f : fitted) most = std::max(most, f.candidate.gain);
+  return most;
 }
 
 /// Searches on where a fit has not converged.
@@ -230,11 +239,13 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
     });
   };
   on_each([&](std::size_t i) { fitted[i] = fit_first(round, ranked[i], beginnings[i]); });
-  double most = 0.0;
-  for (const Fitted& f : fitted) most = std::max(most, f.candidate.gain);
+  const double first = find_most(fitted);
+  on_each([&](std::size_t i) { fit_near_base(round, ranked[i], first, fitted[i]); });
+  const double most = find_most(fitted);
   if (options.is_final) {
     on_each([&](std::size_t i) {
-      if (fitted[i].candidate.gain > kNear * most) finish(round, fitted[i]);
+      const Candidate& c = fitted[i].candidate;
+      if (c.gain > kNear * most && is_allowed(round.data, c)) finish(round, fitted[i]);
       try_removal(round, fitted[i]);
     });
   }

@@ -1,6 +1,7 @@
 #include "diagnose/decide/select.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -248,6 +249,42 @@ class Selector {
     selection_.hold_out_after = judge(selection_.extended);
   }
 
+  /// Fits the causes together with what is added. The first was found alone: beside a later one it
+  /// may belong into another valley (the play of a joint, once friction stands behind it). Where
+  /// the model's error dominates, fits therefore begin at less and at more of each earlier cause,
+  /// too.
+  WhitenedFit fit_extended(const ExtendedUnknowns& e) const {
+    constexpr std::array<double, 2> kSizes = {0.4, 2.5};
+    const auto fit = [&](const std::vector<double>& start) {
+      return fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra, e.unknowns,
+                          start, e.shared_count, options_.threads);
+    };
+    WhitenedFit best = fit(e.values);
+    if (!data_.has_inputs() || !best.is_dominated) return best;
+    const std::vector<double> values = best.fit.values;
+    for (const Hypothesis& cause : selection_.causes) {
+      for (const double size : kSizes) {
+        WhitenedFit other = fit(scale_size(e, values, cause, size));
+        if (other.fit.chi2 < best.fit.chi2) best = std::move(other);
+      }
+    }
+    return best;
+  }
+
+  static std::vector<double> scale_size(const ExtendedUnknowns& e, std::vector<double> values,
+                                        const Hypothesis& cause, double size) {
+    for (std::size_t j = 0; j < cause.parameters.size(); ++j) {
+      if (!cause.parameters[j].switches) continue;
+      for (std::size_t i = 0; i < e.shared_count; ++i) {
+        const Unknown& u = e.unknowns[i];
+        if (u.name != cause.parameters[j].name) continue;
+        const double reference = cause.reference[j];
+        values[i] = std::clamp(reference + size * (values[i] - reference), u.low, u.high);
+      }
+    }
+    return values;
+  }
+
   /// A cause's own round becomes that beside all others.
   void keep_round(std::size_t i, SelectRound round) {
     const auto own = std::find_if(
@@ -280,8 +317,7 @@ class Selector {
     const ExtendedUnknowns e =
         extend(data_, selection_.extended, best.hypothesis, best.base_values, best.values);
     tell("fitting with " + best.hypothesis.describe());
-    WhitenedFit fit = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
-                                   e.unknowns, e.values, e.shared_count, options_.threads);
+    WhitenedFit fit = fit_extended(e);
     std::vector<HoldOutRun> judged = judge(fit);
     if (confirmation == Confirmation::kAlone &&
         !is_confirmed(selection_, round, judged, options_)) {

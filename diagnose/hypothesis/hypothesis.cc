@@ -56,6 +56,9 @@ std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
           break;
         case StateKind::kVelocity:
           m.velocity += spread * spread;
+          for (const double v : state.values) {
+            if (std::isfinite(v)) m.fastest = std::max(m.fastest, std::abs(v));
+          }
           break;
         case StateKind::kTireLoad:
           m.tire_deflection += spread * spread;
@@ -198,8 +201,10 @@ bool is_one_sided(const CampaignData& data, const Hypothesis& h) {
 std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h) {
   std::vector<Unknown> unknowns;
   unknowns.reserve(h.parameters.size());
-  for (const HypothesisParameter& p : h.parameters) {
-    unknowns.push_back(make_parameter(data.runs, p.name));
+  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
+    Unknown u = make_parameter(data.runs, h.parameters[i].name);
+    u.high = std::min(u.high, std::max(h.parameters[i].limit, h.reference[i]));
+    unknowns.push_back(std::move(u));
   }
   return unknowns;
 }
@@ -239,11 +244,12 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       const OnAt on = find_on(model_effects, effect.name, place);
       if (on == OnAt::kOverlapping) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;
-      const auto motion = motions.find(find_axle(place));
+      const auto found = motions.find(find_axle(place));
+      const StrutMotion motion = found == motions.end() ? StrutMotion{} : found->second;
       Hypothesis h{effect.name, place, {}, {}, EffectChange::kAdded, {}};
       for (const EffectParameter* p : parameters) {
-        h.parameters.push_back(
-            {make_effect_parameter_name(effect, place, *p, model), p->name, p->switches});
+        h.parameters.push_back({make_effect_parameter_name(effect, place, *p, model), p->name,
+                                p->switches, choose_search_limit(effect.name, p->name, motion)});
       }
       if (is_own_parameter(data, h.parameters.front().name)) continue;
       const bool is_free = std::any_of(free.begin(), free.end(), [&](const Unknown& u) {
@@ -255,9 +261,7 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       if (on == OnAt::kPlace) {
         change_from_file(data, parameters, h);
       } else {
-        h.beginnings = make_beginnings(
-            parameters, choose_search_starts(
-                            effect.name, motion == motions.end() ? StrutMotion{} : motion->second));
+        h.beginnings = make_beginnings(parameters, choose_search_starts(effect.name, motion));
       }
       list.push_back(std::move(h));
     }

@@ -2,6 +2,7 @@
 // may act, with start values that fit the measured motion.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct HypothesisParameter {
   std::string key;       // as in a model file: "asymmetry"
   bool switches = true;  // whether it switches the effect: off if all such parameters are neutral;
                          // false: it only shapes the effect
+  double limit = std::numeric_limits<double>::infinity();  // largest value that is looked for
 };
 
 /// Change of the model file by a hypothesis.

@@ -1,6 +1,7 @@
 #include "diagnose/hypothesis/search_starts.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "base/error/check.h"
@@ -145,6 +146,14 @@ SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& 
   const Rules& rules = list_rules();
   const auto found = rules.find(effect);
   return found == rules.end() ? SearchStarts{{}} : found->second(motion);
+}
+
+double choose_search_limit(const std::string& effect, const std::string& parameter,
+                           const StrutMotion& motion) {
+  constexpr double kTimesFastest = 3.0;
+  const bool is_knee = effect == EffectName::kDamperBlowOff && parameter == "knee";
+  return is_knee && motion.fastest > 0.0 ? kTimesFastest * motion.fastest
+                                         : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace strut

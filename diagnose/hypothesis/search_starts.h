@@ -12,6 +12,7 @@ struct StrutMotion {
   double compression = 0.0;      // m, maximum
   double deflection = 0.0;       // m, rms
   double velocity = 0.0;         // m/s, rms
+  double fastest = 0.0;          // m/s, maximum of the absolute value
   double stiffness = 0.0;        // N/m
   double damping = 0.0;          // N s/m
   double tire_deflection = 0.0;  // m, rms
@@ -24,5 +25,11 @@ struct StrutMotion {
 /// in the map has its default start value. One empty map for an effect without a rule of its own.
 using SearchStarts = std::vector<std::map<std::string, double>>;
 SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& motion);
+
+/// Largest value of an effect's parameter that this motion determines; infinity without a rule. A
+/// knee far above all speeds bends a law by loss / knee^2, whatever either is: both would run away
+/// together.
+double choose_search_limit(const std::string& effect, const std::string& parameter,
+                           const StrutMotion& motion);
 
 }  // namespace strut

@@ -17,11 +17,17 @@ struct DamperLaw {
   T fade;        // l
   T warm_fade;   // b, 1/K
 
-  /// F / v [N s/m]; `warming` T - T_0 [K].
+  /// F / v [N s/m]; `warming` T - T_0 [K]. Root and exponential are left out where no lane needs
+  /// them.
   T calc_rate(const T& speed, const T& warming) const {
     const T side = select(speed > T(0.0), T(1.0) - asymmetry, T(1.0) + asymmetry);
-    const T knee = (T(1.0) - knee_loss) + knee_loss / sqrt(T(1.0) + square(speed / knee_speed));
-    return damping * side * knee * (T(1.0) - fade) * exp(-warm_fade * warming);
+    T rate = damping * side;
+    if (any(abs(knee_loss) > T(0.0))) {
+      rate *= (T(1.0) - knee_loss) + knee_loss / sqrt(T(1.0) + square(speed / knee_speed));
+    }
+    rate *= T(1.0) - fade;
+    if (any(abs(warm_fade) > T(0.0))) rate *= exp(-warm_fade * warming);
+    return rate;
   }
 };
 
@@ -73,6 +79,8 @@ struct DamperSeriesState {
 template <class T>
 T calc_joint_speed(const DamperSeries<T>& series, const T& speed, DamperSeriesState<T>& state) {
   const auto loose = series.play > T(0.0);
+  state.joint_decay = state.joint_rate = T(0.0);
+  if (!any(loose)) return speed;
   const T half = T(0.5) * series.play;
   state.joint_decay = select(loose, calc_contact_rate(select(loose, series.play, T(1.0))), T(0.0));
   const T passed = state.joint_decay * (state.joint - min(max(state.joint, -half), half));
@@ -94,13 +102,20 @@ template <class T>
 T calc_series_force(const DamperSeries<T>& series, const T& law_force, const T& law_rate,
                     DamperSeriesState<T>& state) {
   const auto lags = series.lag > T(0.0), yields = series.compliance > T(0.0);
-  state.lagged_decay = select(lags, T(1.0) / select(lags, series.lag, T(1.0)), T(0.0));
-  state.lagged_rate = state.lagged_decay * (law_force - state.lagged);
-  const T lagged = select(lags, state.lagged, law_force);
-  const T time = series.relaxation + series.compliance * abs(law_rate);
-  state.mount_decay = select(yields, T(1.0) / time, T(0.0));
-  state.mount_rate = state.mount_decay * (lagged - state.mount);
-  return select(yields, state.mount + series.relaxation * state.mount_rate, lagged);
+  state.lagged_decay = state.lagged_rate = state.mount_decay = state.mount_rate = T(0.0);
+  T force = law_force;
+  if (any(lags)) {
+    state.lagged_decay = select(lags, T(1.0) / select(lags, series.lag, T(1.0)), T(0.0));
+    state.lagged_rate = state.lagged_decay * (law_force - state.lagged);
+    force = select(lags, state.lagged, force);
+  }
+  if (any(yields)) {
+    const T time = series.relaxation + series.compliance * abs(law_rate);
+    state.mount_decay = select(yields, T(1.0) / time, T(0.0));
+    state.mount_rate = state.mount_decay * (force - state.mount);
+    force = select(yields, state.mount + series.relaxation * state.mount_rate, force);
+  }
+  return force;
 }
 
 }  // namespace strut

@@ -16,6 +16,8 @@
 //   static constexpr bool kSamplesStepEnds = true;
 // and, if it supports long steps (StepOptions::coarse_step),
 //   MaskOf<T> wants_fine_step(const T* x, const T& coarse_step) const;
+// with, if each lane has a fine step of its own,
+//   T get_fine_step() const;
 #pragma once
 
 #include <cmath>
@@ -124,7 +126,8 @@ class Simulation {
 
   /// The fine or the coarse step, by each lane's own state.
   T choose_step() {
-    const T fine(options_.step);
+    T fine(options_.step);
+    if constexpr (requires { system_.get_fine_step(); }) fine = system_.get_fine_step();
     if constexpr (requires { system_.wants_fine_step(x(), T(0.0)); }) {
       if (options_.coarse_step > 0.0) {
         const T coarse(options_.coarse_step);

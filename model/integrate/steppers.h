@@ -15,6 +15,7 @@
 //   void calc_derivative(const T& t, const T* x, T* dx, T* decay);
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "base/math/exponential.h"
@@ -26,18 +27,25 @@ inline constexpr int kMaxStiff = 16;
 /// Weights of the exponential formulas for each stiff component over one step.
 template <class T>
 struct StiffWeights {
-  std::array<T, kMaxStiff> decay;  // 1/s, frozen
+  std::array<T, kMaxStiff> decay, step;  // 1/s, frozen; s
   std::array<PhiFunctions<T>, kMaxStiff> full;
   std::array<PhiFunctions<T>, kMaxStiff> half;
+  int known = 0;  // number of components that have weights
 };
 
 template <class T>
 void update_stiff_weights(const T* decay, const T& h, int count, StiffWeights<T>& weights) {
   for (int i = 0; i < count; ++i) {
+    const auto is_same = [](const T& a, const T& b) { return all((a >= b) & (a <= b)); };
+    const bool is_known = i < weights.known && is_same(weights.decay[i], decay[i]) &&
+                          is_same(weights.step[i], h);
+    if (is_known) continue;
     weights.decay[i] = decay[i];
+    weights.step[i] = h;
     weights.full[i] = calc_phi(-decay[i] * h);
     weights.half[i] = calc_phi(T(-0.5) * decay[i] * h);
   }
+  weights.known = std::max(weights.known, count);
 }
 
 /// Buffers of both steppers.

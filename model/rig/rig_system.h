@@ -36,10 +36,13 @@ class RigSystem {
   static constexpr bool kSamplesStepEnds = true;
   using Mask = MaskOf<T>;
 
-  /// `inputs` by assign_rig_inputs. Rig and signals must outlive the system.
-  RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs)
+  /// `inputs` by assign_rig_inputs; `fine_step` [s] where wants_fine_step. Rig and signals must
+  /// outlive the system.
+  RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs,
+            const T& fine_step)
       : rig_(rig),
         inputs_(inputs),
+        fine_step_(fine_step),
         count_(static_cast<int>(get_rig_info(rig.layout.kind).masses.size())),
         on_ground_(get_rig_info(rig.layout.kind).has(kHasGroundInput)) {}
 
@@ -104,6 +107,8 @@ class RigSystem {
     get_guards(g);
   }
   bool cross(int /*guard*/, Mask /*lanes*/) { return false; }
+
+  T get_fine_step() const { return fine_step_; }
 
   /// Whether a joint is crossing its play, has just crossed it, or may begin to within a coarse
   /// step: elsewhere the contact follows the strut's speed, and the exponential formulas follow the
@@ -304,6 +309,7 @@ class RigSystem {
 
   const Rig<T>& rig_;
   std::array<const InputSignal*, kMaxRigInputs> inputs_;
+  T fine_step_;
   int count_;
   bool on_ground_;
   RigWorkspace<T> ws_{};
@@ -314,12 +320,18 @@ class RigSystem {
 
 /// Simulates kLaneCount<T> rigs of one kind under the same inputs for `plan.duration` [s]; the
 /// history holds the rig's channels every `plan.interval` [s]. Throws ModelError as make_rig and
-/// assign_rig_inputs do.
+/// assign_rig_inputs do. `fine_steps` [s]: of each lane, at least options.step, which they replace
+/// where a joint crosses its play; null: options.step.
 template <class T>
 LaneResults simulate_rigs(const RigSpec* const specs[], const std::vector<InputSignal>& inputs,
-                          const StepOptions& options, SamplePlan plan) {
+                          const StepOptions& options, SamplePlan plan,
+                          const double* fine_steps = nullptr) {
   const Rig<T> rig = make_rig<T>(specs);
-  RigSystem<T> system(rig, assign_rig_inputs(rig.layout.kind, inputs));
+  T fine_step(options.step);
+  for (int lane = 0; fine_steps != nullptr && lane < kLaneCount<T>; ++lane) {
+    set_lane(fine_step, lane, fine_steps[lane]);
+  }
+  RigSystem<T> system(rig, assign_rig_inputs(rig.layout.kind, inputs), fine_step);
   plan.snapshot = false;
   plan.channel_count = static_cast<int>(get_rig_info(rig.layout.kind).channels.size());
   return Simulation<T, RigSystem<T>>(system, options, plan).run(system.make_start());

@@ -174,17 +174,20 @@ std::string record_series(double amplitude, double frequency, std::uint64_t seed
   return text;
 }
 
-CampaignData read_series(const TemporaryFolder& folder) {
+CampaignData read_series(const TemporaryFolder& folder, const std::string& free = "\"damping\"") {
   folder.write("a.csv", record_series(0.02, 1.0, 1));
   folder.write("b.csv", record_series(0.01, 2.0, 2));
   folder.write("c.csv", record_series(0.015, 1.5, 3));
   folder.write("rig.toml", "type = \"strut_rig\"\nstiffness = 0\ndamping = 1000\n");
-  return read_campaign_data(folder.write(
-      "campaign.toml",
-      "model = \"rig.toml\"\n[columns]\ntime = { column = \"t\" }\n"
-      "displacement = { column = \"x\" }\nforce = { column = \"F\" }\n"
-      "[fit]\nfree = [\"damping\"]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
-      "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = \"hold_out\"\n"));
+  return read_campaign_data(
+      folder.write("campaign.toml",
+                   "model = \"rig.toml\"\n[columns]\ntime = { column = \"t\" }\n"
+                   "displacement = { column = \"x\" }\nforce = { column = \"F\" }\n"
+                   "[fit]\nfree = [" +
+                       free +
+                       "]\n[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
+                       "[[run]]\nfile = \"b.csv\"\nuse = \"fit\"\n[[run]]\nfile = \"c.csv\"\nuse = "
+                       "\"hold_out\"\n"));
 }
 
 bool has_cause(const Selection& selection, const std::vector<std::string>& effects) {
@@ -193,12 +196,27 @@ bool has_cause(const Selection& selection, const std::vector<std::string>& effec
   });
 }
 
+TEST_CASE("A knee is looked for up to three times the fastest motion, or that of the file",
+          "[unit]") {
+  const TemporaryFolder folder;
+  const CampaignData data = read_series(folder);
+  Hypothesis knee =
+      find_hypothesis(list_all(data, test::fit_whitened_baseline(data)), "damper_blow_off");
+  REQUIRE(knee.parameters[1].key == "knee");
+  const double fastest = 2.0 * std::numbers::pi * 0.02;  // m/s
+  CHECK(make_unknowns(data, knee)[1].high == Approx(3.0 * fastest).epsilon(tolerance(0.01)));
+  CHECK(make_unknowns(data, knee)[0].high == Approx(0.98));
+  knee.reference[1] = 1.0;
+  CHECK(make_unknowns(data, knee)[1].high == Approx(1.0));
+}
+
 TEST_CASE("A size at the limit of its range is not plausible", "[unit]") {
   const TemporaryFolder folder;
   const CampaignData data = read_series(folder);
   const auto is_possible = [&](const char* effect, const std::vector<double>& values) {
     Hypothesis h;
     h.effect = effect;
+    h.reference.assign(values.size(), 0.0);
     return is_plausible(data, h, values);
   };
   CHECK(is_possible("damper_blow_off", {0.5, 0.03}));  // a shape may be at its limit
@@ -222,8 +240,10 @@ double get_fitted(const Selection& selection, const std::string& name) {
 /// 4 ms is a twentieth of what the two leave.
 TEST_CASE("Friction behind a play is found though another effect explains more than each",
           "[unit][slow]") {
+  const auto free = GENERATE("\"damping\"", "\"damping\", \"stiffness\"");
+  CAPTURE(free);
   const TemporaryFolder folder;
-  const CampaignData data = read_series(folder);
+  const CampaignData data = read_series(folder, free);
   SelectOptions options;
   options.threads = 2;
   const Selection selection = select_causes(data, options);
