@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
 #include "base/text/fill_template.h"
@@ -150,16 +149,13 @@ std::string make_footer(const ReportPage& page) {
 
 }  // namespace
 
-std::string print_number(const char* format, double value) {
-  if (std::isnan(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
+std::string format_cell(fmt::format_string<double&> format, double value) {
+  return std::isnan(value) ? "" : fmt::format(format, value);
 }
 
-std::string format_short(double value) { return print_number("%.4g", value); }
+std::string format_short(double value) { return format_cell("{:.4g}", value); }
 
-std::string format_percent(double fraction) { return print_number("%.2f %%", 100.0 * fraction); }
+std::string format_percent(double fraction) { return format_cell("{:.2f} %", 100.0 * fraction); }
 
 std::string escape_html(const std::string& text) {
   std::string escaped;

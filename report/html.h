@@ -2,6 +2,8 @@
 // script.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <string>
 #include <vector>
 
@@ -10,12 +12,12 @@ namespace strut {
 /// Escapes the special characters of HTML; invalid UTF-8 is replaced.
 std::string escape_html(const std::string& text);
 
-/// Prints a number in one of printf's formats; empty for NaN, a missing number.
-std::string print_number(const char* format, double value);
+/// Number of a table's cell in one of fmt's formats ("{:.3g}"); empty for NaN, a missing number.
+std::string format_cell(fmt::format_string<double&> format, double value);
 
-/// Prints four significant digits; empty for NaN.
+/// Four significant digits; empty for NaN.
 std::string format_short(double value);
-/// Prints "12.34 %" for 0.1234; empty for NaN.
+/// "12.34 %" for 0.1234; empty for NaN.
 std::string format_percent(double fraction);
 
 /// Cells by row. A page sets the lines of a cell after its first in small print.

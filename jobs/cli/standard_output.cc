@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <cstdarg>
-#include <cstdio>
 #include <iostream>
 #include <string_view>
 
@@ -88,18 +86,6 @@ void print_styled(const std::string& text, Style style) {
   if (is_styled) print_control(get_sequence(style));
   std::cout << text;
   if (is_styled) print_control(kPlainSequence);
-}
-
-void print_format(const char* format, ...) {
-  va_list values, again;
-  va_start(values, format);
-  va_copy(again, values);
-  const int length = std::vsnprintf(nullptr, 0, format, values);
-  std::string text(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
-  std::vsnprintf(text.data(), text.size() + 1, format, again);
-  va_end(again);
-  va_end(values);
-  std::cout << text;
 }
 
 }  // namespace strut

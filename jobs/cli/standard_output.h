@@ -28,7 +28,4 @@ void print_control(const std::string& sequence);
 /// Prints `text`, in that style if standard output shows colors.
 void print_styled(const std::string& text, Style style);
 
-/// std::printf to std::cout.
-[[gnu::format(printf, 1, 2)]] void print_format(const char* format, ...);
-
 }  // namespace strut

@@ -91,7 +91,7 @@ std::vector<std::string> make_row(const Sensitivity& s, const std::string& label
                                   const std::string& offset, const Bounds& bounds) {
   std::vector<std::string> row = {label, offset};
   for (std::size_t p = 0; p < s.parameters.size(); ++p) {
-    row.push_back(bounds.bound[p] <= kIdentifiable ? print_number("%.3g", bounds.bound[p])
+    row.push_back(bounds.bound[p] <= kIdentifiable ? format_cell("{:.3g}", bounds.bound[p])
                                                    : "free");
   }
   return row;
@@ -101,13 +101,13 @@ ReportTable make_bound_table(const DesignReport& report) {
   const Sensitivity& s = report.sensitivity;
   ReportTable table{"Cramer-Rao bounds, 1 sigma [%]", {"measured at", "offset [m]"}};
   for (const SensitivityParameter& p : s.parameters) table.header.push_back(p.name);
-  const auto print_offset = [](const Instant& i) { return print_number("%.3f", i.offset); };
+  const auto format_offset = [](const Instant& i) { return format_cell("{:.3f}", i.offset); };
   table.rows.push_back(
-      make_row(s, "the sweep's instant", print_offset(s.snapshot), report.design.snapshot));
+      make_row(s, "the sweep's instant", format_offset(s.snapshot), report.design.snapshot));
   for (const DesignChoice& choice : report.design.best) {
     std::string offsets;
     for (const std::size_t i : choice.instants) {
-      offsets += (offsets.empty() ? "" : ", ") + print_offset(s.instants[i]);
+      offsets += (offsets.empty() ? "" : ", ") + format_offset(s.instants[i]);
     }
     const std::size_t count = choice.instants.size();
     table.rows.push_back(

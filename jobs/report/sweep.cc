@@ -59,7 +59,7 @@ Cases read_cases(Dataset& dataset) {
   return cases;
 }
 
-std::string round(double value) { return print_number("%.6g", value); }
+std::string round(double value) { return format_cell("{:.6g}", value); }
 
 std::vector<double> sort_column(const Cases& cases, std::size_t column) {
   std::vector<double> values;
@@ -145,7 +145,7 @@ ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const S
   if (simulated > 0.0 && s.simulation_seconds > 0.0) {
     table.rows.push_back(
         {"simulation", format_duration(s.simulation_seconds) + " of one thread, " +
-                           print_number("%.3g", 1e3 * s.simulation_seconds / simulated) +
+                           format_cell("{:.3g}", 1e3 * s.simulation_seconds / simulated) +
                            " ms a case"});
   }
   ReportSection section{"Cases", {}, {table}};

@@ -14,9 +14,9 @@ namespace {
 
 /// Three digits, without an exponent for large numbers.
 std::string round(double value) {
-  std::string text = print_number("%.3g", value);
+  std::string text = format_cell("{:.3g}", value);
   if (text.find('e') == std::string::npos || std::abs(value) < 1.0) return text;
-  return print_number("%.0f", std::stod(text));
+  return format_cell("{:.0f}", std::stod(text));
 }
 
 std::vector<std::string> make_header(const NoiseStudy& study) {
@@ -39,8 +39,8 @@ std::vector<std::string> make_row(const NoisePoint& point, const NoiseErrors& er
   }
   const WindowErrors& window = errors.window;
   row.insert(row.end(), {round(window.bound), round(window.network),
-                         print_number("%.2f", window.network / window.bound), round(window.fit),
-                         print_number("%.2f", window.fit / window.bound)});
+                         format_cell("{:.2f}", window.network / window.bound), round(window.fit),
+                         format_cell("{:.2f}", window.fit / window.bound)});
   return row;
 }
 
@@ -72,7 +72,7 @@ ReportTable make_fit_table(const NoiseStudy& study) {
   for (const NoisePoint& point : study.points) {
     table.rows.push_back(
         {format_number(point.scale), std::to_string(study.fits), std::to_string(point.converged),
-         print_number("%.4f", point.chi2_per_degree), print_number("%.2g", point.fit_seconds)});
+         format_cell("{:.4f}", point.chi2_per_degree), format_cell("{:.2g}", point.fit_seconds)});
   }
   table.notes = {
       "Where the noise is far below that of real sensors, chi2 is above 1: the step of the "

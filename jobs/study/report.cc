@@ -21,7 +21,7 @@
 namespace strut {
 namespace {
 
-std::string round(double value) { return print_number("%.2g", value); }
+std::string round(double value) { return format_cell("{:.2g}", value); }
 
 ReportSection make_summary_section(const StudyRequest& request, const StudyResults& results) {
   ReportSection section;

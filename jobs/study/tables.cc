@@ -8,7 +8,7 @@
 namespace strut {
 namespace {
 
-std::string round(double value) { return print_number("%.2g", value); }
+std::string round(double value) { return format_cell("{:.2g}", value); }
 
 std::string round_spread(const Spread& s, TableDetail detail) {
   std::string median = round(s.median);
@@ -45,11 +45,12 @@ void add_rows(const StudyRequest& request, const CellResult& cell, const std::st
       const Spread& spread = cell.spread[p][m];
       row.push_back(round_spread(spread, detail));
       if (!published) continue;
-      row.push_back(print_number("%g", find_published(request, cell, p, m)));
+      row.push_back(format_cell("{:.6g}", find_published(request, cell, p, m)));
       row.push_back(round(spread.median / find_published(request, cell, p, m)));
     }
     row.push_back(round_spread(calc_gap(cell.spread[p][kR2]), detail));
-    if (published) row.push_back(print_number("%.1g", 1.0 - find_published(request, cell, p, kR2)));
+    if (published)
+      row.push_back(format_cell("{:.1g}", 1.0 - find_published(request, cell, p, kR2)));
     table.rows.push_back(row);
   }
 }
