@@ -40,6 +40,11 @@ constexpr const char* get_name(Stepper stepper) {
   return find_name(kIntegrators, static_cast<Integrator>(stepper));
 }
 
+/// The stepper of that name; `integrator` must not be kCvode.
+constexpr Stepper to_stepper(Integrator integrator) { return static_cast<Stepper>(integrator); }
+static_assert(to_stepper(Integrator::kRk4) == Stepper::kRk4 &&
+              to_stepper(Integrator::kAbm4) == Stepper::kAbm4);
+
 inline constexpr double kMaxStep = 0.02;  // s; a wheel hop has a period of 80 ms
 
 }  // namespace strut

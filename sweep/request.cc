@@ -106,7 +106,7 @@ SolverOptions read_integrate(const std::optional<Table>& table, double longest_d
     return request;
   }
   StepOptions& step = request.options.step;
-  step.stepper = method == Integrator::kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  step.stepper = to_stepper(method);
   step.step = table->number_or("step", step.step,
                                {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   const std::string fault = find_step_count_fault(longest_duration, step.step);

@@ -30,7 +30,7 @@ void read_integration(const Arguments& arguments, SimulateOptions& options) {
                                   {.low = 0.0, .high = kMaxStep, .open_low = true, .unit = "s"});
   options.chose_step = arguments.has("step");
   step.coarse_step = arguments.number_or("coarse-step", 0.0, between(step.step, kMaxStep, "s"));
-  step.stepper = options.integrator == Integrator::kAbm4 ? Stepper::kAbm4 : Stepper::kRk4;
+  if (options.integrator != Integrator::kCvode) step.stepper = to_stepper(options.integrator);
   step.locate_events = !arguments.is_on("no-events");
   integrate.closure = static_cast<Closure>(arguments.choice_or("closure", 0));
   integrate.spin = static_cast<SpinTreatment>(arguments.choice_or("spin", 0));
