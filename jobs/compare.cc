@@ -63,11 +63,7 @@ Arguments describe_compare() {
 }
 
 int run_compare(const Arguments& arguments) {
-  if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(
-        fmt::format("{} files; expected CAMPAIGN.toml", arguments.positional().size()));
-  }
-  const CampaignData data = read_campaign_data(arguments.positional().front());
+  const CampaignData data = read_campaign_data(arguments.only_operand());
   const CompareFolder folder = find_compare_folder(arguments, data);
   print_notes(data.notes);
   const int threads = find_threads(arguments);
@@ -98,7 +94,7 @@ int run_compare(const Arguments& arguments) {
   if (comparison.is_adequate()) {
     suggest_page(folder.report().string());
   } else {
-    suggest_next({"strut", "diagnose", arguments.positional().front(), "-o", "diagnosis"});
+    suggest_next({"strut", "diagnose", arguments.only_operand(), "-o", "diagnosis"});
   }
   return is_whole(comparison) ? kExitDone : kExitNegative;
 }

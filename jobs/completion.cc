@@ -34,16 +34,12 @@ std::vector<std::string> list_shells() {
 
 const Shell& find_shell(const Arguments& arguments) {
   const std::vector<std::string> names = list_shells();
-  const std::vector<std::string>& words = arguments.positional();
-  if (words.size() != 1) {
-    throw arguments.usage_error(
-        fmt::format("{} arguments; expected one shell: {}", words.size(), join_names(names)));
-  }
+  const std::string& word = arguments.only_operand(", one of " + join_names(names));
   for (const Shell& shell : kShells) {
-    if (words.front() == shell.name) return shell;
+    if (word == shell.name) return shell;
   }
-  throw arguments.usage_error(fmt::format("unknown shell '{}'; must be one of {}{}", words.front(),
-                                          join_names(names), suggest_name(words.front(), names)));
+  throw arguments.usage_error(fmt::format("unknown shell '{}'; must be one of {}{}", word,
+                                          join_names(names), suggest_name(word, names)));
 }
 
 }  // namespace

@@ -91,11 +91,7 @@ Arguments describe_diagnose() {
 }
 
 int run_diagnose(const Arguments& arguments) {
-  if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(
-        fmt::format("{} files; expected CAMPAIGN.toml", arguments.positional().size()));
-  }
-  const CampaignData data = read_campaign_data(arguments.positional().front());
+  const CampaignData data = read_campaign_data(arguments.only_operand());
   const DiagnoseFolder folder = find_diagnose_folder(arguments, data);
   print_notes(data.notes);
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));

@@ -103,7 +103,7 @@ void print_text(const Findings& findings) {
 }
 
 void suggest_next_step(const Arguments& arguments, bool holds) {
-  const std::string root = arguments.positional().front();
+  const std::string root = arguments.only_operand();
   if (!holds) {
     suggest_again(arguments, "once the bad findings above are fixed");
   } else if (!fs::exists(SweepFolder{root}.plan())) {
@@ -136,11 +136,7 @@ Arguments describe_doctor() {
 }
 
 int run_doctor(const Arguments& arguments) {
-  if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(
-        fmt::format("{} arguments; expected DIR, a folder", arguments.positional().size()));
-  }
-  const fs::path root = arguments.positional().front();
+  const fs::path root = arguments.only_operand(", a folder");
   if (!fs::is_directory(root))
     throw InputError(root.string() + ": must be a folder, of a sweep or for one");
   const Findings findings = examine(arguments, fs::canonical(root));

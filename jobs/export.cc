@@ -93,15 +93,14 @@ Arguments describe_export() {
 }
 
 int run_export(const Arguments& arguments) {
-  const auto& names = arguments.positional();
-  if (names.size() != 1) throw arguments.usage_error("expected one MODEL, a file of strut train");
-  const fs::path output = find_output_file(arguments, names);
-  const TrainedModel model = load_model(names.front());
+  const std::string& file = arguments.only_operand(", a file of `strut train`");
+  const fs::path output = find_output_file(arguments, {file});
+  const TrainedModel model = load_model(file);
   if (model.window) {
     throw InputError(fmt::format(
         "{}: a network over windows: its inputs are not channels but components of an aligned "
         "window, so it cannot be exported; train one without --window",
-        names.front()));
+        file));
   }
   write_text_file(output, make_text(arguments, model, output));
   std::cout << output.string() << "\n";

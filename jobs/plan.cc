@@ -147,16 +147,13 @@ Arguments describe_plan() {
 }
 
 int run_plan(const Arguments& arguments) {
-  if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(
-        fmt::format("{} files; expected SWEEP.toml", arguments.positional().size()));
-  }
+  const std::string& sweep = arguments.only_operand();
   const bool dry = arguments.is_on("dry-run");
   if (!dry && !arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
 
   if (!dry) check_output_folder("output", arguments.text("output"));
-  const Plan plan(read_request(arguments.positional().front()));
+  const Plan plan(read_request(sweep));
   check_plan(plan);
   std::optional<SweepFolder> folder;
   if (!dry) folder = make_sweep_folder(arguments.text("output"), plan);
@@ -168,8 +165,7 @@ int run_plan(const Arguments& arguments) {
     print_note(folder->root.string() + ": planned");
     suggest_next({"strut", "run", folder->root.string()});
   } else {
-    suggest_next({"strut", "plan", arguments.positional().front(), "-o",
-                  arguments.text_or("output", "cars")});
+    suggest_next({"strut", "plan", sweep, "-o", arguments.text_or("output", "cars")});
   }
   return kExitDone;
 }

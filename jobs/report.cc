@@ -74,11 +74,7 @@ Arguments describe_report() {
 }
 
 int run_report(const Arguments& arguments) {
-  const auto& names = arguments.positional();
-  if (names.size() != 1) {
-    throw arguments.usage_error(fmt::format("{} folders; expected DIR", names.size()));
-  }
-  const fs::path root = names.front();
+  const fs::path root = arguments.only_operand(", a folder");
   const FolderContent& content = require_content(root);
   const fs::path page = [&] {
     const ProgressLine line(fmt::format("writing the report of a {}", content.name));

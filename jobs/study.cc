@@ -163,14 +163,11 @@ Arguments describe_study() {
 }
 
 int run_study(const Arguments& arguments) {
-  const auto& names = arguments.positional();
-  if (names.size() != 1) {
-    throw arguments.usage_error(fmt::format("{} files; expected one STUDY.toml", names.size()));
-  }
+  const std::string& study = arguments.only_operand();
   if (!arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
   check_output_folder("output", arguments.text("output"));
-  const StudyRequest asked = read_study(names.front());
+  const StudyRequest asked = read_study(study);
   const int threads = find_threads(arguments);
   prepare_interrupt(arguments, "continues");
   InterruptWatcher watcher;

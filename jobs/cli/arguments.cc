@@ -183,6 +183,14 @@ void Arguments::print_help() const {
   std::cout << fmt::format("\n{}\n", examples_);
 }
 
+const std::string& Arguments::only_operand(const std::string& meaning) const {
+  if (positional_.size() != 1) {
+    throw usage_error(fmt::format("{} arguments; expected {}{}", positional_.size(),
+                                  operands_.front().name, meaning));
+  }
+  return positional_.front();
+}
+
 InputError Arguments::usage_error(const std::string& what) const {
   return InputError(
       fmt::format("{}\nUsage: {}\nSee `strut {} --help`", what, synopsis_, command()));

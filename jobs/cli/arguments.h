@@ -81,6 +81,9 @@ class Arguments {
   /// The words that were parsed, with --set `setting` ("NAME=VALUE") replacing any --set of NAME.
   std::vector<std::string> words_with_setting(const std::string& setting) const;
   const std::vector<std::string>& positional() const { return positional_; }
+  /// The argument of a command that takes exactly one. Throws InputError for any other number;
+  /// `meaning` follows the operand's name in the message (", a folder").
+  const std::string& only_operand(const std::string& meaning = "") const;
   /// An InputError that adds the synopsis to `what`.
   InputError usage_error(const std::string& what) const;
 

@@ -1,6 +1,5 @@
 #include "jobs/cli/open_sweep.h"
 
-#include <fmt/format.h>
 #include <omp.h>
 
 #include "jobs/cli/unsealed.h"
@@ -8,13 +7,8 @@
 namespace strut {
 
 OpenSweep open_sweep(const Arguments& arguments) {
-  const auto& names = arguments.positional();
-  if (names.size() != 1) {
-    throw arguments.usage_error(fmt::format(
-        "{} arguments; expected DIR, a folder created by `strut plan SWEEP.toml -o DIR`",
-        names.size()));
-  }
-  SweepFolder folder{names.front()};
+  SweepFolder folder{
+      arguments.only_operand(", a folder created by `strut plan SWEEP.toml -o DIR`")};
   Plan plan = open_sweep_folder(folder);
   note_unsealed(folder.plan(), kPlanSeal);
   return {std::move(folder), std::move(plan)};

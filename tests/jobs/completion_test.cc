@@ -278,7 +278,7 @@ TEST_CASE("A shell that strut cannot complete for is refused with those that it 
   for (const char* words : {"", " bash zsh"}) {
     const Outcome outcome = run_program("completion" + std::string(words));
     CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains("expected one shell: bash, zsh, fish"));
+    CHECK_THAT(outcome.messages, Contains("expected SHELL, one of bash, zsh, fish"));
   }
 }
 
