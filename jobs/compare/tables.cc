@@ -29,13 +29,6 @@ ReportTable make_parameter_table(const Comparison& comparison) {
   return table;
 }
 
-const ChannelComparison* find_channel(const ModelComparison& model, int channel) {
-  for (const ChannelComparison& c : model.channels) {
-    if (c.channel == channel) return &c;
-  }
-  return nullptr;
-}
-
 std::string describe_error(const ChannelComparison* c) {
   return c == nullptr ? "failed" : format_percent(c->nrmse);
 }
@@ -175,6 +168,13 @@ ReportTable make_balance_table(const CarBalance& b) {
 }
 
 }  // namespace
+
+const ChannelComparison* find_channel(const ModelComparison& model, int channel) {
+  for (const ChannelComparison& c : model.channels) {
+    if (c.channel == channel) return &c;
+  }
+  return nullptr;
+}
 
 std::vector<ModelCurves> list_model_curves(const RunComparison& run) {
   return {{"nominal", 5, &run.nominal.evaluation}, {"calibrated", 2, &run.calibrated.evaluation}};

@@ -11,6 +11,9 @@
 
 namespace strut {
 
+/// The comparison of a channel; null if the model could not be simulated or lacks the channel.
+const ChannelComparison* find_channel(const ModelComparison& model, int channel);
+
 /// One sentence: whether the model is adequate, or its worst channel.
 std::string make_verdict_text(const CampaignData& data, const Comparison& comparison);
 

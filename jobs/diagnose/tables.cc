@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text/format_number.h"
+#include "jobs/compare/tables.h"
 #include "jobs/diagnose/force_map.h"
 #include "model/effects/catalogue.h"
 
@@ -84,13 +85,6 @@ ReportTable make_secant_table(const std::vector<StrutSecant>& secants) {
                           describe_interval(c.value, c.low, c.high)});
   }
   return table;
-}
-
-const ChannelComparison* find_channel(const ModelComparison& model, int channel) {
-  for (const ChannelComparison& c : model.channels) {
-    if (c.channel == channel) return &c;
-  }
-  return nullptr;
 }
 
 /// "0.000102 (2.69 %)": rms, and relative to the measured spread.
