@@ -10,40 +10,22 @@
 #include "model/effects/catalogue.h"
 #include "model/rig/rig_system.h"
 #include "tests/support/test_car.h"
+#include "tests/support/test_rig.h"
+#include "tests/support/test_run.h"
 
 namespace strut {
 namespace {
 
+using test::make_plan;
+using test::make_steps;
 using test::tolerance;
 using Quarter = QuarterCarChannel;
 using Strut = StrutRigChannel;
 
 RigSpec make_rig(RigKind kind, const EffectSettings& effects = {}) {
-  RigSpec spec;
-  spec.kind = kind;
-  spec.sprung_mass = kind == RigKind::kStrutRig ? 0.0 : 300.0;
-  spec.unsprung_mass = kind == RigKind::kQuarterCar ? 40.0 : 0.0;
-  spec.stiffness = 20000.0;
-  spec.damping = 1500.0;
-  spec.tire_stiffness = 200000.0;
-  spec.tire_damping = 100.0;
-  spec.gravity = kind == RigKind::kQuarterCar ? 9.81 : 0.0;
+  RigSpec spec = test::make_corner_rig(kind);
   spec.effects = effects;
   return spec;
-}
-
-StepOptions make_options(double step, Stepper stepper = Stepper::kRk4) {
-  StepOptions options;
-  options.step = step;
-  options.stepper = stepper;
-  return options;
-}
-
-SamplePlan make_plan(double duration, double interval) {
-  SamplePlan plan;
-  plan.duration = duration;
-  plan.interval = interval;
-  return plan;
 }
 
 /// A force law in words of its own: displacement, speed, temperature over 293.15 K.
@@ -93,7 +75,7 @@ TEST_CASE("A strut on a dynamometer answers by the law of each effect", "[unit][
   for (const Law& law : list_laws()) {
     INFO((law.effects.empty() ? "none" : law.effects.front().effect));
     const RigSpec spec = make_rig(RigKind::kStrutRig, law.effects);
-    const LaneResults run = simulate_rig(spec, inputs, make_options(0.01), make_plan(1.0, 0.002));
+    const LaneResults run = simulate_rig(spec, inputs, make_steps(0.01), make_plan(1.0, 0.002));
     double largest = 0.0, error = 0.0;
     for (int i = 0; i <= 500; ++i) {
       const auto get = [&](int channel) { return run.get_sample(i, channel); };
@@ -115,7 +97,7 @@ std::complex<double> measure_stiffness(const EffectSettings& effects, double fre
   const int samples = 200;
   const LaneResults run =
       simulate_rig(spec, {make_chirp("displacement", 0.01, frequency, frequency, 6.0 * period)},
-                   make_options(period / 400.0), make_plan(6.0 * period, period / samples));
+                   make_steps(period / 400.0), make_plan(6.0 * period, period / samples));
   std::complex<double> sum = 0.0;
   for (int i = 5 * samples; i < 6 * samples; ++i) {
     const double t = i * period / samples;
@@ -147,7 +129,7 @@ TEST_CASE("A lag that vanishes leaves the damper as it is", "[property][rigs]") 
   const RigSpec plain = make_rig(RigKind::kQuarterCar);
   const std::vector<InputSignal> road = {make_bump("road_position", 0.05, 0.1, 0.15)};
   const auto run = [&](const RigSpec& spec) {
-    return simulate_rig(spec, road, make_options(1e-3), make_plan(1.0, 0.01));
+    return simulate_rig(spec, road, make_steps(1e-3), make_plan(1.0, 0.01));
   };
   const LaneResults base = run(plain);
   double before = 1e300;
@@ -194,7 +176,7 @@ TEST_CASE("A damper that loses a stroke is without force until the rod has cross
   const RigSpec spec = make_rig(RigKind::kStrutRig, effects);
   const InputSignal input = make_signal("displacement", {0.0, turn, 0.4}, {v * turn, 0.0, 0.3 * v},
                                         Interpolation::kLinear);
-  const LaneResults run = simulate_rig(spec, {input}, make_options(1e-5), make_plan(0.3, 5e-4));
+  const LaneResults run = simulate_rig(spec, {input}, make_steps(1e-5), make_plan(0.3, 5e-4));
   int free = 0;
   for (int i = 0; i <= 600; ++i) {
     const double t = 5e-4 * i - turn, force = run.get_sample(i, Strut::kDamperForce);
@@ -215,7 +197,7 @@ TEST_CASE("Dry friction is behind a worn joint, but acts on while a damper loses
   const auto run = [&](const EffectSettings& stroke) {
     EffectSettings effects = stroke;
     effects.push_back({"strut_friction", "", {friction, slow}});
-    return simulate_rig(make_rig(RigKind::kStrutRig, effects), {input}, make_options(1e-5),
+    return simulate_rig(make_rig(RigKind::kStrutRig, effects), {input}, make_steps(1e-5),
                         make_plan(0.3, 5e-4));
   };
   const LaneResults worn = run({{"joint_play", "", {p}}});
@@ -241,7 +223,7 @@ TEST_CASE("A joint's play only takes energy", "[unit][property][rigs]") {
   const double p = GENERATE(1e-4, 1e-3, 5e-3);
   RigSpec spec = make_rig(RigKind::kSingleMass, {{"joint_play", "", {p}}});
   spec.initial_velocity = {0.6, 0.0};
-  const LaneResults run = simulate_rig(spec, {}, make_options(1e-4), make_plan(2.0, 1e-3));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(1e-4), make_plan(2.0, 1e-3));
   using C = SingleMassChannel;
   double before = 1e300, first = 0.0;
   for (int i = 0; i <= 2000; ++i) {
@@ -262,7 +244,7 @@ TEST_CASE("A quarter car answers smoothly to its damper's lost stroke", "[unit][
   const std::vector<InputSignal> road = {make_bump("road_position", 0.05, 0.1, 0.15)};
   const auto run = [&](double stroke) {
     return simulate_rig(make_rig(RigKind::kQuarterCar, {{"damper_leak", "", {stroke}}}), road,
-                        make_options(1e-3), make_plan(1.0, 0.01));
+                        make_steps(1e-3), make_plan(1.0, 0.01));
   };
   for (const double stroke : {1e-3, 2e-3, 5e-3, 1e-2}) {
     // Slopes over 2 and 20 % of the stroke: what a fit at 1 ms differentiates is no step noise.
@@ -287,7 +269,7 @@ TEST_CASE("A play that vanishes leaves the damper as it is", "[property][rigs]")
   const RigSpec plain = make_rig(RigKind::kQuarterCar);
   const std::vector<InputSignal> road = {make_bump("road_position", 0.05, 0.1, 0.15)};
   const auto run = [&](const RigSpec& spec) {
-    return simulate_rig(spec, road, make_options(1e-3), make_plan(1.0, 0.01));
+    return simulate_rig(spec, road, make_steps(1e-3), make_plan(1.0, 0.01));
   };
   const LaneResults base = run(plain);
   for (const double play : {3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-7, 1e-10}) {
@@ -356,7 +338,7 @@ TEST_CASE("A quarter car with many effects moves as one written anew", "[unit][r
                                   {"road_gain", "", {0.02}}};
   const RigSpec spec = make_rig(RigKind::kQuarterCar, effects);
   const InputSignal road = make_bump("road_position", 0.08, 0.05, 0.2);
-  const LaneResults run = simulate_rig(spec, {road}, make_options(2.5e-4), make_plan(0.6, 0.05));
+  const LaneResults run = simulate_rig(spec, {road}, make_steps(2.5e-4), make_plan(0.6, 0.05));
   REQUIRE(run.status[0] == 0);
   for (const int sample : {4, 6, 12}) {
     const auto x = integrate_anew(0.05 * sample, road);
@@ -373,7 +355,7 @@ TEST_CASE("Springs and stops give back what they take", "[unit][property][rigs]"
                                                  {"bump_stop", "", {7e4, 0.02, 60.0}}});
   spec.damping = 0.0;
   spec.initial_velocity = {0.6, 0.0};
-  const LaneResults run = simulate_rig(spec, {}, make_options(2e-4), make_plan(2.0, 0.005));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(2e-4), make_plan(2.0, 0.005));
   using C = SingleMassChannel;
   const auto calc_energy = [&](int i) {
     const double d = -run.get_sample(i, C::kPosition);
@@ -399,7 +381,7 @@ TEST_CASE("Dampers and friction only take energy", "[unit][property][rigs]") {
   RigSpec spec = make_rig(RigKind::kSingleMass, {effect});
   spec.damping = effect.effect == "strut_friction" ? 0.0 : 300.0;
   spec.initial_velocity = {0.6, 0.0};
-  const LaneResults run = simulate_rig(spec, {}, make_options(1e-3), make_plan(2.0, 0.002));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(1e-3), make_plan(2.0, 0.002));
   using C = SingleMassChannel;
   double before = 1e300, first = 0.0;
   for (int i = 0; i <= 1000; ++i) {
@@ -418,7 +400,7 @@ double measure_error(const EffectSettings& effects, double step) {
   const RigSpec spec = make_rig(RigKind::kQuarterCar, effects);
   const std::vector<InputSignal> road = {make_chirp("road_position", 0.01, 1.0, 8.0, 1.0)};
   const auto run = [&](double h) {
-    return simulate_rig(spec, road, make_options(h), make_plan(1.0, 0.1));
+    return simulate_rig(spec, road, make_steps(h), make_plan(1.0, 0.1));
   };
   const LaneResults fine = run(2e-5), coarse = run(step);
   double error = 0.0;
@@ -480,7 +462,7 @@ TEST_CASE("An effect moves its rig, and neutral it is as if absent, also beside 
   const RigKind kind = GENERATE(RigKind::kQuarterCar, RigKind::kStrutRig, RigKind::kSingleMass,
                                 RigKind::kGuidedMass);
   const RigSpec plain = make_rig(kind);
-  const StepOptions options = make_options(1e-3);
+  const StepOptions options = make_steps(1e-3);
   const SamplePlan plan = make_plan(1.0, 0.01);
   std::array<const RigSpec*, static_cast<std::size_t>(kWidth)> specs;
   specs.fill(&plain);
@@ -522,7 +504,7 @@ TEST_CASE("Both integrators hold a stiff lag and a joint in a quarter car", "[un
   const double size = GENERATE(1e-9, 1e-5, 2e-4, 1e-2);
   const RigSpec spec = make_rig(RigKind::kQuarterCar, {{effect, "", {size}}});
   const LaneResults run = simulate_rig(spec, {make_bump("road_position", 0.05, 0.1, 0.2)},
-                                       make_options(1e-3, stepper), make_plan(3.0, 0.5));
+                                       make_steps(1e-3, stepper), make_plan(3.0, 0.5));
   CHECK(run.status[0] == 0);
   // Nothing damps within the play.
   const double left = 1e-3 + (effect == "damper_hysteresis" ? 0.0 : size);

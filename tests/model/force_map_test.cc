@@ -18,6 +18,7 @@
 #include "model_files/read_vehicle.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_car.h"
+#include "tests/support/test_rig.h"
 #include "tests/support/test_run.h"
 
 namespace strut {
@@ -117,15 +118,7 @@ TEST_CASE("Coefficients that are the abscissas make the argument itself", "[unit
 // --- rigs ------------------------------------------------------------------------------------
 
 RigSpec make_rig(RigKind kind, const ForceMaps& maps = {}) {
-  RigSpec spec;
-  spec.kind = kind;
-  spec.sprung_mass = kind == RigKind::kStrutRig ? 0.0 : 300.0;
-  spec.unsprung_mass = kind == RigKind::kQuarterCar ? 40.0 : 0.0;
-  spec.stiffness = 20000.0;
-  spec.damping = 1500.0;
-  spec.tire_stiffness = 200000.0;
-  spec.tire_damping = 100.0;
-  spec.gravity = kind == RigKind::kQuarterCar ? 9.81 : 0.0;
+  RigSpec spec = test::make_corner_rig(kind);
   spec.force_maps = maps;
   return spec;
 }
@@ -135,14 +128,8 @@ std::vector<InputSignal> make_input(RigKind kind) {
   return {make_chirp(get_rig_info(kind).inputs[0].name, size, 1.0, 10.0, 1.0)};
 }
 
-StepOptions make_step(double step = 1e-3) {
-  StepOptions options;
-  options.step = step;
-  return options;
-}
-
 LaneResults run_rig(const RigSpec& spec) {
-  return simulate_rig(spec, make_input(spec.kind), make_step(),
+  return simulate_rig(spec, make_input(spec.kind), test::make_steps(1e-3),
                       {.duration = 1.0, .interval = 0.01});
 }
 
@@ -174,7 +161,8 @@ TEST_CASE("A rig with a map rests at its rest position", "[unit][rigs]") {
   ForceMap map = make_map("", 1, 1);
   map.coefficients = {250.0};
   const RigSpec spec = make_rig(RigKind::kQuarterCar, {map});
-  const LaneResults run = simulate_rig(spec, {}, make_step(), {.duration = 1.0, .interval = 0.1});
+  const LaneResults run =
+      simulate_rig(spec, {}, test::make_steps(1e-3), {.duration = 1.0, .interval = 0.1});
   using Q = QuarterCarChannel;
   for (int i = 0; i <= 10; ++i) {
     const auto get = [&](int c) { return run.history[at(i) * Q::kCount + at(c)]; };
@@ -199,7 +187,7 @@ TEST_CASE("Lanes of rigs may differ in their maps and in having one", "[unit][pr
   for (std::size_t lane = 0; lane < specs.size(); ++lane) specs[lane] = &rigs[lane];
   const SamplePlan plan{.duration = 1.0, .interval = 0.01};
   const auto run = [&](const auto& of) {
-    return simulate_rigs<NativeLanes>(of.data(), make_input(kind), make_step(), plan);
+    return simulate_rigs<NativeLanes>(of.data(), make_input(kind), test::make_steps(1e-3), plan);
   };
   const LaneResults mixed = run(specs), absent = run(plain);
   for (std::size_t lane = 0; lane < specs.size(); ++lane) {

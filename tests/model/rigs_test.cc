@@ -13,10 +13,13 @@
 #include "base/math/xsimd_backend.h"
 #include "model/car/assemble.h"
 #include "model/rig/rig_system.h"
+#include "tests/support/test_run.h"
 
 namespace strut {
 namespace {
 
+using test::make_plan;
+using test::make_steps;
 using Quarter = QuarterCarChannel;
 using Complex = std::complex<double>;
 
@@ -43,20 +46,6 @@ RigSpec make_single_mass() {
 
 double get_quarter(const LaneResults& run, int sample, int channel) {
   return run.get_sample(sample, channel);
-}
-
-StepOptions make_options(double step, Stepper stepper = Stepper::kRk4) {
-  StepOptions options;
-  options.step = step;
-  options.stepper = stepper;
-  return options;
-}
-
-SamplePlan make_plan(double duration, double interval) {
-  SamplePlan plan;
-  plan.duration = duration;
-  plan.interval = interval;
-  return plan;
 }
 
 /// x_dot = A x of the linear quarter car, x in the order of the state.
@@ -105,7 +94,7 @@ TEST_CASE("A quarter car left to itself moves by its modes", "[reference][rigs]"
   RigSpec spec = make_quarter_car();
   spec.initial_position = {0.004, -0.01};
   spec.initial_velocity = {-0.1, 0.2};
-  const LaneResults run = simulate_rig(spec, {}, make_options(5e-4), make_plan(2.0, 0.01));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(5e-4), make_plan(2.0, 0.01));
   REQUIRE(run.sample_count == 201);
   const Eigen::Matrix4d a = make_system_matrix(spec);
   const Eigen::Vector4d x0(0.004, -0.01, -0.1, 0.2);
@@ -129,7 +118,7 @@ TEST_CASE("A quarter car follows road and actuator by its transfer functions",
   const std::vector<InputSignal> inputs = {make_chirp(by_road ? "road_position" : "actuator_force",
                                                       by_road ? road : force, frequency, frequency,
                                                       2.0)};
-  const LaneResults run = simulate_rig(spec, inputs, make_options(5e-4), make_plan(2.0, 0.005));
+  const LaneResults run = simulate_rig(spec, inputs, make_steps(5e-4), make_plan(2.0, 0.005));
   const double scale = std::max(std::abs(response[0]), std::abs(response[1]));
   for (int i = 0; i <= 400; ++i) {
     const Complex turn = std::polar(1.0, 0.005 * w * i);
@@ -155,7 +144,7 @@ TEST_CASE("A single mass swings as the damped oscillator", "[reference][rigs]") 
   spec.gravity = GENERATE(0.0, 9.81);  // only moves the rest position
   spec.initial_position = {0.02, 0.0};
   spec.initial_velocity = {-0.3, 0.0};
-  const LaneResults run = simulate_rig(spec, {}, make_options(1e-3), make_plan(3.0, 0.01));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(1e-3), make_plan(3.0, 0.01));
   const double decay = spec.damping / (2.0 * spec.sprung_mass);
   const double w = std::sqrt(spec.stiffness / spec.sprung_mass - decay * decay);
   const double b = (-0.3 + decay * 0.02) / w;
@@ -173,7 +162,7 @@ TEST_CASE("A force accelerates a free mass", "[reference][rigs]") {
   spec.gravity = 9.81;
   const std::vector<InputSignal> force = {
       make_signal("force", {0.0, 2.0}, {0.0, 40.0}, Interpolation::kLinear)};
-  const LaneResults run = simulate_rig(spec, force, make_options(0.01), make_plan(2.0, 0.1));
+  const LaneResults run = simulate_rig(spec, force, make_steps(0.01), make_plan(2.0, 0.1));
   for (int i = 0; i <= 20; ++i) {
     const double t = 0.1 * i;  // a = 10 t - g: RK4 is exact
     CHECK(run.get_sample(i, SingleMassChannel::kPosition) ==
@@ -195,7 +184,7 @@ double measure_step_error(double step, Stepper stepper) {
     rates.push_back(w * std::cos(w * times.back()));
   }
   const LaneResults run = simulate_rig(spec, {make_signal("road_position", times, values, rates)},
-                                       make_options(step, stepper), make_plan(1.0, 0.1));
+                                       make_steps(step, stepper), make_plan(1.0, 0.1));
   double error = 0.0;
   for (int i = 0; i <= 10; ++i) {
     const Eigen::Vector2cd x = response * std::polar(1.0, 0.1 * w * i);
@@ -226,7 +215,7 @@ TEST_CASE("A strut rig's force is that of its spring and damper", "[unit][rigs]"
     inputs.push_back(
         make_signal("temperature", {0.0, 2.0}, {293.0, 313.0}, Interpolation::kLinear));
   }
-  const LaneResults run = simulate_rig(spec, inputs, make_options(1e-2), make_plan(2.0, 0.005));
+  const LaneResults run = simulate_rig(spec, inputs, make_steps(1e-2), make_plan(2.0, 0.005));
   using C = StrutRigChannel;
   for (int i = 0; i <= 400; ++i) {
     const double t = 0.005 * i, w = 2.0 * std::numbers::pi * 1.05;
@@ -246,7 +235,7 @@ TEST_CASE("Gravity leaves a rig at rest and loads its springs", "[unit][rigs]") 
   spec.unilateral_tire = GENERATE(false, true);
   const InputSignal plateau =
       make_signal("road_position", {0.0, 1.0}, {0.3, 0.3}, Interpolation::kLinear);
-  const LaneResults run = simulate_rig(spec, {plateau}, make_options(1e-3), make_plan(1.0, 0.1));
+  const LaneResults run = simulate_rig(spec, {plateau}, make_steps(1e-3), make_plan(1.0, 0.1));
   for (int i = 0; i <= 10; ++i) {
     // Rounding of forces near 34 N over 1250 N/m.
     CHECK(get_quarter(run, i, Quarter::kUnsprungPosition) == Approx(0.3).epsilon(1e-13));
@@ -262,7 +251,7 @@ TEST_CASE("Work of road and actuator is stored or dissipated", "[property][rigs]
                                            make_chirp("actuator_force", 3.0, 3.0, 2.0, 2.0)};
   const double h = 5e-4;
   const int steps = 4000;
-  const LaneResults run = simulate_rig(spec, inputs, make_options(h), make_plan(2.0, h));
+  const LaneResults run = simulate_rig(spec, inputs, make_steps(h), make_plan(2.0, h));
   const auto get = [&](int i, int channel) { return get_quarter(run, i, channel); };
   const auto calc_energy = [&](int i) {
     const double vu = get(i, Quarter::kUnsprungVelocity), vs = get(i, Quarter::kSprungVelocity);
@@ -320,7 +309,7 @@ TEST_CASE("A unilateral tire lifts off, flies and lands", "[reference][rigs]") {
   RigSpec spec = make_quarter_car();
   spec.unilateral_tire = true;
   spec.initial_velocity = {1.5, 1.5};
-  const LaneResults run = simulate_rig(spec, {}, make_options(1e-3), make_plan(0.6, 1e-3));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(1e-3), make_plan(0.6, 1e-3));
   CHECK(run.status[0] == 0);
   CHECK(run.event_count >= 2);
   int airborne = 0;
@@ -343,7 +332,7 @@ TEST_CASE("A unilateral tire lifts off, flies and lands", "[reference][rigs]") {
 TEST_CASE("A bilateral tire pulls", "[unit][rigs]") {
   RigSpec spec = make_quarter_car();
   spec.initial_velocity = {1.5, 1.5};
-  const LaneResults run = simulate_rig(spec, {}, make_options(1e-3), make_plan(0.6, 1e-3));
+  const LaneResults run = simulate_rig(spec, {}, make_steps(1e-3), make_plan(0.6, 1e-3));
   double lowest = 0.0;
   for (int i = 0; i <= 600; ++i)
     lowest = std::min(lowest, get_quarter(run, i, Quarter::kTireForce));
@@ -370,7 +359,7 @@ TEST_CASE("Lanes of different rigs repeat each rig in double", "[property][rigs]
   }
   const std::string driven = get_rig_info(kind).inputs[0].name;
   const std::vector<InputSignal> inputs = {make_chirp(driven, 0.01, 2.0, 6.0, 1.0)};
-  const StepOptions options = make_options(1e-3, stepper);
+  const StepOptions options = make_steps(1e-3, stepper);
   const SamplePlan plan = make_plan(1.0, 0.01);
   const LaneResults lanes = simulate_rigs<NativeLanes>(pointers.data(), inputs, options, plan);
   const int channels = static_cast<int>(get_rig_info(kind).channels.size());
@@ -393,7 +382,7 @@ TEST_CASE("A diverging rig is stopped and disturbs no other", "[unit][rigs]") {
   bad.tire_damping = 1e5;  // stable up to steps of 28 us
   std::array<const RigSpec*, static_cast<std::size_t>(kWidth)> specs;
   specs.fill(&good);
-  const StepOptions options = make_options(1e-3);
+  const StepOptions options = make_steps(1e-3);
   const SamplePlan plan = make_plan(0.5, 0.01);
   const LaneResults alone = simulate_rigs<NativeLanes>(specs.data(), {}, options, plan);
   specs[0] = &bad;
