@@ -13,7 +13,8 @@
 #include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
-#include "jobs/design/design_report.h"
+#include "jobs/design/json.h"
+#include "jobs/design/tables.h"
 #include "model_files/find_channel.h"
 #include "sweep/request.h"
 
@@ -112,11 +113,7 @@ Arguments describe_design() {
 }
 
 int run_design(const Arguments& arguments) {
-  if (arguments.positional().size() != 1) {
-    throw arguments.usage_error(
-        fmt::format("{} files; expected SWEEP.toml", arguments.positional().size()));
-  }
-  const SweepRequest request = read_request(arguments.positional().front());
+  const SweepRequest request = read_request(arguments.only_operand());
   if (arguments.has("csv")) {
     check_output_file("csv", arguments.text("csv"),
                       list_files_read({request.path, request.vehicle, request.maneuver}),
@@ -143,7 +140,7 @@ int run_design(const Arguments& arguments) {
   } else {
     print_design(report);
   }
-  suggest_next_step(arguments.positional().front(), report);
+  suggest_next_step(arguments.only_operand(), report);
   return kExitDone;
 }
 

@@ -1,10 +1,11 @@
-// The output of `strut design`: tables, JSON and CSV.
+// Sensitivities and design of a sweep's measurement, as `strut design` and a sweep's report show
+// them.
 #pragma once
 
-#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "estimate/design.h"
-#include "io/format/json.h"
 
 namespace strut {
 
@@ -29,14 +30,5 @@ inline double to_unit(const SensitivityParameter& p, double percent) {
 inline const ChannelInfo& get_channel(int channel) {
   return list_car_channels()[static_cast<std::size_t>(channel)];
 }
-
-/// Prints tables on standard output.
-void print_design(const DesignReport& report);
-
-Json make_design_json(const DesignReport& report);
-
-/// Writes columns time, offset and, for every channel with a sensor and every parameter, the change
-/// of the channel per per cent of the parameter. Throws EnvironmentError.
-void write_design_csv(const std::filesystem::path& file, const DesignReport& report);
 
 }  // namespace strut

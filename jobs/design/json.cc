@@ -1,5 +1,6 @@
+#include "jobs/design/json.h"
+
 #include "io/format/csv.h"
-#include "jobs/design/design_report.h"
 
 namespace strut {
 namespace {

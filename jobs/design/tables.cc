@@ -1,4 +1,4 @@
-#include "jobs/design/design_report.h"
+#include "jobs/design/tables.h"
 
 #include <fmt/format.h>
 
@@ -169,14 +169,6 @@ void print_proposal(const DesignReport& report) {
 }
 
 }  // namespace
-
-std::vector<std::string> list_not_identifiable(const Sensitivity& s, const Bounds& bounds) {
-  std::vector<std::string> names;
-  for (std::size_t p = 0; p < s.parameters.size(); ++p) {
-    if (!(bounds.bound[p] <= kIdentifiable)) names.push_back(s.parameters[p].name);
-  }
-  return names;
-}
 
 void print_design(const DesignReport& report) {
   print_head(report);

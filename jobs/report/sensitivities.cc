@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error/input_error.h"
-#include "jobs/design/design_report.h"
+#include "jobs/case/design_report.h"
 
 namespace strut {
 namespace {
