@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/text/fill_template.h"
+#include "base/text/format_number.h"
 #include "base/text/utf8.h"
 #include "embedded/texts.h"
 
@@ -153,7 +154,11 @@ std::string format_cell(fmt::format_string<double&> format, double value) {
   return std::isnan(value) ? "" : fmt::format(format, value);
 }
 
-std::string format_short(double value) { return format_cell("{:.4g}", value); }
+std::string format_short(double value) {
+  const double size = std::abs(value);
+  const bool needs_exponent = size >= 9999.5 && size < 1e6;  // in four digits
+  return needs_exponent ? format_significant(value, 4) : format_cell("{:.4g}", value);
+}
 
 std::string format_percent(double fraction) { return format_cell("{:.2f} %", 100.0 * fraction); }
 

@@ -15,7 +15,7 @@ std::string escape_html(const std::string& text);
 /// Number of a table's cell in one of fmt's formats ("{:.3g}"); empty for NaN, a missing number.
 std::string format_cell(fmt::format_string<double&> format, double value);
 
-/// Four significant digits; empty for NaN.
+/// Four significant digits, without an exponent below a million; empty for NaN.
 std::string format_short(double value);
 /// "12.34 %" for 0.1234; empty for NaN.
 std::string format_percent(double fraction);

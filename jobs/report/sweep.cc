@@ -119,10 +119,10 @@ ChartPanel make_band_panel(const Cases& cases, std::size_t parameter, std::size_
 
 Chart make_channel_chart(const Cases& cases, std::size_t channel) {
   Chart chart{"channel_" + cases.channels[channel].name, {}, 2};
-  chart.caption = "How " + cases.channels[channel].name + " (" +
-                  cases.channels[channel].description +
-                  ") changes with each parameter, whatever the others are: median, and the band of "
-                  "5 to 95 % of the cases.";
+  chart.caption = fmt::format(
+      "{} ({}) over each parameter, at all values of the others: median, and the band of 5 to 95 % "
+      "of the cases.",
+      cases.channels[channel].name, cases.channels[channel].description);
   for (std::size_t p = 0; p < cases.parameters.size(); ++p) {
     chart.panels.push_back(make_band_panel(cases, p, channel));
   }

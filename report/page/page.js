@@ -23,11 +23,12 @@ function makeTemplate() {
   const ink = readColor("--ink");
   const line = readColor("--line");
   const axis = {gridcolor: line, zerolinecolor: line, linecolor: ink, showline: true, ticks: "outside",
-                automargin: false, title: {standoff: 8, font: {size: 12}}};
+                autotickangles: [0, -30, -90], automargin: false, title: {standoff: 8, font: {size: 12}}};
   return {layout: {
     font: {color: ink, size: 13, family: "system-ui, 'DejaVu Sans', Arial, sans-serif"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", xaxis: axis, yaxis: axis,
     modebar: {bgcolor: readColor("--paper"), color: readColor("--soft"), activecolor: ink},
+    legend: {itemsizing: "constant"},  // small points would be invisible
     hoverlabel: {namelength: -1}}};
 }
 
@@ -71,7 +72,7 @@ function saveText(name, text) {
 }
 
 function makeConfig(chart) {
-  const icon = {width: 24, height: 24, path: "M4 3h16v18H4zM4 9h16M4 15h16M12 3v18"};
+  const icon = {width: 24, height: 24, path: "M3 4h8v4H3zM13 4h8v4h-8zM3 10h8v4H3zM13 10h8v4h-8zM3 16h8v4H3zM13 16h8v4h-8z"};
   return {
     responsive: true, displaylogo: false,
     showSendToCloud: false, plotlyServerURL: "",  // no data leaves the report
