@@ -51,7 +51,7 @@ std::string make_job_mark(const std::filesystem::path& sweep, const std::string&
 /// A job as recorded in the files of a submission. The files may have come from elsewhere: before
 /// it acts, a dispatcher proves that the job is the recorded one.
 struct JobRecord {
-  std::string part;  // of the submission
+  std::string part;  // part of the submission
   std::string job;   // as submit() returned it
   std::string name;  // TaskArray::name
   std::string mark;

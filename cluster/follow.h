@@ -25,11 +25,11 @@ struct SubmissionState {
   std::string why_unknown;  // reason for kUnknown
   std::int64_t pending = 0, running = 0;
   std::map<std::string, std::int64_t> reasons;  // why tasks wait -> tasks
-  std::map<TaskFate, std::int64_t> fates;       // of array tasks that are not queued
+  std::map<TaskFate, std::int64_t> fates;       // array tasks that are not queued
   std::int64_t restarts = 0;                    // attempts after the first of each task
   std::vector<ShardRange> queued_shards;        // shards of tasks that wait or run
   bool retries = false;                         // its task for failed cases waits or runs
-  SchedulerStates scheduler_states;             // of tasks that ended
+  SchedulerStates scheduler_states;             // tasks that ended
 };
 
 /// Determines the state of a submission. If it was queued in full and has ended, marks it as

@@ -33,7 +33,7 @@ struct Submission {
   std::string dispatcher;
   std::string cluster_name;  // Dispatcher::find_cluster_name() at submission
   std::string user;          // number of the user who submitted it
-  std::string job_prefix;    // of the names of its jobs, unique to it
+  std::string job_prefix;    // prefix of the names of its jobs, unique to it
   std::vector<PackedArray> arrays;
   bool retries = false;   // a job after all arrays retries failed cases
   bool collects = false;  // a last job, after all others, merges

@@ -26,7 +26,7 @@ struct TaskAttempt {
   std::string host;
   std::int64_t begin = 0;  // s since 1970
   std::int64_t limit = 0;  // end of its time limit, s since 1970; 0: unknown
-  int restart = 0;         // how often the scheduler started it before
+  int restart = 0;         // earlier starts by the scheduler
   std::optional<TaskOutcome> outcome;
   std::int64_t end = 0;     // s since 1970
   std::int64_t shards = 0;  // number of shards that it wrote

@@ -12,7 +12,7 @@ namespace strut {
 struct IdentifiedParameter {
   std::string name, unit;
   double value = std::numeric_limits<double>::quiet_NaN();
-  double half_width = std::numeric_limits<double>::quiet_NaN();  // of the 95 % interval
+  double half_width = std::numeric_limits<double>::quiet_NaN();  // half width of the 95 % interval
   bool in_range = true;  // false: outside of the model's range, or not determined by a fit
 
   double low() const { return value - half_width; }
@@ -28,7 +28,7 @@ struct OutsideChannel {
 
 /// The parameters from one snapshot, one window or one set of runs.
 struct IdentifiedRow {
-  std::string source;  // of the measurement: "drive.csv:12"
+  std::string source;  // file and line of the measurement: "drive.csv:12"
   std::vector<IdentifiedParameter> parameters;
   std::vector<OutsideChannel> outside;
 

@@ -20,7 +20,7 @@ struct SnapshotOptions {
 /// Snapshots, one value for each of a model's inputs.
 struct Snapshots {
   std::vector<double> rows;          // snapshot by snapshot
-  std::vector<std::string> sources;  // of each snapshot: "drive.csv:12"
+  std::vector<std::string> sources;  // file and line of each snapshot: "drive.csv:12"
 };
 
 /// Reads one snapshot per row of each file; with `event_time` [s] one per file, a history,

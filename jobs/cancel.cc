@@ -46,7 +46,7 @@ Arguments describe_cancel() {
 int run_cancel(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const std::string root = sweep.folder.root.string();
-  std::string dispatcher;  // of the last cancelled submission
+  std::string dispatcher;  // dispatcher of the last cancelled submission
   bool is_unknown = false;
   for (const Submission& submission : list_submissions(sweep.folder)) {
     const SubmissionState state = follow(submission);

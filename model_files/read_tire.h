@@ -8,7 +8,7 @@
 namespace strut {
 
 struct TireData {
-  Pac2002<double> pacejka;          // of a left tire
+  Pac2002<double> pacejka;          // a left tire
   double unloaded_radius = 0.0;     // m
   double vertical_stiffness = 0.0;  // N/m
   double vertical_damping = 0.0;    // N s/m

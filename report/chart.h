@@ -38,7 +38,7 @@ struct ChartSeries {
   std::vector<double> low = {}, high = {};
   std::vector<double> value = {};  // colors each point on the panel's color scale
   Marker marker = Marker::kDot;
-  double width = 0.0;  // of bars, in units of x; 0: chosen by plotly.js
+  double width = 0.0;  // width of bars, in units of x; 0: chosen by plotly.js
 };
 
 struct ChartAxis {
@@ -52,13 +52,13 @@ struct ChartPanel {
   ChartAxis x, y;
   std::vector<ChartSeries> series;
   std::string title = {};
-  std::string value_label = {};  // of the color scale
+  std::string value_label = {};  // label of the color scale
   std::string about = {};  // name_panel(), where title and labels do not distinguish the panel
 };
 
 /// Panels row by row, `columns` per row, below a common legend.
 struct Chart {
-  std::string name;  // of its files
+  std::string name;  // name of its files
   std::vector<ChartPanel> panels;
   std::size_t columns = 1;
   int panel_height = 320;  // px, including the axis

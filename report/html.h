@@ -30,7 +30,7 @@ struct ReportTable {
 };
 
 struct ReportFigure {
-  std::string name;  // of its files
+  std::string name;  // name of its files
   std::string caption;
   std::string chart;               // JSON of make_plotly()
   std::vector<std::string> files;  // linked below the chart, relative to the page
@@ -38,7 +38,7 @@ struct ReportFigure {
 
 /// An animation of a car crossing its bump, with a slider (page/motion.js).
 struct ReportMotion {
-  std::string name;  // of its file
+  std::string name;  // name of its file
   std::string caption;
   std::string scene;  // JSON of make_motion()
 };

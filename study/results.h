@@ -26,11 +26,11 @@ Spread calc_spread(std::vector<double> values);
 struct SeedResult {
   int seed = 0;
   std::string model;             // path of the file from the study's folder
-  std::vector<Metrics> metrics;  // of the test cases, per parameter
+  std::vector<Metrics> metrics;  // on the test cases, per parameter
   std::int64_t tested = 0;       // number of test cases
   int epochs = 0;
   StopReason stop = StopReason::kNone;
-  double best_validation = 0.0, seconds = 0.0;  // of the training
+  double best_validation = 0.0, seconds = 0.0;  // values of the training
 };
 
 struct CellResult {

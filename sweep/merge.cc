@@ -23,7 +23,7 @@ struct MergedShard {
 struct MergeLayout {
   std::vector<MergedShard> shards;
   std::size_t rows = 0;
-  std::size_t text_length = 1;  // of the longest reason
+  std::size_t text_length = 1;  // length of the longest reason
 };
 
 struct FileSize {

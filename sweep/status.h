@@ -16,7 +16,7 @@ struct SweepStatus {
   std::int64_t cases = 0;    // in the plan
   std::int64_t done = 0;     // with a result
   std::int64_t failed = 0;   // simulated, without a result
-  std::int64_t untried = 0;  // of `failed`: a smaller step may mend them, not yet retried
+  std::int64_t untried = 0;  // failed cases that a smaller step may mend, not yet retried
   std::int64_t running = 0;  // in shards claimed by a living runner
   std::int64_t left = 0;     // not simulated yet, including `running`
   std::int64_t shards = 0, shards_present = 0;
@@ -28,7 +28,7 @@ struct SweepStatus {
   std::uint64_t bytes = 0;
   double simulation_seconds = 0.0;
   std::vector<std::string> faults;  // errors of files that do not match the plan
-  DataDigest digest;                // of the cases simulated so far
+  DataDigest digest;                // digest of the cases simulated so far
 
   bool complete() const { return left == 0; }
 };

@@ -13,7 +13,7 @@ namespace strut {
 
 struct VerifyOptions {
   std::int64_t sample = 0;  // number of cases to simulate again
-  std::uint64_t seed = 1;   // of the random choice of these cases
+  std::uint64_t seed = 1;   // seed of the random choice of these cases
   /// Kernel for shards whose own instruction set this machine lacks. Its results are compared to
   /// `tolerance`, relative or, below 1, absolute, instead of bit for bit.
   const Kernel* fallback = nullptr;
@@ -29,7 +29,7 @@ struct VerifyReport {
   std::vector<std::string> damaged;  // "file: error"
   std::string data_digest;
   std::int64_t resimulated = 0;
-  std::int64_t compared_by_tolerance = 0;  // of `resimulated`: on another instruction set
+  std::int64_t compared_by_tolerance = 0;  // resimulated cases of another instruction set
   std::vector<std::string> differing;      // resimulated cases with other results
 
   bool ok() const {

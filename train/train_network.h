@@ -24,10 +24,10 @@ struct TrainingRequest {
   RowChoice rows;
   /// A window of the histories instead of the snapshot; needs `noise`.
   std::optional<WindowChoice> window;
-  std::optional<NoiseModel> noise;  // of rows.inputs
+  std::optional<NoiseModel> noise;  // noise of rows.inputs
   std::vector<int> hidden = {27, 19, 11};
   SplitChoice split;
-  std::uint64_t seed = 1;  // of the start weights (Nguyen-Widrow)
+  std::uint64_t seed = 1;  // seed of the start weights (Nguyen-Widrow)
   bool allow_few = false;  // allow fewer equations than weights
   LevenbergMarquardtOptions options;
   /// Start on a growing sample of the rows; otherwise every epoch uses all rows.

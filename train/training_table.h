@@ -12,14 +12,14 @@
 namespace strut {
 
 struct TableTraining {
-  std::string name;            // of the model's file, without extension
+  std::string name;            // name of the model's file, without extension
   std::filesystem::path data;  // sweep folder, shard or merged file
   std::int64_t cases = 0;      // approximate number, to start longer trainings first
   TrainingRequest request;     // threads: 1
 };
 
 struct TrainingTableOptions {
-  std::filesystem::path folder;  // of the models, NAME.h5; must exist
+  std::filesystem::path folder;  // folder of the models, NAME.h5; must exist
   int threads = 1;               // number of parallel trainings; no result depends on it
   NamedTexts provenance;         // attributes of every model
 };

@@ -60,7 +60,7 @@ struct FileSeal {
   std::string kind;
   SealLines lines;
   std::uint64_t size = 0;  // bytes of the whole file
-  std::string sha256;      // of all bytes after the seal, 64 digits
+  std::string sha256;      // digest of all bytes after the seal, 64 digits
 
   /// Returns the text of a line; empty if there is no such line.
   std::string get(const std::string& key) const;
@@ -88,7 +88,7 @@ FileSeal require_intact(const std::filesystem::path& path, SealCheck check);
 
 struct SealedBytes {
   FileSeal seal;
-  std::vector<std::byte> bytes;  // of the whole file
+  std::vector<std::byte> bytes;  // content of the whole file
 };
 
 /// Reads a file once and checks every byte; if its first bytes are not a seal, the rest is not

@@ -29,7 +29,7 @@ bool is_process_number_taken(const std::string& process);
 enum class Liveness {
   kDead,     // ended, a zombie, or its number was reused
   kAlive,    // running, or stopped by a signal
-  kUnknown,  // of another host, boot or namespace, or hidden
+  kUnknown,  // from another host, boot or namespace, or hidden
 };
 
 /// Returns whether `process` runs, seen from `own`, this process.

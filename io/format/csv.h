@@ -26,7 +26,7 @@ struct CsvColumn {
 };
 
 struct CsvTable {
-  std::filesystem::path path;  // of the file, for messages
+  std::filesystem::path path;  // the file, for messages
   std::vector<CsvColumn> columns;
   std::vector<int> lines;  // line in the file of each row
 

@@ -49,9 +49,9 @@ class Hdf5Handle {
 struct Hdf5Label {
   std::string unit;
   std::string description;
-  std::vector<std::string> names;              // of the columns of a 2-D dataset; may be empty
-  std::vector<std::string> units = {};         // of the columns, where they differ
-  std::vector<std::string> descriptions = {};  // of the columns
+  std::vector<std::string> names;              // columns of a 2-D dataset; may be empty
+  std::vector<std::string> units = {};         // by column, where they differ
+  std::vector<std::string> descriptions = {};  // by column
 };
 
 enum class Hdf5Type { kDouble, kInt32, kInt64, kText };
@@ -71,7 +71,7 @@ inline constexpr Hdf5Type hdf5_type<std::string> = Hdf5Type::kText;
 
 /// Texts of equal length, zero-padded, without gaps.
 struct PackedTexts {
-  std::size_t length = 1;  // of the longest
+  std::size_t length = 1;  // bytes of the longest
   std::vector<std::byte> bytes;
 };
 

@@ -44,8 +44,8 @@ std::size_t find_string_end(std::string_view text, std::size_t begin) {
 
 /// Nesting, parts and length of the word at a position.
 struct Extent {
-  std::size_t depth = 0;  // of arrays and tables
-  std::size_t parts = 1;  // of a dotted key
+  std::size_t depth = 0;  // nested arrays and tables
+  std::size_t parts = 1;  // parts of a dotted key
   std::size_t word = 0;   // bytes of a key or value without quotes
 
   void add(char c) {

@@ -10,7 +10,7 @@
 
 namespace strut {
 
-inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8
 
 /// A line of a file; numbers start at 1.
 struct TextLine {

@@ -125,7 +125,7 @@ struct Claims::State {
   std::set<std::string> held;
 
   struct Observation {
-    std::string text;  // of the runner's file
+    std::string text;  // content of the runner's file
     Clock::time_point since;
   };
   std::map<std::string, Observation> observations;  // by runner

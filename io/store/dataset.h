@@ -73,7 +73,7 @@ class Dataset {
   std::vector<Piece> pieces_;
   std::vector<std::int64_t> case_ids_;  // while the dataset is opened
   std::optional<SweepFolder> folder_;
-  SweepExtent extent_;  // of folder_
+  SweepExtent extent_;  // extent of folder_
   std::optional<Hdf5Reader> merged_;
   std::size_t held_ = 0;  // piece in rows_
   std::optional<ShardRows> rows_;

@@ -18,9 +18,9 @@ struct JournalEntry {
   std::int64_t cases = 0;
   std::map<std::string, std::int64_t> failures;  // reason -> cases
   std::uint64_t bytes = 0;
-  std::string sha256;     // of the seal
+  std::string sha256;     // digest of the seal
   std::string digest;     // DataDigest::state()
-  double seconds = 0.0;   // of simulation, summed over threads
+  double seconds = 0.0;   // simulation time, summed over threads
   std::int64_t time = 0;  // s since 1970, for display and rates only
   std::string runner;
   bool duplicate = false;  // another runner published the shard first: the work was done twice

@@ -81,7 +81,7 @@ class Hdf5Columns {
   fs::path path_;
   Hdf5Reader file_;
   std::vector<std::string> names_;
-  std::string group_;  // of the columns, unless they are a table
+  std::string group_;  // group of the columns, unless they are a table
   Hdf5Dataset table_;
   bool is_table_ = false;
 };

@@ -92,7 +92,7 @@ struct ShardSeal {
   std::string plan_hash;
   std::int64_t shard = 0;  // -1: none
   std::uint64_t size = 0;  // bytes of the whole file
-  std::string sha256;      // of all bytes after the seal
+  std::string sha256;      // digest of all bytes after the seal
 };
 
 SealLabel make_shard_label(const std::string& plan_hash, std::int64_t shard);
@@ -120,7 +120,7 @@ struct Shard {
   ShardSchema schema;
   ShardRows rows;
   ShardProvenance provenance;  // texts sorted by name
-  DataDigest digest;           // of the rows
+  DataDigest digest;           // digest of the rows
 };
 
 /// Datasets of a shard to read.

@@ -19,7 +19,7 @@ constexpr double kMaxError = 1e-3;
 
 /// Duration and number of repeats of one measurement.
 struct Effort {
-  double seconds = 0.25;  // of a repeat
+  double seconds = 0.25;  // duration of a repeat
   int repeats = 6;
 };
 

@@ -30,7 +30,7 @@ struct PipelineResult {
   std::int64_t bytes_per_case = 0;  // mean, rounded
   double plan_seconds = 0.0;        // from request to folder
   double resume_seconds = 0.0;      // to run the finished sweep again
-  double peak_memory = 0.0;         // of this process so far [bytes]
+  double peak_memory = 0.0;         // peak of this process so far [bytes]
 
   /// Fraction of the thread-seconds spent on compression and disk.
   double output_fraction() const {

@@ -35,7 +35,7 @@ struct BenchResult {
   std::vector<Figure> single_core;
   std::vector<ThreadFigure> threads;
   FlopCount newton, table;
-  double peak = 0.0;  // of one core [flop/s]
+  double peak = 0.0;  // peak of one core [flop/s]
   double seconds_to_prepare = 0.0;
   std::optional<PipelineResult> pipeline;  // empty: no sweep was run
   Machine machine;

@@ -15,7 +15,7 @@ struct SweepEstimate {
   int without_event = 0;  // among `measured`: cases that never reach the snapshot's line
   int failed = 0;         // among `measured`: cases without a result for other reasons
   double seconds = 0.0;   // for the whole sweep on all cores
-  double bytes = 0.0;     // of all rows, before compression
+  double bytes = 0.0;     // size of all rows, before compression
 };
 
 /// Simulates a batch of the plan's first cases with the plan's settings; with CVODE only the first.

@@ -9,7 +9,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMaxPoints = 2500;  // of a point cloud
+constexpr std::size_t kMaxPoints = 2500;  // points of a point cloud
 
 std::vector<ModelCurves> keep_simulated(const std::vector<ModelCurves>& models) {
   std::vector<ModelCurves> kept;

@@ -20,7 +20,7 @@ std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis,
                                            std::size_t max_runners_up = 12);
 /// Errors of the nominal, the calibrated and the extended model by held-out run and channel.
 ReportTable make_improvement_table(const CampaignData& data, const Diagnosis& diagnosis);
-/// What each claimed effect is, with its law and its place in the documentation.
+/// Meaning of each claimed effect, with its law and its entry in the documentation.
 std::vector<std::string> describe_effects(const Verdict& verdict);
 /// Parameters before and after the extension; empty where none is free.
 std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis);

@@ -10,7 +10,7 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMaxPoints = 600;  // of a curve
+constexpr std::size_t kMaxPoints = 600;  // points of a curve
 
 DesignReport calc_report(const SweepRequest& request) {
   DesignReport report;

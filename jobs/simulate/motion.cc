@@ -119,7 +119,7 @@ std::vector<std::array<double, 2>> list_profile(const RoadSpec& road) {
   const Profile profile = make_profile(road);
   const std::size_t pieces = profile.get_piece_count();
   if (pieces == 0) return {};
-  const std::size_t count = std::max<std::size_t>(4, kRoadPoints / pieces);  // of each piece
+  const std::size_t count = std::max<std::size_t>(4, kRoadPoints / pieces);  // points of each piece
   std::vector<std::array<double, 2>> points;
   for (std::size_t i = 0; i < pieces; ++i) {
     const double begin = profile.ends[i], end = profile.ends[i + 1];

@@ -9,7 +9,7 @@
 namespace strut {
 
 struct SubmitRequest {
-  Resources resources;  // of one task; seconds 0: chosen by plan_tasks()
+  Resources resources;  // for one task; seconds 0: chosen by plan_tasks()
   std::int64_t max_tasks = 1;
   double task_seconds = 600.0;   // target duration of a task
   std::int64_t at_once = 0;      // tasks of an array that run at once; 0: no limit

@@ -65,7 +65,7 @@ MissingWork find_missing_work(const OpenSweep& sweep, const SubmitRequest& reque
 }
 
 double estimate_shard_seconds(const OpenSweep& sweep, const SweepStatus& status, int threads) {
-  double thread_seconds = 0.0;  // of a case
+  double thread_seconds = 0.0;  // time of a case on one thread
   const std::int64_t simulated = status.done + status.failed;
   if (simulated > 0) {
     thread_seconds = status.simulation_seconds / static_cast<double>(simulated);

@@ -33,7 +33,7 @@ double estimate_shard_seconds(const OpenSweep& sweep, const SweepStatus& status,
 
 struct TaskPlan {
   std::vector<PackedArray> arrays;
-  Resources resources;        // of one task, walltime and warning included
+  Resources resources;        // for one task, walltime and warning included
   double task_seconds = 0.0;  // expected duration of the longest task
 
   std::int64_t count_tasks() const;

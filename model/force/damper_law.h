@@ -62,7 +62,7 @@ struct DamperSeries {
   T lag;         // tau, s
   T compliance;  // kappa, m/N
   T relaxation;  // tau_m, s
-  T joint_play;  // of p, m: where it is positive, the strut's dry friction is behind the joint
+  T joint_play;  // play p [m]: where it is positive, the strut's dry friction is behind the joint
 };
 
 /// States y [N], z [N] and u [m] of a DamperSeries, their time derivatives, and their decay rates

@@ -105,7 +105,7 @@ enum StrutEffectBits : unsigned {
   kGasForce = 32,
 };
 
-inline constexpr int kStatesPerStrut = 3;  // of a DamperSeries
+inline constexpr int kStatesPerStrut = 3;  // states of a DamperSeries
 
 template <class T>
 struct ShapedDamper {

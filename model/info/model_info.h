@@ -49,10 +49,10 @@ struct StrutInfo {
 };
 
 enum class StateKind {
-  kDeflection,  // of a strut or its mass
+  kDeflection,  // deflection of a strut or its mass
   kVelocity,    // time derivative of the deflection
   kTireLoad,
-  kGuideVelocity,  // of a mass along its guide
+  kGuideVelocity,  // velocity of a mass along its guide
 };
 
 /// A motion or load of the model as a function of which residuals are examined.

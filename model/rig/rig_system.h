@@ -314,7 +314,7 @@ class RigSystem {
   bool on_ground_;
   RigWorkspace<T> ws_{};
   StrutStates<T> states_;
-  T time_{};  // of the last evaluation, s
+  T time_{};  // time of the last evaluation [s]
   Mask failed_{};
 };
 

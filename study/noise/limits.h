@@ -32,7 +32,7 @@ struct FittedCase {
 };
 
 struct NoiseLimitsOptions {
-  std::filesystem::path folder;  // of the files; must exist
+  std::filesystem::path folder;  // folder of the files; must exist
   int threads = 1;               // no result depends on it
 };
 

@@ -40,7 +40,7 @@ struct NoiseSensor {
 
 struct NoiseStudy {
   std::vector<ColumnInfo> parameters;
-  std::vector<std::string> preloads;  // of the snapshots
+  std::vector<std::string> preloads;  // preloads of the snapshots
   std::string window_preload;
   std::vector<NoiseSensor> sensors;
   double rate = 0.0;            // 1/s, samples of the windows

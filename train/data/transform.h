@@ -25,7 +25,7 @@ namespace strut {
 struct WindowGrid {
   double interval = 0.0;    // s, between samples
   std::int64_t first = 0;   // the window's first sample is at time first * interval
-  std::size_t samples = 0;  // of the window
+  std::size_t samples = 0;  // samples of the window
   std::size_t lags = 0;     // maximum shift of a record, either way, in samples; 0: not aligned
 
   /// Samples beyond the window, on each side, that aligning needs.
@@ -36,7 +36,7 @@ struct WindowGrid {
 
 struct WindowTransform {
   std::vector<ColumnInfo> channels;
-  NoiseModel noise;  // of the channels
+  NoiseModel noise;  // noise of the channels
   WindowGrid grid;
   // Whitened windows, channel by channel.
   std::vector<double> reference;  // records are aligned to it; empty: not aligned
@@ -67,7 +67,7 @@ struct WindowReading {
 /// A record, channel by channel, all with the same number of samples.
 struct RecordView {
   std::span<const double> values;
-  std::size_t samples = 0;  // of each channel
+  std::size_t samples = 0;  // samples of each channel
 
   std::span<const double> channel(std::size_t c) const {
     return values.subspan(c * samples, samples);

@@ -57,7 +57,7 @@ struct SourceNames {
   std::string guard;        // "STRUT_IDENTIFY_NAME_H"
   std::string prefix;       // "strut_NAME_"
   std::string storage;      // "static inline " or ""
-  std::string declaration;  // of the function, without storage
+  std::string declaration;  // declaration of the function, without storage
 };
 
 SourceNames make_names(const NetworkShape& shape, const std::string& name, SourceKind kind) {

@@ -22,7 +22,7 @@ struct GramTile {
   std::size_t first_row = 0;          // first row of U' (pair of neurons)
   std::size_t rows = 0;
   std::size_t columns = 0;  // pairs of inputs, including biases
-  std::size_t offset = 0;   // of the tile in the sums; stored by columns, `rows` apart
+  std::size_t offset = 0;   // first entry of the tile in the sums; stored by columns, `rows` apart
 };
 
 /// The products of all pairs of layers, cut into tiles of similar cost. The cut depends on the

@@ -100,8 +100,8 @@ class NetworkProblem : public LeastSquaresProblem {
   std::size_t source_rows_, rows_;
 
   std::vector<Workspace> workspaces_;
-  std::vector<double> inputs_, targets_;                // of a batch
-  std::vector<double> block_losses_, block_gradients_;  // of the batch's blocks
+  std::vector<double> inputs_, targets_;                // rows of a batch
+  std::vector<double> block_losses_, block_gradients_;  // by block of the batch
   GramLayout layout_;
   // Allocated by the first calc_gram: a problem that only validates needs none of them.
   std::vector<double> chunk_activations_, chunk_deltas_, sums_;

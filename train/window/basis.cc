@@ -136,7 +136,7 @@ MatrixXd orthonormalize(const MatrixXd& columns) {
 
 /// Products of the windows' covariance with orthonormal directions Q.
 struct Products {
-  MatrixXd covariance;  // of the coordinates, Q' C Q
+  MatrixXd covariance;  // covariance of the coordinates, Q' C Q
   MatrixXd image;       // C Q
 };
 
