@@ -22,7 +22,7 @@ struct Regression {
   TrainedModel model;
   std::vector<Numbers> starts;
   Numbers certified;
-  double certified_sum;  // of squares
+  double certified_sum;  // sum of squares
 };
 
 double calc_mgh09(double x, const double* b, double* j) {

@@ -150,7 +150,7 @@ bool fails(const char* kind) {
   return true;
 }
 
-// How much of `size` bytes the fault lets through; -1: the call fails.
+// Number of the `size` bytes that the fault lets through; -1: the call fails.
 ssize_t limit_write(std::size_t size) {
   static bool is_first = true;
   if (!fails("write")) return static_cast<ssize_t>(size);

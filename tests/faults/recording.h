@@ -8,7 +8,7 @@ namespace strut::test {
 
 enum class FileCall : std::uint32_t {
   kOpen,      // offset 1: emptied (O_TRUNC); only where it may have created or emptied a file
-  kWrite,     // of data at offset
+  kWrite,     // data at offset
   kTruncate,  // to the size offset
   kRename,    // path to other
   kLink,      // path also as other

@@ -1,4 +1,4 @@
-// What the worker writes, for the tests to know.
+// The data that the worker writes, for the tests to compare with.
 #pragma once
 
 #include <string>

@@ -19,7 +19,7 @@ void read_submission_file(const fs::path& path) {
   found.read_scheduler_states();
 }
 
-/// What a submission keeps beside it.
+/// The files that a submission keeps beside it.
 void read_beside_submission(const fs::path& path) {
   read_submission_file(path.parent_path() / "submission.toml");
 }

@@ -14,7 +14,7 @@ namespace strut::fuzz {
 enum class Changes {
   kBytes,            // any bytes
   kBytesAndContent,  // half of them as kContent
-  kContent,          // of HDF5, with a valid structure and seal: see hdf5_tree.h
+  kContent,          // HDF5 content, with a valid structure and seal: see hdf5_tree.h
   kSealedBytes,      // any bytes, sealed again
 };
 

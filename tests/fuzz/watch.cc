@@ -30,7 +30,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Shared memory of a worker and the process that watches it.
 struct Shared {
-  std::atomic<std::uint64_t> number{0};  // of the current input
+  std::atomic<std::uint64_t> number{0};  // number of the current input
   std::atomic<std::uint64_t> executions{0}, accepted{0}, refused{0};
   char finding[1024] = {};
 };

@@ -42,12 +42,12 @@ struct Campaign {
   std::uint64_t executions = 0;                      // 0: limited by the time
   std::chrono::duration<double> time{0.0};           // 0: no limit
   std::filesystem::path findings;                    // folder
-  double max_seconds = 5.0;                          // of processor time, for one input
+  double max_seconds = 5.0;                          // processor time of one input
   std::uint64_t max_bytes = std::uint64_t{1} << 30;  // resident, beyond those of an idle process
 };
 
 struct Finding {
-  std::uint64_t number = 0;  // of its first input
+  std::uint64_t number = 0;  // number of its first input
   std::string what;
   std::uint64_t count = 1;
   std::filesystem::path file;

@@ -387,7 +387,7 @@ TEST_CASE("The benchmark's error is that of the worst lane", "[io]") {
   const Kernel& kernel = list_kernels().front();
   BenchSetting lanes, scalar;
   scalar.in_lanes = false;
-  CHECK(measure_error(bench, kernel, lanes) < 1e-3);  // what the benchmark counts as exact
+  CHECK(measure_error(bench, kernel, lanes) < 1e-3);  // the benchmark's limit of an exact run
   for (double& value : bench.acceleration[1]) value *= 2.0;
   // Against twice the truth: |1 - 2| / 2, to the error that both runs have.
   CHECK(measure_error(bench, kernel, lanes) == Approx(0.5).epsilon(1e-3));

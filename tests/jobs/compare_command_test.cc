@@ -62,7 +62,7 @@ TEST_CASE("compare writes numbers, tables, figures and a report of every run", "
   CHECK(runs == 2);
   const CsvTable table = read_csv(folder / "out" / "run_1_a.csv", MissingCells::kNan);
   CHECK(table.row_count() == 801);
-  // What the table says of the residual is what compare.json says.
+  // The table and compare.json give the same residual.
   double squares = 0.0;
   const auto& measured = table.column("sprung_position").values;
   const auto& simulated = table.column("sprung_position_calibrated").values;

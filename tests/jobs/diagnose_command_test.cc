@@ -137,7 +137,7 @@ TEST_CASE("The terminal shows verdict, probabilities, improvement and the next m
   const std::string row = "\nstrut_friction ";
   CHECK(text.find(row) == text.find(row, text.find("Causes and")));
   CHECK(text.find(row, text.find("not distinguished")) > text.find("Parameters of the model"));
-  // What the effect is, with its law; every held-out run; parameters before and after.
+  // The effect with its law; every held-out run; parameters before and after.
   CHECK_THAT(text, Contains("F_c tanh(v / v_s)") && Contains("docs/effects.md#strut_friction"));
   CHECK_THAT(text, Contains("b.csv") && !Contains("a.csv") && Contains("900 (890 to 910)") &&
                        Contains("950 (940 to 960)"));

@@ -20,7 +20,7 @@ using test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 const std::string kEarlier = STRUT_SOURCE_DIR "/tests/data/d0caeb7/";
-/// Of the whole sweep, by the version that planned it.
+/// Digest of the whole sweep, by the version that planned it.
 constexpr char kDigest[] = "fbefe3773dc07d55317815990be005de5c7a83c9ca0256e05f1e540fd95cb018";
 constexpr char kTraining[] = " --hidden 3 --allow-few --seed 1 --epochs 20 --threads 1";
 
@@ -37,7 +37,7 @@ TEST_CASE("A half-done sweep of an earlier version is finished to the same diges
   const Outcome before = test::run_sweep_command("status", sweep);
   CHECK(before.code == 1);
   CHECK_THAT(before.out, Contains("2 of 4"));
-  // Of the cases that fail no resume mends one.
+  // No resume mends one of the cases that fail.
   CHECK(test::run_sweep_command("run", sweep, "--isa baseline --threads 2").code == 1);
   const test::Verdict verdict = test::verify_by_program(sweep, "--sample 8");
   CHECK(verdict.code == 0);

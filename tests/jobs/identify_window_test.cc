@@ -27,7 +27,7 @@ struct Recording {
   std::string car, rate = "500";
   double clock = 0.0, first = 0.0, last = 1.5;
   std::string accelerometer = "imu_acceleration_z";
-  double noise = 1.0;          // of what the model was trained with
+  double noise = 1.0;          // relative to the noise of the training
   std::size_t lost = 1 << 30;  // the sample that is not written
 };
 

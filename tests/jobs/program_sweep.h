@@ -56,7 +56,7 @@ inline Outcome run_sweep_command(const std::string& command, const std::filesyst
                    options);
 }
 
-/// What `strut verify --json` says.
+/// The output of `strut verify --json`.
 struct Verdict {
   int code = -1;
   bool ok = false;

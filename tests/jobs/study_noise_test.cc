@@ -118,7 +118,7 @@ TEST_CASE("Bounds of windows are nearly proportional to the noise", "[property][
   for (const std::string& p : kParameters) {
     CHECK(weak.column(p).values == real.column(p).values);
     for (std::size_t i = 0; i < kFits; ++i) {
-      // What is known before of hit time, speed and biases says more beside more noise: 2e-3 here.
+      // Priors of hit time, speed and biases weigh more beside more noise: 2e-3 here.
       const double ratio =
           real.column(p + "_bound").values[i] / weak.column(p + "_bound").values[i];
       CHECK(ratio == Approx(10.0).epsilon(0.01));
@@ -209,7 +209,7 @@ TEST_CASE("A report of a study with noise computes nothing and repeats its bytes
   for (const char* name : {"results.json", "noise.csv", "report.html", "figures/noise.json"}) {
     REQUIRE(fs::remove(root / name));
   }
-  std::ofstream(root / "results.json") << "{\"noise\": ";  // of a disk that was full
+  std::ofstream(root / "results.json") << "{\"noise\": ";  // as a full disk leaves it
   CHECK(run_program("report " + root.string()).code == 0);
   CHECK(read_folder(root) == before);
   CHECK_THAT(before.at("report.html"), Contains("Sensor noise") && Contains("imu_rate_y"));

@@ -1,4 +1,4 @@
-// What disks, limits, damage and clocks do to a sweep, through the program itself.
+// Sweeps under faults of disks, limits, damage and clocks, through the program itself.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>

@@ -116,7 +116,7 @@ TEST_CASE("A report's bands are quantiles of the cases on each level", "[io]") {
   Dataset dataset({sweep});
   const ShardRows rows = dataset.read(0, dataset.row_count());
   const std::size_t columns = dataset.schema().parameters.size();
-  std::map<double, std::vector<double>> levels;  // of front stiffness: heights
+  std::map<double, std::vector<double>> levels;  // front stiffness -> heights
   for (std::size_t i = 0; i < rows.size(); ++i) {
     levels[rows.parameters[i * columns]].push_back(
         rows.snapshot[i * dataset.schema().snapshot.size()]);
@@ -132,7 +132,7 @@ TEST_CASE("A report's bands are quantiles of the cases on each level", "[io]") {
     };
     if (point.series == "median") {
       ++medians;
-      CHECK(count_below(point.values.at("y")) == 6);  // of 12
+      CHECK(count_below(point.values.at("y")) == 6);  // among 12
     } else {
       ++bands;
       CHECK(count_below(point.values.at("low")) == 1);

@@ -38,7 +38,7 @@ TEST_CASE("Bytes that are no character become U+FFFD, those about them stay", "[
   CHECK(make_valid_utf8("\xe2\x28\xa1") == kMark + "(" + kMark);
 }
 
-/// What may follow a lead byte (table 3-7 of the Unicode standard), as the bits decode.
+/// Whether the bits of `bytes` are one character by table 3-7 of the Unicode standard.
 bool is_character(const std::vector<unsigned>& bytes) {
   const unsigned lead = bytes[0];
   const std::size_t length = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : 4;
@@ -62,7 +62,7 @@ TEST_CASE("A character is valid where its code point is", "[unit][property]") {
   for (unsigned lead = 0; lead < 256; ++lead) {
     CAPTURE(lead);
     CHECK(check({lead}));
-    if (lead < 0x80) continue;  // what follows is another character
+    if (lead < 0x80) continue;  // another character follows
     for (const unsigned b : next) {
       CHECK(check({lead, b}));
       for (const unsigned c : next) {

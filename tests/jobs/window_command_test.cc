@@ -59,7 +59,7 @@ std::vector<double> calc_bounds_there() {
   std::vector<Unknown> unknowns = {make_parameter(runs, "front_stiffness"),
                                    make_parameter(runs, "rear_damping")};
   NuisanceSigmas sigmas;
-  sigmas.speed = 1.0 / std::sqrt(12.0);  // of the uniform distribution over the axis
+  sigmas.speed = 1.0 / std::sqrt(12.0);  // uniform distribution over the axis
   for (Unknown& u : make_nuisances(runs, sigmas, unknowns)) unknowns.push_back(std::move(u));
   return calc_fit_bounds(runs, unknowns).sigma;
 }

@@ -192,7 +192,7 @@ TEST_CASE("A line mounted on a rod ends at the foot of its point on the rod", "[
   }
 }
 
-/// What assembling `spec` says against it.
+/// Message with which the assembly of `spec` fails; empty if it succeeds.
 std::string find_refusal(const VehicleSpec& spec) {
   try {
     make_car(spec);

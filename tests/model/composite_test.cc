@@ -104,8 +104,8 @@ Sym3<double> turn(const Mat3<double>& r, const Sym3<double>& s) {
 struct MassPoints {
   std::vector<double> mass;
   std::vector<Vec3<double>> place;     // mass points: centers of bodies, points on rods
-  std::vector<Sym3<double>> inertia;   // of bodies, in chassis axes
-  std::vector<Mat3<double>> rotation;  // of bodies
+  std::vector<Sym3<double>> inertia;   // by body, in chassis axes
+  std::vector<Mat3<double>> rotation;  // by body
 };
 
 MassPoints place_masses(const VehicleSpec& spec, const AssembledVehicle& car, int corner,

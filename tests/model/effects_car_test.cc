@@ -41,7 +41,7 @@ IntegrateOptions make_options(double step = 1e-3, Stepper stepper = Stepper::kRk
 
 const Kernel& scalar() { return list_kernels().back(); }
 
-/// What a strut does at a state, found by the car's own equations.
+/// Forces of the struts at a state, by the car's own equations.
 std::array<StrutForce<double>, kCorners> calc_struts(const Case& c, const State<double>& x) {
   const PreparedCase p = prepare(c);
   Workspace<double> ws{};

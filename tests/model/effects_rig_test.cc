@@ -147,7 +147,7 @@ TEST_CASE("A lag that vanishes leaves the damper as it is", "[property][rigs]") 
     CHECK(difference < before);
     before = difference + 1e-7;
   }
-  CHECK(before < 2e-5);  // what is left: stages of a step do not share one force
+  CHECK(before < 2e-5);  // residual: stages of a step do not share one force
 }
 
 /// Time in which the contact behind a lost stroke yields [s].

@@ -1,4 +1,4 @@
-// What sensors with faults read, against closed forms.
+// Readings of faulty sensors against closed forms.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

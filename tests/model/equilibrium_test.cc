@@ -339,7 +339,7 @@ TEST_CASE("A steadily driven car has no relative acceleration", "[unit]") {
   Workspace<double> ws{};
   const State<double> dx = calc_start_derivative(c, ws);
   const Vec3<double> a = ws.rotation * ws.acceleration;
-  const double allowed = tolerance(1e-8);  // of the solver, and of the tables it solves with
+  const double allowed = tolerance(1e-8);  // error of the solver and of its tables
   CHECK(std::abs(a.z) < allowed);
   CHECK(std::abs(a.y) < allowed);
   for (int i = 0; i < 3; ++i) CHECK(std::abs(dx[I::kAngularVelocity + i]) < allowed);

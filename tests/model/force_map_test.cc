@@ -149,7 +149,7 @@ TEST_CASE("A rig's map that is a damper or a spring equals them", "[unit][refere
   const LaneResults a = run_rig(make_rig(kind, {map})), b = run_rig(changed);
   const auto& channels = get_rig_info(kind).channels;
   for (std::size_t i = 0; i < b.history.size(); ++i) {
-    // What the map gives counts as the damper's, not as the spring's.
+    // The map's force counts as the damper's, not as the spring's.
     const std::string& name = channels[i % channels.size()].name;
     if (spring && (name == "spring_force" || name == "damper_force")) continue;
     INFO(name);

@@ -58,7 +58,7 @@ TEST_CASE("A parameter that is set reads back and moves nothing it does not cont
   const Case paper = read_paper_case();
   std::set<std::string> names;
   for (const ParameterInfo& parameter : list_parameters()) names.insert(parameter.name);
-  // What both an axle and its corners have.
+  // Parameters of both an axle and its corners.
   const auto is_of = [&](const std::string& name, const std::string& axle,
                          const std::string& place) {
     if (!name.starts_with(place)) return false;

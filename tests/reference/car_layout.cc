@@ -216,7 +216,7 @@ Matrix3d calc_true_inertia(const RigidBody& body) {
   return body.inertia - body.inertia * e * e.transpose();
 }
 
-/// What the whole car has and the other bodies lack.
+/// The body that completes the others to the whole car.
 RigidBody make_chassis(const WholeCarSpec& whole, const CarLayout& layout, Vector3d* center) {
   RigidBody chassis{whole.mass, to_eigen(whole.inertia), Vector3d::Zero()};
   Vector3d moment = Vector3d::Zero();

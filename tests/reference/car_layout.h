@@ -28,7 +28,7 @@ struct CornerLayout {
   Vector3d spin_axis = Vector3d::UnitY();    // in body axes of upright and wheel, to the left
   Vector3d wheel_center = Vector3d::Zero();  // m, chassis axes at nominal trim
   MountPoint spring_upper, spring_lower, damper_upper, damper_lower;
-  double drive_share = 0.0;  // of the whole torque
+  double drive_share = 0.0;  // fraction of the whole torque
   double static_load = 0.0;  // N
 };
 

@@ -16,7 +16,8 @@
 
 namespace strut::reference {
 
-/// What determines the car's motion. The chassis point is the whole car's centroid at nominal trim.
+/// Values that determine the car's motion. The chassis point is the whole car's centroid at nominal
+/// trim.
 struct ReducedState {
   Vector3d position = Vector3d::Zero();                   // m, world
   Eigen::Vector4d quaternion = Eigen::Vector4d::Unit(0);  // w x y z, chassis -> world

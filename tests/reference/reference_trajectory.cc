@@ -49,10 +49,10 @@ Eigen::Vector4d calc_quaternion_rate(const Eigen::Vector4d& wxyz, const Vector3d
   return 0.5 * Eigen::Vector4d(rate.w(), rate.x(), rate.y(), rate.z());
 }
 
-/// What CVODE's callbacks need; the last closed state starts the next Newton iteration.
+/// Data of CVODE's callbacks; the last closed state starts the next Newton iteration.
 struct Problem {
   const FullCoordinateCar& car;
-  std::vector<std::vector<double>> kinks;  // of each corner
+  std::vector<std::vector<double>> kinks;  // by corner
   ReferenceState last;
   bool has_last = false;
   std::string failure;

@@ -131,7 +131,7 @@ inline void write_record(const TemporaryFolder& folder, const std::string& name,
   folder.write(name, text);
 }
 
-/// What a campaign file consists of.
+/// Parts of a campaign file.
 struct CampaignText {
   std::string model = STRUT_SOURCE_DIR "/examples/rigs/quarter_car.toml";
   std::string time = "{ column = \"t\" }";

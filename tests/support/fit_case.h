@@ -22,7 +22,7 @@ inline const std::vector<std::string>& suspension_names() {
   return names;
 }
 
-/// What the sensors do to the truth.
+/// Errors that the sensors add to the truth.
 struct Distortion {
   double hit_time = 0.0;                            // s, simulated less measured time
   double acceleration_bias = 0.0, rate_bias = 0.0;  // added to the readings

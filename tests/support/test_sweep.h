@@ -12,7 +12,7 @@
 
 namespace strut::test {
 
-/// What a sweep file consists of; every text is TOML.
+/// Parts of a sweep file; every text is TOML.
 struct SweepText {
   std::string grid =
       "front_stiffness = { from = 40000, to = 36000, step = -2000 }\n"

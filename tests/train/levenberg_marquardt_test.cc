@@ -68,7 +68,7 @@ TEST_CASE("The trainlm rule multiplies by ten and divides by ten", "[unit]") {
 
 TEST_CASE("Nielsen's rule follows the gain ratio", "[unit]") {
   LevenbergMarquardtOptions options;
-  options.first_damping = 0.25;  // of H = 4: mu = 1
+  options.first_damping = 0.25;  // a fraction of H = 4: mu = 1
   // v = -2 / (4 + mu); predicted decrease v (mu v - 2).
   const auto predict = [](double mu) {
     const double v = -2.0 / (4.0 + mu);
