@@ -86,7 +86,7 @@ Arguments describe_export() {
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"onnx", "h", "c"}),
                        "file to write; its name ends in .onnx, .h or .c");
   arguments.add_option("name", "NAME",
-                       "C: of the function strut_identify_NAME; default: the file's name");
+                       "C: the function is strut_identify_NAME; default: the file's name");
   arguments.add_switch("float", "ONNX: single precision, for runtimes without double");
   arguments.add_switch("force", "replace FILE where it exists");
   return arguments;

@@ -141,7 +141,7 @@ Arguments describe_plan() {
       "  strut plan examples/sweeps/paper.toml -o cars");
   arguments.add_operand(ArgumentValue::file("SWEEP.toml", {"toml"}));
   arguments.add_option("output,o", ArgumentValue::folder("DIR"), "folder to create");
-  arguments.add_switch("dry-run", "print layers, shards, estimated time and bytes; write nothing");
+  arguments.add_switch("dry-run", "print strata, shards, estimated time and bytes; write nothing");
   arguments.add_switch("json", "print JSON instead of text");
   return arguments;
 }

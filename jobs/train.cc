@@ -246,10 +246,9 @@ Arguments describe_train() {
   add_noise_options(arguments);
   arguments.add_option("samples", "N", "use the first N cases; the run order is random");
   arguments.add_option("batch", "N", "rows in memory at a time; default 4096");
-  arguments.add_switch(
-      "growing",
-      "start on few cases and add more, finally all, whenever the decrease of the\n"
-      "loss is within chance: for more than about 10,000 cases");
+  arguments.add_switch("growing",
+                       "start on few cases and add more, finally all, whenever the decrease of the "
+                       "loss is within chance: for more than about 10,000 cases");
   arguments.add_option("gram-rows", "N",
                        "curvature from N rows, different ones in each epoch, gradient from all:\n"
                        "for more than 100,000 cases");

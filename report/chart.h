@@ -53,7 +53,7 @@ struct ChartPanel {
   std::vector<ChartSeries> series;
   std::string title = {};
   std::string value_label = {};  // label of the color scale
-  std::string about = {};  // name_panel(), where title and labels do not distinguish the panel
+  std::string about = {};        // replaces name_panel() where title and labels are not unique
 };
 
 /// Panels row by row, `columns` per row, below a common legend.

@@ -104,7 +104,7 @@ void write_shard_list(const MergeLayout& layout, Hdf5StreamWriter& file) {
 Shard read_checked_shard(const SweepFolder& folder, const MergeInput& input, std::int64_t number) {
   Shard shard = read_shard_with_retries(folder, input.extent, number);
   if (shard.schema == input.schema) return shard;
-  throw InputError(folder.shard(number).string() + ": has other columns than its plan");
+  throw InputError(folder.shard(number).string() + ": its columns differ from those of its plan");
 }
 
 void require_unique(const SweepFolder& folder, std::vector<std::int64_t> case_ids) {

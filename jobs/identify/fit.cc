@@ -183,7 +183,7 @@ void suggest_after_fit(const Arguments& arguments, const fs::path& vehicle, cons
 
 void add_fit_options(Arguments& arguments) {
   arguments.add_list("maneuver", ArgumentValue::file("FILE", {"toml"}),
-                     "fit: the maneuver that was driven; one for all measured files or, repeated,\n"
+                     "fit: the maneuver that was driven; one for all measured files or, repeated, "
                      "one for each");
   arguments.add_option(
       "free", "NAME,...",

@@ -83,8 +83,7 @@ Chart make_bar_chart(const StudyRequest& request, const Bars& bars) {
 
 constexpr char kBarsNote[] =
     " Bars: median over the seeds, with the smallest and the largest value; triangles: the paper. "
-    "The "
-    "scale is logarithmic.";
+    "The scale is logarithmic.";
 
 Bars make_network_bars(const StudyRequest& request, const StudyResults& results,
                        std::size_t preload) {

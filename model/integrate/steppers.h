@@ -1,7 +1,7 @@
 // One step of RK4 and of the Adams-Bashforth-Moulton pair, each lane with its own step length.
 //
 // A few components may be stiff and scalar (the spin of a wheel against its slip stiffness):
-// d(u)/dt = -decay u + N(u, rest). For those both methods are taken in exponential form, with the
+// d(u)/dt = -decay u + N(u, rest). For them both methods use their exponential form, with the
 // decay rate frozen at the start of the step: Krogstad's ETDRK4-B (J. Comput. Phys. 203, 2005, eq.
 // 51) and the exponential Adams formulas of Cox and Matthews (J. Comput. Phys. 176, 2002, eq. 11)
 // with their implicit counterpart. With decay = 0 they are the classical methods; they have order
