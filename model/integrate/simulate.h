@@ -12,8 +12,6 @@
 // and at any state
 //   void calc_guards(const T& t, const T* x, T* g);
 //   bool cross(int guard, MaskOf<T> lanes);        lanes that passed it; true: reevaluate f
-// if its samples at the end of a step show that state, not the dense output's rounding of it,
-//   static constexpr bool kSamplesStepEnds = true;
 // and, if it supports long steps (StepOptions::coarse_step),
 //   MaskOf<T> wants_fine_step(const T* x, const T& coarse_step) const;
 // with, if each lane has a fine step of its own,
@@ -348,33 +346,16 @@ class Simulation {
   }
 
   /// Records the samples that fall into this step, on the dense output.
-  /// Whether the last evaluation was that of the samples due.
-  bool are_step_ends(const T& due, Mask pending) const {
-    if constexpr (requires { System::kSamplesStepEnds; }) {
-      const T slack = T(1e-9 * options_.step);
-      const Mask inside = due < time_ + h_ - slack;
-      return !is_beside_ && !any(pending & inside);
-    }
-    return false;
-  }
-
   void record_samples() {
-    is_beside_ = false;
     const T slack = T(1e-9 * options_.step);
     while (true) {
       const T due = calc_sample_time(plan_, next_sample_);
       const Mask pending = (due <= time_ + h_ + slack) & (time_ < end_) &
                            (next_sample_ < T(results_.sample_count - 0.5));
       if (!any(pending)) return;
-      if (are_step_ends(due, pending)) {
-        system_.observe(due, x1(), channel_.data());
-        store_sample(pending);
-        continue;
-      }
       const T theta = select(pending, min((due - time_) / max(h_, T(1e-300)), T(1.0)), T(0.0));
       interpolate_state(x(), f(), x1(), f1(), h_, theta, system_.size(), other_.data());
       evaluate(due, other_.data(), other_f_.data(), scratch_.unused_decay.data());
-      is_beside_ = true;
       system_.observe(due, other_.data(), channel_.data());
       store_sample(pending);
     }

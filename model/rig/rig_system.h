@@ -33,7 +33,6 @@ template <class T>
 class RigSystem {
  public:
   static constexpr int kCapacity = 2 * kRigCoordinates + kStatesPerStrut;
-  static constexpr bool kSamplesStepEnds = true;
   using Mask = MaskOf<T>;
 
   /// `inputs` by assign_rig_inputs; `fine_step` [s] where wants_fine_step. Rig and signals must

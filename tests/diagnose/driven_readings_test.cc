@@ -223,7 +223,7 @@ TEST_CASE("The derivative by a stroke does not include changes of the step", "[r
   const CampaignData data = read_two_runs({}, with_noise(2e-5));
   const std::vector<Unknown> unknowns = {make_shared_unknown(data.runs, "damper_leak")};
   const auto find_step = [&](double stroke) {
-    return DrivenTask(data.runs[0], 0, unknowns, {stroke}, {}).sampling.step;
+    return DrivenTask(data.runs[0], 0, unknowns, {stroke}, {}).sampling.fine_step;
   };
   double fine = 3e-5, coarse = 1e-4;
   REQUIRE(find_step(fine) < find_step(coarse));

@@ -98,7 +98,8 @@ TEST_CASE("Fine steps are taken only where a joint crosses its play", "[referenc
       const RigSpec rig = make_rig(kind, {{"joint_play", "", {play}}});
       const double coarse = shorten_step(kDefaultStep, calc_longest_settled_step(rig));
       const double fine = shorten_step(coarse, calc_longest_step(rig));
-      INFO("kind " << static_cast<int>(kind) << ", play " << play << " m: steps of " << fine << " s");
+      INFO("kind " << static_cast<int>(kind) << ", play " << play << " m: steps of " << fine
+                   << " s");
       REQUIRE(fine < coarse);
       const double alone = measure_error(rig, channel, fine);
       CHECK(measure_error(rig, channel, fine, coarse) < alone + test::tolerance(0.005));
