@@ -111,7 +111,7 @@ class CarSystem {
 
   /// True on the bump, within one and a half coarse steps before it, and for kSettlingTime after
   /// it.
-  Mask wants_fine_step(const T* x, const T& coarse_step) const {
+  Mask wants_fine_step(const T& /*t*/, const T* x, const T* /*dx*/, const T& coarse_step) const {
     const T& speed = x[StateIndex::kVelocity];
     const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;
     const T front = ahead + vehicle_.numbers.geometry[kFrontLeft].wheel_center.x;

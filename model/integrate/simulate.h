@@ -13,7 +13,7 @@
 //   void calc_guards(const T& t, const T* x, T* g);
 //   bool cross(int guard, MaskOf<T> lanes);        lanes that passed it; true: reevaluate f
 // and, if it supports long steps (StepOptions::coarse_step),
-//   MaskOf<T> wants_fine_step(const T* x, const T& coarse_step) const;
+//   MaskOf<T> wants_fine_step(const T& t, const T* x, const T* dx, const T& coarse_step) const;
 // with, if each lane has a fine step of its own,
 //   T get_fine_step() const;
 #pragma once
@@ -126,10 +126,10 @@ class Simulation {
   T choose_step() {
     T fine(options_.step);
     if constexpr (requires { system_.get_fine_step(); }) fine = system_.get_fine_step();
-    if constexpr (requires { system_.wants_fine_step(x(), T(0.0)); }) {
+    if constexpr (requires { system_.wants_fine_step(time_, x(), f(), T(0.0)); }) {
       if (options_.coarse_step > 0.0) {
         const T coarse(options_.coarse_step);
-        return select(system_.wants_fine_step(x(), coarse), fine, coarse);
+        return select(system_.wants_fine_step(time_, x(), f(), coarse), fine, coarse);
       }
     }
     return fine;
@@ -424,7 +424,6 @@ class Simulation {
   T time_, end_, h_, past_count_, past_step_, step_count_, next_sample_, trigger_, trigger1_,
       triggered_;
   std::vector<T> channel_;
-  bool is_beside_ = false;       // the last evaluation was inside the step, not at its end
   std::size_t history_row_ = 0;  // numbers per history sample
 };
 

@@ -113,17 +113,20 @@ class RigSystem {
   /// step: elsewhere the contact follows the strut's speed, and the exponential formulas follow the
   /// contact. Fine steps go on to the end of the coarse step in which they began, so that samples
   /// remain at ends of steps.
-  Mask wants_fine_step(const T* x, const T& coarse_step) const {
+  Mask wants_fine_step(const T& t, const T* x, const T* dx, const T& coarse_step) const {
     constexpr double kSettled = 0.05, kMargin = 1.5, kOnGrid = 1e-6;
     if (!rig_.effects.has_states()) return T(1.0) < T(0.0);
     const DamperSeries<T>& series = rig_.numbers.effects.series;
     DamperSeriesState<T> state;
     state.joint = x[2 * count_ + 2];
-    const T speed = calc_strut_speed(x), behind = calc_joint_speed(series, speed, state);
+    SignalPoint<T> base{T(0.0), T(0.0), T(0.0)};  // of the moved end, where an input moves it
+    if (inputs_[0] && rig_.layout.kind != RigKind::kSingleMass) base = calc_signal(*inputs_[0], t);
+    const T speed = calc_strut_rate(x, base.rate), behind = calc_joint_speed(series, speed, state);
     const auto inside = abs(state.joint) <= T(0.5) * series.play;
     const auto settles = abs(behind - speed) > T(kSettled) * abs(speed);
-    const auto reverses = abs(speed) < T(kMargin) * coarse_step * abs(calc_strut_acceleration());
-    const T steps = time_ / coarse_step;
+    const auto reverses =
+        abs(speed) < T(kMargin) * coarse_step * abs(calc_strut_rate(dx, base.second_rate));
+    const T steps = t / coarse_step;
     const auto off_grid = abs(steps - floor(steps + T(0.5))) > T(kOnGrid);
     return (series.play > T(0.0)) & (inside | settles | reverses | off_grid);
   }
@@ -161,7 +164,6 @@ class RigSystem {
     input = {gain * input.value, gain * input.rate, gain * input.second_rate};
   }
   void update_inputs(const T& t) {
-    time_ = t;
     ws_.input.fill({0.0, 0.0, 0.0});
     if (inputs_[0]) update_first_input(t);
     if (inputs_[1]) ws_.input[1] = calc_signal(*inputs_[1], t);
