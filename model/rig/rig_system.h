@@ -120,7 +120,9 @@ class RigSystem {
     DamperSeriesState<T> state;
     state.joint = x[2 * count_ + 2];
     SignalPoint<T> base{T(0.0), T(0.0), T(0.0)};  // of the moved end, where an input moves it
-    if (inputs_[0] && rig_.layout.kind != RigKind::kSingleMass) base = calc_signal(*inputs_[0], t);
+    if (inputs_[0]) base = calc_signal(*inputs_[0], t);
+    if (on_ground_) base.rate *= rig_.numbers.ground_gain;
+    if (on_ground_) base.second_rate *= rig_.numbers.ground_gain;
     const T speed = calc_strut_rate(x, base.rate), behind = calc_joint_speed(series, speed, state);
     const auto inside = abs(state.joint) <= T(0.5) * series.play;
     const auto settles = abs(behind - speed) > T(kSettled) * abs(speed);
@@ -173,40 +175,26 @@ class RigSystem {
 
   void settle_strut(T* x) {
     update_inputs(T(0.0));
-    const T speed = calc_strut_speed(x);
+    const T speed = calc_strut_rate(x, ws_.input[0].rate);
     const StrutEffectNumbers<T>& numbers = rig_.numbers.effects;
     x[2 * count_] = x[2 * count_ + 1] = numbers.law.calc_rate(speed, calc_warming()) * speed;
     x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
   }
 
-  /// Speed of the strut [m/s], positive in compression, under the inputs of the last evaluation.
-  T calc_strut_speed(const T* x) const {
+  /// Speed of the strut [m/s], positive in compression, at state `x` and the rate of the input that
+  /// moves its end; its acceleration from the state's derivative and the second rate.
+  T calc_strut_rate(const T* x, const T& base) const {
     switch (rig_.layout.kind) {
       case RigKind::kQuarterCar:
         return x[2 + kUnsprung] - x[2 + kSprung];
       case RigKind::kStrutRig:
-        return ws_.input[0].rate;
+        return base;
       case RigKind::kSingleMass:
         return -x[1];
       case RigKind::kGuidedMass:
         break;
     }
-    return ws_.input[0].rate - x[1];
-  }
-
-  /// Its derivative [m/s^2] at the last evaluation.
-  T calc_strut_acceleration() const {
-    switch (rig_.layout.kind) {
-      case RigKind::kQuarterCar:
-        return ws_.acceleration[kUnsprung] - ws_.acceleration[kSprung];
-      case RigKind::kStrutRig:
-        return ws_.input[0].second_rate;
-      case RigKind::kSingleMass:
-        return -ws_.acceleration[0];
-      case RigKind::kGuidedMass:
-        break;
-    }
-    return ws_.input[0].second_rate - ws_.acceleration[0];
+    return base - x[1];
   }
 
   T calc_warming() const {
@@ -315,7 +303,6 @@ class RigSystem {
   bool on_ground_;
   RigWorkspace<T> ws_{};
   StrutStates<T> states_;
-  T time_{};  // time of the last evaluation [s]
   Mask failed_{};
 };
 
