@@ -22,7 +22,8 @@ namespace {
 
 bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
   return a.failure.empty() && b.failure.empty() && a.run == b.run &&
-         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step;
+         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step &&
+         a.sampling.fine_step == b.sampling.fine_step;
 }
 
 /// The run's inputs times their gains.
