@@ -44,7 +44,8 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
                        const std::vector<int>& channels, const Take& take) {
   const DrivenTask& common = tasks[first];
   StepOptions step;
-  step.step = common.sampling.step;
+  step.step = common.sampling.fine_step;
+  if (step.step < common.sampling.step) step.coarse_step = common.sampling.step;
   SamplePlan plan;
   plan.interval = common.sampling.interval;
   plan.duration =
@@ -53,17 +54,11 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
   plan.snapshot = false;
   plan.recorded = channels;
   std::vector<const RigSpec*> specs;
-  std::vector<double> fine_steps;
-  for (std::size_t i = first; i < end; ++i) {
-    specs.push_back(&tasks[i].variant.rig);
-    fine_steps.push_back(tasks[i].sampling.fine_step);
-    step.step = std::min(step.step, tasks[i].sampling.fine_step);
-  }
-  if (step.step < common.sampling.step) step.coarse_step = common.sampling.step;
+  specs.reserve(end - first);
+  for (std::size_t i = first; i < end; ++i) specs.push_back(&tasks[i].variant.rig);
   try {
-    const LaneResults lanes = list_kernels().front().run_rigs(specs.data(), fine_steps.data(),
-                                                              static_cast<int>(specs.size()),
-                                                              scale_inputs(common), step, plan);
+    const LaneResults lanes = list_kernels().front().run_rigs(
+        specs.data(), static_cast<int>(specs.size()), scale_inputs(common), step, plan);
     for (std::size_t i = first; i < end; ++i) {
       take(i, DrivenResult(tasks[i], lanes, static_cast<int>(i - first)));
     }

@@ -1,6 +1,7 @@
 #include "estimate/driven_readings.h"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -47,7 +48,8 @@ class DrivenReadings final : public ReadingModel {
                    const Simulated& below, Linearization& out) const;
 
   LinearizeOptions options_;
-  std::vector<int> recorded_;  // channels that any run compares, ascending
+  std::vector<int> recorded_;         // channels that any run compares, ascending
+  std::vector<std::size_t> columns_;  // position of each reading's channel among them
 };
 
 DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns,
@@ -62,16 +64,16 @@ DrivenReadings::DrivenReadings(std::vector<MeasuredRun> runs, std::vector<Unknow
     compared.insert(channels.begin(), channels.end());
   }
   recorded_.assign(compared.begin(), compared.end());
+  columns_.reserve(readings_.size());
+  for (const ReadingPlace& place : readings_) {
+    const auto found = compared.find(get_channel(place).channel);
+    columns_.push_back(static_cast<std::size_t>(std::distance(compared.begin(), found)));
+  }
 }
 
 std::vector<DrivenReadings::Simulated> DrivenReadings::simulate(
     const std::vector<DrivenTask>& tasks) {
   std::vector<Simulated> simulated(tasks.size());
-  const auto find_column = [&](const ReadingPlace& place) {
-    const auto found =
-        std::lower_bound(recorded_.begin(), recorded_.end(), get_channel(place).channel);
-    return static_cast<std::size_t>(found - recorded_.begin());
-  };
   simulate_tasks(tasks, recorded_, options_.threads,
                  [&](std::size_t k, const DrivenResult& result) {
                    simulated[k].failure = result.failure();
@@ -79,8 +81,7 @@ std::vector<DrivenReadings::Simulated> DrivenReadings::simulate(
                    const std::size_t run = tasks[k].run_index;
                    simulated[k].readings.reserve(begin_row(run + 1) - begin_row(run));
                    for (std::size_t i = begin_row(run); i < begin_row(run + 1); ++i) {
-                     simulated[k].readings.push_back(
-                         result.read(readings_[i].time, find_column(readings_[i])));
+                     simulated[k].readings.push_back(result.read(readings_[i].time, columns_[i]));
                    }
                  });
   simulation_count_ += static_cast<long>(tasks.size());

@@ -124,7 +124,7 @@ void Dataset::open_folder(const SweepFolder& folder, bool partial) {
   if (row_count_ < cases && !partial) {
     throw InputError(
         fmt::format("{0}: {1} of {2} cases are missing; `strut run {0}` makes them, --partial "
-                    "takes what is there",
+                    "continues without them",
                     folder.root.string(), cases - row_count_, cases));
   }
 }

@@ -17,7 +17,7 @@ EffectInfo make_payload() {
 
 EffectInfo make_center_of_mass_shift() {
   return {EffectName::kCenterOfMassShift,
-          "the whole car's center of mass is not where the file says",
+          "the whole car's center of mass is not where the file states",
           "r_body + (m / m_body) (x, 0, z)",
           "masses and inertia are unchanged; 1 to 10 cm between model and car",
           kOnBody,
@@ -27,7 +27,7 @@ EffectInfo make_center_of_mass_shift() {
 
 EffectInfo make_pitch_inertia() {
   return {EffectName::kPitchInertia,
-          "the whole car's pitch inertia is not what the file says",
+          "the whole car's pitch inertia is not what the file states",
           "I_yy (1 + e)",
           "4 to 15 % by estimates from size and mass",
           kOnBody,
@@ -37,7 +37,7 @@ EffectInfo make_pitch_inertia() {
 EffectInfo make_unsprung_mass() {
   return {
       EffectName::kUnsprungMass,
-      "each wheel of the axle weighs more than the file says, the body as much less",
+      "each wheel of the axle weighs more than the file states, the body as much less",
       "m_wheel + m_e; quarter_car: m_unsprung + m_e",
       "point mass at the wheel center; 5 to 25 % of the unsprung mass",
       kOnAxle,
@@ -46,7 +46,7 @@ EffectInfo make_unsprung_mass() {
 
 EffectInfo make_tire_stiffness() {
   return {EffectName::kTireStiffness,
-          "inflation pressure: the tires' vertical stiffness is not what the file says",
+          "inflation pressure: the tires' vertical stiffness is not what the file states",
           "k_t (1 + e)",
           "nearly proportional to pressure; 5 to 20 %",
           kOnAxle,
@@ -65,7 +65,7 @@ EffectInfo make_tire_progressive() {
 
 EffectInfo make_tire_damping() {
   return {EffectName::kTireDamping,
-          "the tires damp more than the file says",
+          "the tires damp more than the file states",
           "c_t + c_e",
           "50 to 2000 N s/m in the literature",
           kOnAxle,
@@ -76,7 +76,7 @@ EffectInfo make_tire_damping() {
 EffectInfo make_tire_enveloping() {
   return {
       EffectName::kTireEnveloping,
-      "the contact patch that smooths short obstacles is longer than the file says",
+      "the contact patch that smooths short obstacles is longer than the file states",
       "footprint + l",
       "averaging over the patch, docs/design/0003-road-contact.md; patches of 0.08 to 0.15 m",
       kOnRoad,
@@ -113,7 +113,7 @@ EffectInfo make_bump_length() {
 
 EffectInfo make_speed_error() {
   return {EffectName::kSpeedError,
-          "the car drives faster than the speedometer says",
+          "the car drives faster than the speedometer indicates",
           "v (1 + e)",
           "wheel speed and effective radius; 0.2 to 2 %",
           kOnRoad,
@@ -122,7 +122,7 @@ EffectInfo make_speed_error() {
 
 EffectInfo make_road_gain() {
   return {EffectName::kRoadGain,
-          "the road moves the rig more than its recording says",
+          "the road moves the rig more than recorded",
           "z_road (1 + e)",
           "gain of the stand's displacement sensor",
           kOnRoad,

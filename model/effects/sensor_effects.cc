@@ -6,7 +6,7 @@ namespace {
 
 EffectInfo make_sensor_gain() {
   return {EffectName::kSensorGain,
-          "the sensor's sensitivity is not what its data sheet says",
+          "the sensor's sensitivity is not what its data sheet states",
           "(1 + e) y",
           "1 to 5 % uncalibrated, 0.02 %/K",
           kOnChannel,
@@ -43,7 +43,7 @@ EffectInfo make_sensor_lowpass() {
 
 EffectInfo make_sensor_position() {
   return {EffectName::kSensorPosition,
-          "the inertial sensor sits elsewhere than the file says",
+          "the inertial sensor sits elsewhere than the file states",
           "a + dw/dt x s + w x (w x s), s: the shift",
           "rigid body kinematics; 3 to 30 cm, or in the frame of another drawing",
           kOnBody,

@@ -53,7 +53,7 @@ EffectInfo make_damper_leak() {
 EffectInfo make_damper_fade() {
   EffectInfo fade = {
       EffectName::kDamperFade,
-      "the damper is softer than its rate says: warm oil; with a measured temperature, by it",
+      "the damper is softer than its rate: warm oil; with a measured temperature, by it",
       "F = c (1 - l) v; on a strut_rig F = c exp(-b (T - 293.15 K)) v",
       "Dixon, The Shock Absorber Handbook, 2nd ed.: 0.2 to 2 %/K",
       kOnStrut,

@@ -14,8 +14,6 @@
 //   bool cross(int guard, MaskOf<T> lanes);        lanes that passed it; true: reevaluate f
 // and, if it supports long steps (StepOptions::coarse_step),
 //   MaskOf<T> wants_fine_step(const T& t, const T* x, const T* dx, const T& coarse_step) const;
-// with, if each lane has a fine step of its own,
-//   T get_fine_step() const;
 #pragma once
 
 #include <cmath>
@@ -124,8 +122,7 @@ class Simulation {
 
   /// The fine or the coarse step, by each lane's own state.
   T choose_step() {
-    T fine(options_.step);
-    if constexpr (requires { system_.get_fine_step(); }) fine = system_.get_fine_step();
+    const T fine(options_.step);
     if constexpr (requires { system_.wants_fine_step(time_, x(), f(), T(0.0)); }) {
       if (options_.coarse_step > 0.0) {
         const T coarse(options_.coarse_step);

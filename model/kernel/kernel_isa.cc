@@ -32,17 +32,13 @@ LaneResults run_scalar(const PreparedCase& c, const IntegrateOptions& options,
   return strut::run_cases<double>(cases, options, plan);
 }
 
-LaneResults run_rigs(const RigSpec* const* specs, const double* fine_steps, int count,
-                     const std::vector<InputSignal>& inputs, const StepOptions& options,
-                     const SamplePlan& plan) {
+LaneResults run_rigs(const RigSpec* const* specs, int count, const std::vector<InputSignal>& inputs,
+                     const StepOptions& options, const SamplePlan& plan) {
   const RigSpec* padded[NativeLanes::kWidth];
-  double steps[NativeLanes::kWidth];
   for (int lane = 0; lane < NativeLanes::kWidth; ++lane) {
-    const int from = lane < count ? lane : count - 1;
-    padded[lane] = specs[from];
-    steps[lane] = fine_steps != nullptr ? fine_steps[from] : options.step;
+    padded[lane] = specs[lane < count ? lane : count - 1];
   }
-  return strut::simulate_rigs<NativeLanes>(padded, inputs, options, plan, steps);
+  return strut::simulate_rigs<NativeLanes>(padded, inputs, options, plan);
 }
 
 /// Twelve independent chains hide the latency of two multiply-add units of four cycles each; with

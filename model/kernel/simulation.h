@@ -64,9 +64,9 @@ struct Kernel {
   /// Runs one case in plain double.
   LaneResults (*run_scalar)(const PreparedCase& c, const IntegrateOptions& options,
                             const SamplePlan& plan);
-  /// Runs up to W rigs of one kind under the same inputs; lanes as in run_lanes, `fine_steps` by
-  /// rig as in simulate_rigs, or null. Throws ModelError as simulate_rigs does.
-  LaneResults (*run_rigs)(const RigSpec* const* specs, const double* fine_steps, int count,
+  /// Runs up to W rigs of one kind under the same inputs; lanes as in run_lanes. Throws ModelError
+  /// as simulate_rigs does.
+  LaneResults (*run_rigs)(const RigSpec* const* specs, int count,
                           const std::vector<InputSignal>& inputs, const StepOptions& options,
                           const SamplePlan& plan);
   /// Runs `rounds` of independent fused multiply-adds in registers, for timing the processor's

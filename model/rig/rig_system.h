@@ -35,13 +35,10 @@ class RigSystem {
   static constexpr int kCapacity = 2 * kRigCoordinates + kStatesPerStrut;
   using Mask = MaskOf<T>;
 
-  /// `inputs` by assign_rig_inputs; `fine_step` [s] where wants_fine_step. Rig and signals must
-  /// outlive the system.
-  RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs,
-            const T& fine_step)
+  /// `inputs` by assign_rig_inputs. Rig and signals must outlive the system.
+  RigSystem(const Rig<T>& rig, const std::array<const InputSignal*, kMaxRigInputs>& inputs)
       : rig_(rig),
         inputs_(inputs),
-        fine_step_(fine_step),
         count_(static_cast<int>(get_rig_info(rig.layout.kind).masses.size())),
         on_ground_(get_rig_info(rig.layout.kind).has(kHasGroundInput)) {}
 
@@ -101,13 +98,11 @@ class RigSystem {
   int guard_count() const { return rig_.layout.unilateral_tire ? 1 : 0; }
   void get_guards(T* g) const { g[0] = ws_.unclamped_load; }
   void calc_guards(const T& t, const T* x, T* g) {
-    if (inputs_[0]) update_first_input(t);
+    ws_.input[0] = read_first_input(t);
     update_tire(x);
     get_guards(g);
   }
   bool cross(int /*guard*/, Mask /*lanes*/) { return false; }
-
-  T get_fine_step() const { return fine_step_; }
 
   /// Whether a joint is crossing its play, has just crossed it, or may begin to within a coarse
   /// step: elsewhere the contact follows the strut's speed, and the exponential formulas follow the
@@ -119,10 +114,7 @@ class RigSystem {
     const DamperSeries<T>& series = rig_.numbers.effects.series;
     DamperSeriesState<T> state;
     state.joint = x[2 * count_ + 2];
-    SignalPoint<T> base{T(0.0), T(0.0), T(0.0)};  // of the moved end, where an input moves it
-    if (inputs_[0]) base = calc_signal(*inputs_[0], t);
-    if (on_ground_) base.rate *= rig_.numbers.ground_gain;
-    if (on_ground_) base.second_rate *= rig_.numbers.ground_gain;
+    const SignalPoint<T> base = read_first_input(t);
     const T speed = calc_strut_rate(x, base.rate), behind = calc_joint_speed(series, speed, state);
     const auto inside = abs(state.joint) <= T(0.5) * series.play;
     const auto settles = abs(behind - speed) > T(kSettled) * abs(speed);
@@ -158,16 +150,16 @@ class RigSystem {
   static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   /// A gain scales the motion of the ground; other inputs are as recorded.
-  void update_first_input(const T& t) {
-    SignalPoint<T>& input = ws_.input[0];
-    input = calc_signal(*inputs_[0], t);
-    if (!on_ground_) return;
+  SignalPoint<T> read_first_input(const T& t) const {
+    if (!inputs_[0]) return {0.0, 0.0, 0.0};
+    const SignalPoint<T> input = calc_signal(*inputs_[0], t);
+    if (!on_ground_) return input;
     const T& gain = rig_.numbers.ground_gain;
-    input = {gain * input.value, gain * input.rate, gain * input.second_rate};
+    return {gain * input.value, gain * input.rate, gain * input.second_rate};
   }
   void update_inputs(const T& t) {
     ws_.input.fill({0.0, 0.0, 0.0});
-    if (inputs_[0]) update_first_input(t);
+    ws_.input[0] = read_first_input(t);
     if (inputs_[1]) ws_.input[1] = calc_signal(*inputs_[1], t);
   }
 
@@ -298,7 +290,6 @@ class RigSystem {
 
   const Rig<T>& rig_;
   std::array<const InputSignal*, kMaxRigInputs> inputs_;
-  T fine_step_;
   int count_;
   bool on_ground_;
   RigWorkspace<T> ws_{};
@@ -308,18 +299,12 @@ class RigSystem {
 
 /// Simulates kLaneCount<T> rigs of one kind under the same inputs for `plan.duration` [s]; the
 /// history holds the rig's channels every `plan.interval` [s]. Throws ModelError as make_rig and
-/// assign_rig_inputs do. `fine_steps` [s]: of each lane, at least options.step, which they replace
-/// where a joint crosses its play; null: options.step.
+/// assign_rig_inputs do.
 template <class T>
 LaneResults simulate_rigs(const RigSpec* const specs[], const std::vector<InputSignal>& inputs,
-                          const StepOptions& options, SamplePlan plan,
-                          const double* fine_steps = nullptr) {
+                          const StepOptions& options, SamplePlan plan) {
   const Rig<T> rig = make_rig<T>(specs);
-  T fine_step(options.step);
-  for (int lane = 0; fine_steps != nullptr && lane < kLaneCount<T>; ++lane) {
-    set_lane(fine_step, lane, fine_steps[lane]);
-  }
-  RigSystem<T> system(rig, assign_rig_inputs(rig.layout.kind, inputs), fine_step);
+  RigSystem<T> system(rig, assign_rig_inputs(rig.layout.kind, inputs));
   plan.snapshot = false;
   plan.channel_count = static_cast<int>(get_rig_info(rig.layout.kind).channels.size());
   return Simulation<T, RigSystem<T>>(system, options, plan).run(system.make_start());

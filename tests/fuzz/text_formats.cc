@@ -103,7 +103,7 @@ void simulate_briefly(const RigSpec& rig, const RigManeuver& maneuver) {
   call_model([&] {
     const RigSpec* const specs[] = {&rig};
     constexpr double kSeconds = 0.02;
-    list_kernels().back().run_rigs(specs, nullptr, 1, maneuver.inputs, StepOptions{},
+    list_kernels().back().run_rigs(specs, 1, maneuver.inputs, StepOptions{},
                                    SamplePlan{.duration = kSeconds, .interval = 1e-3});
   });
 }
