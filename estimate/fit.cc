@@ -40,15 +40,28 @@ std::vector<double> make_start(ReadingModel& model, const FitOptions& options) {
   return weights;
 }
 
-/// Which weights lie beyond a bound.
-std::vector<bool> list_beyond(const std::vector<Unknown>& unknowns, const double* weights) {
-  std::vector<bool> beyond;
-  beyond.reserve(unknowns.size());
+/// By how much, in its scale, a weight exceeds its upper (or lower) bound; negative inside.
+double calc_above(const Unknown& u, double weight) {
+  return (calc_free_value(u, weight) - u.high) / u.scale;
+}
+double calc_below(const Unknown& u, double weight) {
+  return (u.low - calc_free_value(u, weight)) / u.scale;
+}
+
+/// Which weights a bound holds: those beyond it, and those on it from where chi2 falls outwards.
+std::vector<bool> list_held(const std::vector<Unknown>& unknowns, const double* weights,
+                            const Eigen::VectorXd& gradient) {
+  constexpr double kOn = 1e-9;
+  std::vector<bool> held;
+  held.reserve(unknowns.size());
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    const double value = calc_free_value(unknowns[i], weights[i]);
-    beyond.push_back(value < unknowns[i].low || value > unknowns[i].high);
+    const double above = calc_above(unknowns[i], weights[i]),
+                 below = calc_below(unknowns[i], weights[i]);
+    const double slope = gradient(static_cast<Eigen::Index>(i));
+    held.push_back(above > kOn || below > kOn || (above > -kOn && slope < 0.0) ||
+                   (below > -kOn && slope > 0.0));
   }
-  return beyond;
+  return held;
 }
 
 /// The linear model at one point.
@@ -76,7 +89,7 @@ class FitProblem : public LeastSquaresProblem {
     const FitPoint& point = linearize(weights);
     if (point.failed()) return kInfinity;
     const NormalEquations normal =
-        free_unknowns(point.normal, list_beyond(model_.unknowns(), weights));
+        free_unknowns(point.normal, list_held(model_.unknowns(), weights, point.normal.gradient));
     Eigen::Map<Eigen::MatrixXd>(h, n, n) = normal.information;
     Eigen::Map<Eigen::VectorXd>(gradient, n) = normal.gradient;
     return point.at.residual.squaredNorm();
@@ -109,8 +122,8 @@ class FitProblem : public LeastSquaresProblem {
 double calc_distance(FitProblem& problem, const double* weights) {
   const FitPoint& point = problem.linearize(weights);
   if (point.failed()) return kInfinity;
-  return calc_distance(
-      free_unknowns(point.normal, list_beyond(problem.model().unknowns(), weights)));
+  return calc_distance(free_unknowns(
+      point.normal, list_held(problem.model().unknowns(), weights, point.normal.gradient)));
 }
 
 double calc_widening(FitProblem& problem, const double* weights) {
@@ -124,12 +137,11 @@ bool release_bounds(FitProblem& problem, std::vector<double>& weights) {
   const FitPoint& point = problem.linearize(weights.data());
   if (point.failed()) return false;
   const std::vector<Unknown>& unknowns = problem.model().unknowns();
-  const std::vector<bool> beyond = list_beyond(unknowns, weights.data());
   bool inwards = false;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (!beyond[i]) continue;
     const Unknown& u = unknowns[i];
-    const bool above = calc_free_value(u, weights[i]) > u.high;
+    const bool above = calc_above(u, weights[i]) > 0.0;
+    if (!above && !(calc_below(u, weights[i]) > 0.0)) continue;
     const double slope = point.normal.gradient(static_cast<Eigen::Index>(i));
     if ((above && slope <= 0.0) || (!above && slope >= 0.0)) continue;
     weights[i] = ((above ? u.high : u.low) - u.start) / u.scale * (1.0 - 1e-12);
@@ -297,8 +309,9 @@ FitResult fit_readings(ReadingModel& model, const FitOptions& options) {
   }
   const bool at_kink = search_minimum(problem, options, state);
   const FitPoint& end = problem.linearize(state.weights.data());
-  FitResult result = describe_fit(model, end.at, end.values,
-                                  list_beyond(model.unknowns(), state.weights.data()), at_kink);
+  FitResult result =
+      describe_fit(model, end.at, end.values,
+                   list_held(model.unknowns(), state.weights.data(), end.normal.gradient), at_kink);
   result.iterations = state.iterations;
   return result;
 }
