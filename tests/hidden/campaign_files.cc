@@ -135,6 +135,8 @@ std::string make_campaign(const Kit& kit) {
   std::ostringstream out;
   out << "model = \"model.toml\"\n\n";
   add_columns(kit, out);
+  // Others have what a data sheet allows, which the program assumes.
+  if (kit.regime == Regime::kExact) out << "\n[noise]\ngain = 0.0\nskew = 0.0\n";
   add_fit(kit, out);
   for (const RunPlan& run : kit.runs) {
     if (run.recorded) add_run(kit, run, out);
@@ -216,6 +218,10 @@ std::string make_truth(const Kit& kit, const Trial& trial) {
       << ", \"roughness\": " << format(trial.truth.roughness) << ",\n \"faults\": [";
   for (std::size_t i = 0; i < trial.faults.size(); ++i) {
     out << (i > 0 ? ",\n  " : "") << make_fault(kit, trial.faults[i]);
+  }
+  out << "],\n \"misfits\": [";
+  for (std::size_t i = 0; i < trial.misfits.size(); ++i) {
+    out << (i > 0 ? ",\n  " : "") << make_fault(kit, trial.misfits[i]);
   }
   std::string bounds;
   out << "],\n \"parameters\": {";

@@ -16,11 +16,14 @@
 namespace strut::hidden {
 
 constexpr char kUsage[] =
-    "Usage: strut_hidden_data KIT SEEDS DIR [THREADS [ABLATION]]\n\n"
+    "Usage: strut_hidden_data KIT SEEDS DIR [THREADS [ABLATION [REGIME]]]\n\n"
     "Writes the trials of the seeds into DIR/trials and their truths into DIR/truths; those that\n"
     "are there already stay. KIT: car, quarter_car or dyno. SEEDS: FROM:TO, TO not included, or\n"
     "such ranges and single seeds with commas between. ABLATION: none, no_roughness,\n"
-    "no_deflection, body_only or one_crossing. The files depend on seeds and ablation alone.\n\n"
+    "no_deflection, body_only or one_crossing. REGIME: exact, sensors (with small errors within\n"
+    "data sheets) or machine (these, realistic sizes and small misfits). The files depend on "
+    "seeds,\n"
+    "ablation and regime alone.\n\n"
     "Example: strut_hidden_data quarter_car 0:39 hidden 2\n";
 
 namespace {
@@ -50,9 +53,9 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
 }
 
 Request parse(const std::vector<std::string>& words) {
-  if (words.size() < 3 || words.size() > 5) throw std::invalid_argument("three to five arguments");
+  if (words.size() < 3 || words.size() > 6) throw std::invalid_argument("three to six arguments");
   Request request;
-  request.kit = make_kit(words[0]);
+  request.kit = make_kit(words[0], make_regime(words.size() > 5 ? words[5] : "exact"));
   request.seeds = parse_seeds(words[1]);
   request.folder = words[2];
   if (words.size() > 3) request.threads = static_cast<unsigned>(std::stoul(words[3]));

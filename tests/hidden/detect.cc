@@ -16,7 +16,9 @@ using Eigen::VectorXd;
 constexpr double kStep = 1e-3, kTimeStep = 2e-4;  // 1, s
 
 double get_step(const Nuisance& nuisance) {
-  return nuisance.kind == Nuisance::Kind::kTime ? kTimeStep : kStep;
+  const bool is_time =
+      nuisance.kind == Nuisance::Kind::kTime || nuisance.kind == Nuisance::Kind::kSensorSkew;
+  return is_time ? kTimeStep : kStep;
 }
 
 Truth without_faults(Truth truth) {
@@ -24,7 +26,22 @@ Truth without_faults(Truth truth) {
   return truth;
 }
 
-void add(Truth& truth, const Nuisance& nuisance, double change) {
+bool is_sensor_error(const Nuisance& nuisance) {
+  return nuisance.kind == Nuisance::Kind::kSensorGain ||
+         nuisance.kind == Nuisance::Kind::kSensorSkew;
+}
+
+/// Changes the error of one sensor. A stand is driven by its measured input: an error of that one
+/// acts as the opposite error of all outputs.
+void add_to_sensor(const Kit& kit, std::size_t sensor, double change, std::vector<double>& errors) {
+  errors.resize(kit.sensors.size(), 0.0);
+  for (std::size_t c = 0; c < errors.size(); ++c) {
+    if (kit.sensors[sensor].input && !kit.sensors[c].input) errors[c] -= change;
+    if (!kit.sensors[sensor].input && c == sensor) errors[c] += change;
+  }
+}
+
+void add(const Kit& kit, Truth& truth, const Nuisance& nuisance, double change) {
   const auto add_to_run = [&](std::vector<double>& of_runs) {
     of_runs.resize(truth.speed_error.size(), 0.0);
     of_runs[nuisance.index] += change;
@@ -32,10 +49,17 @@ void add(Truth& truth, const Nuisance& nuisance, double change) {
   if (nuisance.kind == Nuisance::Kind::kFactor) truth.factors[nuisance.index] += change;
   if (nuisance.kind == Nuisance::Kind::kSpeed) add_to_run(truth.speed_change);
   if (nuisance.kind == Nuisance::Kind::kTime) add_to_run(truth.time_shift);
+  if (nuisance.kind == Nuisance::Kind::kSensorGain) {
+    add_to_sensor(kit, nuisance.index, change, truth.sensor_gain);
+  }
+  if (nuisance.kind == Nuisance::Kind::kSensorSkew) {
+    add_to_sensor(kit, nuisance.index, change, truth.sensor_skew);
+  }
 }
 
 /// Whether a run depends on a nuisance.
 bool affects(const Kit& kit, const Nuisance& nuisance, std::size_t run) {
+  if (is_sensor_error(nuisance)) return true;
   if (nuisance.kind != Nuisance::Kind::kFactor) return nuisance.index == run;
   const KitParameter& parameter = kit.parameters[nuisance.index];
   if (!parameter.survey) return true;
@@ -46,15 +70,21 @@ bool affects(const Kit& kit, const Nuisance& nuisance, std::size_t run) {
 /// Central difference per unit of a nuisance.
 Runs calc_tangent(const Kit& kit, const Truth& truth, const Nuisance& nuisance, const Runs& base) {
   const double step = get_step(nuisance);
-  Truth up = truth, down = truth;
-  add(up, nuisance, step);
-  add(down, nuisance, -step);
+  // Errors of sensors are added to the signals that are there.
+  Truth up = is_sensor_error(nuisance) ? make_nominal_truth(kit) : truth, down = up;
+  add(kit, up, nuisance, step);
+  add(kit, down, nuisance, -step);
   const std::vector<std::size_t> runs = find_fit_runs(kit);
   Runs tangent = base;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const bool depends = affects(kit, nuisance, runs[r]);
     const auto simulate = [&](const Truth& t) {
-      return depends ? simulate_run(kit, t, runs[r], kit.rate, kMargin) : base[r];
+      if (!is_sensor_error(nuisance)) {
+        return depends ? simulate_run(kit, t, runs[r], kit.rate, kMargin) : base[r];
+      }
+      std::vector<Signal> signals = base[r];
+      add_sensor_errors(t, signals);
+      return signals;
     };
     const std::vector<Signal> high = simulate(up), low = simulate(down);
     for (std::size_t c = 0; c < base[r].size(); ++c) {
@@ -82,6 +112,11 @@ std::vector<Nuisance> list_nuisances(const Kit& kit) {
   for (const std::size_t run : find_fit_runs(kit)) {
     if (kit.speed_sigma > 0.0) list.push_back({K::kSpeed, run, kit.speed_sigma, true});
     if (kit.time_sigma > 0.0) list.push_back({K::kTime, run, kit.time_sigma, true});
+  }
+  for (std::size_t c = 0; c < kit.sensors.size(); ++c) {
+    const Sensor& s = kit.sensors[c];
+    if (s.gain > 0.0) list.push_back({K::kSensorGain, c, s.gain, true});
+    if (s.skew > 0.0) list.push_back({K::kSensorSkew, c, s.skew, true});
   }
   return list;
 }
@@ -115,7 +150,7 @@ VectorXd Detector::calc_deviation(const std::vector<FaultSetting>& faults,
   Truth off = truth_;
   off.faults = faults;
   for (std::size_t i = 0; i < nuisances_.size(); ++i) {
-    add(off, nuisances_[i], nuisances_[i].unit * x[static_cast<Eigen::Index>(i)]);
+    add(kit_, off, nuisances_[i], nuisances_[i].unit * x[static_cast<Eigen::Index>(i)]);
   }
   const VectorXd d = whitener_.whiten(subtract(simulate_fit_runs(kit_, off), base_));
   VectorXd padded = VectorXd::Zero(jacobian_.rows());

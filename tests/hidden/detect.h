@@ -21,14 +21,15 @@ char find_grade(double ratio);
 
 /// Unknowns that a fit of the baseline adjusts, without biases, which are removed with the means.
 struct Nuisance {
-  enum class Kind { kFactor, kSpeed, kTime };
+  enum class Kind { kFactor, kSpeed, kTime, kSensorGain, kSensorSkew };
   Kind kind = Kind::kFactor;
-  std::size_t index = 0;  // of the kit's parameter or run
-  double unit = 1e-3;     // of an adjustment: factor, fraction of the speed, s; 1 sigma of a prior
+  std::size_t index = 0;  // of the kit's parameter, run or sensor
+  /// Of an adjustment: factor, fraction of the speed, s, gain, s; 1 sigma of a prior.
+  double unit = 1e-3;
   bool has_prior = false;
 };
 
-/// Parameters, speeds and hit times.
+/// Parameters, speeds, hit times, small errors of sensors.
 std::vector<Nuisance> list_nuisances(const Kit& kit);
 
 struct SignalToNoise {

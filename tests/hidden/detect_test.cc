@@ -171,9 +171,12 @@ void check_all(const std::string& name, std::uint64_t seed, int pairs, std::size
 }  // namespace
 
 TEST_CASE("Hidden data: the oracle's mean improvement is 1 + s^2", "[statistical]") {
-  const auto [kit_name, fault, pairs] = GENERATE(table<std::string, Fault, int>(
-      {{"dyno", Fault::kSelectiveDamper, 10}, {"quarter_car", Fault::kGas, 5}}));
-  const Kit kit = make_kit(kit_name);
+  const auto [kit_name, fault, pairs, regime] = GENERATE(
+      table<std::string, Fault, int, Regime>({{"dyno", Fault::kSelectiveDamper, 10, Regime::kExact},
+                                              {"quarter_car", Fault::kGas, 5, Regime::kExact},
+                                              {"dyno", Fault::kMount, 10, Regime::kSensors},
+                                              {"quarter_car", Fault::kKnee, 5, Regime::kSensors}}));
+  const Kit kit = make_kit(kit_name, regime);
   const Detector detector(kit, draw_truth(kit, 9401));
   const Honesty h = ask_oracle(detector, Noise(detector), make_small(kit, fault, 0), pairs);
   INFO(kit_name << ": s " << h.ratio << ", mean improvement " << h.mean << " +- " << h.error);
@@ -234,13 +237,32 @@ TEST_CASE("Hidden data: an error of all bumps within a survey has no ratio", "[p
 TEST_CASE("Hidden data: readings are white to the grader, jitter and converters included",
           "[statistical]") {
   const auto name = GENERATE(std::string("dyno"), std::string("quarter_car"));
-  const Kit kit = make_kit(name);
+  const bool drifts = GENERATE(false, true);
+  Kit kit = make_kit(name, drifts ? Regime::kSensors : Regime::kExact);
+  for (Sensor& s : kit.sensors) s.hum = 0.0;  // a line at 50 Hz, which is left out
   const Detector detector(kit, draw_truth(kit, 9408));
   const VectorXd w = Noise(detector).draw(1);
   const auto samples = static_cast<double>(w.size());
   // The steps of a converter are no normal noise; the standard error of the mean square is
   // sqrt(2 / n), below 2 %.
   CHECK(w.squaredNorm() / samples == Approx(1.0).epsilon(tolerance(0.05)));
+}
+
+TEST_CASE("Hidden data: what gains and skews of sensors move has no ratio", "[property]") {
+  const Kit kit = make_kit("quarter_car", Regime::kSensors);
+  const Detector detector(kit, draw_truth(kit, 9411));
+  const Detector exact(make_kit("quarter_car"), detector.truth());
+  // A gain error of its 1 sigma counts as at most one, whatever the noise.
+  for (const Fault fault : {Fault::kSensorGain, Fault::kSensorDelay}) {
+    const double size = fault == Fault::kSensorGain ? kit.sensors[1].gain : kit.sensors[1].skew;
+    const FaultSetting error{fault, 1, 3.0 * size, 0.0};
+    CHECK(detector.calc(error).ratio < tolerance(3.05));
+    CHECK(exact.calc(error).ratio > detector.calc(error).ratio);
+  }
+  // The plate's is that of both outputs.
+  const FaultSetting road{Fault::kRoadGain, 0, 3e-3, 0.0};
+  CHECK(detector.calc(road).ratio < tolerance(3.05));
+  CHECK(exact.calc(road).ratio > 5.0);
 }
 
 TEST_CASE("Hidden data: jitter is noise of all channels together", "[property]") {

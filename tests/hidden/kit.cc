@@ -443,14 +443,40 @@ std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t
     Signal& signal = signals[static_cast<std::size_t>(s.place)];
     signal = distort(signal, s);
   }
+  add_sensor_errors(truth, signals);
   return signals;
 }
 
-Kit make_kit(const std::string& name) {
-  if (name == "car") return make_car_kit();
-  if (name == "quarter_car") return make_quarter_car_kit();
-  if (name == "dyno") return make_dyno_kit();
-  throw std::invalid_argument("kit '" + name + "': must be car, quarter_car or dyno");
+void add_sensor_errors(const Truth& truth, std::vector<Signal>& signals) {
+  const auto add = [&](Fault fault, const std::vector<double>& sizes) {
+    for (std::size_t c = 0; c < sizes.size(); ++c) {
+      if (sizes[c] != 0.0) signals[c] = distort(signals[c], {fault, 0, sizes[c], 0.0});
+    }
+  };
+  add(Fault::kSensorGain, truth.sensor_gain);
+  add(Fault::kSensorDelay, truth.sensor_skew);
+}
+
+Kit make_kit(const std::string& name, Regime regime) {
+  Kit kit;
+  if (name == "car") {
+    kit = make_car_kit();
+  } else if (name == "quarter_car") {
+    kit = make_quarter_car_kit();
+  } else if (name == "dyno") {
+    kit = make_dyno_kit();
+  } else {
+    throw std::invalid_argument("kit '" + name + "': must be car, quarter_car or dyno");
+  }
+  kit.regime = regime;
+  if (regime == Regime::kExact) return kit;
+  for (Sensor& sensor : kit.sensors) {
+    sensor.gain = 1e-3;
+    sensor.skew = 2e-5;
+    sensor.drift = 0.3;
+    sensor.hum = 0.2;
+  }
+  return kit;
 }
 
 }  // namespace strut::hidden

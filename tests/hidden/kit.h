@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/hidden/faults.h"
+#include "tests/hidden/regime.h"
 #include "tests/hidden/road.h"
 #include "tests/hidden/sensor.h"
 
@@ -52,6 +53,7 @@ struct Kit {
   double time_sigma = 0.0;   // s, of the hit time
   double speed_sigma = 0.0;  // 1
   double jitter = 2e-5;      // s
+  Regime regime = Regime::kExact;
 };
 
 /// All inputs of a trial's simulation.
@@ -62,13 +64,15 @@ struct Truth {
   double roughness = 0.0;           // m^3 at 0.1 cycles/m; 0: smooth
   std::uint64_t seed = 0;           // of the roughness
   double force_scale = 1.0;         // of the car's masses, inertias, stiffnesses and dampings
+  // Small errors of each sensor; empty: none.
+  std::vector<double> sensor_gain, sensor_skew;  // 1, s
   // Adjustments of a fit, of each run; empty: none.
   std::vector<double> speed_change;  // 1, on the road of the speeds without it
   std::vector<double> time_shift;    // s, by which the recording begins later
 };
 
 /// "car", "quarter_car" or "dyno"; throws std::invalid_argument for others.
-Kit make_kit(const std::string& name);
+Kit make_kit(const std::string& name, Regime regime = Regime::kExact);
 
 /// A truth without faults, errors and roughness.
 Truth make_nominal_truth(const Kit& kit);
@@ -77,6 +81,9 @@ Truth make_nominal_truth(const Kit& kit);
 /// `margin` [s] before the recording and ends as much after it; sensor faults included.
 std::vector<Signal> simulate_run(const Kit& kit, const Truth& truth, std::size_t run, double rate,
                                  double margin);
+
+/// Adds a truth's small errors of sensors to the signals of all sensors of a kit.
+void add_sensor_errors(const Truth& truth, std::vector<Signal>& signals);
 
 /// The car of a truth.
 Car make_car(const Kit& kit, const Truth& truth);

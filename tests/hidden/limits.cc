@@ -92,7 +92,7 @@ std::vector<QuantityLimit> make_quantity_limits(const Score& score) {
   std::vector<QuantityLimit> made;
   for (const Quantity& q : list_quantities(score)) {
     if (q.count == 0) continue;
-    const double bound = q.at_least ? q.value / kAllowed : kAllowed * q.value;
+    const double bound = q.at_least ? q.value / kAllowed : kAllowed * q.value + q.slack;
     made.push_back({q.name, q.at_least, q.value == 0.0 ? q.target : bound, q.count, q.value});
   }
   return made;

@@ -195,14 +195,23 @@ NoiseSpectrum::NoiseSpectrum(const Kit& kit, const Truth& truth, std::size_t run
 
 MatrixXcd NoiseSpectrum::calc(double frequency) const {
   if (kit_.kind != KitKind::kCar) return calc_rig(frequency);
-  return readings_.cast<Complex>() + calc_road(frequency);
+  return calc_readings(frequency).cast<Complex>() + calc_road(frequency);
+}
+
+MatrixXd NoiseSpectrum::calc_readings(double frequency) const {
+  MatrixXd noise = readings_;
+  for (Eigen::Index c = 0; c < noise.rows(); ++c) {
+    const Sensor& s = kit_.sensors[static_cast<std::size_t>(c)];
+    noise(c, c) += s.noise * s.noise * calc_drift_spectrum(s, frequency, kit_.rate);
+  }
+  return noise;
 }
 
 MatrixXcd NoiseSpectrum::calc_rig(double frequency) const {
   const VectorXcd h = calc_rig_response(kit_, truth_, {0.0, kTwoPi * frequency});
   MatrixXcd t(h.size(), h.size() + 1);
   t << -h, MatrixXcd::Identity(h.size(), h.size());
-  return t * readings_.cast<Complex>() * t.adjoint();
+  return t * calc_readings(frequency).cast<Complex>() * t.adjoint();
 }
 
 MatrixXcd NoiseSpectrum::calc_road(double frequency) const {

@@ -25,9 +25,10 @@ Runs simulate_fit_runs(const Kit& kit, const Truth& truth);
 Runs subtract(Runs a, const Runs& b);
 
 /// Covariance of the transforms of all outputs at one frequency, over the number of samples:
-/// S = T (diag(sigma^2 + q^2 / 12) + sigma_j^2 mean(y' y'^T)) T^* + road.
+/// S = T (diag(sigma^2 (1 + drift(f)) + q^2 / 12) + sigma_j^2 mean(y' y'^T)) T^* + road.
 ///
-/// sigma: sensor noise, q: step of the converter, sigma_j: jitter of the clock, which all channels
+/// sigma: sensor noise, drift: its 1/f part (a line of the mains is left out: nothing moves there),
+/// q: step of the converter, sigma_j: jitter of the clock, which all channels
 /// of a file share, y': rates of the true signals. T = [-h 1] on a stand, h the response of the
 /// outputs to the input: the motion is unknown but for its measurement. road: the response of the
 /// linearized car to both tracks, front and rear delayed by the wheelbase; the road is unknown but
@@ -40,6 +41,7 @@ class NoiseSpectrum {
   Eigen::MatrixXcd calc(double frequency) const;  // Hz
 
  private:
+  Eigen::MatrixXd calc_readings(double frequency) const;
   Eigen::MatrixXcd calc_rig(double frequency) const;
   Eigen::MatrixXcd calc_road(double frequency) const;
 

@@ -64,14 +64,51 @@ bool is_in_group(const Verdict& v, const TrueFault& fault, std::size_t allowed) 
          (names(v.causes, fault) || names(v.group, fault));
 }
 
-double find_probability(const Verdict& v, const TrueFault& fault) {
-  if (!claims_names(v)) return 0.0;
+bool is_same(const Claim& a, const Claim& b) { return a.effect == b.effect && a.place == b.place; }
+
+/// All different claims, with their probabilities.
+std::vector<Claim> list_claims(const Verdict& v) {
+  std::vector<Claim> claims;
   for (const auto* list : {&v.causes, &v.group, &v.runners_up}) {
     for (const Claim& c : *list) {
-      if (is_truth(c, fault)) return c.probability;
+      if (std::none_of(claims.begin(), claims.end(),
+                       [&](const Claim& other) { return is_same(c, other); })) {
+        claims.push_back(c);
+      }
     }
   }
-  return 0.0;
+  return claims;
+}
+
+/// Probability of the hidden effect and of what the runs cannot tell from it.
+double find_probability(const Verdict& v, const TrueFault& fault) {
+  if (!claims_names(v)) return 0.0;
+  double sum = 0.0;
+  for (const Claim& c : list_claims(v)) sum += is_truth(c, fault) ? c.probability : 0.0;
+  return std::min(sum, 1.0);
+}
+
+/// The first cause with what is not distinguished from it.
+std::vector<Claim> list_first(const Verdict& v) {
+  if (!v.first.empty()) return v.first;
+  const Claim& first = v.causes.front();
+  const bool is_grouped = std::any_of(v.group.begin(), v.group.end(),
+                                      [&](const Claim& c) { return is_same(c, first); });
+  return is_grouped ? v.group : std::vector<Claim>{first};
+}
+
+double sum_probabilities(const std::vector<Claim>& claims) {
+  double sum = 0.0;
+  for (const Claim& c : claims) sum += c.probability;
+  return std::min(sum, 1.0);
+}
+
+/// Probability that a verdict gives to what is hidden in a trial.
+double find_probability(const TrueTrial& trial, const Verdict& v) {
+  if (v.verdict == "adequate") return trial.category == "none" ? 1.0 : 0.0;
+  if (trial.category == "one") return find_probability(v, trial.faults.front());
+  // An effect that no catalogue has is none of the names.
+  return trial.category == "unknown" ? 1.0 - sum_probabilities(list_claims(v)) : 0.0;
 }
 
 bool is_strut_rate(const std::string& name) {
@@ -130,6 +167,7 @@ void add_effect(const TrueFault& fault, const Claim& claim, char grade, Score& s
   score.effect_error.push_back(e.value / fault.magnitude - 1.0);
   score.cells[Metric::kEffectCovered][grade].add(e.low <= fault.magnitude &&
                                                  fault.magnitude <= e.high);
+  score.cells[Metric::kEffectWithin10][grade].add(std::fabs(score.effect_error.back()) <= 0.1);
 }
 
 void add_one(const TrueTrial& trial, const Verdict& v, Score& score) {
@@ -192,10 +230,15 @@ void add_claims(const TrueTrial& trial, const Verdict& v, Score& score) {
   score.cells[Metric::kWrongConfident][trial.grade].add(is_wrong_confident(trial, v));
   const bool claims = claims_names(v) && !v.causes.empty();
   if (claims) {
-    const Claim& first = v.causes.front();
-    score.confidence.emplace_back(
-        first.probability, std::any_of(trial.faults.begin(), trial.faults.end(),
-                                       [&](const TrueFault& f) { return is_truth(first, f); }));
+    const std::vector<Claim> first = list_first(v);
+    score.confidence.emplace_back(sum_probabilities(first),
+                                  std::any_of(trial.faults.begin(), trial.faults.end(),
+                                              [&](const TrueFault& f) { return names(first, f); }));
+  }
+  // What cannot be detected is left out, and pairs, of which more than one answer is right.
+  const bool is_seen = trial.grade != 'D' && trial.category != "two";
+  if (is_seen && (trial.category != "unknown" || find_grade(trial.beyond_one) != 'D')) {
+    score.surprise.push_back(-std::log(std::max(find_probability(trial, v), kLeastProbability)));
   }
   if (trial.grade == 'D') {
     score.cells[Metric::kOverclaimed]['D'].add(claims && v.verdict != "group" &&
@@ -209,6 +252,7 @@ void add_missing(const TrueTrial& trial, Score& score) {
   const char grade = trial.grade;
   score.cells[Metric::kWrongConfident][grade].add(true);
   score.confidence.emplace_back(1.0, false);
+  score.surprise.push_back(-std::log(kLeastProbability));
   if (grade == 'D') score.cells[Metric::kOverclaimed]['D'].add(true);
   if (trial.category == "unknown") {
     score.cells[Metric::kUnknownPlaced][find_grade(trial.beyond_one)].add(false);
@@ -216,6 +260,7 @@ void add_missing(const TrueTrial& trial, Score& score) {
   const bool one = trial.category == "one";
   if (one && !trial.faults.front().parameter.empty()) {
     score.cells[Metric::kEffectCovered][grade].add(false);
+    score.cells[Metric::kEffectWithin10][grade].add(false);
     score.effect_error.push_back(kMissingError);
   }
   for (const auto& [name, truth] : trial.parameters) {
@@ -298,6 +343,7 @@ const char* get_name(Metric metric) {
       "wrong, confident",
       "overclaimed",
       "effect covered 95 %",
+      "effect within 10 %",
       "baseline covered 95 %",
       "one: 95 % explained on hold-out",
       "one: 80 % explained on hold-out",
@@ -393,6 +439,7 @@ bool is_size_fixed(Metric metric) {
   switch (metric) {
     case Metric::kUnknownPlaced:
     case Metric::kEffectCovered:
+    case Metric::kEffectWithin10:
     case Metric::kBaseCovered:
     case Metric::kExplained95:
     case Metric::kExplained80:
@@ -412,10 +459,16 @@ std::vector<Quantity> list_quantities(const Score& score) {
     for (double& v : values) v = std::fabs(v);
     return calc_quantile(std::move(values), 0.5);
   };
+  const auto calc_surprise_of_two = [](std::size_t count) {
+    return count > 0 ? -2.0 * std::log(kLeastProbability) / static_cast<double>(count) : 0.0;
+  };
   return {{"mean probability on the truth, A and B", calc_mean(score.probability_on_truth),
            score.probability_on_truth.size(), 0.85, true},
           {"names in cause and group, A and B: mean", calc_mean(score.names), score.names.size(),
            static_cast<double>(kLargestGroup), false},
+          // 0 where nothing is hidden and the verdict is adequate.
+          {"-ln of the truth's probability: mean", calc_mean(score.surprise), score.surprise.size(),
+           0.25, false, calc_surprise_of_two(score.surprise.size())},
           {"calibration error of first causes", calc_calibration_error(score.confidence),
            score.confidence.size(), 0.07, false},
           {"stiffness and damping, named, smooth: rms relative", calc_rms(score.smooth_error),

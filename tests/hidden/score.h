@@ -28,6 +28,7 @@ enum class Metric {
   kWrongConfident,  // any trial: a wrong cause with more than 0.8, no truth for it in the group
   kOverclaimed,     // grade D: a cause named with more than 0.8, no group beside it
   kEffectCovered,   // named exactly: 95 % interval holds the effect's parameter
+  kEffectWithin10,  // named exactly: off by at most 10 %
   kBaseCovered,     // parameters of the baseline
   kExplained95,     // one: explains at least 95 % of the excess error on the held-out runs
   kExplained80,     // one: at least 80 %
@@ -42,6 +43,9 @@ inline constexpr std::size_t kLargestGroup = 4;
 /// Error and pull of a parameter without a verdict: 100 %, and far out of any interval.
 inline constexpr double kMissingError = 1.0, kMissingPull = 10.0;
 
+/// Smallest probability of the truth that its surprise counts.
+inline constexpr double kLeastProbability = 0.01;
+
 struct Cell {
   int hits = 0, total = 0;
   void add(bool hit) {
@@ -51,14 +55,16 @@ struct Cell {
 };
 
 struct Score {
-  std::map<Metric, std::map<char, Cell>> cells;     // by grade, '-' for nothing hidden
-  std::vector<double> probability_on_truth;         // one, A and B
-  std::vector<double> null_error;                   // relative, of stiffnesses and dampings
-  std::vector<double> null_pull;                    // the same over the stated 1 sigma
-  std::vector<double> null_excess;                  // the same over the Cramer-Rao bound
-  std::vector<double> smooth_error, rough_error;    // relative, named; roads up to 1e-6, 16e-6
-  std::vector<double> effect_error;                 // relative, of effects named exactly
-  std::vector<std::pair<double, bool>> confidence;  // of each first cause, and whether right
+  std::map<Metric, std::map<char, Cell>> cells;   // by grade, '-' for nothing hidden
+  std::vector<double> probability_on_truth;       // one, A and B
+  std::vector<double> null_error;                 // relative, of stiffnesses and dampings
+  std::vector<double> null_pull;                  // the same over the stated 1 sigma
+  std::vector<double> null_excess;                // the same over the Cramer-Rao bound
+  std::vector<double> smooth_error, rough_error;  // relative, named; roads up to 1e-6, 16e-6
+  std::vector<double> effect_error;               // relative, of effects named exactly
+  /// Of each first cause with what is not distinguished from it, and whether one of them is right.
+  std::vector<std::pair<double, bool>> confidence;
+  std::vector<double> surprise;       // -ln of the probability of the truth: none, one and unknown
   std::vector<double> names;          // one, A and B: number of names, where there are any
   std::vector<std::string> failures;  // one line per trial, with the runners-up
   std::map<std::string, std::map<char, int>> contents;  // trials by category and grade
@@ -98,6 +104,7 @@ struct Quantity {
   std::size_t count = 0;  // number of values
   double target = 0.0;
   bool at_least = true;
+  double slack = 0.0;  // that a limit adds, since single trials may change it by so much
 
   bool passes() const { return count == 0 || (at_least ? value >= target : value <= target); }
 };

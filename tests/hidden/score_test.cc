@@ -440,6 +440,62 @@ TEST_CASE("Hidden data: the calibration error is the gap between claimed and rig
   CHECK(calc_calibration_error({}) == 0.0);
 }
 
+TEST_CASE("Hidden data: what is not distinguished shares one claim", "[unit]") {
+  TrueTrial trial;
+  trial.name = "0";
+  trial.category = "one";
+  trial.grade = 'A';
+  trial.faults = {
+      {"lag", "damper_hysteresis", "", "lag", 2e-3, 'A', "strut", {{"sensor_delay", "force"}}}};
+  Verdict v;
+  v.verdict = "group";
+  v.causes = {{"damper_hysteresis", "", 0.4, {}}};
+  v.group = {{"damper_hysteresis", "", 0.4, {}}, {"sensor_delay", "force", 0.3, {}}};
+  v.runners_up = {{"bump_stop", "", 0.1, {}}};
+  const auto score = [&] { return calc_score({trial}, {{"0", v}}); };
+  // 0.4 + 0.3, and the name is right.
+  REQUIRE(score().confidence.size() == 1);
+  CHECK(score().confidence[0].first == Approx(0.7));
+  CHECK(score().confidence[0].second);
+  CHECK(score().probability_on_truth.at(0) == Approx(0.7));
+  CHECK(score().surprise.at(0) == Approx(-std::log(0.7)));
+  // The group of another cause says nothing of the first.
+  v.first = {v.causes[0]};
+  CHECK(score().confidence[0].first == Approx(0.4));
+  // One of a group is right, though not the first.
+  v.first.clear();
+  trial.faults[0].twins.clear();
+  v.causes = {{"sensor_delay", "force", 0.3, {}}};
+  CHECK(score().confidence[0].second);
+  CHECK(score().surprise.at(0) == Approx(-std::log(0.4)));
+}
+
+TEST_CASE("Hidden data: the surprise is that of the stated probability of the truth", "[unit]") {
+  TrueTrial trial;
+  trial.name = "0";
+  trial.category = "unknown";
+  trial.grade = 'B';
+  trial.beyond_one = 12.0;
+  trial.faults = {{"compressed gas", "", "", "", 0.1, 'B', "strut", {}}};
+  Verdict v;
+  v.verdict = "unknown";
+  v.runners_up = {{"bump_stop", "", 0.25, {}}};
+  const auto calc = [&] { return calc_score({trial}, {{"0", v}}).surprise; };
+  CHECK(calc().at(0) == Approx(-std::log(0.75)));
+  v.verdict = "adequate";
+  CHECK(calc().at(0) == Approx(-std::log(kLeastProbability)));
+  // What a known cause imitates is not asked for.
+  trial.beyond_one = 3.0;
+  CHECK(calc().empty());
+  trial = {};
+  trial.name = "0";
+  trial.category = "none";
+  CHECK(calc().at(0) == 0.0);
+  v.verdict = "named";
+  CHECK(calc().at(0) == Approx(-std::log(kLeastProbability)));
+  CHECK(calc_score({trial}, {}).surprise.at(0) == Approx(-std::log(kLeastProbability)));
+}
+
 TEST_CASE("Hidden data: right answers to other trials are wrong", "[unit]") {
   const std::vector<TrueTrial> trials = make_trials();
   for (const Impostor& impostor : make_impostors(trials, answer_all(trials, make_perfect))) {
@@ -738,7 +794,8 @@ TEST_CASE("Hidden data: a verdict is read as the interface writes it", "[io]") {
          "{\"after\": "
          "{\"front_stiffness\": {\"value\": 1.0, \"ci95\": [0.5, 1.5]}}}, \"gain\": "
          "{\"explained\": "
-         "0.95}}";
+         "0.95}, \"positions\": [{\"not_distinguished\": [{\"effect\": \"bump_stop\", \"place\": "
+         "\"rear\", \"probability\": 0.3}]}]}";
   const Verdict v = read_verdict(folder / "verdict.json");
   CHECK(v.verdict == "named");
   REQUIRE(v.causes.size() == 1);
@@ -748,6 +805,7 @@ TEST_CASE("Hidden data: a verdict is read as the interface writes it", "[io]") {
   CHECK(v.map_share == 0.75);
   CHECK(v.after.at("front_stiffness").low == 0.5);
   CHECK(v.explained == 0.95);
+  CHECK(v.first.at(0).effect == "bump_stop");
   std::ofstream(folder / "verdict.json")
       << R"({"verdict": "unknown", "force_map": null, "gain": {"explained": null}})";
   const Verdict none = read_verdict(folder / "verdict.json");

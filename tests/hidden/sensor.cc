@@ -2,11 +2,64 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 
 #include "tests/hidden/random_stream.h"
 
 namespace strut::hidden {
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647692;
+constexpr double kMains = 50.0;  // Hz
+
+/// Drift as a sum of first-order processes of equal variance whose correlation times are octaves
+/// apart: nearly 1/f between the ends.
+constexpr double kShortest = 4e-3, kLongest = 2.1;  // s
+
+std::vector<double> list_correlation_times() {
+  std::vector<double> times;
+  for (double t = kShortest; t < kLongest; t *= 2.0) times.push_back(t);
+  return times;
+}
+
+/// Drift of unit variance at `count` stamps `interval` [s] apart.
+std::vector<double> draw_drift(RandomStream& draws, std::size_t count, double interval) {
+  std::vector<double> sum(count, 0.0);
+  const std::vector<double> times = list_correlation_times();
+  const double size = 1.0 / std::sqrt(static_cast<double>(times.size()));
+  for (const double time : times) {
+    const double keep = std::exp(-interval / time), step = std::sqrt(1.0 - keep * keep);
+    double x = draws.draw_normal();
+    for (double& v : sum) {
+      v += size * x;
+      x = keep * x + step * draws.draw_normal();
+    }
+  }
+  return sum;
+}
+
+/// Drift and hum at the stamps, in SI; they have streams of their own, so that the other noise does
+/// not depend on them.
+std::vector<double> draw_colored_noise(const Sensor& sensor, const std::vector<double>& stamps,
+                                       std::uint64_t seed, const std::string& purpose) {
+  std::vector<double> noise(stamps.size(), 0.0);
+  if (stamps.size() < 2) return noise;
+  if (sensor.drift > 0.0) {
+    RandomStream draws(seed, "drift " + purpose + " " + sensor.channel);
+    noise = draw_drift(draws, stamps.size(), stamps[1] - stamps[0]);
+    for (double& v : noise) v *= sensor.drift * sensor.noise;
+  }
+  RandomStream draws(seed, "hum " + purpose + " " + sensor.channel);
+  const double phase = draws.draw_uniform(0.0, kTwoPi);
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    noise[i] +=
+        std::sqrt(2.0) * sensor.hum * sensor.noise * std::sin(kTwoPi * kMains * stamps[i] + phase);
+  }
+  return noise;
+}
+
+}  // namespace
 
 double Signal::evaluate(double t) const {
   const double place = (t - begin) / spacing;
@@ -54,18 +107,30 @@ Signal distort(const Signal& signal, const FaultSetting& fault) {
   return out;
 }
 
+double calc_drift_spectrum(const Sensor& sensor, double frequency, double rate) {
+  double sum = 0.0;
+  const std::vector<double> times = list_correlation_times();
+  const std::complex<double> turn = std::polar(1.0, -kTwoPi * frequency / rate);
+  for (const double time : times) {
+    const double keep = std::exp(-1.0 / (rate * time));
+    sum += (1.0 - keep * keep) / std::norm(1.0 - keep * turn);
+  }
+  return sensor.drift * sensor.drift * sum / static_cast<double>(times.size());
+}
+
 std::vector<double> read_sensor(const Sensor& sensor, const Signal& signal, const Clock& clock,
                                 const std::vector<double>& stamps, double bias, std::uint64_t seed,
                                 const std::string& purpose) {
   // Channels of one file are sampled together: the jitter's stream does not name the channel.
   RandomStream jitter(seed, "jitter " + purpose);
   RandomStream noise(seed, "noise " + purpose + " " + sensor.channel);
+  const std::vector<double> colored = draw_colored_noise(sensor, stamps, seed, purpose);
   std::vector<double> readings;
   readings.reserve(stamps.size());
-  for (const double stamp : stamps) {
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
     const double at =
-        (1.0 + clock.drift) * stamp + clock.offset + clock.jitter * jitter.draw_normal();
-    double v = signal.evaluate(at) + bias + sensor.noise * noise.draw_normal();
+        (1.0 + clock.drift) * stamps[i] + clock.offset + clock.jitter * jitter.draw_normal();
+    double v = signal.evaluate(at) + bias + sensor.noise * noise.draw_normal() + colored[i];
     v = std::clamp(v, -sensor.range, sensor.range);
     if (sensor.quantum > 0.0) v = sensor.quantum * std::nearbyint(v / sensor.quantum);
     readings.push_back(v / sensor.unit_scale);

@@ -21,7 +21,14 @@ struct Sensor {
   double range = 1e30;       // SI, reading saturates at +/- range
   bool input = false;        // drives the model
   bool recorded = true;      // false: simulated, but not written
+  // Small errors within the data sheet; 0: none.
+  double gain = 0.0, skew = 0.0;  // 1, s: 1 sigma over sensors of relative gain error and delay
+  double drift = 0.0, hum = 0.0;  // rms over `noise` of drift as 1/f, and of a line of the mains
 };
+
+/// Power spectrum of a sensor's drift over that of white noise with the variance noise^2, at a
+/// frequency [Hz] of samples at `rate` [Hz].
+double calc_drift_spectrum(const Sensor& sensor, double frequency, double rate);
 
 /// The clock of a file: stamps are exact to a microsecond, the samples are not.
 struct Clock {
@@ -42,8 +49,8 @@ struct Signal {
 /// clips at +/-(1 - magnitude) times the setting's peak. The signal itself for other faults.
 Signal distort(const Signal& signal, const FaultSetting& fault);
 
-/// Readings in the file's unit at the stamps [s]: sampled late and with jitter, biased, noisy, cut
-/// at the range, rounded to the converter's steps.
+/// Readings in the file's unit at the even stamps [s]: sampled late and with jitter, biased, noisy,
+/// with drift and hum, cut at the range, rounded to the converter's steps.
 std::vector<double> read_sensor(const Sensor& sensor, const Signal& signal, const Clock& clock,
                                 const std::vector<double>& stamps, double bias, std::uint64_t seed,
                                 const std::string& purpose);

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
+#include <map>
 #include <vector>
 
 #include "tests/support/tolerance.h"
@@ -48,6 +50,59 @@ TEST_CASE("Hidden data: a sensor's noise has its data sheet's size and no memory
   CHECK(mean == Approx(0.3).margin(tolerance(4.0 * 0.02 / std::sqrt(5000.0))));
   CHECK(std::sqrt(square) == Approx(0.02).epsilon(tolerance(0.04)));
   CHECK(std::fabs(next / square) < tolerance(0.06));
+}
+
+TEST_CASE("Hidden data: drift is 1/f noise of the stated size, hum a line of the mains",
+          "[statistical]") {
+  Sensor sensor;
+  sensor.channel = "a";
+  sensor.noise = 0.01;
+  sensor.drift = 0.5;
+  const Signal zero = make_wave(1.0, 0.0);
+  const std::vector<double> stamps = make_stamps();
+  const auto read = [&](std::uint64_t seed) {
+    return read_sensor(sensor, zero, {}, stamps, 0.0, seed, "run");
+  };
+  Sensor white = sensor;
+  white.drift = 0.0;
+  // Octaves from 1 Hz on: 1/f has the same power in each.
+  std::map<int, double> octave;
+  double square = 0.0;
+  constexpr int kDraws = 20;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    std::vector<double> drift = read(seed);
+    const std::vector<double> noise = read_sensor(white, zero, {}, stamps, 0.0, seed, "run");
+    for (std::size_t i = 0; i < drift.size(); ++i) {
+      drift[i] -= noise[i];
+      square += drift[i] * drift[i] / (kDraws * 5000.0);
+    }
+    for (int k = 10; k < 320; ++k) {  // 1 to 32 Hz
+      std::complex<double> sum;
+      for (std::size_t i = 0; i < drift.size(); ++i) {
+        sum += drift[i] * std::polar(1.0, -kTwoPi * k * static_cast<double>(i) / 5000.0);
+      }
+      octave[static_cast<int>(std::log2(0.1 * k))] += std::norm(sum);
+    }
+  }
+  // Twenty draws of a drift that is hardly renewed within a record: 15 %.
+  CHECK(std::sqrt(square) == Approx(0.5 * 0.01).epsilon(tolerance(0.15)));
+  for (int k = 1; k < 5; ++k) CHECK(octave[k] == Approx(octave[0]).epsilon(tolerance(0.3)));
+
+  // The spectrum that the grader takes is that of the readings: 1 to 32 Hz of both.
+  double expected = 0.0, measured = 0.0;
+  for (int k = 10; k < 320; ++k) expected += calc_drift_spectrum(sensor, 0.1 * k, 500.0);
+  for (const auto& [number, power] : octave) measured += power / (kDraws * 5000.0 * 1e-4);
+  CHECK(measured == Approx(expected).epsilon(tolerance(0.15)));
+
+  sensor.drift = 0.0;
+  sensor.hum = 2.0;
+  const std::vector<double> hum = read(1);
+  std::complex<double> line;
+  for (std::size_t i = 0; i < hum.size(); ++i) {
+    line += hum[i] * std::polar(1.0, -kTwoPi * 50.0 * stamps[i]);
+  }
+  // Amplitude 2 |line| / n; its rms.
+  CHECK(std::sqrt(2.0) * std::abs(line) / 5000.0 == Approx(0.02).epsilon(tolerance(0.05)));
 }
 
 TEST_CASE("Hidden data: readings are whole steps within the range and in the file's unit",

@@ -92,6 +92,35 @@ Trial make_trial(const Detector& detector, const std::vector<Graded>& graded) {
   return trial;
 }
 
+/// Hides what every machine has: up to two small effects of other kinds, together below the
+/// detection limit, which no verdict needs to name.
+void add_misfits(const Detector& detector, const std::vector<FaultSetting>& faults, Trial& trial) {
+  constexpr double kSmallest = 1.0, kLargest = 2.5, kTooLarge = 3.0;
+  constexpr int kMisfits = 2;
+  const Kit& kit = detector.kit();
+  std::vector<Fault> kinds;
+  for (const Fault kind : {Fault::kSideFriction, Fault::kFriction, Fault::kKnee, Fault::kMount,
+                           Fault::kHardening, Fault::kTirePower}) {
+    const bool is_hidden = std::any_of(faults.begin(), faults.end(),
+                                       [&](const FaultSetting& s) { return s.fault == kind; });
+    if (!is_hidden && (get_info(kind).kits & kit.bit) != 0) kinds.push_back(kind);
+  }
+  RandomStream draws(trial.seed, "misfits");
+  for (int i = 0; i < kMisfits; ++i) {
+    const auto which = draws.draw_index(static_cast<int>(kinds.size()));
+    FaultSetting s{kinds[static_cast<std::size_t>(which)], 0, 0.0, 0.0};
+    kinds.erase(kinds.begin() + which);
+    s.magnitude = get_start(kit, get_info(s.fault));
+    if (kit.kind == KitKind::kCar) s.place = draws.draw_index(2);
+    const HiddenFault misfit =
+        size_fault(detector, s, draws.draw_log_uniform(kSmallest, kLargest)).fault;
+    // The smallest size of some kinds is larger.
+    if (misfit.ratio > kTooLarge) continue;
+    trial.misfits.push_back(misfit);
+    trial.truth.faults.push_back(misfit.setting);
+  }
+}
+
 }  // namespace
 
 const char* get_name(Category category) {
@@ -135,6 +164,11 @@ Truth draw_truth(const Kit& kit, std::uint64_t seed) {
     RandomStream road(seed, "road class");
     truth.roughness = kClasses[static_cast<std::size_t>(road.draw_index(kClasses.size()))];
   }
+  RandomStream errors(seed, "sensor errors");
+  for (const Sensor& s : kit.sensors) {
+    truth.sensor_gain.push_back(s.gain * errors.draw_normal());
+    truth.sensor_skew.push_back(s.skew * errors.draw_normal());
+  }
   truth.seed = seed;
   return truth;
 }
@@ -175,12 +209,18 @@ std::vector<FaultSetting> draw_faults(const Kit& kit, std::uint64_t seed) {
 
 Trial draw_trial(const Kit& kit, std::uint64_t seed) {
   const Detector detector(kit, draw_truth(kit, seed));
-  RandomStream sizes(seed, "sizes");
+  const bool is_machine = kit.regime == Regime::kMachine;
+  RandomStream sizes(seed, "sizes"), growth(seed, "realistic sizes");
   std::vector<Graded> graded;
-  for (const FaultSetting& s : draw_faults(kit, seed)) {
-    graded.push_back(size_fault(detector, s, sizes.draw_log_uniform(kLowest, kHighest)));
+  const std::vector<FaultSetting> faults = draw_faults(kit, seed);
+  for (const FaultSetting& s : faults) {
+    const double target = sizes.draw_log_uniform(kLowest, kHighest);
+    const double times = is_machine ? growth.draw_log_uniform(10.0, 30.0) : 1.0;
+    graded.push_back(size_fault(detector, s, times * target));
   }
-  return make_trial(detector, graded);
+  Trial trial = make_trial(detector, graded);
+  if (is_machine) add_misfits(detector, faults, trial);
+  return trial;
 }
 
 Trial grade_trial(const Kit& kit, std::uint64_t seed, const std::vector<FaultSetting>& faults) {

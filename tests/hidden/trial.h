@@ -29,8 +29,9 @@ struct Trial {
   Category category = Category::kNone;
   Truth truth;
   std::vector<HiddenFault> faults;
-  std::vector<Clock> clocks;  // of each run
-  std::vector<double> bias;   // of each sensor
+  std::vector<HiddenFault> misfits;  // small, beside the faults
+  std::vector<Clock> clocks;         // of each run
+  std::vector<double> bias;          // of each sensor
   /// Ratio of all hidden faults beyond the best imitation by one known cause, and by two that are
   /// not the hidden pair.
   double beyond_one = 0.0, beyond_two = 0.0;

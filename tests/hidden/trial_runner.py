@@ -82,10 +82,10 @@ def write_atomically(path, text):
 class Run:
     """One folder of trials."""
 
-    def __init__(self, build, folder, parts, ablation="none", fresh=False):
+    def __init__(self, build, folder, parts, ablation="none", regime="exact", fresh=False):
         """`fresh`: removes what another run left in the folder."""
         self.build, self.folder, self.parts = build, pathlib.Path(folder), list(parts)
-        self.ablation = ablation
+        self.ablation, self.regime = ablation, regime
         self.children, self.guard, self.stopped = set(), threading.RLock(), False
         self.done, self.total, self.began = 0, 0, time.monotonic()
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -116,7 +116,7 @@ class Run:
     def _check_identity(self):
         """Verdicts of two programs, or trials of two generators, do not mix."""
         identity = {"strut": calc_digest(self.build.strut), "data": calc_digest(self.build.data),
-                    "ablation": self.ablation,
+                    "ablation": self.ablation, "regime": self.regime,
                     "parts": [[part.kit, part.seeds] for part in self.parts]}
         path = self.folder / "run.json"
         if path.exists():
@@ -135,7 +135,7 @@ class Run:
         """Raises CalledProcessError where the generator fails."""
         for part in self.parts:
             command = [self.build.data, part.kit, part.seeds, self.folder / part.kit, str(jobs),
-                       self.ablation]
+                       self.ablation, self.regime]
             child = self._start(command, None)
             _, status = self._wait(child)
             if status != 0:

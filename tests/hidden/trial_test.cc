@@ -209,6 +209,40 @@ TEST_CASE("Hidden data: ratios are what was asked for, over all grades", "[stati
   for (const char grade : {'A', 'B', 'C', 'D'}) CHECK(grades[grade] >= 2);
 }
 
+TEST_CASE("Hidden data: machines have larger effects, small misfits and errors of sensors",
+          "[statistical]") {
+  const Kit exact = make_kit("dyno"), machine = make_kit("dyno", Regime::kMachine);
+  int larger = 0, hidden = 0;
+  std::size_t misfits = 0;
+  for (std::uint64_t seed = 9420; seed < 9440; ++seed) {
+    const Trial small = draw_trial(exact, seed), large = draw_trial(machine, seed);
+    INFO(seed);
+    CHECK(small.misfits.empty());
+    CHECK(small.truth.sensor_gain == std::vector<double>(2, 0.0));
+    misfits += large.misfits.size();
+    CHECK(large.truth.faults.size() == large.faults.size() + large.misfits.size());
+    REQUIRE(large.faults.size() == small.faults.size());
+    for (const HiddenFault& m : large.misfits) {
+      CHECK(m.ratio < tolerance(3.0));
+      for (const HiddenFault& f : large.faults) CHECK(m.setting.fault != f.setting.fault);
+    }
+    for (std::size_t i = 0; i < large.faults.size(); ++i) {
+      CHECK(large.faults[i].setting.fault == small.faults[i].setting.fault);
+      CHECK(large.faults[i].target > 10.0 * small.faults[i].target);
+      CHECK(large.faults[i].target < 30.0 * small.faults[i].target);
+      ++hidden;
+      larger += large.faults[i].ratio > 8.0 * small.faults[i].ratio ? 1 : 0;
+    }
+    CHECK(std::fabs(large.truth.sensor_gain[1]) > 0.0);
+    CHECK(std::fabs(large.truth.sensor_gain[1]) < tolerance(5e-3));
+    CHECK(std::fabs(large.truth.sensor_skew[0]) < tolerance(1e-4));
+  }
+  CHECK(misfits > 20);
+  // Some are at the largest size that they can have.
+  CHECK(larger > hidden / 2);
+  CHECK_THROWS_WITH(make_regime("real"), Catch::Contains("machine"));
+}
+
 TEST_CASE("Hidden data: nothing that the tested program gets tells of the truth", "[unit]") {
   const Kit kit = make_kit("quarter_car");
   const test::TemporaryFolder folder;

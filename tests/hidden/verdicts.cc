@@ -122,6 +122,9 @@ Verdict read_verdict(const fs::path& path) {
   v.causes = get_claims(tree, "causes");
   v.group = get_claims(tree, "group");
   v.runners_up = get_claims(tree, "runners_up");
+  if (const auto positions = tree.get_child_optional("positions")) {
+    if (!positions->empty()) v.first = get_claims(positions->front().second, "not_distinguished");
+  }
   v.place = tree.get<std::string>("where.place", "");
   v.after = get_estimates(tree, "parameters.after");
   v.explained = get_number(tree, "gain.explained");

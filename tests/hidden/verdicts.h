@@ -26,6 +26,8 @@ struct Claim {
 struct Verdict {
   std::string verdict;  // adequate | named | group | form_incomplete | unknown; "": none was given
   std::vector<Claim> causes, group, runners_up;
+  /// The first cause with what is not distinguished from it; empty: as far as the group tells.
+  std::vector<Claim> first;
   std::string place;  // where.place
   std::map<std::string, Estimate> after;
   std::optional<double> explained;  // gain.explained; null: no excess before
