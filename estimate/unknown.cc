@@ -133,6 +133,8 @@ Unknown make_sensor_unknown(UnknownKind kind, const ModelInfo& model, int run, i
   Unknown u = make_bias(model, run, channel, {0.0, sigma});
   const bool is_gain = kind == UnknownKind::kSensorGain;
   u.kind = kind;
+  u.low = -kSensorReach * sigma;
+  u.high = kSensorReach * sigma;
   u.name = model.channels[static_cast<std::size_t>(channel)].name +
            (is_gain ? kGainErrorSuffix : kSkewSuffix);
   u.unit = is_gain ? "1" : "s";

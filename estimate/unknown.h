@@ -58,6 +58,11 @@ inline bool is_sensor_error(const Unknown& u) {
          u.kind == UnknownKind::kSensorSkew;
 }
 
+/// Whether an unknown is a small error that a sensor's data sheet allows: of its gain, or its skew.
+inline bool is_sensor_tolerance(const Unknown& u) {
+  return u.kind == UnknownKind::kSensorGain || u.kind == UnknownKind::kSensorSkew;
+}
+
 /// Whether the simulation depends on an unknown: not on hit times and errors of sensors, which only
 /// affect the readings.
 inline bool is_simulated(const Unknown& u) {
@@ -83,7 +88,9 @@ inline constexpr char kHitTimeName[] = "hit_time";
 Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);
 
 /// Makes the relative error of a channel's gain or its skew [s], kSensorGain or kSensorSkew, around
-/// 0, without bounds. sigma > 0.
+/// 0, within kSensorReach sigma > 0: where the model is far off, it would take more than a sensor
+/// can be wrong.
+inline constexpr double kSensorReach = 3.0;
 Unknown make_sensor_unknown(UnknownKind kind, const ModelInfo& model, int run, int channel,
                             double sigma);
 

@@ -49,9 +49,9 @@ struct CampaignRun {
   std::optional<std::pair<double, double>> window;  // on the file's clock [s]
 };
 
-/// Errors of a recording's sensors beyond white noise.
+/// Errors of a recording's sensors beyond white noise, by default those of a good sensor.
 struct CampaignNoise {
-  SensorTolerance sensor;
+  SensorTolerance sensor{1e-3, 2e-5};
 };
 
 /// The parameters that the baseline may adjust, fixes, and has priors for.

@@ -54,6 +54,19 @@ bool is_own(const Unknown& u) {
                      [&](const Below& b) { return u.name == b.name; });
 }
 
+/// The values without gain errors and skews of sensors: a wrong road moves these in the
+/// calibration, and the balance is to be independent of it.
+SharedValues without_sensor_errors(const SharedValues& shared) {
+  SharedValues kept;
+  for (std::size_t i = 0; i < shared.unknowns.size(); ++i) {
+    const Unknown& u = shared.unknowns[i];
+    if (is_sensor_tolerance(u)) continue;
+    kept.unknowns.push_back(u);
+    kept.values.push_back(shared.values[i]);
+  }
+  return kept;
+}
+
 /// What the balance fits, and where it begins.
 struct Start {
   std::vector<Unknown> unknowns;
@@ -113,7 +126,7 @@ std::optional<CarBalance> calc_car_balance(const CampaignData& data, std::size_t
                                            const SharedValues& shared, const RunEvaluation& at,
                                            int threads) {
   if (!can_balance(data, run) || !at.failure.empty()) return std::nullopt;
-  const CampaignData one = pin_run(data, run, shared);
+  const CampaignData one = pin_run(data, run, without_sensor_errors(shared));
   const Start start = make_start(one, shared, at);
   std::vector<NoiseSpectrum> spectra =
       make_noise_spectra(one, {0}, start.unknowns, start.values, RoadRecord::kWithin);

@@ -1,6 +1,6 @@
 #include "diagnose/decide/acceptance.h"
 
-#include "diagnose/decide/probability.h"
+#include <algorithm>
 
 namespace strut {
 namespace {
@@ -36,8 +36,7 @@ bool is_large(const Selection& selection, const SelectRound& round, const Select
   if (best.gain / round.misfit < round.threshold) return false;
   if (!is_certain(round, options) && best.stability < options.stability) return false;
   if (selection.causes.empty()) return true;
-  const double share =
-      is_certain(round, options) ? ProbabilityOptions{}.form_error : options.second_share;
+  const double share = is_certain(round, options) ? options.certain_share : options.second_share;
   return best.gain > share * selection.rounds.front().candidates.front().gain;
 }
 
@@ -54,10 +53,13 @@ bool is_confirmed(const Selection& selection, const SelectRound& round,
   return fall > calc_wanted_fall(selection, round, judged, options);
 }
 
-bool is_residual(const Selection& selection, const SelectRound& last) {
+double calc_rejected_gain(const Selection& selection, const SelectRound& last) {
   constexpr double kLarge = 2.0;  // times the threshold
-  return !last.candidates.empty() && !last.accepted && !selection.causes.empty() &&
-         last.candidates.front().gain / last.misfit > kLarge * last.threshold;
+  if (last.accepted) return 0.0;
+  // A first cause that was not confirmed is none; a further one would have completed the form.
+  const bool is_further = !last.candidates.empty() && !selection.causes.empty();
+  const double gain = std::max(is_further ? last.candidates.front().gain : 0.0, last.refused_gain);
+  return gain / last.misfit > kLarge * last.threshold ? gain : 0.0;
 }
 
 }  // namespace strut

@@ -23,8 +23,9 @@ double sum_chi2(const std::vector<HoldOutRun>& runs);
 bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options);
 
-/// Whether the best candidate of the last round, too small beside the first cause to be one itself,
-/// is so large that its chi2 counts as residual.
-bool is_residual(const Selection& selection, const SelectRound& last);
+/// Delta chi2 of the last round that counts as residual, where it is large: of the best candidate,
+/// too small beside the first cause to be one itself, or of a fit whose values are not such as its
+/// effect has. 0 where there is none.
+double calc_rejected_gain(const Selection& selection, const SelectRound& last);
 
 }  // namespace strut

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/math/normal.h"
 #include "base/parallel/team.h"
 #include "diagnose/decide/extended_unknowns.h"
 #include "diagnose/decide/rank_trials.h"
@@ -168,14 +169,19 @@ void finish(const Round& round, Fitted& fitted) {
   fitted.candidate.simulations = first.candidate.simulations + fit.simulations;
 }
 
-/// Whether a candidate's values are within its own effect's range, and such as that effect has.
+/// Whether a candidate's values are within its own effect's range, and such as that effect has; its
+/// shapes by their 95 % intervals.
 bool is_allowed(const CampaignData& data, const Candidate& c) {
   if (c.values.empty()) return false;
   const std::vector<Unknown> unknowns = make_unknowns(data, c.hypothesis);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     if (c.values[i] < unknowns[i].low || c.values[i] > unknowns[i].high) return false;
   }
-  return is_plausible(data, c.hypothesis, c.values);
+  std::vector<double> low = c.values;
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    if (!c.hypothesis.parameters[i].switches) low[i] -= kNormal95 * c.sigma[i];
+  }
+  return is_plausible(data, c.hypothesis, low);
 }
 
 /// An effect of the model's file that is better with other values may as well not be there: then
@@ -315,7 +321,10 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   for (std::size_t i = 0; i < fitted.size(); ++i) {
     Candidate& c = fitted[i].candidate;
     result.simulations += c.simulations;
-    if (!is_allowed(data, c)) continue;
+    if (!is_allowed(data, c)) {
+      if (!c.values.empty()) result.refused_gain = std::max(result.refused_gain, c.gain);
+      continue;
+    }
     c.alias = classes[i];
     const std::size_t h = evidence.trials[ranked[i].trial].hypothesis;
     if (round_options.is_final) c.stability = calc_stability(evidence, one_sided, h);

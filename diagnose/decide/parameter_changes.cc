@@ -15,6 +15,7 @@ std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
   const WhitenedFit &before = selection.base, &after = selection.extended;
   for (std::size_t i = 0; i < before.shared_count; ++i) {
     const Unknown& u = before.fit.unknowns[i];
+    if (is_sensor_tolerance(u)) continue;
     ParameterChange c;
     c.name = u.name;
     c.unit = u.unit;

@@ -5,6 +5,11 @@
 
 namespace strut {
 
+double calc_own_probability(double share) {
+  constexpr double kEven = 0.03;
+  return share / (share + kEven);
+}
+
 std::vector<double> calc_log_odds(const SelectRound& round, const ProbabilityOptions& options) {
   std::vector<double> odds;
   odds.reserve(round.candidates.size());

@@ -94,10 +94,9 @@ class Selector {
     selection_.left = measure_leftover(data_, bench, options_.leftover);
     selection_.simulations += bench.simulation_count();
     selection_.is_left = selection_.left.significance >= options_.leftover.significant;
-    if (is_residual(selection_, last_)) {
-      selection_.is_left = true;
-      selection_.left.energy = std::max(selection_.left.energy, last_.candidates.front().gain);
-    }
+    const double rejected = calc_rejected_gain(selection_, last_);
+    if (rejected > 0.0) selection_.is_left = true;
+    selection_.left.energy = std::max(selection_.left.energy, rejected);
   }
 
   /// One round, or two; whether causes were added.
@@ -318,6 +317,8 @@ class Selector {
         extend(data_, selection_.extended, best.hypothesis, best.base_values, best.values);
     tell("fitting with " + best.hypothesis.describe());
     WhitenedFit fit = fit_extended(e);
+    // Beside the others it may end at a limit.
+    if (!is_plausible(data_, best.hypothesis, get_values(fit, best.hypothesis))) return false;
     std::vector<HoldOutRun> judged = judge(fit);
     if (confirmation == Confirmation::kAlone &&
         !is_confirmed(selection_, round, judged, options_)) {

@@ -44,8 +44,8 @@ struct SelectOptions {
   /// A cause with this many times the threshold is exempt from both, and needs only some
   /// improvement of the held-out runs: its first-order score may be lower than its fit's delta
   /// chi2, and the held-out runs may have smaller amplitudes. Beside a first cause it has to
-  /// explain more than that one's form error (probability.h) in place of second_share.
-  double certain = 3.0;
+  /// explain `certain_share` of what that one does, in place of second_share.
+  double certain = 3.0, certain_share = 0.035;
   /// Where the model's error dominates the noise: minimum fraction of the residual that a cause
   /// removes; half as much of that of the held-out runs.
   double dominated_share = 0.15;
@@ -79,6 +79,9 @@ struct SelectRound {
   /// Delta chi2 of the first candidate and another effect together, where pairs were looked for.
   double pair_gain = 0.0;
   double best_score = 0.0;  // delta chi2 to first order of the best hypothesis
+  /// Largest delta chi2 of a fit whose values are not such as its effect has: something is there,
+  /// but not what the name says.
+  double refused_gain = 0.0;
   long simulations = 0;
 };
 

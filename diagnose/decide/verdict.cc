@@ -122,11 +122,16 @@ void add_new(const std::vector<Cause>& from, std::size_t begin, std::vector<Caus
 
 std::vector<CausePosition> list_positions(const ModelInfo& model, const Selection& selection,
                                           double unknown) {
+  // What was accepted beside others may explain less since these were reconsidered.
+  const double least = SelectOptions{}.certain_share;
+  const double most = *std::max_element(selection.gains.begin(), selection.gains.end());
   std::vector<CausePosition> positions;
   for (std::size_t i = 0; i < selection.causes.size(); ++i) {
     const Hypothesis& h = selection.causes[i];
+    const double share = most > 0.0 ? std::max(selection.gains[i] / most, least) : 1.0;
+    const double own = share < 1.0 ? calc_own_probability(share) : 1.0;
     positions.push_back(make_position(model, selection.rounds[selection.round_of[i]], h,
-                                      selection.causes, unknown));
+                                      selection.causes, 1.0 - (1.0 - unknown) * own));
     CausePosition& p = positions.back();
     set_fitted(model, selection.extended, h, p.candidates[p.chosen]);
   }

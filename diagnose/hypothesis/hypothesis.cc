@@ -9,7 +9,6 @@
 #include "base/names/corners.h"
 #include "base/names/name_table.h"
 #include "diagnose/baseline/model_states.h"
-#include "diagnose/hypothesis/search_starts.h"
 #include "model/effects/names.h"
 #include "model_files/read_model.h"
 
@@ -203,7 +202,9 @@ std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h
   unknowns.reserve(h.parameters.size());
   for (std::size_t i = 0; i < h.parameters.size(); ++i) {
     Unknown u = make_parameter(data.runs, h.parameters[i].name);
-    u.high = std::min(u.high, std::max(h.parameters[i].limit, h.reference[i]));
+    const SearchRange& range = h.parameters[i].range;
+    u.low = std::max(u.low, std::min(range.low, h.reference[i]));
+    u.high = std::min(u.high, std::max(range.high, h.reference[i]));
     unknowns.push_back(std::move(u));
   }
   return unknowns;
@@ -215,7 +216,12 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h,
   const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const EffectParameter& p = *parameters[i];
-    if (!p.switches) continue;
+    if (!p.switches) {
+      // The low end of a search is where another effect begins.
+      const bool is_searched = i < h.parameters.size() && h.change == EffectChange::kAdded;
+      if (is_searched && values[i] <= (1.0 + kMargin) * h.parameters[i].range.low) return false;
+      continue;
+    }
     const double size = std::abs(values[i] - p.neutral);
     const double most = values[i] < p.neutral ? p.neutral - p.low : p.high - p.neutral;
     if (size > 0.0 && size > (1.0 - kMargin) * most) return false;
@@ -249,7 +255,7 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       Hypothesis h{effect.name, place, {}, {}, EffectChange::kAdded, {}};
       for (const EffectParameter* p : parameters) {
         h.parameters.push_back({make_effect_parameter_name(effect, place, *p, model), p->name,
-                                p->switches, choose_search_limit(effect.name, p->name, motion)});
+                                p->switches, choose_search_range(effect.name, p->name, motion)});
       }
       if (is_own_parameter(data, h.parameters.front().name)) continue;
       const bool is_free = std::any_of(free.begin(), free.end(), [&](const Unknown& u) {

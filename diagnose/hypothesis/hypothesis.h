@@ -2,11 +2,11 @@
 // may act, with start values that fit the measured motion.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "diagnose/baseline/baseline.h"
+#include "diagnose/hypothesis/search_starts.h"
 #include "model/effects/catalogue.h"
 
 namespace strut {
@@ -17,7 +17,7 @@ struct HypothesisParameter {
   std::string key;       // as in a model file: "asymmetry"
   bool switches = true;  // whether it switches the effect: off if all such parameters are neutral;
                          // false: it only shapes the effect
-  double limit = std::numeric_limits<double>::infinity();  // largest value that is looked for
+  SearchRange range{};   // in which its value is looked for
 };
 
 /// Change of the model file by a hypothesis.
@@ -74,8 +74,8 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
                                         const std::vector<Unknown>& free = {});
 
 /// Whether these values are plausible: no switching parameter is at the limit of its range, where
-/// a fit would leave it; of a car every one is within ten times its typical size. A rig has no
-/// typical size.
+/// a fit would leave it, nor a shape at the low end of its search; of a car every one is within ten
+/// times its typical size. A rig has no typical size.
 bool is_plausible(const CampaignData& data, const Hypothesis& h, const std::vector<double>& values);
 
 /// Whether a place is one corner of an axle: "front_left", ...

@@ -148,12 +148,17 @@ SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& 
   return found == rules.end() ? SearchStarts{{}} : found->second(motion);
 }
 
-double choose_search_limit(const std::string& effect, const std::string& parameter,
-                           const StrutMotion& motion) {
-  constexpr double kTimesFastest = 3.0;
-  const bool is_knee = effect == EffectName::kDamperBlowOff && parameter == "knee";
-  return is_knee && motion.fastest > 0.0 ? kTimesFastest * motion.fastest
-                                         : std::numeric_limits<double>::infinity();
+SearchRange choose_search_range(const std::string& effect, const std::string& parameter,
+                                const StrutMotion& motion) {
+  constexpr double kKneeOverFastest = 3.0, kGapOverCompression = 0.1;
+  SearchRange range;
+  if (effect == EffectName::kDamperBlowOff && parameter == "knee" && motion.fastest > 0.0) {
+    range.high = kKneeOverFastest * motion.fastest;
+  }
+  if (effect == EffectName::kBumpStop && parameter == "gap") {
+    range.low = kGapOverCompression * motion.compression;
+  }
+  return range;
 }
 
 }  // namespace strut

@@ -1,6 +1,7 @@
 // Start values for the size of an effect, from the motion of the struts in the measured runs.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -26,10 +27,16 @@ struct StrutMotion {
 using SearchStarts = std::vector<std::map<std::string, double>>;
 SearchStarts choose_search_starts(const std::string& effect, const StrutMotion& motion);
 
-/// Largest value of an effect's parameter that this motion determines; infinity without a rule. A
-/// knee far above all speeds bends a law by loss / knee^2, whatever either is: both would run away
-/// together.
-double choose_search_limit(const std::string& effect, const std::string& parameter,
-                           const StrutMotion& motion);
+/// Range in which a shape parameter of an effect is what its name says, and determined.
+struct SearchRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+/// The range for this motion, without bounds where there is no rule. A knee far above all speeds
+/// bends a law by loss / knee^2, whatever either is: both would run away together. A stop that is
+/// met at rest is a spring that stiffens in compression, as compressed gas does.
+SearchRange choose_search_range(const std::string& effect, const std::string& parameter,
+                                const StrutMotion& motion);
 
 }  // namespace strut

@@ -1,6 +1,7 @@
 #include "jobs/compare/json.h"
 
 #include "base/math/normal.h"
+#include "diagnose/baseline/sensor_findings.h"
 #include "jobs/compare/tables.h"
 
 namespace strut {
@@ -14,6 +15,7 @@ Json make_parameters(const Baseline& baseline) {
   Json json = Json::object();
   for (std::size_t i = 0; i < baseline.shared_count(); ++i) {
     const Unknown& u = baseline.calibrated.unknowns[i];
+    if (is_sensor_tolerance(u)) continue;
     const double value = baseline.calibrated.values[i];
     json[u.name] = Json{{"nominal", baseline.nominal.values[i]},
                         {"value", value},
@@ -144,6 +146,8 @@ Json make_runs(const CampaignData& data, const Comparison& comparison) {
   return runs;
 }
 
+}  // namespace
+
 Json make_noise(const CampaignData& data) {
   Json json = Json::object();
   for (std::size_t i = 0; i < data.noise.size(); ++i) {
@@ -157,7 +161,16 @@ Json make_noise(const CampaignData& data) {
   return json;
 }
 
-}  // namespace
+Json make_sensor_errors(const FitResult& fit) {
+  Json json = Json::object();
+  for (const SensorFinding& f : list_sensor_findings(fit)) {
+    json[f.name] = Json{{"value", f.value},
+                        {"ci95", Json::array({f.low, f.high})},
+                        {"unit", f.unit},
+                        {"tolerance", f.tolerance}};
+  }
+  return json;
+}
 
 Json make_compare_json(const CampaignData& data, const Comparison& comparison) {
   Json json = Json::object();
@@ -174,6 +187,7 @@ Json make_compare_json(const CampaignData& data, const Comparison& comparison) {
                        {"simulations", fit.simulations}};
   }
   json["not_identifiable"] = comparison.not_identifiable;
+  json["sensor_errors"] = make_sensor_errors(comparison.baseline.fit);
   json["noise"] = make_noise(data);
   json["notes"] = data.notes;
   json["runs"] = make_runs(data, comparison);

@@ -6,6 +6,12 @@
 
 namespace strut {
 
+/// By channel: sigma, quantum, source.
+Json make_noise(const CampaignData& data);
+
+/// By name: gain errors and skews of the sensors, with intervals and tolerances.
+Json make_sensor_errors(const FitResult& fit);
+
 Json make_compare_json(const CampaignData& data, const Comparison& comparison);
 
 }  // namespace strut

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/math/normal.h"
+#include "diagnose/baseline/sensor_findings.h"
 #include "io/format/csv.h"
 #include "jobs/compare/curves.h"
 
@@ -18,11 +19,14 @@ ReportTable make_parameter_table(const Comparison& comparison) {
   const Baseline& baseline = comparison.baseline;
   for (std::size_t i = 0; i < baseline.shared_count(); ++i) {
     const Unknown& u = baseline.calibrated.unknowns[i];
+    if (is_sensor_tolerance(u)) continue;
     table.rows.push_back(
         {u.name, u.unit, format_short(baseline.nominal.values[i]),
          format_short(baseline.calibrated.values[i]) + (baseline.fit.at_bound[i] ? " (bound)" : ""),
          "+/- " + format_short(1.96 * baseline.calc_sigma(i))});
   }
+  const std::string sensors = describe_sensor_findings(list_sensor_findings(baseline.fit));
+  if (!sensors.empty()) table.notes.push_back(sensors);
   for (const std::string& combination : comparison.not_identifiable) {
     table.notes.push_back("Not identifiable from these runs: " + combination);
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "jobs/compare/json.h"
 #include "jobs/diagnose/folder.h"
 #include "model/effects/catalogue.h"
 
@@ -145,6 +146,22 @@ Json make_parameters(const std::vector<ParameterChange>& parameters) {
   return Json{{"before", before}, {"after", after}};
 }
 
+/// With the drift and the lines of the mains that the diagnosis found.
+Json make_colored_noise(const CampaignData& data, const WhitenedFit& fit) {
+  Json noise = make_noise(data);
+  if (fit.spectra.empty()) return noise;
+  for (const SensorColor& color : fit.spectra.front().color) {
+    Json& channel = noise[data.info(color.channel).name];
+    channel["drift_corner"] = color.corner;
+    Json lines = Json::array();
+    for (const MainsLine& line : color.lines) {
+      lines.push_back(Json{{"frequency", line.frequency}, {"rms_over_sigma", line.rms}});
+    }
+    channel["mains"] = lines;
+  }
+  return noise;
+}
+
 Json make_secants(const std::vector<StrutSecant>& secants) {
   Json json = Json::object();
   for (const StrutSecant& s : secants) {
@@ -203,6 +220,8 @@ Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis) {
   json["where"] = make_where(diagnosis.where);
   json["force_map"] = make_force(diagnosis.force);
   json["parameters"] = make_parameters(diagnosis.parameters);
+  json["sensor_errors"] = make_sensor_errors(diagnosis.selection.extended.fit);
+  json["noise"] = make_colored_noise(data, diagnosis.selection.base);
   json["secants"] = make_secants(diagnosis.secants);
   json["gain"] = make_gain(diagnosis.improvement);
   json["runs"] = make_runs(data, diagnosis.runs);

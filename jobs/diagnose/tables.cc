@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text/format_number.h"
+#include "diagnose/baseline/sensor_findings.h"
 #include "jobs/compare/tables.h"
 #include "jobs/diagnose/force_map.h"
 #include "model/effects/catalogue.h"
@@ -199,6 +200,9 @@ std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis) {
     differ = differ || p.differs;
     table.rows.push_back(std::move(row));
   }
+  const std::string sensors =
+      describe_sensor_findings(list_sensor_findings(diagnosis.selection.extended.fit));
+  if (!sensors.empty()) table.notes.push_back(sensors);
   if (differ) {
     table.notes.emplace_back(
         "*: differs between the effects that are not distinguished; the interval contains all");

@@ -62,12 +62,11 @@ TEST_CASE("A candidate has to be among the best without each of half of the runs
   CHECK(is_large(s, make_round(90.1, 0.0)));
 }
 
-TEST_CASE("A second cause explains a tenth of the first, or more than its form error", "[unit]") {
+TEST_CASE("A second cause explains a tenth of the first, or 3.5 % of it with certainty", "[unit]") {
   CHECK_FALSE(is_large(make_selection_with_cause(510.0), make_round(50.0)));
   CHECK(is_large(make_selection_with_cause(490.0), make_round(50.0)));
-  // Certain: 0.4 % of the first.
-  CHECK_FALSE(is_large(make_selection_with_cause(51000.0), make_round(200.0)));
-  CHECK(is_large(make_selection_with_cause(49000.0), make_round(200.0)));
+  CHECK_FALSE(is_large(make_selection_with_cause(5750.0), make_round(200.0)));
+  CHECK(is_large(make_selection_with_cause(5700.0), make_round(200.0)));
 }
 
 TEST_CASE("Where the model's error dominates, a cause removes 15 % of it, a pair twice that",
@@ -126,12 +125,26 @@ TEST_CASE("A held-out run that cannot be simulated confirms nothing", "[unit]") 
 
 TEST_CASE("A rejected candidate of twice the threshold is residual of the causes", "[unit]") {
   const Selection s = make_selection_with_cause(1e5);
-  CHECK_FALSE(is_residual(s, make_round(59.9)));
-  CHECK(is_residual(s, make_round(60.1)));
-  CHECK_FALSE(is_residual(make_selection(), make_round(60.1)));  // no cause whose form it would be
+  CHECK(calc_rejected_gain(s, make_round(59.9)) == 0.0);
+  CHECK(calc_rejected_gain(s, make_round(60.1)) == 60.1);
+  // No cause whose form it would be.
+  CHECK(calc_rejected_gain(make_selection(), make_round(60.1)) == 0.0);
   SelectRound accepted = make_round(60.1);
   accepted.accepted = true;
-  CHECK_FALSE(is_residual(s, accepted));
+  CHECK(calc_rejected_gain(s, accepted) == 0.0);
+}
+
+TEST_CASE("A fit with values that its effect cannot have shows that something is there", "[unit]") {
+  SelectRound round = make_round(20.0);
+  round.refused_gain = 59.9;
+  CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
+  round.refused_gain = 60.1;
+  CHECK(calc_rejected_gain(make_selection(), round) == 60.1);
+  CHECK(calc_rejected_gain(make_selection_with_cause(1e5), round) == 60.1);
+  round.candidates.clear();
+  CHECK(calc_rejected_gain(make_selection(), round) == 60.1);
+  round.misfit = 1.51;
+  CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
 }
 
 }  // namespace

@@ -196,7 +196,7 @@ bool has_cause(const Selection& selection, const std::vector<std::string>& effec
   });
 }
 
-TEST_CASE("A knee is looked for up to three times the fastest motion, or that of the file",
+TEST_CASE("Shapes are looked for where they are what their name says, or as in the file",
           "[unit]") {
   const TemporaryFolder folder;
   const CampaignData data = read_series(folder);
@@ -208,6 +208,21 @@ TEST_CASE("A knee is looked for up to three times the fastest motion, or that of
   CHECK(make_unknowns(data, knee)[0].high == Approx(0.98));
   knee.reference[1] = 1.0;
   CHECK(make_unknowns(data, knee)[1].high == Approx(1.0));
+}
+
+TEST_CASE("A stop that is met at rest is no stop", "[unit]") {
+  const TemporaryFolder folder;
+  const CampaignData data = read_series(folder);
+  Hypothesis stop = find_hypothesis(list_all(data, test::fit_whitened_baseline(data)), "bump_stop");
+  REQUIRE(stop.parameters[1].key == "gap");
+  const double low = stop.parameters[1].range.low;
+  CHECK(low == Approx(0.1 * 0.02).epsilon(tolerance(0.01)));  // of the largest compression
+  CHECK(make_unknowns(data, stop)[1].low == low);
+  CHECK(is_plausible(data, stop, {100.0, 1.01 * low, 0.0}));
+  CHECK_FALSE(is_plausible(data, stop, {100.0, low, 0.0}));
+  // One of the model file that is met at rest may change.
+  stop.reference[1] = 0.0;
+  CHECK(make_unknowns(data, stop)[1].low == 0.0);
 }
 
 TEST_CASE("A size at the limit of its range is not plausible", "[unit]") {

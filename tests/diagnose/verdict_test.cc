@@ -164,7 +164,8 @@ TEST_CASE("Causes that act together are no alternatives of each other", "[unit]"
   CHECK(v.list_group().empty());
   // One candidate at each position: 1 less the smallest probability of none, 0.02.
   CHECK(v.list_causes()[0].probability == Approx(0.98).epsilon(tolerance(1e-12)));
-  CHECK(v.list_causes()[1].probability == Approx(0.98).epsilon(tolerance(1e-12)));
+  // The second explains 0.9 of what the first does.
+  CHECK(v.list_causes()[1].probability == Approx(0.98 * 0.9 / 0.93).epsilon(tolerance(1e-12)));
 }
 
 TEST_CASE("Two equal fits share the probability", "[unit]") {
@@ -247,6 +248,27 @@ TEST_CASE("A cause that leaves more than it takes is not claimed", "[unit]") {
   CHECK(v.rejected.front().probability + v.unknown_share == Approx(1.0).epsilon(tolerance(1e-9)));
   // A map that explains nine tenths of the residual completes the form of the cause.
   CHECK(make_claim(get_campaign().model(), s, 0.9).positions.size() == 1);
+}
+
+TEST_CASE("A cause that is small beside another is less probable", "[unit]") {
+  Selection s;
+  s.rounds.resize(2);
+  s.rounds[0].candidates = {make_candidate(*find_effect("damper_asymmetry"), 1000.0)};
+  s.rounds[1].candidates = {make_candidate(*find_effect("bump_stop"), 100.0)};
+  s.causes = {s.rounds[0].candidates[0].hypothesis, s.rounds[1].candidates[0].hypothesis};
+  s.round_of = {0, 1};
+  s.gains = {1000.0, 100.0};
+  const Verdict v = make_claim(get_campaign().model(), s);
+  REQUIRE(v.positions.size() == 2);
+  CHECK(v.positions[0].calc_claimed() == Approx(0.98));
+  // 0.1 / (0.1 + 0.03)
+  CHECK(v.positions[1].calc_claimed() == Approx(0.98 * 0.1 / 0.13));
+  CHECK(v.positions[1].unknown == Approx(1.0 - 0.98 * 0.1 / 0.13));
+  // As small as it may be, it is still more probable than nothing of the catalogue.
+  s.gains[1] = 1.0;
+  const Verdict least = make_claim(get_campaign().model(), s);
+  REQUIRE(least.positions.size() == 2);
+  CHECK(least.positions[1].calc_claimed() == Approx(0.98 * 0.035 / 0.065));
 }
 
 TEST_CASE("The interval of a cause's parameter is 1.96 standard errors to either side", "[unit]") {
