@@ -306,6 +306,12 @@ class Selector {
     return values;
   }
 
+  /// Whether a cause that was within its range alone is at a limit beside the others.
+  bool ends_at_limit(const WhitenedFit& fit, const Hypothesis& h) const {
+    const std::vector<double> values = get_values(fit, h);
+    return values.size() == h.parameters.size() && !is_plausible(data_, h, values);
+  }
+
   enum class Confirmation { kAlone, kLater };
 
   /// Makes the best of the last round a cause if it is large and the held-out runs confirm it.
@@ -317,8 +323,7 @@ class Selector {
         extend(data_, selection_.extended, best.hypothesis, best.base_values, best.values);
     tell("fitting with " + best.hypothesis.describe());
     WhitenedFit fit = fit_extended(e);
-    // Beside the others it may end at a limit.
-    if (!is_plausible(data_, best.hypothesis, get_values(fit, best.hypothesis))) return false;
+    if (ends_at_limit(fit, best.hypothesis)) return false;
     std::vector<HoldOutRun> judged = judge(fit);
     if (confirmation == Confirmation::kAlone &&
         !is_confirmed(selection_, round, judged, options_)) {
