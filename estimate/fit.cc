@@ -88,8 +88,7 @@ class FitProblem : public LeastSquaresProblem {
     const auto n = static_cast<Eigen::Index>(weight_count());
     const FitPoint& point = linearize(weights);
     if (point.failed()) return kInfinity;
-    const NormalEquations normal =
-        free_unknowns(point.normal, list_held(model_.unknowns(), weights, point.normal.gradient));
+    const NormalEquations normal = free_unknowns(point.normal, list_held(weights));
     Eigen::Map<Eigen::MatrixXd>(h, n, n) = normal.information;
     Eigen::Map<Eigen::VectorXd>(gradient, n) = normal.gradient;
     return point.at.residual.squaredNorm();
@@ -112,6 +111,11 @@ class FitProblem : public LeastSquaresProblem {
     return last_;
   }
 
+  /// Which weights a bound holds there; the model must not fail there.
+  std::vector<bool> list_held(const double* weights) {
+    return strut::list_held(model_.unknowns(), weights, linearize(weights).normal.gradient);
+  }
+
   const ReadingModel& model() const { return model_; }
 
  private:
@@ -122,8 +126,7 @@ class FitProblem : public LeastSquaresProblem {
 double calc_distance(FitProblem& problem, const double* weights) {
   const FitPoint& point = problem.linearize(weights);
   if (point.failed()) return kInfinity;
-  return calc_distance(free_unknowns(
-      point.normal, list_held(problem.model().unknowns(), weights, point.normal.gradient)));
+  return calc_distance(free_unknowns(point.normal, problem.list_held(weights)));
 }
 
 double calc_widening(FitProblem& problem, const double* weights) {
@@ -310,8 +313,7 @@ FitResult fit_readings(ReadingModel& model, const FitOptions& options) {
   const bool at_kink = search_minimum(problem, options, state);
   const FitPoint& end = problem.linearize(state.weights.data());
   FitResult result =
-      describe_fit(model, end.at, end.values,
-                   list_held(model.unknowns(), state.weights.data(), end.normal.gradient), at_kink);
+      describe_fit(model, end.at, end.values, problem.list_held(state.weights.data()), at_kink);
   result.iterations = state.iterations;
   return result;
 }

@@ -52,15 +52,14 @@ inline bool belongs(const Unknown& u, std::size_t run) {
   return u.run == kEveryRun || static_cast<std::size_t>(u.run) == run;
 }
 
-/// Whether an unknown is an error of a channel's sensor (estimate/sensor_error.h).
-inline bool is_sensor_error(const Unknown& u) {
-  return u.kind == UnknownKind::kBias || u.kind == UnknownKind::kSensorGain ||
-         u.kind == UnknownKind::kSensorSkew;
-}
-
 /// Whether an unknown is a small error that a sensor's data sheet allows: of its gain, or its skew.
 inline bool is_sensor_tolerance(const Unknown& u) {
   return u.kind == UnknownKind::kSensorGain || u.kind == UnknownKind::kSensorSkew;
+}
+
+/// Whether an unknown is an error of a channel's sensor (estimate/sensor_error.h).
+inline bool is_sensor_error(const Unknown& u) {
+  return u.kind == UnknownKind::kBias || is_sensor_tolerance(u);
 }
 
 /// Whether the simulation depends on an unknown: not on hit times and errors of sensors, which only
@@ -87,10 +86,12 @@ inline constexpr char kHitTimeName[] = "hit_time";
 /// Makes the bias of a channel, without bounds. sigma > 0, may be infinite.
 Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& prior);
 
-/// Makes the relative error of a channel's gain or its skew [s], kSensorGain or kSensorSkew, around
-/// 0, within kSensorReach sigma > 0: where the model is far off, it would take more than a sensor
-/// can be wrong.
+/// Bounds of gain errors and skews, in standard deviations. Where the model is far off, a fit would
+/// need more than a sensor can be wrong.
 inline constexpr double kSensorReach = 3.0;
+
+/// Makes the relative error of a channel's gain or its skew [s], kSensorGain or kSensorSkew, around
+/// 0, within kSensorReach sigma. sigma > 0.
 Unknown make_sensor_unknown(UnknownKind kind, const ModelInfo& model, int run, int channel,
                             double sigma);
 

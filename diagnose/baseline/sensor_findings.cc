@@ -20,10 +20,10 @@ std::vector<SensorFinding> list_sensor_findings(const FitResult& fit) {
   return findings;
 }
 
-std::string describe_sensor_findings(const std::vector<SensorFinding>& findings) {
+std::string describe_sensor_findings(const FitResult& fit) {
   constexpr double kLarge = 2.0;
   std::string large;
-  for (const SensorFinding& f : findings) {
+  for (const SensorFinding& f : list_sensor_findings(fit)) {
     if (std::abs(f.value) < kLarge * f.tolerance) continue;
     large += fmt::format("{}{} {}{}", large.empty() ? "" : ", ", f.name, format_rounded(f.value),
                          f.unit == "1" ? "" : " " + f.unit);

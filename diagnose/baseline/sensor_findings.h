@@ -1,4 +1,4 @@
-// What a fit finds of the small errors of sensors: gains and skews within their tolerances.
+// Small errors of sensors, as estimated by a fit: gains and skews within their tolerances.
 #pragma once
 
 #include <string>
@@ -18,6 +18,6 @@ struct SensorFinding {
 std::vector<SensorFinding> list_sensor_findings(const FitResult& fit);
 
 /// Those of at least two tolerances in one line; empty if there is none.
-std::string describe_sensor_findings(const std::vector<SensorFinding>& findings);
+std::string describe_sensor_findings(const FitResult& fit);
 
 }  // namespace strut

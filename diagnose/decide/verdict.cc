@@ -122,7 +122,7 @@ void add_new(const std::vector<Cause>& from, std::size_t begin, std::vector<Caus
 
 std::vector<CausePosition> list_positions(const ModelInfo& model, const Selection& selection,
                                           double unknown) {
-  // What was accepted beside others may explain less since these were reconsidered.
+  // A cause that was accepted beside others may explain less after these were reconsidered.
   const double least = SelectOptions{}.certain_share;
   const double most = *std::max_element(selection.gains.begin(), selection.gains.end());
   std::vector<CausePosition> positions;

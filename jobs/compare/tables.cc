@@ -25,7 +25,7 @@ ReportTable make_parameter_table(const Comparison& comparison) {
          format_short(baseline.calibrated.values[i]) + (baseline.fit.at_bound[i] ? " (bound)" : ""),
          "+/- " + format_short(1.96 * baseline.calc_sigma(i))});
   }
-  const std::string sensors = describe_sensor_findings(list_sensor_findings(baseline.fit));
+  const std::string sensors = describe_sensor_findings(baseline.fit);
   if (!sensors.empty()) table.notes.push_back(sensors);
   for (const std::string& combination : comparison.not_identifiable) {
     table.notes.push_back("Not identifiable from these runs: " + combination);

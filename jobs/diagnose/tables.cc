@@ -200,8 +200,7 @@ std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis) {
     differ = differ || p.differs;
     table.rows.push_back(std::move(row));
   }
-  const std::string sensors =
-      describe_sensor_findings(list_sensor_findings(diagnosis.selection.extended.fit));
+  const std::string sensors = describe_sensor_findings(diagnosis.selection.extended.fit);
   if (!sensors.empty()) table.notes.push_back(sensors);
   if (differ) {
     table.notes.emplace_back(

@@ -197,6 +197,12 @@ std::string make_fault(const Kit& kit, const HiddenFault& hidden) {
   return out.str();
 }
 
+std::string join_faults(const Kit& kit, const std::vector<HiddenFault>& faults) {
+  std::string text;
+  for (const HiddenFault& f : faults) text += (text.empty() ? "" : ",\n  ") + make_fault(kit, f);
+  return text;
+}
+
 }  // namespace
 
 std::string make_trial_name(std::uint64_t seed) {
@@ -215,14 +221,8 @@ std::string make_truth(const Kit& kit, const Trial& trial) {
       << ", \"grade\": " << quote(std::string(1, trial.get_grade()))
       << ", \"beyond_one\": " << format(trial.beyond_one)
       << ", \"beyond_two\": " << format(trial.beyond_two)
-      << ", \"roughness\": " << format(trial.truth.roughness) << ",\n \"faults\": [";
-  for (std::size_t i = 0; i < trial.faults.size(); ++i) {
-    out << (i > 0 ? ",\n  " : "") << make_fault(kit, trial.faults[i]);
-  }
-  out << "],\n \"misfits\": [";
-  for (std::size_t i = 0; i < trial.misfits.size(); ++i) {
-    out << (i > 0 ? ",\n  " : "") << make_fault(kit, trial.misfits[i]);
-  }
+      << ", \"roughness\": " << format(trial.truth.roughness) << ",\n \"faults\": ["
+      << join_faults(kit, trial.faults) << "],\n \"misfits\": [" << join_faults(kit, trial.misfits);
   std::string bounds;
   out << "],\n \"parameters\": {";
   bool first = true;

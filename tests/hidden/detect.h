@@ -24,7 +24,8 @@ struct Nuisance {
   enum class Kind { kFactor, kSpeed, kTime, kSensorGain, kSensorSkew };
   Kind kind = Kind::kFactor;
   std::size_t index = 0;  // of the kit's parameter, run or sensor
-  /// Of an adjustment: factor, fraction of the speed, s, gain, s; 1 sigma of a prior.
+  /// Size of one adjustment, the prior's 1 sigma where there is one: a factor, a fraction of the
+  /// speed, a time [s], a gain, a skew [s].
   double unit = 1e-3;
   bool has_prior = false;
 };

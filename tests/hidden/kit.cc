@@ -411,6 +411,13 @@ Kit make_dyno_kit() {
   return kit;
 }
 
+Kit make_exact_kit(const std::string& name) {
+  if (name == "car") return make_car_kit();
+  if (name == "quarter_car") return make_quarter_car_kit();
+  if (name == "dyno") return make_dyno_kit();
+  throw std::invalid_argument("kit '" + name + "': must be car, quarter_car or dyno");
+}
+
 }  // namespace
 
 Truth make_nominal_truth(const Kit& kit) {
@@ -458,16 +465,7 @@ void add_sensor_errors(const Truth& truth, std::vector<Signal>& signals) {
 }
 
 Kit make_kit(const std::string& name, Regime regime) {
-  Kit kit;
-  if (name == "car") {
-    kit = make_car_kit();
-  } else if (name == "quarter_car") {
-    kit = make_quarter_car_kit();
-  } else if (name == "dyno") {
-    kit = make_dyno_kit();
-  } else {
-    throw std::invalid_argument("kit '" + name + "': must be car, quarter_car or dyno");
-  }
+  Kit kit = make_exact_kit(name);
   kit.regime = regime;
   if (regime == Regime::kExact) return kit;
   for (Sensor& sensor : kit.sensors) {

@@ -1,4 +1,4 @@
-// How exact the sensors and the machine of a trial are.
+// Regimes of trials: errors of the sensors, misfits of the machine, sizes of the hidden effects.
 #pragma once
 
 #include <string>

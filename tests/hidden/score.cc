@@ -235,7 +235,7 @@ void add_claims(const TrueTrial& trial, const Verdict& v, Score& score) {
                                   std::any_of(trial.faults.begin(), trial.faults.end(),
                                               [&](const TrueFault& f) { return names(first, f); }));
   }
-  // What cannot be detected is left out, and pairs, of which more than one answer is right.
+  // Effects below the detection limit are left out, and pairs, which have several right answers.
   const bool is_seen = trial.grade != 'D' && trial.category != "two";
   if (is_seen && (trial.category != "unknown" || find_grade(trial.beyond_one) != 'D')) {
     score.surprise.push_back(-std::log(std::max(find_probability(trial, v), kLeastProbability)));

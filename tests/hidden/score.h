@@ -62,7 +62,8 @@ struct Score {
   std::vector<double> null_excess;                // the same over the Cramer-Rao bound
   std::vector<double> smooth_error, rough_error;  // relative, named; roads up to 1e-6, 16e-6
   std::vector<double> effect_error;               // relative, of effects named exactly
-  /// Of each first cause with what is not distinguished from it, and whether one of them is right.
+  /// Probability of each first cause, together with those that are not distinguished from it, and
+  /// whether one of these is right.
   std::vector<std::pair<double, bool>> confidence;
   std::vector<double> surprise;       // -ln of the probability of the truth: none, one and unknown
   std::vector<double> names;          // one, A and B: number of names, where there are any

@@ -50,6 +50,17 @@ std::vector<TrueTrial> make_trials() {
   return trials;
 }
 
+/// Compressed gas, which no catalogue has, with a ratio of 12 beyond what a known cause imitates.
+TrueTrial make_gas_trial(char grade) {
+  TrueTrial trial;
+  trial.name = "0";
+  trial.category = "unknown";
+  trial.grade = grade;
+  trial.beyond_one = 12.0;
+  trial.faults = {{"compressed gas", "", "", "", 0.1, grade, "strut", {}}};
+  return trial;
+}
+
 Claim make_claim(const TrueFault& fault, double probability) {
   Claim claim{fault.effect, fault.place, probability, {}};
   claim.parameters[fault.parameter] = {fault.magnitude, 0.9 * fault.magnitude,
@@ -471,12 +482,7 @@ TEST_CASE("Hidden data: what is not distinguished shares one claim", "[unit]") {
 }
 
 TEST_CASE("Hidden data: the surprise is that of the stated probability of the truth", "[unit]") {
-  TrueTrial trial;
-  trial.name = "0";
-  trial.category = "unknown";
-  trial.grade = 'B';
-  trial.beyond_one = 12.0;
-  trial.faults = {{"compressed gas", "", "", "", 0.1, 'B', "strut", {}}};
+  TrueTrial trial = make_gas_trial('B');
   Verdict v;
   v.verdict = "unknown";
   v.runners_up = {{"bump_stop", "", 0.25, {}}};
@@ -532,12 +538,7 @@ TEST_CASE("Hidden data: what the runs cannot tell from the truth is the truth", 
 }
 
 TEST_CASE("Hidden data: nobody is asked to flag what a known cause imitates", "[unit]") {
-  TrueTrial trial;
-  trial.name = "0";
-  trial.category = "unknown";
-  trial.grade = 'A';
-  trial.beyond_one = 12.0;
-  trial.faults = {{"compressed gas", "", "", "", 0.1, 'A', "strut", {}}};
+  TrueTrial trial = make_gas_trial('A');
   Verdict v;
   v.verdict = "named";
   v.causes = {{"bump_stop", "", 0.7, {}}};
