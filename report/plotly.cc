@@ -205,6 +205,7 @@ Json make_axis(const ChartAxis& axis) {
     json["tickmode"] = "array";
     json["tickvals"] = make_numbers(places);
     json["ticktext"] = axis.categories;
+    json["automargin"] = true;  // names are of any length
   }
   return json;
 }

@@ -44,13 +44,6 @@ ChannelComparison compare_channel(const CampaignData& data, std::size_t run, std
   return c;
 }
 
-/// Whether the fit of a run's own values, which takes the noise for white, can be held against
-/// their priors: not where a rough road moves the channels.
-bool is_mostly_white(const std::vector<NoiseFloor>& floors) {
-  return std::all_of(floors.begin(), floors.end(),
-                     [](const NoiseFloor& floor) { return floor.common_fraction < 0.5; });
-}
-
 /// Where nothing is free, the runs' own values are fitted for the measurement of the noise.
 NoiseFloors measure_floors(const CampaignData& data, const Baseline& baseline, int threads) {
   try {

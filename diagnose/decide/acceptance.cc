@@ -1,6 +1,7 @@
 #include "diagnose/decide/acceptance.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace strut {
 namespace {
@@ -51,6 +52,13 @@ bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
   const double fall = sum_chi2(selection.hold_out_after) - sum_chi2(judged);
   return fall > calc_wanted_fall(selection, round, judged, options);
+}
+
+bool is_near_minimum(const FitResult& calibration, const std::vector<double>& gains) {
+  constexpr double kSmall = 0.05;
+  const double taken = std::accumulate(gains.begin(), gains.end(), 0.0);
+  const double unit = std::max(1.0, calibration.chi2_per_degree());
+  return calibration.distance * calibration.distance * unit < kSmall * taken;
 }
 
 double calc_rejected_gain(const Selection& selection, const SelectRound& last) {

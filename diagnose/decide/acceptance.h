@@ -23,6 +23,10 @@ double sum_chi2(const std::vector<HoldOutRun>& runs);
 bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options);
 
+/// Whether a calibration that has not converged may serve as reference: whether its chi2 is off by
+/// less than a twentieth of the causes' delta chi2, the sum of `gains`.
+bool is_near_minimum(const FitResult& calibration, const std::vector<double>& gains);
+
 /// Delta chi2 of the last round that counts as residual, where it is large: of the best candidate,
 /// too small beside the first cause to be one itself, or of a fit whose values are not such as its
 /// effect has. 0 where there is none.

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "base/error/check.h"
 #include "base/text/format_number.h"
+#include "diagnose/decide/acceptance.h"
 #include "diagnose/decide/improvement.h"
 #include "diagnose/decide/next_measurement.h"
 #include "diagnose/decide/parameter_changes.h"
@@ -74,20 +74,11 @@ Where find_largest(const CampaignData& data, const std::vector<DiagnosedRun>& ru
   return where;
 }
 
-/// The place that explains the remaining residual, if one clearly does.
-std::string find_place(const Leftover& left) {
-  constexpr double kClear = 5.0;
-  for (const LeftoverPlace& place : left.places) {
-    if (place.energy < kClear * place.sigma) continue;
-    return name_strut(place.name);
-  }
-  return "";
-}
-
 Where find_where(const CampaignData& data, const Diagnosis& diagnosis) {
   const Selection& selection = diagnosis.selection;
   Where where = find_largest(data, diagnosis.runs);
-  where.place = selection.is_left ? find_place(selection.left) : "";
+  const LeftoverPlace* clear = selection.is_left ? find_clear_place(selection.left) : nullptr;
+  where.place = clear == nullptr ? "" : name_strut(clear->name);
   if (diagnosis.force) {
     where.place = name_strut(diagnosis.force->place);
     where.depends_on =
@@ -97,15 +88,6 @@ Where find_where(const CampaignData& data, const Diagnosis& diagnosis) {
   const bool remains = kind == VerdictKind::kUnknown || kind == VerdictKind::kFormIncomplete;
   if (remains && selection.left.band.to > 0.0) where.band = describe(selection.left.band);
   return where;
-}
-
-/// Whether a calibration that has not converged is close to its minimum compared with the causes'
-/// delta chi2.
-bool is_near(const FitResult& calibration, const Selection& selection) {
-  constexpr double kSmall = 0.05;
-  const double taken = std::accumulate(selection.gains.begin(), selection.gains.end(), 0.0);
-  const double unit = std::max(1.0, calibration.chi2_per_degree());
-  return calibration.distance * calibration.distance * unit < kSmall * taken;
 }
 
 void check_convergence(const WhitenedFit& fit, const std::string& name, Diagnosis& diagnosis) {
@@ -121,7 +103,7 @@ void check_results(Diagnosis& diagnosis) {
   check_convergence(selection.base, "calibrated", diagnosis);
   // The held-out runs confirm causes by comparison with the calibrated model, so that must be close
   // to its minimum. Wherever the extended model's fit ended, confirmed causes stand.
-  if (!selection.base.fit.converged && !is_near(selection.base.fit, selection)) {
+  if (!selection.base.fit.converged && !is_near_minimum(selection.base.fit, selection.gains)) {
     diagnosis.is_whole = false;
   }
   if (diagnosis.is_extended()) check_convergence(selection.extended, "extended", diagnosis);

@@ -206,6 +206,14 @@ void locate(const CampaignData& data, TestBench& bench, const std::vector<Bin>& 
 
 }  // namespace
 
+const LeftoverPlace* find_clear_place(const Leftover& left) {
+  constexpr double kClear = 5.0;
+  const auto found =
+      std::find_if(left.places.begin(), left.places.end(),
+                   [](const LeftoverPlace& place) { return place.energy >= kClear * place.sigma; });
+  return found == left.places.end() ? nullptr : &*found;
+}
+
 double calc_chi2_significance(double chi2, double allowed, double count) {
   if (count < 1.0) return 0.0;
   const double variance = 2.0 / (9.0 * count);

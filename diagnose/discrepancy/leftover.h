@@ -37,6 +37,10 @@ struct LeftoverOptions {
   double road_tolerance = 0.1;
 };
 
+/// The best location that clearly explains the residual, with five standard deviations of its
+/// energy or more; null if there is none.
+const LeftoverPlace* find_clear_place(const Leftover& left);
+
 /// Excess of chi2 of `count` degrees of freedom in standard deviations of noise, where its mean may
 /// be `allowed`: the cube root of chi2 is nearly normal (E. B. Wilson and M. M. Hilferty, Proc.
 /// Natl. Acad. Sci. 17 (1931)). 0 for less than one degree.

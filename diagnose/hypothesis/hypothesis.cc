@@ -214,14 +214,17 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h,
                   const std::vector<double>& values) {
   constexpr double kMaxTypical = 10.0, kMargin = 1e-3;
   const auto parameters = list_effect_parameters(*find_effect(h.effect), data.model());
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const EffectParameter& p = *parameters[i];
-    if (!p.switches) {
+  for (std::size_t i = 0; i < h.parameters.size(); ++i) {
+    if (!h.parameters[i].switches) {
       // The low end of a search is where another effect begins.
-      const bool is_searched = i < h.parameters.size() && h.change == EffectChange::kAdded;
+      const bool is_searched = h.change == EffectChange::kAdded;
       if (is_searched && values[i] <= (1.0 + kMargin) * h.parameters[i].range.low) return false;
       continue;
     }
+    // A removal has the switching parameters alone.
+    const EffectParameter& p = **std::find_if(
+        parameters.begin(), parameters.end(),
+        [&](const EffectParameter* other) { return other->name == h.parameters[i].key; });
     const double size = std::abs(values[i] - p.neutral);
     const double most = values[i] < p.neutral ? p.neutral - p.low : p.high - p.neutral;
     if (size > 0.0 && size > (1.0 - kMargin) * most) return false;

@@ -90,6 +90,11 @@ double calc_floor_tolerance(const NoiseFloor& floor, std::size_t count) {
   return level * std::sqrt(1.0 + scatter) - 1.0;
 }
 
+bool is_mostly_white(const std::vector<NoiseFloor>& floors) {
+  return std::all_of(floors.begin(), floors.end(),
+                     [](const NoiseFloor& floor) { return floor.common_fraction < 0.5; });
+}
+
 NoiseFloor calc_noise_floor(const CampaignData& data, std::size_t run, std::size_t channel,
                             const NoiseSpectrum& spectrum) {
   const int number = data.channels(run)[channel].channel;

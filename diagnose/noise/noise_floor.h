@@ -29,6 +29,10 @@ struct NoiseFloor {
 inline constexpr double kAdequateSigmas = 4.0;
 double calc_floor_tolerance(const NoiseFloor& floor, std::size_t count);
 
+/// Whether more than half of the noise of every channel is the sensor's own: only then a fit that
+/// takes all noise for white can be held against priors. Not where a rough road moves the channels.
+bool is_mostly_white(const std::vector<NoiseFloor>& floors);
+
 /// The floor of a channel of a run.
 NoiseFloor calc_noise_floor(const CampaignData& data, std::size_t run, std::size_t channel,
                             const NoiseSpectrum& spectrum);

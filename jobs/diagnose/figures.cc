@@ -214,13 +214,19 @@ std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis) {
   add(diagnosis.verdict.list_group(), "not distinguished", 6);
   add(diagnosis.verdict.list_runners_up(), "runner-up", 5);
   if (panel.series.empty()) return {};
-  panel.x.categories.emplace_back("none of the catalogue");
-  panel.series.push_back({"unknown",
-                          SeriesKind::kBars,
-                          4,
-                          {static_cast<double>(panel.x.categories.size())},
-                          {diagnosis.verdict.unknown_share}});
-  panel.series.back().width = kBarWidth;
+  ChartSeries unknown{"unknown", SeriesKind::kBars, 4};
+  unknown.width = kBarWidth;
+  const auto add_unknown = [&](const std::string& label, double probability) {
+    panel.x.categories.push_back(label);
+    unknown.x.push_back(static_cast<double>(panel.x.categories.size()));
+    unknown.y.push_back(probability);
+  };
+  const std::vector<CausePosition>& positions = diagnosis.verdict.positions;
+  if (positions.size() < 2) add_unknown("none of the catalogue", diagnosis.verdict.unknown_share);
+  for (std::size_t i = 0; positions.size() > 1 && i < positions.size(); ++i) {
+    add_unknown(fmt::format("none, for cause {}", i + 1), positions[i].unknown);
+  }
+  panel.series.push_back(std::move(unknown));
   panel.y.range = {0.0, 1.0};
   Chart chart{"probabilities", {std::move(panel)}};
   chart.caption =

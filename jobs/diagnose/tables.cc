@@ -47,16 +47,23 @@ std::vector<std::string> make_cause_row(const Cause& cause, const std::string& r
           format_significant(cause.delta_chi2)};
 }
 
+std::vector<std::string> make_unknown_row(double probability, const std::string& role) {
+  return {"none of the catalogue", "", role, "", fmt::format("{:.3f}", probability), ""};
+}
+
+/// Where several causes act, the rows of each end with the probability that none of the catalogue
+/// stands there.
 void add_positions(const std::vector<CausePosition>& positions, ReportTable& table) {
+  const bool are_several = positions.size() > 1;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const CausePosition& p = positions[i];
-    const std::string number = positions.size() > 1 ? fmt::format(" {}", i + 1) : "";
+    const std::string number = are_several ? fmt::format(" {}", i + 1) : "";
+    const std::string other = are_several ? "or, for" + number : "not distinguished";
     table.rows.push_back(make_cause_row(p.get_cause(), "cause" + number));
     for (std::size_t k = 0; k < p.close; ++k) {
-      if (k == p.chosen) continue;
-      table.rows.push_back(make_cause_row(
-          p.candidates[k], number.empty() ? "not distinguished" : "or, for" + number));
+      if (k != p.chosen) table.rows.push_back(make_cause_row(p.candidates[k], other));
     }
+    if (are_several) table.rows.push_back(make_unknown_row(p.unknown, other));
   }
 }
 
@@ -145,8 +152,9 @@ std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis, std::size
         fmt::format("{} more runners-up are in verdict.json", runners_up.size() - shown));
   }
   if (table.rows.empty() && verdict.unknown_share == 0.0) return {};
-  table.rows.push_back(
-      {"none of the catalogue", "", "", "", fmt::format("{:.3f}", verdict.unknown_share), ""});
+  if (verdict.positions.size() < 2) {
+    table.rows.push_back(make_unknown_row(verdict.unknown_share, ""));
+  }
   return {std::move(table)};
 }
 

@@ -147,5 +147,19 @@ TEST_CASE("A fit with values that its effect cannot have shows that something is
   CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
 }
 
+TEST_CASE("A calibration may miss its minimum by a twentieth of what the causes take", "[unit]") {
+  FitResult calibration;
+  calibration.chi2 = 4000.0;
+  calibration.degrees = 1000;
+  calibration.distance = 3.0;  // 9 of chi2 in units of its mean, 4
+  CHECK_FALSE(is_near_minimum(calibration, {500.0, 219.0}));
+  CHECK(is_near_minimum(calibration, {500.0, 221.0}));
+  CHECK_FALSE(is_near_minimum(calibration, {}));
+  // A chi2 below its expectation makes no distance smaller.
+  calibration.chi2 = 500.0;
+  CHECK_FALSE(is_near_minimum(calibration, {179.0}));
+  CHECK(is_near_minimum(calibration, {181.0}));
+}
+
 }  // namespace
 }  // namespace strut

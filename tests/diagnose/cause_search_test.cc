@@ -223,15 +223,21 @@ TEST_CASE("A stop that is met at rest is no stop", "[unit]") {
   // One of the model file that is met at rest may change.
   stop.reference[1] = 0.0;
   CHECK(make_unknowns(data, stop)[1].low == 0.0);
+  stop.change = EffectChange::kChanged;
+  CHECK(is_plausible(data, stop, {100.0, low, 0.0}));
+  // Its removal has fewer values.
+  const Hypothesis removal = make_removal(data, stop);
+  REQUIRE(removal.parameters.size() < stop.parameters.size());
+  CHECK(is_plausible(data, removal, removal.beginnings.front()));
 }
 
 TEST_CASE("A size at the limit of its range is not plausible", "[unit]") {
   const TemporaryFolder folder;
   const CampaignData data = read_series(folder);
+  const std::vector<Hypothesis> all = list_all(data, test::fit_whitened_baseline(data));
   const auto is_possible = [&](const char* effect, const std::vector<double>& values) {
-    Hypothesis h;
-    h.effect = effect;
-    h.reference.assign(values.size(), 0.0);
+    Hypothesis h = find_hypothesis(all, effect);
+    for (HypothesisParameter& p : h.parameters) p.range = {};
     return is_plausible(data, h, values);
   };
   CHECK(is_possible("damper_blow_off", {0.5, 0.03}));  // a shape may be at its limit

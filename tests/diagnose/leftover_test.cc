@@ -68,5 +68,18 @@ TEST_CASE("A tone below six sigmas of noise has no energy", "[unit]") {
   CHECK(left.places.empty());
 }
 
+TEST_CASE("A location is stated where it explains the residual by five standard deviations",
+          "[unit]") {
+  Leftover left;
+  CHECK(find_clear_place(left) == nullptr);
+  left.places = {{"front", "strut", 49.0, 10.0}, {"rear", "strut", 20.0, 4.0}};
+  REQUIRE(find_clear_place(left) != nullptr);
+  CHECK(find_clear_place(left)->name == "rear");
+  left.places[0].energy = 51.0;
+  CHECK(find_clear_place(left)->name == "front");
+  left.places = {{"rear", "strut", 19.9, 4.0}};
+  CHECK(find_clear_place(left) == nullptr);
+}
+
 }  // namespace
 }  // namespace strut

@@ -95,5 +95,15 @@ TEST_CASE("Sensor errors of a rig contain those of its recorded inputs", "[unit]
   CHECK(unknowns[2].prior.sigma == Approx(std::hypot(2e-5, 2e-5)).epsilon(tolerance(1e-12)));
 }
 
+TEST_CASE("A run whose channels are mostly sensor noise can be held against priors", "[unit]") {
+  const auto make = [](double fraction) {
+    NoiseFloor floor;
+    floor.common_fraction = fraction;
+    return floor;
+  };
+  CHECK(is_mostly_white({make(0.0), make(0.49)}));
+  CHECK_FALSE(is_mostly_white({make(0.0), make(0.51)}));
+}
+
 }  // namespace
 }  // namespace strut

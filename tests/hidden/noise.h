@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tests/hidden/kit.h"
+#include "tests/hidden/simulate_kit.h"
 
 namespace strut::hidden {
 

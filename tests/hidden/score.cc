@@ -107,8 +107,7 @@ double sum_probabilities(const std::vector<Claim>& claims) {
 double find_probability(const TrueTrial& trial, const Verdict& v) {
   if (v.verdict == "adequate") return trial.category == "none" ? 1.0 : 0.0;
   if (trial.category == "one") return find_probability(v, trial.faults.front());
-  // An effect that no catalogue has is none of the names.
-  return trial.category == "unknown" ? 1.0 - sum_probabilities(list_claims(v)) : 0.0;
+  return trial.category == "unknown" ? v.unknown_share : 0.0;
 }
 
 bool is_strut_rate(const std::string& name) {

@@ -75,6 +75,7 @@ Verdict make_perfect(const TrueTrial& trial) {
   if (trial.category == "none") return v;
   v.verdict = "unknown";
   v.place = "body";
+  v.unknown_share = 1.0;
   v.map_share = 0.8;
   if (trial.category == "unknown") return v;
   // A hardly detectable fault is not required.
@@ -485,7 +486,7 @@ TEST_CASE("Hidden data: the surprise is that of the stated probability of the tr
   TrueTrial trial = make_gas_trial('B');
   Verdict v;
   v.verdict = "unknown";
-  v.runners_up = {{"bump_stop", "", 0.25, {}}};
+  v.unknown_share = 0.75;
   const auto calc = [&] { return calc_score({trial}, {{"0", v}}).surprise; };
   CHECK(calc().at(0) == Approx(-std::log(0.75)));
   v.verdict = "adequate";
@@ -804,6 +805,7 @@ TEST_CASE("Hidden data: a verdict is read as the interface writes it", "[io]") {
   CHECK(v.runners_up.at(0).probability == 0.02);
   CHECK(v.place == "rear");
   CHECK(v.map_share == 0.75);
+  CHECK(v.unknown_share == 0.01);
   CHECK(v.after.at("front_stiffness").low == 0.5);
   CHECK(v.explained == 0.95);
   CHECK(v.first.at(0).effect == "bump_stop");

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/hidden/kit.h"
+#include "tests/hidden/simulate_kit.h"
 #include "tests/jobs/run_program.h"
 #include "tests/support/tolerance.h"
 

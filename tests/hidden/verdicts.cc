@@ -125,6 +125,7 @@ Verdict read_verdict(const fs::path& path) {
   if (const auto positions = tree.get_child_optional("positions")) {
     if (!positions->empty()) v.first = get_claims(positions->front().second, "not_distinguished");
   }
+  v.unknown_share = tree.get<double>("unknown_share", 0.0);
   v.place = tree.get<std::string>("where.place", "");
   v.after = get_estimates(tree, "parameters.after");
   v.explained = get_number(tree, "gain.explained");

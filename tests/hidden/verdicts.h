@@ -28,7 +28,8 @@ struct Verdict {
   std::vector<Claim> causes, group, runners_up;
   /// The first cause with what is not distinguished from it; empty: as far as the group tells.
   std::vector<Claim> first;
-  std::string place;  // where.place
+  double unknown_share = 0.0;  // stated probability that the cause is none of the catalogue
+  std::string place;           // where.place
   std::map<std::string, Estimate> after;
   std::optional<double> explained;  // gain.explained; null: no excess before
   std::optional<double> map_share;  // force_map.hold_out_share; null: no force map

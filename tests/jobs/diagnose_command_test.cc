@@ -9,6 +9,7 @@
 
 #include "io/file/atomic_file.h"
 #include "io/format/csv.h"
+#include "jobs/diagnose/figures.h"
 #include "jobs/diagnose/json.h"
 #include "jobs/diagnose/report.h"
 #include "jobs/diagnose/tables.h"
@@ -167,6 +168,31 @@ TEST_CASE("The terminal shows verdict, probabilities, improvement and the next m
                        Contains("950 (940 to 960)"));
   CHECK_THAT(text, Contains("(22.2 %)") && Contains("(10.6 %)") && Contains("66.7 %") &&
                        Contains("repeat at twice the amplitude"));
+}
+
+TEST_CASE("Where several causes act, each has its own probability of being none of the catalogue",
+          "[io]") {
+  const test::TemporaryFolder folder;
+  const CampaignData data = make_data(folder);
+  Diagnosis diagnosis = make_named(data);
+  CausePosition second;
+  second.candidates = {{"top_mount", "", 0.73, 40.0, {}}};
+  second.unknown = 0.27;
+  const auto list_unknown = [&] {
+    std::vector<std::vector<std::string>> rows;
+    const auto tables = make_cause_tables(diagnosis);
+    for (const auto& row : tables.front().rows) {
+      if (row[0] == "none of the catalogue") rows.push_back({row[2], row[4]});
+    }
+    return rows;
+  };
+  using Rows = std::vector<std::vector<std::string>>;
+  CHECK(list_unknown() == Rows{{"", "0.010"}});
+  diagnosis.verdict.positions.push_back(second);
+  CHECK(list_unknown() == Rows{{"or, for 1", "0.010"}, {"or, for 2", "0.270"}});
+  const ChartPanel panel = make_cause_charts(diagnosis).front().panels.front();
+  CHECK(panel.series.back().y == std::vector<double>{0.01, 0.27});
+  CHECK(panel.x.categories.back() == "none, for cause 2");
 }
 
 TEST_CASE("The report is one file with the verdict first, figures inside", "[io]") {
