@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 
 namespace strut {
 

@@ -13,6 +13,7 @@
 #include "jobs/evaluate.h"
 #include "jobs/export.h"
 #include "jobs/identify.h"
+#include "jobs/inspect.h"
 #include "jobs/list.h"
 #include "jobs/man_page.h"
 #include "jobs/merge.h"
@@ -60,6 +61,8 @@ const CommandTable& list_commands() {
        &describe_evaluate, &run_evaluate},
       {"identify", "identify parameters, with intervals, from measured data", &describe_identify,
        &run_identify},
+      {"inspect", "show what a measured file holds, and write a campaign to begin with",
+       &describe_inspect, &run_inspect},
       {"compare", "compare measured runs with simulations: residuals and their significance",
        &describe_compare, &run_compare},
       {"diagnose", "name the cause of a misfit, extend the model, measure the improvement",

@@ -6,7 +6,7 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/toml_document.h"
 #include "model/error/model_error.h"
 #include "model_files/choices.h"

@@ -7,7 +7,7 @@
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/range.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/toml_document.h"
 #include "model/error/model_error.h"
 #include "model/rig/rig_system.h"

@@ -11,6 +11,13 @@ add_library(strut_random123 INTERFACE)
 target_include_directories(strut_random123 SYSTEM INTERFACE ${STRUT_RANDOM123_INCLUDE_DIR})
 add_library(strut::random123 ALIAS strut_random123)
 
+# Debian's matio has no CMake package.
+find_path(STRUT_MATIO_INCLUDE_DIR matio.h REQUIRED)
+find_library(STRUT_MATIO_LIBRARY matio REQUIRED)
+add_library(strut::matio INTERFACE IMPORTED GLOBAL)
+target_include_directories(strut::matio SYSTEM INTERFACE ${STRUT_MATIO_INCLUDE_DIR})
+target_link_libraries(strut::matio INTERFACE ${STRUT_MATIO_LIBRARY})
+
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 # Otherwise Eigen's products use their own threads wherever OpenMP is on: more than --threads allows, and
 # with blocks, and therefore bits, that depend on the number of threads.

@@ -10,8 +10,8 @@
 #include "base/names/name_table.h"
 #include "base/text/nearest_name.h"
 #include "base/text/range.h"
-#include "diagnose/campaign/units.h"
 #include "io/format/toml_document.h"
+#include "io/table/units.h"
 #include "model_files/read_model.h"
 
 namespace strut {
@@ -104,9 +104,11 @@ CampaignColumn read_column(const Table& columns, const std::string& channel,
   c.has_sign = table.has("sign");
   if (c.sign != 1.0 && c.sign != -1.0) throw table.error("sign", "must be 1 or -1");
   c.scale = table.number_or("scale", 1.0);
+  c.has_scale = table.has("scale");
   if (c.scale == 0.0) throw table.error("scale", "must not be 0");
   c.offset = table.number_or("offset", 0.0);
   if (channel == kTime) return c;
+  c.clock = table.text_or("clock", "");
   c.role = read_role(table, model, channel);
   c.optional = table.boolean_or("optional", false);
   if (c.role == ColumnRole::kInput) read_input(table, model, c);

@@ -21,7 +21,7 @@ enum class ColumnRole { kInput, kOutput };
 /// value = sign * (scale * SI(column)) + offset, in the channel's SI unit.
 struct CampaignColumn {
   std::string channel, column;
-  std::string unit;  // of the column; "": SI
+  std::string unit;  // of the column; "": what the file says, or SI
   std::string si;    // SI unit of the channel
   double sign = 1.0, scale = 1.0, offset = 0.0;
   std::optional<double> noise;  // standard deviation in the channel's SI unit; null: estimated
@@ -31,7 +31,9 @@ struct CampaignColumn {
   Prior gain{1.0, 0.0};
   /// Half width of the local cubics that smooth an input [s]; null: chosen by its noise.
   std::optional<double> smooth;
-  bool has_sign = false;  // `sign` is given by the campaign
+  bool has_sign = false;   // `sign` is given by the campaign
+  bool has_scale = false;  // `scale` is given by the campaign: without a unit, it includes that
+  std::string clock;       // column of its own times; "": the campaign's `time`
 };
 
 enum class RunUse { kFit, kHoldOut };

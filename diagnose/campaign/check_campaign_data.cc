@@ -10,8 +10,8 @@
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
 #include "diagnose/campaign/campaign_data.h"
-#include "diagnose/campaign/units.h"
 #include "estimate/simulate_run.h"
+#include "io/table/units.h"
 
 namespace strut {
 namespace {

@@ -8,8 +8,9 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
-#include "diagnose/campaign/units.h"
+#include "diagnose/campaign/move_to_clock.h"
 #include "io/store/measurement.h"
+#include "io/table/units.h"
 
 namespace strut {
 namespace {
@@ -17,36 +18,72 @@ namespace {
 /// Minimum number of samples of a run.
 constexpr std::size_t kMinSamples = 20;
 
-/// The value of a column's cell in the channel's SI unit.
-double convert(const CampaignColumn& c, double value) {
-  const UnitScale unit = find_unit_scale(c.unit, c.si);
-  return c.sign * (c.scale * (unit.factor * value + unit.offset)) + c.offset;
+/// Converts the cells of a column to the channel's SI unit.
+struct Conversion {
+  UnitScale unit;
+  double factor = 1.0, offset = 0.0;
+
+  double convert(double value) const {
+    return factor * (unit.factor * value + unit.offset) + offset;
+  }
+};
+
+/// The unit of a column is the campaign's or, if that gives neither unit nor scale, the file's.
+Conversion find_conversion(const Measurement& file, const CampaignColumn& c,
+                           std::vector<std::string>& notes) {
+  const std::string& stated = file.find(c.column)->unit;
+  const bool is_taken = c.unit.empty() && !c.has_scale;
+  Conversion conversion{{}, c.sign * c.scale, c.offset};
+  try {
+    conversion.unit = find_unit_scale(is_taken ? stated : c.unit, c.si);
+  } catch (const InputError& e) {
+    throw InputError(
+        fmt::format("{}: column '{}': {}; if the file is wrong, give unit in the "
+                    "campaign, [columns] {}",
+                    file.path.string(), c.column, e.what(), c.channel));
+  }
+  if (!c.unit.empty() && !stated.empty() && normalize_unit(c.unit) != normalize_unit(stated)) {
+    notes.push_back(
+        fmt::format("{}: {}: the file says that column '{}' is in {}; read in {}, as "
+                    "the campaign says",
+                    file.path.string(), c.channel, c.column, stated, c.unit));
+  }
+  return conversion;
 }
 
-Measurement read_columns(const Campaign& campaign, const CampaignRun& run) {
+/// Columns of one clock, with that first.
+Measurement read_columns(const Campaign& campaign, const CampaignRun& run,
+                         const std::string& clock) {
   MeasurementRequest request;
   request.part = MeasuredPart::kHistory;
   request.missing = MissingCells::kNan;
-  request.required.push_back(campaign.time.column);
+  request.required.push_back(clock);
   for (const CampaignColumn& c : campaign.columns) {
+    if ((c.clock.empty() ? campaign.time.column : c.clock) != clock) continue;
     (c.optional ? request.optional : request.required).push_back(c.column);
   }
   return read_measurement(run.file, request);
 }
 
-/// Throws unless the clock goes forward at every row.
-std::vector<double> read_clock(const Campaign& campaign, const Measurement& file) {
-  std::vector<double> times = file.values(campaign.time.column);
+/// Throws unless the clock goes forward at every row. A slower clock beside others has no times at
+/// the end.
+std::vector<double> read_clock(const Campaign& campaign, const Measurement& file,
+                               const std::string& clock, std::vector<std::string>& notes) {
+  std::vector<double> times = file.values(clock);
+  CampaignColumn column = campaign.time;
+  column.column = clock;
+  const Conversion conversion = find_conversion(file, column, notes);
+  while (!times.empty() && std::isnan(times.back())) times.pop_back();
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (std::isnan(times[i])) {
-      throw InputError(fmt::format("{}: {} is missing", file.locate(i), campaign.time.column));
+      throw InputError(fmt::format("{}: {} is missing", file.locate(i), clock));
     }
-    times[i] = convert(campaign.time, times[i]);
+    times[i] = conversion.convert(times[i]);
     if (i == 0 || times[i] > times[i - 1]) continue;
     throw InputError(
         fmt::format("{}: the clock {}: {} = {} s after {} s; it must ascend from row to row",
                     file.locate(i), times[i] < times[i - 1] ? "runs backwards" : "stands still",
-                    campaign.time.column, format_number(times[i]), format_number(times[i - 1])));
+                    clock, format_number(times[i]), format_number(times[i - 1])));
   }
   return times;
 }
@@ -80,15 +117,50 @@ void check_varies(const std::string& name, const CampaignColumn& c, const Measur
       name, c.channel, c.column, format_number(first), c.si, count));
 }
 
-MeasuredColumn take_column(const CampaignColumn& c, std::size_t at, const std::vector<double>& raw,
+MeasuredColumn take_column(std::size_t at, const std::vector<double>& values,
                            const std::pair<std::size_t, std::size_t>& rows) {
   MeasuredColumn column{at, {}, 0};
-  column.values.reserve(rows.second - rows.first);
-  for (std::size_t i = rows.first; i < rows.second; ++i) {
-    column.values.push_back(convert(c, raw[i]));  // NaN stays NaN
-    column.missing += std::isnan(raw[i]) ? 1 : 0;
-  }
+  column.values.assign(values.begin() + static_cast<std::ptrdiff_t>(rows.first),
+                       values.begin() + static_cast<std::ptrdiff_t>(rows.second));
+  column.missing = static_cast<std::size_t>(std::count_if(
+      column.values.begin(), column.values.end(), [](double v) { return std::isnan(v); }));
   return column;
+}
+
+/// A column with its values at the campaign's times.
+struct TimedColumn {
+  std::size_t at = 0;  // index in Campaign::columns
+  std::vector<double> values;
+};
+
+/// Adds the columns of `clock` with their values at `times`, those of the campaign's clock: all of
+/// them where it is that clock.
+void add_columns(const Campaign& campaign, const Measurement& file, const std::string& clock,
+                 const std::vector<double>& own_times, const std::vector<double>& times,
+                 std::vector<TimedColumn>& columns, std::vector<std::string>& notes) {
+  for (std::size_t i = 0; i < campaign.columns.size(); ++i) {
+    const CampaignColumn& c = campaign.columns[i];
+    const CsvColumn* raw = file.find(c.column);
+    if ((c.clock.empty() ? campaign.time.column : c.clock) != clock || raw == nullptr) continue;
+    const Conversion conversion = find_conversion(file, c, notes);
+    std::vector<double> values(raw->values.begin(),
+                               raw->values.begin() + static_cast<std::ptrdiff_t>(own_times.size()));
+    for (double& value : values) value = conversion.convert(value);  // NaN stays NaN
+    const bool is_input = c.role == ColumnRole::kInput;
+    columns.push_back({i, c.clock.empty() ? std::move(values)
+                                          : move_to_clock(own_times, values, times, is_input)});
+  }
+}
+
+std::vector<std::string> list_clocks(const Campaign& campaign) {
+  std::vector<std::string> clocks = {campaign.time.column};
+  for (const CampaignColumn& c : campaign.columns) {
+    if (c.clock.empty() || std::find(clocks.begin(), clocks.end(), c.clock) != clocks.end()) {
+      continue;
+    }
+    clocks.push_back(c.clock);
+  }
+  return clocks;
 }
 
 /// The largest of 1, 0.1, 0.01, ... of which all numbers are multiples; 0 if it is below 1e-7.
@@ -147,28 +219,40 @@ bool even_clock(std::vector<double>& times) {
 }
 
 MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& run) {
-  const Measurement file = read_columns(campaign, run);
   MeasuredTable table;
   table.name = run.file.string();
-  const std::vector<double> times = read_clock(campaign, file);
+  std::vector<double> times;
+  std::vector<TimedColumn> columns;
+  for (const std::string& clock : list_clocks(campaign)) {
+    const Measurement file = read_columns(campaign, run, clock);
+    std::vector<double> own = read_clock(campaign, file, clock, table.notes);
+    if (clock == campaign.time.column) {
+      table.notes.insert(table.notes.end(), file.notes.begin(), file.notes.end());
+      times = own;
+    }
+    add_columns(campaign, file, clock, own, times, columns, table.notes);
+  }
   const auto rows = find_window(run, times);
   if (rows.second < rows.first + kMinSamples) {
-    throw InputError(fmt::format("{}: {} samples{} from {} to {} s; must be at least {}",
-                                 table.name, rows.second - rows.first,
-                                 run.window ? " in the window" : "", format_rounded(times.front()),
-                                 format_rounded(times.back()), kMinSamples));
+    throw InputError(
+        fmt::format("{}: {} samples{}{}; must be at least {}", table.name, rows.second - rows.first,
+                    run.window ? " in the window" : "",
+                    times.empty() ? ""
+                                  : fmt::format(" from {} to {} s", format_rounded(times.front()),
+                                                format_rounded(times.back())),
+                    kMinSamples));
   }
   table.times.assign(times.begin() + static_cast<std::ptrdiff_t>(rows.first),
                      times.begin() + static_cast<std::ptrdiff_t>(rows.second));
   even_clock(table.times);
-  for (std::size_t i = 0; i < campaign.columns.size(); ++i) {
-    const CampaignColumn& c = campaign.columns[i];
-    const CsvColumn* raw = file.find(c.column);
-    if (raw == nullptr) continue;
-    table.columns.push_back(take_column(c, i, raw->values, rows));
+  std::sort(columns.begin(), columns.end(),
+            [](const TimedColumn& a, const TimedColumn& b) { return a.at < b.at; });
+  for (const TimedColumn& timed : columns) {
+    const CampaignColumn& c = campaign.columns[timed.at];
+    table.columns.push_back(take_column(timed.at, timed.values, rows));
     const MeasuredColumn& column = table.columns.back();
     if (c.role == ColumnRole::kOutput) check_varies(table.name, c, column);
-    if (column.missing == 0) continue;
+    if (column.missing == 0 || !c.clock.empty()) continue;
     table.notes.push_back(fmt::format("{}: {}: {} of {} samples are missing", table.name, c.channel,
                                       column.missing, column.values.size()));
   }

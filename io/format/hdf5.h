@@ -154,6 +154,9 @@ class Hdf5Writer {
   Hdf5Sink sink_;
 };
 
+/// What a name in a file stands for.
+enum class Hdf5Kind { kGroup, kNumbers, kOther };
+
 /// Reads a file. Throws InputError for a missing file, one that is not HDF5, a missing or damaged
 /// dataset, and a dataset whose values lie in other files, since no seal covers those.
 class Hdf5Reader {
@@ -168,6 +171,8 @@ class Hdf5Reader {
   Hdf5Reader(const std::filesystem::path& path, std::span<const std::byte> image);
 
   bool has(const std::string& name) const;
+  /// kNumbers: a dataset of one or two dimensions of integers or floating-point numbers.
+  Hdf5Kind find_kind(const std::string& name) const;
   Hdf5Dataset read(const std::string& name) const;
   /// Reads rows [first, first + count). Blocks of whole chunks decompress each chunk once.
   Hdf5Dataset read_rows(const std::string& name, std::size_t first, std::size_t count) const;

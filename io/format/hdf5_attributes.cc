@@ -77,6 +77,15 @@ std::size_t get_text_length(const fs::path& path, const std::string& name, hid_t
   return H5Tget_size(type);
 }
 
+bool has_variable_text(hid_t object, const std::string& key) {
+  if (H5Aexists(object, key.c_str()) <= 0) return false;
+  const Hdf5Handle attribute(H5Aopen(object, key.c_str(), H5P_DEFAULT), H5Aclose);
+  if (attribute.id() < 0) return false;
+  const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
+  return type.id() >= 0 && H5Tget_class(type.id()) == H5T_STRING &&
+         H5Tis_variable_str(type.id()) > 0;
+}
+
 std::vector<std::string> read_texts_of(const fs::path& path, hid_t object,
                                        const std::string& object_name, const std::string& key) {
   const std::string name = name_attribute(object_name, key);

@@ -78,6 +78,8 @@ void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& da
 /// Writes attribute `key` of an object that messages call `object_name`; `scalar`: a single text.
 void write_texts(const std::filesystem::path& path, hid_t object, const std::string& object_name,
                  const std::string& key, const std::vector<std::string>& values, bool scalar);
+/// Whether an object has an attribute that holds texts of variable length.
+bool has_variable_text(hid_t object, const std::string& key);
 /// Reads a text attribute; empty if there is none. Throws InputError.
 std::vector<std::string> read_texts_of(const std::filesystem::path& path, hid_t object,
                                        const std::string& object_name, const std::string& key);

@@ -12,6 +12,8 @@ using hdf5::check;
 using hdf5::checked;
 using hdf5::kDamaged;
 
+/// Stands for a text of variable length, which the library cannot read safely (get_text_length).
+constexpr char kVariableText[] = "(a text of variable length)";
 constexpr char kDataMissing[] = "damaged: data missing";
 
 std::string first_or_empty(const std::vector<std::string>& texts) {
@@ -19,7 +21,11 @@ std::string first_or_empty(const std::vector<std::string>& texts) {
 }
 
 Hdf5Label get_label(const fs::path& path, const std::string& name, hid_t dataset) {
-  const auto read = [&](const char* key) { return hdf5::read_texts_of(path, dataset, name, key); };
+  const auto read = [&](const char* key) {
+    // Other programs label their datasets, too.
+    if (hdf5::has_variable_text(dataset, key)) return std::vector<std::string>{kVariableText};
+    return hdf5::read_texts_of(path, dataset, name, key);
+  };
   return {first_or_empty(read("unit")), first_or_empty(read("description")), read("names"),
           read("units"), read("descriptions")};
 }
@@ -149,6 +155,24 @@ bool Hdf5Reader::has(const std::string& name) const {
     }
     if (slash == std::string::npos) return true;
   }
+}
+
+Hdf5Kind Hdf5Reader::find_kind(const std::string& name) const {
+  if (!has(name)) return Hdf5Kind::kOther;  // a link to nowhere
+  const Hdf5Handle object =
+      checked<InputError>(H5Oopen(file_.id(), name.c_str(), hdf5::get_in_file_access()), H5Oclose,
+                          path_, name, kDamaged);
+  const H5I_type_t kind = H5Iget_type(object.id());
+  if (kind == H5I_GROUP) return Hdf5Kind::kGroup;
+  if (kind != H5I_DATASET) return Hdf5Kind::kOther;
+  const Hdf5Handle type =
+      checked<InputError>(H5Dget_type(object.id()), H5Tclose, path_, name, kDamaged);
+  const Hdf5Handle space =
+      checked<InputError>(H5Dget_space(object.id()), H5Sclose, path_, name, kDamaged);
+  const H5T_class_t element = H5Tget_class(type.id());
+  const int rank = H5Sget_simple_extent_ndims(space.id());
+  const bool is_number = element == H5T_INTEGER || element == H5T_FLOAT;
+  return is_number && (rank == 1 || rank == 2) ? Hdf5Kind::kNumbers : Hdf5Kind::kOther;
 }
 
 Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {

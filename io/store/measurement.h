@@ -1,23 +1,18 @@
-// Reads measured channels as columns of one CSV or HDF5 file.
-//
-// CSV: see io/format/csv.h. HDF5, recognized by the extension (.h5, .hdf5): the files of `strut
-// simulate` and `strut run` (/snapshot/NAME, /history/NAME, the table /snapshot of a shard or a
-// merged file), or a one-dimensional dataset /NAME per column, as other tools write them.
+// Reads measured channels as columns of one file of any format: text (io/table/csv.h), HDF5
+// (io/store/hdf5_table.h), MATLAB (io/table/mat_file.h).
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "io/format/csv.h"
+#include "io/store/hdf5_table.h"
 #include "io/store/shard.h"
+#include "io/table/table_file.h"
 
 namespace strut {
-
-/// Table of the file to read; a CSV file, and an HDF5 file with its columns at the top level, has
-/// only one.
-enum class MeasuredPart { kSnapshot, kHistory };
 
 struct MeasurementRequest {
   std::vector<std::string> required;
@@ -32,7 +27,8 @@ struct MeasurementRequest {
 struct Measurement {
   std::filesystem::path path;
   std::vector<CsvColumn> columns;  // requested columns that exist, in the order of the request
-  std::vector<int> lines;          // CSV: line in the file of each row; otherwise empty
+  std::vector<int> lines;          // text: line in the file of each row; otherwise empty
+  std::vector<std::string> notes;  // for the user: what was left out or assumed
 
   std::size_t row_count() const { return columns.empty() ? 0 : columns.front().values.size(); }
   /// Returns nullptr if there is no such column.
@@ -42,6 +38,10 @@ struct Measurement {
   /// Returns the location of a row for messages: "drive.csv:12", or "drive.h5: row 11" (from 0).
   std::string locate(std::size_t row) const;
 };
+
+/// Opens a file of any format.
+std::unique_ptr<TableFile> open_table_file(const std::filesystem::path& path, MeasuredPart part,
+                                           MissingCells missing = MissingCells::kNan);
 
 /// Reads the requested columns. Throws InputError, with file, column and line or row, for a missing
 /// required column (with the nearest name and all names), a value that is not finite (infinite, if

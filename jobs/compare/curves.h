@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "diagnose/baseline/baseline.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "report/chart.h"
 
 namespace strut {

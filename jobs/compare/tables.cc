@@ -7,7 +7,7 @@
 
 #include "base/math/normal.h"
 #include "diagnose/baseline/sensor_findings.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "jobs/compare/curves.h"
 
 namespace strut {

@@ -1,6 +1,6 @@
 #include "jobs/design/json.h"
 
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 
 namespace strut {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "diagnose/decide/diagnosis.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "report/chart.h"
 
 namespace strut {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text/build_info.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/hdf5.h"
 #include "jobs/cli/interrupt.h"
 

@@ -5,7 +5,7 @@
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/range.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "model_files/parameters.h"
 
 namespace strut {

@@ -8,7 +8,7 @@
 
 #include "base/error/input_error.h"
 #include "diagnose/campaign/campaign_data.h"
-#include "diagnose/campaign/units.h"
+#include "io/table/units.h"
 #include "io/format/hdf5.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/test_car.h"
@@ -226,7 +226,7 @@ TEST_CASE("Every file has its own clock and rate, CSV or HDF5", "[io]") {
                      });
   Hdf5Writer file(folder / "b.h5");
   const Hdf5Label label{"m", "as another tool writes it", {}, {}};
-  file.write("/t", record.time, label);
+  file.write("/t", record.time, {"s", "", {}, {}});
   file.write("/road", record.road, label);
   file.write("/unsprung", record.unsprung, label);
   file.write("/sprung", record.sprung, label);

@@ -5,7 +5,7 @@
 
 #include "diagnose/campaign/campaign_data.h"
 #include "estimate/sensor_noise.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/toml_text.h"
 #include "io/store/measurement.h"
 #include "model/kernel/simulation.h"

@@ -5,7 +5,7 @@
 
 #include "base/error/input_error.h"
 #include "identify/record.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "tests/support/temporary_folder.h"
 
 namespace strut {

@@ -6,7 +6,7 @@
 #include "base/math/normal.h"
 #include "base/math/random.h"
 #include "identify/snapshot.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_model.h"
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/hdf5.h"
 #include "io/format/json.h"
 #include "jobs/bench/cases.h"

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"
 #include "model_files/read_vehicle.h"

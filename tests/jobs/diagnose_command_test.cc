@@ -8,7 +8,7 @@
 #include <string>
 
 #include "io/file/atomic_file.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "jobs/diagnose/figures.h"
 #include "jobs/diagnose/json.h"
 #include "jobs/diagnose/report.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/text/format_number.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "tests/jobs/check_hint.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"

@@ -7,7 +7,7 @@
 #include "base/error/input_error.h"
 #include "base/text/shorten.h"
 #include "base/text/utf8.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/json.h"
 #include "io/format/tir.h"
 #include "io/format/toml_document.h"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/text/format_number.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/format/hdf5.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "identify/window.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "io/store/shard_layout.h"
 #include "tests/jobs/window_sweep.h"
 #include "train/model/model_file.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/text/format_number.h"
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "tests/jobs/study_program.h"
 
 namespace strut {

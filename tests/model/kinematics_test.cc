@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "tests/support/test_car.h"
 
 namespace strut {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "io/format/csv.h"
+#include "io/table/csv.h"
 #include "model/rig/rig_system.h"
 #include "model/sensor/read_out.h"
 #include "sweep/simulate_cases.h"

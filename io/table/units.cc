@@ -1,12 +1,16 @@
-#include "diagnose/campaign/units.h"
+#include "io/table/units.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
+#include "io/format/text_line.h"
 
 namespace strut {
 namespace {
@@ -21,27 +25,35 @@ constexpr double kGravity = 9.80665;                  // m/s^2, standard gravity
 constexpr double kDegree = 0.0174532925199432957692;  // rad
 constexpr double kPound = 4.4482216152605;            // N, international pound-force
 constexpr double kInch = 0.0254;                      // m, international inch
+constexpr double kFoot = 12.0 * kInch;                // m
 
 const std::vector<UnitEntry>& list_units() {
   static const std::vector<UnitEntry> units = {
       {"s", "s", {}},
       {"s", "ms", {1e-3, 0.0}},
       {"s", "us", {1e-6, 0.0}},
+      {"s", "ns", {1e-9, 0.0}},
       {"s", "min", {60.0, 0.0}},
+      {"s", "h", {3600.0, 0.0}},
       {"m", "m", {}},
       {"m", "mm", {1e-3, 0.0}},
       {"m", "cm", {1e-2, 0.0}},
       {"m", "um", {1e-6, 0.0}},
       {"m", "in", {kInch, 0.0}},
+      {"m", "ft", {kFoot, 0.0}},
       {"m/s", "m/s", {}},
       {"m/s", "mm/s", {1e-3, 0.0}},
       {"m/s", "cm/s", {1e-2, 0.0}},
       {"m/s", "in/s", {kInch, 0.0}},
+      {"m/s", "ft/s", {kFoot, 0.0}},
       {"m/s", "km/h", {1.0 / 3.6, 0.0}},
+      {"m/s", "mph", {5280.0 * kFoot / 3600.0, 0.0}},
       {"m/s^2", "m/s^2", {}},
       {"m/s^2", "g", {kGravity, 0.0}},
       {"m/s^2", "mg", {1e-3 * kGravity, 0.0}},
       {"m/s^2", "mm/s^2", {1e-3, 0.0}},
+      {"m/s^2", "cm/s^2", {1e-2, 0.0}},
+      {"m/s^2", "ft/s^2", {kFoot, 0.0}},
       {"rad", "rad", {}},
       {"rad", "mrad", {1e-3, 0.0}},
       {"rad", "deg", {kDegree, 0.0}},
@@ -52,6 +64,7 @@ const std::vector<UnitEntry>& list_units() {
       {"rad/s", "rpm", {6.0 * kDegree, 0.0}},
       {"N", "N", {}},
       {"N", "kN", {1e3, 0.0}},
+      {"N", "daN", {10.0, 0.0}},
       {"N", "mN", {1e-3, 0.0}},
       {"N", "lbf", {kPound, 0.0}},
       {"N", "kgf", {kGravity, 0.0}},
@@ -62,9 +75,48 @@ const std::vector<UnitEntry>& list_units() {
   return units;
 }
 
+/// Other spellings of the units above, after kSigns were replaced.
+constexpr std::pair<const char*, const char*> kSpellings[] = {
+    {"sec", "s"},         {"Sec", "s"},         {"SEC", "s"},        {"second", "s"},
+    {"seconds", "s"},     {"msec", "ms"},       {"usec", "us"},      {"MM", "mm"},
+    {"inch", "in"},       {"m/s2", "m/s^2"},    {"m/s/s", "m/s^2"},  {"m/s**2", "m/s^2"},
+    {"m/sec^2", "m/s^2"}, {"m/sec2", "m/s^2"},  {"m s^-2", "m/s^2"}, {"mm/s2", "mm/s^2"},
+    {"cm/s2", "cm/s^2"},  {"ft/s2", "ft/s^2"},  {"G", "g"},          {"g0", "g"},
+    {"m/sec", "m/s"},     {"m s^-1", "m/s"},    {"mm/sec", "mm/s"},  {"kph", "km/h"},
+    {"kmh", "km/h"},      {"km/hr", "km/h"},    {"degree", "deg"},   {"degrees", "deg"},
+    {"DEG", "deg"},       {"deg/sec", "deg/s"}, {"dps", "deg/s"},    {"rad/sec", "rad/s"},
+    {"1/min", "rpm"},     {"KN", "kN"},         {"lb", "lbf"},       {"lbs", "lbf"},
+    {"kp", "kgf"},        {"degreeC", "degC"},  {"Celsius", "degC"}, {"C", "degC"},
+    {"F", "degF"}};
+
+/// Signs of UTF-8 text and their ASCII form.
+constexpr std::pair<std::string_view, std::string_view> kSigns[] = {
+    {"\u00b2", "^2"}, {"\u00b5", "u"}, {"\u03bc", "u"}, {"\u00b0", "deg"}};
+
 }  // namespace
 
-UnitScale find_unit_scale(const std::string& unit, const std::string& si) {
+std::string normalize_unit(std::string_view unit) {
+  std::string text(trim(unit, " \t"));
+  for (const auto& [sign, ascii] : kSigns) {
+    for (std::size_t at = text.find(sign); at != std::string::npos; at = text.find(sign, at)) {
+      text.replace(at, sign.size(), ascii);
+      at += ascii.size();
+    }
+  }
+  for (const auto& [spelling, name] : kSpellings) {
+    if (text == spelling) return name;
+  }
+  return text;
+}
+
+bool is_known_unit(std::string_view unit) {
+  const std::string name = normalize_unit(unit);
+  return std::any_of(list_units().begin(), list_units().end(),
+                     [&](const UnitEntry& entry) { return entry.name == name; });
+}
+
+UnitScale find_unit_scale(std::string_view given, const std::string& si) {
+  const std::string unit = normalize_unit(given);
   if (unit.empty() || unit == si) return {};
   std::vector<std::string> allowed;
   for (const UnitEntry& entry : list_units()) {

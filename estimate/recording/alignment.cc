@@ -1,0 +1,272 @@
+#include "estimate/recording/alignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <unsupported/Eigen/FFT>
+
+#include "base/math/spread.h"
+#include "base/parallel/team.h"
+#include "estimate/simulate_run.h"
+
+namespace strut {
+namespace {
+
+/// Range of the free parameters against the model's file, and the spread that is expected of them.
+constexpr double kMaxChange = 2.5, kExpectedChange = 0.35;
+/// Least part of a channel that no simulation explains.
+constexpr double kFloor = 1e-3;
+/// Runs in which the free parameters are searched.
+constexpr std::size_t kSearchedRuns = 3;
+/// What a lag costs, at most, and the lag from which on it does, nearly [s]: a recording without
+/// one is the rule, and damping and lag of a channel have similar effects.
+constexpr double kLagCost = 1.0, kSmallLag = 0.005;
+
+/// The values at the even times first, first + interval, ...; missing samples are bridged by lines.
+std::vector<double> make_even(const std::vector<double>& times, const std::vector<double>& values,
+                              double interval, std::size_t count) {
+  std::vector<double> even(count, 0.0);
+  std::size_t before = 0;
+  while (before < values.size() && !std::isfinite(values[before])) ++before;
+  if (before == values.size()) return even;
+  std::size_t after = before;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = times.front() + interval * static_cast<double>(i);
+    while (after + 1 < values.size() && (times[after] < t || !std::isfinite(values[after]))) {
+      if (std::isfinite(values[after])) before = after;
+      ++after;
+    }
+    if (!std::isfinite(values[after]) || times[after] <= times[before]) {
+      even[i] = values[before];
+      continue;
+    }
+    const double fraction =
+        std::clamp((t - times[before]) / (times[after] - times[before]), 0.0, 1.0);
+    even[i] = (1.0 - fraction) * values[before] + fraction * values[after];
+  }
+  return even;
+}
+
+/// Subtracts the mean; returns the energy.
+double center(std::vector<double>& values) {
+  const double mean = calc_mean(values);
+  double energy = 0.0;
+  for (double& v : values) {
+    v -= mean;
+    energy += v * v;
+  }
+  return energy;
+}
+
+using Spectrum = std::vector<std::complex<double>>;
+
+std::size_t find_transform_size(std::size_t count) {
+  std::size_t size = 1;
+  while (size < count) size *= 2;
+  return size;
+}
+
+Spectrum transform(std::vector<double> values, std::size_t size) {
+  values.resize(size, 0.0);
+  Eigen::FFT<double> fft;
+  Spectrum spectrum;
+  fft.fwd(spectrum, values);
+  return spectrum;
+}
+
+/// A measured channel, ready to be correlated.
+struct PreparedChannel {
+  std::size_t run = 0, channel = 0;
+  int number = 0;  // in ModelInfo::channels
+  double interval = 0.0, energy = 0.0;
+  std::size_t count = 0, size = 0;
+  Spectrum spectrum;
+};
+
+struct Match {
+  double rho = 0.0, lag = 0.0, factor = 1.0, cost = 0.0;
+};
+
+struct Correlation {
+  Match best, other_sign;
+  double rho_without_lag = 0.0;
+};
+
+double calc_rest(double rho) { return 1.0 - rho * rho + kFloor; }
+
+/// The maximum of the parabola through three values, at -1, 0 and 1; a position within these.
+double find_vertex(double left, double middle, double right) {
+  const double curvature = left - 2.0 * middle + right;
+  if (!(curvature < 0.0)) return 0.0;
+  return std::clamp(0.5 * (left - right) / curvature, -1.0, 1.0);
+}
+
+Correlation correlate(const PreparedChannel& m, const std::vector<double>& times,
+                      const std::vector<double>& simulated, double max_lag) {
+  Correlation result;
+  std::vector<double> even = make_even(times, simulated, m.interval, m.count);
+  const double energy = center(even);
+  if (!(energy > 0.0)) return result;
+  Spectrum product = transform(std::move(even), m.size);
+  for (std::size_t k = 0; k < product.size(); ++k)
+    product[k] = m.spectrum[k] * std::conj(product[k]);
+  std::vector<double> cross;
+  Eigen::FFT<double> fft;
+  fft.inv(cross, product);
+  const double scale = 1.0 / std::sqrt(energy * m.energy);
+  const auto reach = static_cast<std::ptrdiff_t>(
+      std::min(max_lag / m.interval, 0.25 * static_cast<double>(m.count)));
+  const auto size = static_cast<std::ptrdiff_t>(m.size);
+  const auto at = [&](std::ptrdiff_t lag) {
+    return scale * cross[static_cast<std::size_t>((lag + size) % size)];
+  };
+  const auto find = [&](double sign) {
+    std::ptrdiff_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::ptrdiff_t lag = -reach; lag <= reach; ++lag) {
+      const double rho = std::max(sign * at(lag), 0.0);
+      const double time = std::abs(static_cast<double>(lag)) * m.interval;
+      const double cost = std::log(calc_rest(rho)) + kLagCost * (1.0 - std::exp(-time / kSmallLag));
+      if (cost >= least) continue;
+      least = cost;
+      best = lag;
+    }
+    const double vertex = find_vertex(sign * at(best - 1), sign * at(best), sign * at(best + 1));
+    const double peak = at(best) + 0.25 * vertex * (at(best + 1) - at(best - 1));
+    const double rho = sign * std::clamp(sign * peak, 0.0, 1.0);
+    return Match{rho, (static_cast<double>(best) + vertex) * m.interval,
+                 rho * std::sqrt(m.energy / energy), least};
+  };
+  const Match positive = find(1.0), negative = find(-1.0);
+  const bool is_negative = negative.cost < positive.cost;
+  result.best = is_negative ? negative : positive;
+  result.other_sign = is_negative ? positive : negative;
+  result.rho_without_lag = at(0);
+  return result;
+}
+
+class Search {
+ public:
+  Search(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& free,
+         const AlignmentOptions& options)
+      : runs_(runs), free_(free), options_(options) {
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      for (std::size_t k = 0; k < runs[r].channels.size(); ++k) prepare(r, k);
+    }
+  }
+
+  /// By prepared channel; empty correlations where the run cannot be simulated, and of runs from
+  /// number `run_count` on.
+  std::vector<Correlation> correlate_all(const std::vector<double>& logs,
+                                         std::size_t run_count = SIZE_MAX) const {
+    const std::vector<double> values = list_values(logs);
+    std::vector<Correlation> result(channels_.size());
+    share_items(options_.threads, std::min(run_count, runs_.size()), [&](std::size_t r, int) {
+      const RunCurves curves = simulate_run(runs_[r], free_, values);
+      if (!curves.failure.empty()) return;
+      for (std::size_t k = 0; k < channels_.size(); ++k) {
+        if (channels_[k].run != r) continue;
+        const auto& simulated = curves.channel[static_cast<std::size_t>(channels_[k].number)];
+        result[k] = correlate(channels_[k], runs_[r].times, simulated, options_.max_lag);
+      }
+    });
+    return result;
+  }
+
+  double calc_cost(const std::vector<double>& logs) const {
+    double cost = 0.0;
+    for (const Correlation& c : correlate_all(logs, kSearchedRuns)) cost += c.best.cost;
+    for (const double x : logs) {
+      cost += std::pow(x / kExpectedChange, 2);
+    }
+    return cost;
+  }
+
+  /// Moves one parameter at a time, by steps that become smaller.
+  std::vector<double> minimize() const {
+    std::vector<double> logs(free_.size(), 0.0);
+    double cost = calc_cost(logs);
+    for (double step : {0.3, 0.15, 0.07, 0.03, 0.015}) {
+      for (int sweep = 0; sweep < 3; ++sweep) {
+        bool is_better = false;
+        for (std::size_t i = 0; i < logs.size(); ++i) {
+          for (const double direction : {1.0, -1.0}) {
+            while (try_step(i, direction * step, logs, cost)) is_better = true;
+          }
+        }
+        if (!is_better) break;
+      }
+    }
+    return logs;
+  }
+
+  std::vector<double> list_values(const std::vector<double>& logs) const {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+      values.push_back(std::clamp(free_[i].start * std::exp(logs[i]), free_[i].low, free_[i].high));
+    }
+    return values;
+  }
+
+  const std::vector<PreparedChannel>& channels() const { return channels_; }
+
+ private:
+  void prepare(std::size_t r, std::size_t k) {
+    const MeasuredRun& run = runs_[r];
+    PreparedChannel c;
+    c.run = r;
+    c.channel = k;
+    c.number = run.channels[k].channel;
+    c.count = run.times.size();
+    if (c.count < 3) return;
+    c.interval = (run.times.back() - run.times.front()) / static_cast<double>(c.count - 1);
+    std::vector<double> even = make_even(run.times, run.channels[k].values, c.interval, c.count);
+    c.energy = center(even);
+    if (!(c.energy > 0.0)) return;
+    c.size = find_transform_size(2 * c.count);
+    c.spectrum = transform(std::move(even), c.size);
+    channels_.push_back(std::move(c));
+  }
+
+  bool try_step(std::size_t i, double step, std::vector<double>& logs, double& cost) const {
+    const double before = logs[i];
+    logs[i] += step;
+    if (std::abs(logs[i]) <= std::log(kMaxChange)) {
+      const double changed = calc_cost(logs);
+      if (changed < cost) {
+        cost = changed;
+        return true;
+      }
+    }
+    logs[i] = before;
+    return false;
+  }
+
+  const std::vector<MeasuredRun>& runs_;
+  const std::vector<Unknown>& free_;
+  AlignmentOptions options_;
+  std::vector<PreparedChannel> channels_;
+};
+
+}  // namespace
+
+Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& free,
+                           const AlignmentOptions& options) {
+  const Search search(runs, free, options);
+  const std::vector<double> logs = search.minimize();
+  Alignment alignment;
+  alignment.values = search.list_values(logs);
+  const std::vector<Correlation> all = search.correlate_all(logs);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Correlation& c = all[i];
+    if (c.best.rho == 0.0) continue;
+    alignment.channels.push_back({search.channels()[i].run, search.channels()[i].channel,
+                                  std::abs(c.best.rho), c.best.factor, c.best.lag,
+                                  calc_rest(c.other_sign.rho) / calc_rest(c.best.rho),
+                                  calc_rest(c.rho_without_lag) / calc_rest(c.best.rho)});
+  }
+  return alignment;
+}
+
+}  // namespace strut

@@ -1,0 +1,197 @@
+#include "estimate/recording/check_alignment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/math/spread.h"
+#include "base/text/format_number.h"
+#include "io/table/units.h"
+
+namespace strut {
+namespace {
+
+/// Least correlation of channels that are compared, and of a single run that differs from the
+/// others.
+constexpr double kComparable = 0.6, kClear = 0.9;
+constexpr double kMinSignRatio = 1.5;
+constexpr double kMaxFactor = 1.9;
+/// Factors of channels that are one: that of their input.
+constexpr double kSameFactor = 1.15;
+constexpr double kMaxLag = 0.010, kMaxCommonLag = 0.015;  // s
+constexpr double kMinLagRatio = 1.3;
+
+/// A channel in all runs.
+struct ChannelSummary {
+  int channel = 0;  // in ModelInfo::channels
+  std::vector<const ChannelAlignment*> runs;
+  double factor = 1.0, lag = 0.0, lag_ratio = 1.0, correlation = 0.0;  // medians
+  bool is_negative = false;
+};
+
+template <class Value>
+double calc_median(const std::vector<const ChannelAlignment*>& runs, const Value& get) {
+  std::vector<double> values;
+  values.reserve(runs.size());
+  for (const ChannelAlignment* run : runs) values.push_back(get(*run));
+  return calc_quantile(values, 0.5);
+}
+
+std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
+                                      const Alignment& alignment) {
+  std::map<int, ChannelSummary> channels;
+  for (const ChannelAlignment& a : alignment.channels) {
+    if (a.correlation < kComparable) continue;
+    const int number = runs[a.run].channels[a.channel].channel;
+    channels[number].channel = number;
+    channels[number].runs.push_back(&a);
+  }
+  std::vector<ChannelSummary> list;
+  for (auto& [number, c] : channels) {
+    const auto negative = std::count_if(c.runs.begin(), c.runs.end(), [](const auto* run) {
+      return run->factor < 0.0 && run->sign_ratio >= kMinSignRatio;
+    });
+    c.is_negative = 2 * static_cast<std::size_t>(negative) > c.runs.size();
+    c.factor = calc_median(c.runs, [](const auto& run) { return std::abs(run.factor); });
+    c.lag = calc_median(c.runs, [](const auto& run) { return run.lag; });
+    c.lag_ratio = calc_median(c.runs, [](const auto& run) { return run.lag_ratio; });
+    c.correlation = calc_median(c.runs, [](const auto& run) { return run.correlation; });
+    list.push_back(std::move(c));
+  }
+  return list;
+}
+
+const ChannelInfo& get_info(const std::vector<MeasuredRun>& runs, int channel) {
+  return runs.front().setup.info().channels[static_cast<std::size_t>(channel)];
+}
+
+bool is_large(double factor) { return factor > kMaxFactor || factor < 1.0 / kMaxFactor; }
+
+RecordingFinding make_sign(const std::string& channel) {
+  return {FindingKind::kSign, "", channel, -1.0, "looks negated", "sign = -1"};
+}
+
+RecordingFinding make_factor(const ChannelInfo& info, double factor) {
+  const std::string unit = guess_unit(info.unit, factor);
+  return {FindingKind::kFactor,
+          "",
+          info.name,
+          factor,
+          fmt::format("is {} times what the model predicts", format_significant(factor, 2)),
+          unit.empty() ? fmt::format("scale = {}?", format_significant(1.0 / factor, 2))
+                       : fmt::format("unit = \"{}\"?", unit)};
+}
+
+std::string describe_lag(double lag) {
+  return fmt::format("{} ms {}", format_significant(1e3 * std::abs(lag), 2),
+                     lag > 0.0 ? "late" : "early");
+}
+
+/// Where all channels have one factor, it is that of the input.
+bool add_common_factor(const std::vector<MeasuredRun>& runs,
+                       const std::vector<ChannelSummary>& channels,
+                       std::vector<RecordingFinding>& findings) {
+  const ModelInfo& info = runs.front().setup.info();
+  if (channels.size() < 2 || info.inputs.empty()) return false;
+  const auto [low, high] = std::minmax_element(
+      channels.begin(), channels.end(),
+      [](const ChannelSummary& a, const ChannelSummary& b) { return a.factor < b.factor; });
+  if (!is_large(low->factor) || !is_large(high->factor) ||
+      high->factor > kSameFactor * low->factor) {
+    return false;
+  }
+  const InputInfo& input = info.inputs.front();
+  findings.push_back(
+      {FindingKind::kFactor, "", input.name, 1.0 / low->factor,
+       fmt::format("is {} times what the channels that it drives suggest",
+                   format_significant(1.0 / low->factor, 2)),
+       guess_unit(input.unit, 1.0 / low->factor).empty()
+           ? fmt::format("scale = {}?", format_significant(low->factor, 2))
+           : fmt::format("unit = \"{}\"?", guess_unit(input.unit, 1.0 / low->factor))});
+  return true;
+}
+
+/// Likewise where all channels are negated.
+bool add_common_sign(const std::vector<MeasuredRun>& runs,
+                     const std::vector<ChannelSummary>& channels,
+                     std::vector<RecordingFinding>& findings) {
+  const ModelInfo& info = runs.front().setup.info();
+  const bool all = std::all_of(channels.begin(), channels.end(),
+                               [](const ChannelSummary& c) { return c.is_negative; });
+  if (channels.size() < 2 || info.inputs.empty() || !all) return false;
+  findings.push_back(make_sign(info.inputs.front().name));
+  return true;
+}
+
+bool has_lag(const ChannelSummary& c, double least) {
+  const auto same = std::count_if(c.runs.begin(), c.runs.end(), [&](const auto* run) {
+    return run->lag * c.lag > 0.0 && std::abs(run->lag) > 0.5 * std::abs(c.lag);
+  });
+  return std::abs(c.lag) >= least && c.lag_ratio >= kMinLagRatio &&
+         2 * static_cast<std::size_t>(same) > c.runs.size();
+}
+
+/// Lags of all channels are one of the clock; others are those of single sensors.
+void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSummary>& channels,
+              std::vector<RecordingFinding>& findings) {
+  const bool is_driven = runs.front().setup.info().is_driven_by_inputs();
+  std::vector<double> lags;
+  for (const ChannelSummary& c : channels) lags.push_back(c.lag);
+  const double common = calc_quantile(lags, 0.5);
+  const bool all_late =
+      channels.size() > 1 &&
+      std::all_of(channels.begin(), channels.end(), [&](const ChannelSummary& c) {
+        return has_lag(c, 0.5 * kMaxCommonLag) && std::abs(c.lag - common) < kMaxLag;
+      });
+  if (all_late && std::abs(common) >= kMaxCommonLag) {
+    findings.push_back({FindingKind::kLag, "", "", common,
+                        fmt::format("all channels are {}", describe_lag(common)),
+                        is_driven ? fmt::format("is the input {}?", describe_lag(-common))
+                                  : "offset of time, or hit_time of the runs"});
+    return;
+  }
+  for (const ChannelSummary& c : channels) {
+    if (!has_lag(c, channels.size() > 1 ? kMaxLag : kMaxCommonLag)) continue;
+    findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, c.lag,
+                        fmt::format("is {}", describe_lag(c.lag)),
+                        "a filter or a clock of its own?"});
+  }
+}
+
+/// A sign that one run alone has.
+void add_single_signs(const std::vector<MeasuredRun>& runs, const ChannelSummary& c,
+                      std::vector<RecordingFinding>& findings) {
+  for (const ChannelAlignment* run : c.runs) {
+    const bool is_negative = run->factor < 0.0;
+    if (is_negative == c.is_negative || run->correlation < kClear || run->sign_ratio < 2.0)
+      continue;
+    RecordingFinding finding = make_sign(get_info(runs, c.channel).name);
+    finding.run = runs[run->run].name;
+    finding.what = "has the other sign than in the other runs";
+    finding.advice = "";
+    findings.push_back(std::move(finding));
+  }
+}
+
+}  // namespace
+
+std::vector<RecordingFinding> check_alignment(const std::vector<MeasuredRun>& runs,
+                                              const Alignment& alignment) {
+  std::vector<RecordingFinding> findings;
+  const std::vector<ChannelSummary> channels = summarize(runs, alignment);
+  if (channels.empty()) return findings;
+  const bool common_sign = add_common_sign(runs, channels, findings);
+  const bool common_factor = add_common_factor(runs, channels, findings);
+  for (const ChannelSummary& c : channels) {
+    const ChannelInfo& info = get_info(runs, c.channel);
+    if (c.is_negative && !common_sign) findings.push_back(make_sign(info.name));
+    if (is_large(c.factor) && !common_factor) findings.push_back(make_factor(info, c.factor));
+    add_single_signs(runs, c, findings);
+  }
+  add_lags(runs, channels, findings);
+  return findings;
+}
+
+}  // namespace strut

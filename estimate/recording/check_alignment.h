@@ -1,0 +1,14 @@
+// Findings about signs, factors, lags and swapped channels.
+#pragma once
+
+#include <vector>
+
+#include "estimate/recording/alignment.h"
+#include "estimate/recording/finding.h"
+
+namespace strut {
+
+std::vector<RecordingFinding> check_alignment(const std::vector<MeasuredRun>& runs,
+                                              const Alignment& alignment);
+
+}  // namespace strut

@@ -1,0 +1,50 @@
+// Mistakes of a recording that one look at it reveals, before any fit.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/names/name_table.h"
+
+namespace strut {
+
+enum class FindingKind {
+  kSign,
+  kFactor,
+  kLag,
+  kSwapped,
+  kDroppedSamples,
+  kUnevenClock,
+  kSaturation,
+  kQuantization,
+  kMains,
+  kCopy,
+};
+inline constexpr std::array<Named<FindingKind>, 10> kFindingKinds = {{
+    {FindingKind::kSign, "sign"},
+    {FindingKind::kFactor, "factor"},
+    {FindingKind::kLag, "lag"},
+    {FindingKind::kSwapped, "swapped"},
+    {FindingKind::kDroppedSamples, "dropped_samples"},
+    {FindingKind::kUnevenClock, "uneven_clock"},
+    {FindingKind::kSaturation, "saturation"},
+    {FindingKind::kQuantization, "quantization"},
+    {FindingKind::kMains, "mains"},
+    {FindingKind::kCopy, "copy"},
+}};
+static_assert(names_all(kFindingKinds, FindingKind::kCopy));
+
+struct RecordingFinding {
+  FindingKind kind = FindingKind::kSign;
+  std::string run;      // the file; "": all of them
+  std::string channel;  // "": all of them, or the clock
+  double size = 0.0;    // -1, the factor, the lag [s], the number of samples, the frequency [Hz]
+  std::string what;     // "looks negated"
+  std::string advice;   // "sign = -1"; "": none
+
+  /// "drive.csv: front_left_deflection looks negated: sign = -1"
+  std::string describe() const;
+};
+
+}  // namespace strut

@@ -1,0 +1,93 @@
+#include "io/table/csv_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "io/table/column_name.h"
+#include "io/table/csv_cell.h"
+#include "io/table/text_encoding.h"
+
+namespace strut {
+namespace {
+
+constexpr char kTimeName[] = "time";
+
+/// The cells of a line, without the empty ones that separators at its end make.
+std::vector<std::string> split_line(std::string_view line, const CsvLayout& layout) {
+  std::vector<std::string> cells;
+  for (const std::string_view cell : split_cells(line, layout.separator)) {
+    cells.push_back(convert_latin1(cell));
+  }
+  while (cells.size() > layout.columns && cells.back().empty()) cells.pop_back();
+  return cells;
+}
+
+std::vector<std::string> find_headers(const std::vector<NumberedLine>& lines,
+                                      const CsvLayout& layout, const std::string& comment) {
+  if (layout.names >= 0) {
+    return split_line(lines[static_cast<std::size_t>(layout.names)].text, layout);
+  }
+  std::vector<std::string> names = split_line(trim(comment, "#%/ \t"), layout);
+  const bool fits = names.size() == layout.columns &&
+                    std::none_of(names.begin(), names.end(), [&](const std::string& name) {
+                      return name.empty() || parse_cell_number(name, layout.decimal);
+                    });
+  if (!fits) names.assign(layout.columns, "");
+  return names;
+}
+
+template <class Key>
+bool is_unique(const std::vector<CsvColumn>& columns, const Key& key, const std::string& value) {
+  return std::count_if(columns.begin(), columns.end(),
+                       [&](const CsvColumn& column) { return key(column) == value; }) == 1;
+}
+
+void tell_apart(std::vector<CsvColumn>& columns) {
+  const std::vector<CsvColumn> given = columns;
+  const auto get_name = [](const CsvColumn& column) { return column.name; };
+  const auto get_header = [](const CsvColumn& column) { return column.header; };
+  std::vector<std::string> seen;
+  for (CsvColumn& column : columns) {
+    if (is_unique(given, get_name, column.name)) continue;
+    if (is_unique(given, get_header, column.header)) {
+      column.name = column.header;
+      continue;
+    }
+    seen.push_back(column.header);
+    column.name =
+        fmt::format("{} ({})", column.header, std::count(seen.begin(), seen.end(), column.header));
+    column.header = column.name;
+  }
+}
+
+}  // namespace
+
+std::vector<CsvColumn> make_csv_columns(const std::vector<NumberedLine>& lines,
+                                        const CsvLayout& layout, const std::string& comment) {
+  const std::vector<std::string> headers = find_headers(lines, layout, comment);
+  std::vector<std::string> units;
+  if (layout.units >= 0) {
+    units = split_line(lines[static_cast<std::size_t>(layout.units)].text, layout);
+  }
+  std::vector<CsvColumn> columns;
+  for (std::size_t c = 0; c < headers.size(); ++c) {
+    ColumnName name = split_unit(headers[c]);
+    if (c < units.size() && !parse_unit_cell(units[c]).empty()) {
+      name = {headers[c], parse_unit_cell(units[c])};
+    }
+    if (name.name.empty()) name.name = fmt::format("column_{}", c + 1);
+    columns.push_back({name.name, name.unit, {}, headers[c]});
+  }
+  const auto is_nameless = [](const CsvColumn& column) { return column.header.empty(); };
+  const bool is_first_alone =
+      columns.size() > 1 && is_nameless(columns.front()) &&
+      std::none_of(columns.begin() + 1, columns.end(), [&](const CsvColumn& column) {
+        return is_nameless(column) || column.name == kTimeName;
+      });
+  if (is_first_alone) columns.front().name = kTimeName;
+  tell_apart(columns);
+  return columns;
+}
+
+}  // namespace strut

@@ -1,0 +1,177 @@
+#include "jobs/inspect/campaign_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error/input_error.h"
+#include "base/text/format_number.h"
+#include "base/text/nearest_name.h"
+#include "io/format/toml_text.h"
+#include "io/table/units.h"
+#include "jobs/inspect/match_columns.h"
+#include "model_files/model_tables.h"
+
+namespace strut {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quote_path(const fs::path& path, const fs::path& folder) {
+  const fs::path whole = fs::absolute(path).lexically_normal();
+  const fs::path relative = whole.lexically_relative(fs::absolute(folder).lexically_normal());
+  return quote_toml((relative.empty() ? whole : relative).string());
+}
+
+/// `, unit = "mm"`: where only the name tells the unit. What the file says is read from there.
+std::string write_unit(const ColumnSummary& column, const std::string& si) {
+  const std::string& unit = column.unit.empty() ? column.guessed_unit : column.unit;
+  if (unit.empty() || unit == si || !column.unit.empty()) return "";
+  return fmt::format(", unit = {}", quote_toml(unit));
+}
+
+std::string write_comment(const ColumnSummary& column) {
+  std::string text = column.unit.empty() ? "" : "in " + column.unit;
+  for (const std::string& remark : column.remarks) text += (text.empty() ? "" : "; ") + remark;
+  return text.empty() ? "" : "   # " + text;
+}
+
+struct ColumnLine {
+  std::string channel, definition, comment;
+};
+
+ColumnLine write_column(const ModelInfo& model, const ColumnMatch& match, const TableSummary& table,
+                        int main_clock) {
+  const ColumnSummary& column = table.columns[match.column];
+  const auto channel = static_cast<std::size_t>(find_channel(model, match.channel));
+  std::string text = fmt::format("column = {}{}", quote_toml(column.name),
+                                 write_unit(column, model.channels[channel].unit));
+  if (find_input(model, match.channel) >= 0) text += ", role = \"input\"";
+  if (column.clock >= 0 && column.clock != main_clock) {
+    text += fmt::format(", clock = {}",
+                        quote_toml(table.columns[static_cast<std::size_t>(column.clock)].name));
+  }
+  return {match.channel, "{ " + text + " }",
+          write_comment(column) + (match.is_sure ? "" : "   # a guess: check it")};
+}
+
+std::string write_columns(const ModelInfo& model, const TableSummary& table) {
+  const std::vector<ColumnMatch> matches = match_columns(model, table);
+  // The fastest clock of the matched columns; the others move to it.
+  int clock = -1;
+  const auto get_interval = [&](int at) {
+    return table.columns[static_cast<std::size_t>(at)].times.interval;
+  };
+  for (const ColumnMatch& match : matches) {
+    const int own = table.columns[match.column].clock;
+    if (own >= 0 && (clock < 0 || get_interval(own) < get_interval(clock))) clock = own;
+  }
+  if (clock < 0) {
+    const auto any = std::find_if(table.columns.begin(), table.columns.end(),
+                                  [](const ColumnSummary& column) { return column.is_clock; });
+    if (any != table.columns.end()) clock = static_cast<int>(any - table.columns.begin());
+  }
+  std::vector<ColumnLine> lines;
+  if (clock >= 0) {
+    const ColumnSummary& column = table.columns[static_cast<std::size_t>(clock)];
+    lines.push_back(
+        {"time",
+         fmt::format("{{ column = {}{} }}", quote_toml(column.name), write_unit(column, "s")),
+         write_comment(column)});
+  }
+  for (const ColumnMatch& match : matches) {
+    if (match.channel != "time") lines.push_back(write_column(model, match, table, clock));
+  }
+  std::size_t width = 0;
+  for (const ColumnLine& line : lines) width = std::max(width, line.channel.size());
+  std::string text;
+  for (const ColumnLine& line : lines) {
+    text += fmt::format("{:<{}} = {}{}\n", line.channel, width, line.definition, line.comment);
+  }
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    const ColumnSummary& column = table.columns[k];
+    const bool is_used = static_cast<int>(k) == clock ||
+                         std::any_of(matches.begin(), matches.end(),
+                                     [&](const ColumnMatch& match) { return match.column == k; });
+    if (is_used || column.is_clock) continue;
+    text += fmt::format("# CHANNEL = {{ column = {} }}{}\n", quote_toml(column.name),
+                        column.fault.empty() ? write_comment(column) : "   # text");
+  }
+  std::vector<std::string> names;
+  for (const ChannelInfo& channel : model.channels) names.push_back(channel.name);
+  return text + "# channels: " + join_names(names) + "\n";
+}
+
+/// Springs and dampers of the suspension, which wear.
+std::vector<std::string> list_wearing(const ModelTables& tables) {
+  std::vector<std::string> names;
+  for (const ListedParameter& listed : tables.parameters) {
+    const std::string& name = listed.parameter->name;
+    const bool is_rate = name.ends_with("stiffness") || name.ends_with("damping");
+    if (!listed.parameter->is_effect && is_rate && name.find("tire") == std::string::npos) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::string write_run(const std::string& file, const char* use, const ModelInfo& model,
+                      const std::string& more = "") {
+  std::string text = fmt::format("\n[[run]]\nfile = {}\nuse  = \"{}\"\n{}", file, use, more);
+  if (!model.is_driven_by_inputs()) {
+    text += "maneuver = \"MANEUVER.toml\"   # speed and bump of this run\n";
+  }
+  return text;
+}
+
+std::string write_runs(const std::vector<InspectedFile>& files, const ModelInfo& model,
+                       const fs::path& folder) {
+  std::string text;
+  if (files.size() > 1) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      text += write_run(quote_path(files[i].path, folder),
+                        i + 1 < files.size() ? "fit" : "hold_out", model);
+    }
+    return text;
+  }
+  const std::vector<ColumnSummary>& columns = files.front().table.columns;
+  const auto clock = std::find_if(columns.begin(), columns.end(),
+                                  [](const ColumnSummary& column) { return column.is_clock; });
+  const ClockSummary& times = clock->times;
+  const double middle = times.first + 0.6 * (times.last - times.first);
+  const std::string file = quote_path(files.front().path, folder);
+  const auto window = [](double from, double to) {
+    return fmt::format("window = [{}, {}]   # s, on the file's clock\n", format_rounded(from),
+                       format_rounded(to));
+  };
+  return write_run(file, "fit", model, window(times.first, middle)) +
+         write_run(file, "hold_out", model, window(middle, times.last));
+}
+
+}  // namespace
+
+std::string make_campaign_text(const std::vector<InspectedFile>& files, const fs::path& model,
+                               const fs::path& folder) {
+  const ModelTables tables = make_model_tables(model.string());
+  const TableSummary& first = files.front().table;
+  const bool has_clock = std::any_of(first.columns.begin(), first.columns.end(),
+                                     [](const ColumnSummary& column) { return column.is_clock; });
+  if (!has_clock) {
+    throw InputError(files.front().path.string() +
+                     ": no column ascends from row to row, so none is the time");
+  }
+  std::string free;
+  for (const std::string& name : list_wearing(tables)) {
+    free += (free.empty() ? "" : ", ") + quote_toml(name);
+  }
+  return fmt::format(
+             "# Begun by strut inspect; check it with strut compare CAMPAIGN.toml --check.\n"
+             "# Keys: docs/diagnosis.md.\n\nmodel = {}\n\n"
+             "[columns]   # channel = the file's column; sign = -1 or unit = \"mm\" correct "
+             "it\n{}\n"
+             "[fit]\nfree = [{}]\n",
+             quote_path(model, folder), write_columns(*tables.model, first), free) +
+         write_runs(files, *tables.model, folder);
+}
+
+}  // namespace strut

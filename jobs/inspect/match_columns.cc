@@ -1,0 +1,142 @@
+#include "jobs/inspect/match_columns.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "base/error/input_error.h"
+#include "io/table/units.h"
+
+namespace strut {
+namespace {
+
+using Words = std::set<std::string>;
+
+/// Words that recordings use for those of channel names.
+const std::map<std::string, std::vector<std::string>>& list_synonyms() {
+  static const std::map<std::string, std::vector<std::string>> synonyms = {
+      {"disp", {"displacement"}},
+      {"displ", {"displacement"}},
+      {"stroke", {"displacement"}},
+      {"travel", {"displacement", "deflection"}},
+      {"weg", {"displacement", "position"}},
+      {"defl", {"deflection"}},
+      {"pos", {"position"}},
+      {"z", {"position", "z"}},
+      {"x", {"position", "x"}},
+      {"acc", {"acceleration"}},
+      {"accel", {"acceleration"}},
+      {"accz", {"acceleration", "z"}},
+      {"accx", {"acceleration", "x"}},
+      {"accy", {"acceleration", "y"}},
+      {"az", {"acceleration", "z"}},
+      {"vel", {"velocity"}},
+      {"v", {"velocity"}},
+      {"gyro", {"rate"}},
+      {"f", {"force"}},
+      {"load", {"force"}},
+      {"kraft", {"force"}},
+      {"temp", {"temperature"}},
+      {"susp", {"suspension"}},
+      {"fl", {"front", "left"}},
+      {"fr", {"front", "right"}},
+      {"rl", {"rear", "left"}},
+      {"rr", {"rear", "right"}},
+      {"lf", {"front", "left"}},
+      {"rf", {"front", "right"}},
+      {"lr", {"rear", "left"}},
+      {"chassis", {"body"}},
+      {"plate", {"road"}},
+      {"ground", {"road"}},
+      {"wheel", {"unsprung", "wheel"}},
+      {"axle", {"unsprung"}},
+      {"tyre", {"tire"}}};
+  return synonyms;
+}
+
+bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
+bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
+bool is_word(char c) { return is_lower(c) || is_upper(c) || (c >= '0' && c <= '9'); }
+
+/// The words of "AccZ_front", lower case: acc, z, front.
+Words split_words(const std::string& name) {
+  std::vector<std::string> list;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (!is_word(name[i])) continue;
+    const bool begins =
+        i == 0 || !is_word(name[i - 1]) || (is_upper(name[i]) && is_lower(name[i - 1]));
+    if (begins) list.emplace_back();
+    list.back() += is_upper(name[i]) ? static_cast<char>(name[i] | 0x20) : name[i];
+  }
+  return {list.begin(), list.end()};
+}
+
+Words expand(const Words& words) {
+  Words all = words;
+  for (const std::string& word : words) {
+    const auto found = list_synonyms().find(word);
+    if (found != list_synonyms().end()) all.insert(found->second.begin(), found->second.end());
+  }
+  return all;
+}
+
+bool converts(const std::string& unit, const std::string& si) {
+  if (unit.empty() || !is_known_unit(unit)) return true;
+  try {
+    find_unit_scale(unit, si);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+struct Candidate {
+  double score;
+  std::size_t channel, column;
+};
+
+/// Fraction of the channel's words that stand in the column's name, less a little for each word too
+/// many.
+double calc_score(const ChannelInfo& channel, const ColumnSummary& column) {
+  constexpr double kPerExtraWord = 0.01;
+  const std::string& unit = column.unit.empty() ? column.guessed_unit : column.unit;
+  if (!converts(unit, channel.unit)) return 0.0;
+  const Words own = split_words(column.name), found = expand(own),
+              wanted = split_words(channel.name);
+  const auto common = std::count_if(wanted.begin(), wanted.end(),
+                                    [&](const std::string& word) { return found.count(word) > 0; });
+  return static_cast<double>(common) / static_cast<double>(wanted.size()) -
+         kPerExtraWord * static_cast<double>(own.size());
+}
+
+}  // namespace
+
+std::vector<ColumnMatch> match_columns(const ModelInfo& model, const TableSummary& table) {
+  constexpr double kMinScore = 0.4, kSureScore = 0.9;
+  std::vector<Candidate> candidates;
+  for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    for (std::size_t k = 0; k < table.columns.size(); ++k) {
+      const ColumnSummary& column = table.columns[k];
+      if (column.is_clock || !column.fault.empty()) continue;
+      const double score = calc_score(model.channels[c], column);
+      if (score >= kMinScore) candidates.push_back({score, c, k});
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::set<std::size_t> channels, columns;
+  std::vector<std::pair<std::size_t, ColumnMatch>> found;
+  for (const Candidate& c : candidates) {
+    if (channels.count(c.channel) > 0 || columns.count(c.column) > 0) continue;
+    channels.insert(c.channel);
+    columns.insert(c.column);
+    found.push_back({c.channel, {model.channels[c.channel].name, c.column, c.score >= kSureScore}});
+  }
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<ColumnMatch> matches;
+  for (auto& [channel, match] : found) matches.push_back(std::move(match));
+  return matches;
+}
+
+}  // namespace strut
