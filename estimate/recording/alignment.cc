@@ -1,10 +1,12 @@
 #include "estimate/recording/alignment.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <unsupported/Eigen/FFT>
+#include <utility>
 
 #include "base/math/spread.h"
 #include "base/parallel/team.h"
@@ -81,6 +83,7 @@ struct PreparedChannel {
   int number = 0;  // in ModelInfo::channels
   double interval = 0.0, energy = 0.0;
   std::size_t count = 0, size = 0;
+  std::vector<double> values;  // even, without their mean
   Spectrum spectrum;
 };
 
@@ -102,13 +105,22 @@ double find_vertex(double left, double middle, double right) {
   return std::clamp(0.5 * (left - right) / curvature, -1.0, 1.0);
 }
 
-Correlation correlate(const PreparedChannel& m, const std::vector<double>& times,
-                      const std::vector<double>& simulated, double max_lag) {
-  Correlation result;
+/// A channel with its simulation of energy 1, on the even clock.
+struct Simulated {
+  Correlation correlation;
+  std::vector<double> shape;  // empty: not simulated
+};
+
+Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
+                  const std::vector<double>& simulated, double max_lag) {
+  Simulated out;
+  Correlation& result = out.correlation;
   std::vector<double> even = make_even(times, simulated, m.interval, m.count);
   const double energy = center(even);
-  if (!(energy > 0.0)) return result;
-  Spectrum product = transform(std::move(even), m.size);
+  if (!(energy > 0.0)) return out;
+  Spectrum product = transform(even, m.size);
+  for (double& v : even) v /= std::sqrt(energy);
+  out.shape = std::move(even);
   for (std::size_t k = 0; k < product.size(); ++k)
     product[k] = m.spectrum[k] * std::conj(product[k]);
   std::vector<double> cross;
@@ -143,7 +155,7 @@ Correlation correlate(const PreparedChannel& m, const std::vector<double>& times
   result.best = is_negative ? negative : positive;
   result.other_sign = is_negative ? positive : negative;
   result.rho_without_lag = at(0);
-  return result;
+  return out;
 }
 
 class Search {
@@ -156,55 +168,62 @@ class Search {
     }
   }
 
-  /// By prepared channel; empty correlations where the run cannot be simulated, and of runs from
-  /// number `run_count` on.
-  std::vector<Correlation> correlate_all(const std::vector<double>& logs,
-                                         std::size_t run_count = SIZE_MAX) const {
+  /// By prepared channel; empty shapes where the run cannot be simulated, and of runs from number
+  /// `run_count` on.
+  std::vector<Simulated> simulate(const Eigen::VectorXd& logs,
+                                  std::size_t run_count = SIZE_MAX) const {
     const std::vector<double> values = list_values(logs);
-    std::vector<Correlation> result(channels_.size());
+    std::vector<Simulated> result(channels_.size());
     share_items(options_.threads, std::min(run_count, runs_.size()), [&](std::size_t r, int) {
       const RunCurves curves = simulate_run(runs_[r], free_, values);
       if (!curves.failure.empty()) return;
       for (std::size_t k = 0; k < channels_.size(); ++k) {
         if (channels_[k].run != r) continue;
         const auto& simulated = curves.channel[static_cast<std::size_t>(channels_[k].number)];
-        result[k] = correlate(channels_[k], runs_[r].times, simulated, options_.max_lag);
+        result[k] = compare(channels_[k], runs_[r].times, simulated, options_.max_lag);
       }
     });
     return result;
   }
 
-  double calc_cost(const std::vector<double>& logs) const {
-    double cost = 0.0;
-    for (const Correlation& c : correlate_all(logs, kSearchedRuns)) cost += c.best.cost;
-    for (const double x : logs) {
-      cost += std::pow(x / kExpectedChange, 2);
-    }
-    return cost;
-  }
-
-  /// Moves one parameter at a time, by steps that become smaller.
-  std::vector<double> minimize() const {
-    std::vector<double> logs(free_.size(), 0.0);
-    double cost = calc_cost(logs);
-    for (double step : {0.3, 0.15, 0.07, 0.03, 0.015}) {
-      for (int sweep = 0; sweep < 3; ++sweep) {
-        bool is_better = false;
-        for (std::size_t i = 0; i < logs.size(); ++i) {
-          for (const double direction : {1.0, -1.0}) {
-            while (try_step(i, direction * step, logs, cost)) is_better = true;
-          }
-        }
-        if (!is_better) break;
+  /// Minimizes the cost by Gauss-Newton steps. `holds_lags`: the lags stay 0 in the steps, so that
+  /// the parameters explain what they can.
+  std::pair<Eigen::VectorXd, double> minimize(bool holds_lags) const {
+    constexpr int kMaxSteps = 8, kMaxTries = 4;
+    constexpr double kSmallFall = 0.02;
+    const auto n = static_cast<Eigen::Index>(free_.size());
+    Eigen::VectorXd logs = Eigen::VectorXd::Zero(n);
+    std::vector<Simulated> at = simulate(logs, kSearchedRuns);
+    double cost = calc_cost(at, logs);
+    double damping = 1e-3;
+    for (int step = 0; step < kMaxSteps && n > 0; ++step) {
+      const auto [information, gradient] = linearize(at, logs, holds_lags);
+      const double before = cost;
+      for (int tries = 0; tries < kMaxTries; ++tries, damping *= 10.0) {
+        Eigen::MatrixXd damped = information;
+        damped.diagonal() *= 1.0 + damping;
+        const Eigen::VectorXd next = (logs + damped.ldlt().solve(gradient))
+                                         .cwiseMax(-std::log(kMaxChange))
+                                         .cwiseMin(std::log(kMaxChange));
+        std::vector<Simulated> there = simulate(next, kSearchedRuns);
+        const double changed = calc_cost(there, next);
+        if (!(changed < cost)) continue;
+        logs = next;
+        at = std::move(there);
+        cost = changed;
+        damping *= 0.01;
+        break;
       }
+      if (before - cost < kSmallFall) break;
     }
-    return logs;
+    return {logs, cost};
   }
 
-  std::vector<double> list_values(const std::vector<double>& logs) const {
+  std::vector<double> list_values(const Eigen::VectorXd& logs) const {
     std::vector<double> values;
-    for (std::size_t i = 0; i < logs.size(); ++i) {
-      values.push_back(std::clamp(free_[i].start * std::exp(logs[i]), free_[i].low, free_[i].high));
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const double value = free_[i].start * std::exp(logs[static_cast<Eigen::Index>(i)]);
+      values.push_back(std::clamp(value, free_[i].low, free_[i].high));
     }
     return values;
   }
@@ -221,26 +240,61 @@ class Search {
     c.count = run.times.size();
     if (c.count < 3) return;
     c.interval = (run.times.back() - run.times.front()) / static_cast<double>(c.count - 1);
-    std::vector<double> even = make_even(run.times, run.channels[k].values, c.interval, c.count);
-    c.energy = center(even);
+    c.values = make_even(run.times, run.channels[k].values, c.interval, c.count);
+    c.energy = center(c.values);
     if (!(c.energy > 0.0)) return;
     c.size = find_transform_size(2 * c.count);
-    c.spectrum = transform(std::move(even), c.size);
+    c.spectrum = transform(c.values, c.size);
     channels_.push_back(std::move(c));
   }
 
-  bool try_step(std::size_t i, double step, std::vector<double>& logs, double& cost) const {
-    const double before = logs[i];
-    logs[i] += step;
-    if (std::abs(logs[i]) <= std::log(kMaxChange)) {
-      const double changed = calc_cost(logs);
-      if (changed < cost) {
-        cost = changed;
-        return true;
-      }
+  static double calc_cost(const std::vector<Simulated>& at, const Eigen::VectorXd& logs) {
+    double cost = (logs / kExpectedChange).squaredNorm();
+    for (const Simulated& s : at) cost += s.correlation.best.cost;
+    return cost;
+  }
+
+  /// Half the Hessian of the cost by Gauss-Newton, and half its negative gradient.
+  std::pair<Eigen::MatrixXd, Eigen::VectorXd> linearize(const std::vector<Simulated>& at,
+                                                        const Eigen::VectorXd& logs,
+                                                        bool holds_lags) const {
+    constexpr double kStep = 0.01;
+    const Eigen::Index n = logs.size();
+    std::vector<std::vector<Simulated>> beside;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      Eigen::VectorXd moved = logs;
+      moved[i] += kStep;
+      beside.push_back(simulate(moved, kSearchedRuns));
     }
-    logs[i] = before;
-    return false;
+    const double prior = 1.0 / (kExpectedChange * kExpectedChange);
+    Eigen::MatrixXd information = prior * Eigen::MatrixXd::Identity(n, n);
+    Eigen::VectorXd gradient = -prior * logs;
+    for (std::size_t k = 0; k < channels_.size(); ++k) {
+      const auto count = static_cast<Eigen::Index>(at[k].shape.size());
+      if (count == 0) continue;
+      const Match& best = at[k].correlation.best;
+      Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(count, n);
+      const Eigen::Map<const Eigen::VectorXd> shape(at[k].shape.data(), count);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const std::vector<double>& moved = beside[static_cast<std::size_t>(i)][k].shape;
+        if (moved.empty()) continue;
+        slopes.col(i) = std::abs(best.rho) / kStep *
+                        (Eigen::Map<const Eigen::VectorXd>(moved.data(), count) - shape);
+      }
+      // m(t + T) has the clock of the simulation.
+      const auto shift = holds_lags ? 0 : std::llround(best.lag / channels_[k].interval);
+      Eigen::VectorXd measured = Eigen::VectorXd::Zero(count);
+      const double scale = (best.rho < 0.0 ? -1.0 : 1.0) / std::sqrt(channels_[k].energy);
+      for (Eigen::Index t = 0; t < count; ++t) {
+        const Eigen::Index from = t + shift;
+        if (from < 0 || from >= count) continue;
+        measured[t] = scale * channels_[k].values[static_cast<std::size_t>(from)];
+      }
+      const double weight = 1.0 / calc_rest(best.rho);
+      information += weight * slopes.transpose() * slopes;
+      gradient += weight * slopes.transpose() * (measured - std::abs(best.rho) * shape);
+    }
+    return {information, gradient};
   }
 
   const std::vector<MeasuredRun>& runs_;
@@ -254,12 +308,14 @@ class Search {
 Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& free,
                            const AlignmentOptions& options) {
   const Search search(runs, free, options);
-  const std::vector<double> logs = search.minimize();
+  // A lag and a parameter may both explain a late channel: either may end in the better minimum.
+  const auto with_lags = search.minimize(false), without = search.minimize(true);
+  const Eigen::VectorXd& logs = with_lags.second < without.second ? with_lags.first : without.first;
   Alignment alignment;
   alignment.values = search.list_values(logs);
-  const std::vector<Correlation> all = search.correlate_all(logs);
+  const std::vector<Simulated> all = search.simulate(logs);
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Correlation& c = all[i];
+    const Correlation& c = all[i].correlation;
     if (c.best.rho == 0.0) continue;
     alignment.channels.push_back({search.channels()[i].run, search.channels()[i].channel,
                                   std::abs(c.best.rho), c.best.factor, c.best.lag,

@@ -7,9 +7,10 @@
 //
 // The lag is that of the largest |rho|, the sign that of rho there, the factor the least-squares
 // one. Worn springs and dampers shift and scale channels as well, so the free parameters are first
-// moved to where the shapes agree best: a pattern search for the minimum of
+// moved to where the shapes agree best: by Gauss-Newton steps to the minimum of
 //
-//   sum over channels ln(1 - max_T rho^2 + e) + sum over parameters (ln(p / p0) / 0.35)^2
+//   sum over channels ln(1 - max_T rho^2 + e) + 1 - exp(-|T| / 5 ms) + sum over parameters (ln(p /
+//   p0) / 0.35)^2
 //
 // which no sign, factor or lag of a channel changes.
 #pragma once
