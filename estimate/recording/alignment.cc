@@ -24,17 +24,20 @@ constexpr std::size_t kSearchedRuns = 3;
 /// What a lag costs, at most, and the lag from which on it does, nearly [s]: a recording without
 /// one is the rule, and damping and lag of a channel have similar effects.
 constexpr double kLagCost = 1.0, kSmallLag = 0.005;
+/// Unit of the delay of all channels in the search [s].
+constexpr double kDelayScale = 0.02;
 
-/// The values at the even times first, first + interval, ...; missing samples are bridged by lines.
+/// The values at the even times first - delay, first - delay + interval, ...; missing samples are
+/// bridged by lines, the ends continue.
 std::vector<double> make_even(const std::vector<double>& times, const std::vector<double>& values,
-                              double interval, std::size_t count) {
+                              double interval, std::size_t count, double delay = 0.0) {
   std::vector<double> even(count, 0.0);
   std::size_t before = 0;
   while (before < values.size() && !std::isfinite(values[before])) ++before;
   if (before == values.size()) return even;
   std::size_t after = before;
   for (std::size_t i = 0; i < count; ++i) {
-    const double t = times.front() + interval * static_cast<double>(i);
+    const double t = times.front() - delay + interval * static_cast<double>(i);
     while (after + 1 < values.size() && (times[after] < t || !std::isfinite(values[after]))) {
       if (std::isfinite(values[after])) before = after;
       ++after;
@@ -96,6 +99,8 @@ struct Correlation {
   double rho_without_lag = 0.0;
 };
 
+double calc_lag_cost(double lag) { return kLagCost * (1.0 - std::exp(-std::abs(lag) / kSmallLag)); }
+
 double calc_rest(double rho) { return 1.0 - rho * rho + kFloor; }
 
 /// The maximum of the parabola through three values, at -1, 0 and 1; a position within these.
@@ -112,10 +117,10 @@ struct Simulated {
 };
 
 Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
-                  const std::vector<double>& simulated, double max_lag) {
+                  const std::vector<double>& simulated, double max_lag, double delay) {
   Simulated out;
   Correlation& result = out.correlation;
-  std::vector<double> even = make_even(times, simulated, m.interval, m.count);
+  std::vector<double> even = make_even(times, simulated, m.interval, m.count, delay);
   const double energy = center(even);
   if (!(energy > 0.0)) return out;
   Spectrum product = transform(even, m.size);
@@ -139,7 +144,7 @@ Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
     for (std::ptrdiff_t lag = -reach; lag <= reach; ++lag) {
       const double rho = std::max(sign * at(lag), 0.0);
       const double time = std::abs(static_cast<double>(lag)) * m.interval;
-      const double cost = std::log(calc_rest(rho)) + kLagCost * (1.0 - std::exp(-time / kSmallLag));
+      const double cost = std::log(calc_rest(rho)) + calc_lag_cost(time);
       if (cost >= least) continue;
       least = cost;
       best = lag;
@@ -168,11 +173,12 @@ class Search {
     }
   }
 
-  /// By prepared channel; empty shapes where the run cannot be simulated, and of runs from number
-  /// `run_count` on.
-  std::vector<Simulated> simulate(const Eigen::VectorXd& logs,
+  /// The simulation at a point: the logarithms of the parameters' changes, then the delay of all
+  /// channels in units of kDelayScale. By prepared channel; empty shapes where the run cannot be
+  /// simulated, and of runs from number `run_count` on.
+  std::vector<Simulated> simulate(const Eigen::VectorXd& point,
                                   std::size_t run_count = SIZE_MAX) const {
-    const std::vector<double> values = list_values(logs);
+    const std::vector<double> values = list_values(point);
     std::vector<Simulated> result(channels_.size());
     share_items(options_.threads, std::min(run_count, runs_.size()), [&](std::size_t r, int) {
       const RunCurves curves = simulate_run(runs_[r], free_, values);
@@ -180,52 +186,43 @@ class Search {
       for (std::size_t k = 0; k < channels_.size(); ++k) {
         if (channels_[k].run != r) continue;
         const auto& simulated = curves.channel[static_cast<std::size_t>(channels_[k].number)];
-        result[k] = compare(channels_[k], runs_[r].times, simulated, options_.max_lag);
+        result[k] =
+            compare(channels_[k], runs_[r].times, simulated, options_.max_lag, get_delay(point));
       }
     });
     return result;
   }
 
-  /// Minimizes the cost by Gauss-Newton steps. `holds_lags`: the lags stay 0 in the steps, so that
-  /// the parameters explain what they can.
-  std::pair<Eigen::VectorXd, double> minimize(bool holds_lags) const {
-    constexpr int kMaxSteps = 8, kMaxTries = 4;
-    constexpr double kSmallFall = 0.02;
-    const auto n = static_cast<Eigen::Index>(free_.size());
-    Eigen::VectorXd logs = Eigen::VectorXd::Zero(n);
-    std::vector<Simulated> at = simulate(logs, kSearchedRuns);
-    double cost = calc_cost(at, logs);
-    double damping = 1e-3;
-    for (int step = 0; step < kMaxSteps && n > 0; ++step) {
-      const auto [information, gradient] = linearize(at, logs, holds_lags);
-      const double before = cost;
-      for (int tries = 0; tries < kMaxTries; ++tries, damping *= 10.0) {
-        Eigen::MatrixXd damped = information;
-        damped.diagonal() *= 1.0 + damping;
-        const Eigen::VectorXd next = (logs + damped.ldlt().solve(gradient))
-                                         .cwiseMax(-std::log(kMaxChange))
-                                         .cwiseMin(std::log(kMaxChange));
-        std::vector<Simulated> there = simulate(next, kSearchedRuns);
-        const double changed = calc_cost(there, next);
-        if (!(changed < cost)) continue;
-        logs = next;
-        at = std::move(there);
-        cost = changed;
-        damping *= 0.01;
-        break;
-      }
-      if (before - cost < kSmallFall) break;
+  /// The best of several minima: a start may be in another's valley, and late channels may be
+  /// explained by lags or by parameters.
+  Eigen::VectorXd minimize() const {
+    constexpr std::size_t kStarts = 2;
+    std::vector<std::pair<double, Eigen::VectorXd>> starts;
+    for (const Eigen::VectorXd& start : list_starts()) {
+      starts.emplace_back(calc_cost(simulate(start, kSearchedRuns), start), start);
     }
-    return {logs, cost};
+    const std::size_t count = std::min(kStarts, starts.size());
+    std::partial_sort(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count),
+                      starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    auto best = descend(starts.front().second, false);
+    for (std::size_t i = 0; i < count; ++i) {
+      auto other = descend(starts[i].second, true);
+      if (other.second < best.second) best = std::move(other);
+    }
+    return best.first;
   }
 
-  std::vector<double> list_values(const Eigen::VectorXd& logs) const {
+  std::vector<double> list_values(const Eigen::VectorXd& point) const {
     std::vector<double> values;
     for (std::size_t i = 0; i < free_.size(); ++i) {
-      const double value = free_[i].start * std::exp(logs[static_cast<Eigen::Index>(i)]);
+      const double value = free_[i].start * std::exp(point[static_cast<Eigen::Index>(i)]);
       values.push_back(std::clamp(value, free_[i].low, free_[i].high));
     }
     return values;
+  }
+
+  static double get_delay(const Eigen::VectorXd& point) {
+    return kDelayScale * point[point.size() - 1];
   }
 
   const std::vector<PreparedChannel>& channels() const { return channels_; }
@@ -248,8 +245,53 @@ class Search {
     channels_.push_back(std::move(c));
   }
 
-  static double calc_cost(const std::vector<Simulated>& at, const Eigen::VectorXd& logs) {
-    double cost = (logs / kExpectedChange).squaredNorm();
+  std::vector<Eigen::VectorXd> list_starts() const {
+    const auto n = static_cast<Eigen::Index>(free_.size()) + 1;
+    std::vector<Eigen::VectorXd> starts = {Eigen::VectorXd::Zero(n)};
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (const double side : {1.0, -1.0}) {
+        starts.emplace_back(Eigen::VectorXd::Zero(n));
+        starts.back()[i] = side * (i + 1 < n ? kExpectedChange : 1.0);
+      }
+    }
+    return starts;
+  }
+
+  /// Gauss-Newton steps to a minimum of the cost. `holds_lags`: single channels' lags stay 0 in the
+  /// steps, so that the parameters and the delay of all explain what they can.
+  std::pair<Eigen::VectorXd, double> descend(Eigen::VectorXd point, bool holds_lags) const {
+    constexpr int kMaxSteps = 8, kMaxTries = 4;
+    constexpr double kSmallFall = 0.02;
+    const double reach = std::log(kMaxChange);
+    std::vector<Simulated> at = simulate(point, kSearchedRuns);
+    double cost = calc_cost(at, point), damping = 1e-3;
+    for (int step = 0; step < kMaxSteps; ++step) {
+      const auto [information, gradient] = linearize(at, point, holds_lags);
+      const double before = cost;
+      for (int tries = 0; tries < kMaxTries; ++tries, damping *= 10.0) {
+        Eigen::MatrixXd damped = information;
+        damped.diagonal() *= 1.0 + damping;
+        Eigen::VectorXd next = point + damped.ldlt().solve(gradient);
+        const double most_delay = options_.max_lag / kDelayScale;
+        next.head(next.size() - 1) = next.head(next.size() - 1).cwiseMax(-reach).cwiseMin(reach);
+        next[next.size() - 1] = std::clamp(next[next.size() - 1], -most_delay, most_delay);
+        std::vector<Simulated> there = simulate(next, kSearchedRuns);
+        const double changed = calc_cost(there, next);
+        if (!(changed < cost)) continue;
+        point = next;
+        at = std::move(there);
+        cost = changed;
+        damping *= 0.01;
+        break;
+      }
+      if (before - cost < kSmallFall) break;
+    }
+    return {point, cost};
+  }
+
+  static double calc_cost(const std::vector<Simulated>& at, const Eigen::VectorXd& point) {
+    double cost = (point.head(point.size() - 1) / kExpectedChange).squaredNorm() +
+                  calc_lag_cost(get_delay(point));
     for (const Simulated& s : at) cost += s.correlation.best.cost;
     return cost;
   }
@@ -268,7 +310,9 @@ class Search {
     }
     const double prior = 1.0 / (kExpectedChange * kExpectedChange);
     Eigen::MatrixXd information = prior * Eigen::MatrixXd::Identity(n, n);
+    information(n - 1, n - 1) = 1e-6;  // the delay's cost is no parabola
     Eigen::VectorXd gradient = -prior * logs;
+    gradient[n - 1] = 0.0;
     for (std::size_t k = 0; k < channels_.size(); ++k) {
       const auto count = static_cast<Eigen::Index>(at[k].shape.size());
       if (count == 0) continue;
@@ -308,19 +352,21 @@ class Search {
 Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& free,
                            const AlignmentOptions& options) {
   const Search search(runs, free, options);
-  // A lag and a parameter may both explain a late channel: either may end in the better minimum.
-  const auto with_lags = search.minimize(false), without = search.minimize(true);
-  const Eigen::VectorXd& logs = with_lags.second < without.second ? with_lags.first : without.first;
+  const Eigen::VectorXd point = search.minimize();
+  const double delay = Search::get_delay(point);
   Alignment alignment;
-  alignment.values = search.list_values(logs);
-  const std::vector<Simulated> all = search.simulate(logs);
+  alignment.values = search.list_values(point);
+  // Without the delay, so that lags and what they explain are against the clock as it is.
+  Eigen::VectorXd undelayed = point;
+  undelayed[point.size() - 1] = 0.0;
+  const std::vector<Simulated> all = search.simulate(point), bare = search.simulate(undelayed);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Correlation& c = all[i].correlation;
     if (c.best.rho == 0.0) continue;
-    alignment.channels.push_back({search.channels()[i].run, search.channels()[i].channel,
-                                  std::abs(c.best.rho), c.best.factor, c.best.lag,
-                                  calc_rest(c.other_sign.rho) / calc_rest(c.best.rho),
-                                  calc_rest(c.rho_without_lag) / calc_rest(c.best.rho)});
+    alignment.channels.push_back(
+        {search.channels()[i].run, search.channels()[i].channel, std::abs(c.best.rho),
+         c.best.factor, c.best.lag + delay, calc_rest(c.other_sign.rho) / calc_rest(c.best.rho),
+         calc_rest(bare[i].correlation.rho_without_lag) / calc_rest(c.best.rho)});
   }
   return alignment;
 }
