@@ -13,6 +13,7 @@
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"
+#include "jobs/compare/check.h"
 #include "jobs/compare/folder.h"
 #include "jobs/compare/json.h"
 #include "jobs/compare/report.h"
@@ -44,30 +45,55 @@ void print_failures(const Comparison& comparison) {
   }
 }
 
+int run_check(const Arguments& arguments, const CampaignData& data) {
+  const std::vector<RecordingFinding> findings = check_campaign(data, find_threads(arguments));
+  print_notes(data.notes);
+  if (arguments.is_on("json")) {
+    std::cout << format_json(make_check_json(data, findings)) << "\n";
+  } else {
+    for (const RecordingFinding& finding : findings) std::cout << finding.describe() << "\n";
+    if (findings.empty()) {
+      std::cout << fmt::format("{} runs: nothing looks wrong\n", data.run_count());
+    }
+  }
+  if (findings.empty()) {
+    suggest_next({"strut", "compare", arguments.only_operand(), "-o", "comparison"});
+  }
+  return findings.empty() ? kExitDone : kExitNegative;
+}
+
 }  // namespace
 
 Arguments describe_compare() {
   Arguments arguments(
-      "strut compare CAMPAIGN.toml -o DIR [OPTIONS]",
+      "strut compare CAMPAIGN.toml -o DIR [OPTIONS]\n"
+      "       strut compare CAMPAIGN.toml --check [OPTIONS]",
       "Compares measured with simulated runs of a campaign: with the nominal model, and with the\n"
       "model calibrated to the runs for fitting. Reports the residuals of every channel by time,\n"
       "frequency band and state, and whether the model is adequate. Writes DIR/compare.json, CSV\n"
-      "tables, figures and report.html (docs/diagnosis.md).",
+      "tables, figures and report.html (docs/diagnosis.md).\n"
+      "Before any fit, the recordings are checked: signs, factors, lags, swapped channels, clocks,\n"
+      "sensors at their limits, copies. --check does only that; the exit code is then 1 if anything\n"
+      "is found.",
+      "  strut compare examples/campaigns/quarter_car.toml --check\n"
       "  strut compare examples/campaigns/quarter_car.toml -o comparison");
   arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
   arguments.add_option("output,o", ArgumentValue::folder("DIR"), "output folder of the comparison");
+  arguments.add_switch("check", "check the recordings, without a fit");
   arguments.add_option("threads", "N", "threads (default: all processors)");
   arguments.add_switch("force", "replace an existing comparison in DIR");
-  arguments.add_switch("json", "print compare.json instead of tables");
+  arguments.add_switch("json", "print compare.json, or the findings of --check, instead of text");
   return arguments;
 }
 
 int run_compare(const Arguments& arguments) {
   const CampaignData data = read_campaign_data(arguments.only_operand());
+  if (arguments.is_on("check")) return run_check(arguments, data);
   const CompareFolder folder = find_compare_folder(arguments, data);
   print_notes(data.notes);
   const int threads = find_threads(arguments);
   print_detail(fmt::format("{} runs, {} threads", data.run_count(), threads));
+  check_before_fit(data, threads);
   const Comparison comparison = [&] {
     const Stage stage("calibration and comparison");
     const ProgressLine line(fmt::format("calibrating, then comparing {} runs", data.run_count()));

@@ -15,6 +15,7 @@
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"
+#include "jobs/compare/check.h"
 #include "jobs/diagnose/folder.h"
 #include "jobs/diagnose/json.h"
 #include "jobs/diagnose/report.h"
@@ -94,6 +95,7 @@ int run_diagnose(const Arguments& arguments) {
   const CampaignData data = read_campaign_data(arguments.only_operand());
   const DiagnoseFolder folder = find_diagnose_folder(arguments, data);
   print_notes(data.notes);
+  check_before_fit(data, find_threads(arguments));
   const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
   print_notes(diagnosis.notes);
   const std::string json = format_json(make_verdict_json(data, diagnosis)) + "\n";

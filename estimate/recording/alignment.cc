@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/math/spread.h"
+#include "base/names/corners.h"
 #include "base/parallel/team.h"
 #include "estimate/simulate_run.h"
 
@@ -110,28 +111,25 @@ double find_vertex(double left, double middle, double right) {
   return std::clamp(0.5 * (left - right) / curvature, -1.0, 1.0);
 }
 
-/// A channel with its simulation of energy 1, on the even clock.
+/// A channel with its simulation, on the even clock.
 struct Simulated {
   Correlation correlation;
-  std::vector<double> shape;  // empty: not simulated
+  std::vector<double> shape;  // without its mean, of energy 1; empty: not simulated
+  double energy = 0.0;
 };
 
-Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
-                  const std::vector<double>& simulated, double max_lag, double delay) {
-  Simulated out;
-  Correlation& result = out.correlation;
-  std::vector<double> even = make_even(times, simulated, m.interval, m.count, delay);
-  const double energy = center(even);
-  if (!(energy > 0.0)) return out;
-  Spectrum product = transform(even, m.size);
-  for (double& v : even) v /= std::sqrt(energy);
-  out.shape = std::move(even);
-  for (std::size_t k = 0; k < product.size(); ++k)
+/// Against a simulation of energy 1, scaled to `energy`.
+Correlation correlate(const PreparedChannel& m, const std::vector<double>& shape, double energy,
+                      double max_lag) {
+  Correlation result;
+  Spectrum product = transform(shape, m.size);
+  for (std::size_t k = 0; k < product.size(); ++k) {
     product[k] = m.spectrum[k] * std::conj(product[k]);
+  }
   std::vector<double> cross;
   Eigen::FFT<double> fft;
   fft.inv(cross, product);
-  const double scale = 1.0 / std::sqrt(energy * m.energy);
+  const double scale = 1.0 / std::sqrt(m.energy);
   const auto reach = static_cast<std::ptrdiff_t>(
       std::min(max_lag / m.interval, 0.25 * static_cast<double>(m.count)));
   const auto size = static_cast<std::ptrdiff_t>(m.size);
@@ -160,6 +158,18 @@ Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
   result.best = is_negative ? negative : positive;
   result.other_sign = is_negative ? positive : negative;
   result.rho_without_lag = at(0);
+  return result;
+}
+
+Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
+                  const std::vector<double>& simulated, double max_lag, double delay) {
+  Simulated out;
+  std::vector<double> even = make_even(times, simulated, m.interval, m.count, delay);
+  out.energy = center(even);
+  if (!(out.energy > 0.0)) return out;
+  for (double& v : even) v /= std::sqrt(out.energy);
+  out.shape = std::move(even);
+  out.correlation = correlate(m, out.shape, out.energy, max_lag);
   return out;
 }
 
@@ -347,6 +357,37 @@ class Search {
   std::vector<PreparedChannel> channels_;
 };
 
+/// The part of a channel's name behind that of its corner; "" where it has none.
+std::string get_corner_quantity(const std::string& channel) {
+  for (const char* corner : kCornerNames) {
+    if (channel.starts_with(corner)) return channel.substr(std::string(corner).size());
+  }
+  return "";
+}
+
+std::vector<PossibleSwap> compare_swapped(const std::vector<MeasuredRun>& runs,
+                                          const std::vector<PreparedChannel>& channels,
+                                          const std::vector<Simulated>& all, double max_lag) {
+  std::vector<PossibleSwap> swaps;
+  const auto get_quantity = [&](const PreparedChannel& c) {
+    return get_corner_quantity(
+        runs[c.run].setup.info().channels[static_cast<std::size_t>(c.number)].name);
+  };
+  for (std::size_t a = 0; a < channels.size(); ++a) {
+    for (std::size_t b = a + 1; b < channels.size() && channels[b].run == channels[a].run; ++b) {
+      const std::string quantity = get_quantity(channels[a]);
+      if (quantity.empty() || quantity != get_quantity(channels[b])) continue;
+      if (all[a].shape.empty() || all[b].shape.empty()) continue;
+      const Correlation first = correlate(channels[a], all[b].shape, all[b].energy, max_lag);
+      const Correlation second = correlate(channels[b], all[a].shape, all[a].energy, max_lag);
+      swaps.push_back({channels[a].run, channels[a].channel, channels[b].channel,
+                       all[a].correlation.best.cost + all[b].correlation.best.cost -
+                           first.best.cost - second.best.cost});
+    }
+  }
+  return swaps;
+}
+
 }  // namespace
 
 Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& free,
@@ -360,6 +401,7 @@ Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vect
   Eigen::VectorXd undelayed = point;
   undelayed[point.size() - 1] = 0.0;
   const std::vector<Simulated> all = search.simulate(point), bare = search.simulate(undelayed);
+  alignment.swaps = compare_swapped(runs, search.channels(), all, options.max_lag);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Correlation& c = all[i].correlation;
     if (c.best.rho == 0.0) continue;

@@ -33,6 +33,13 @@ struct ChannelAlignment {
   double lag_ratio = 1.0;
 };
 
+/// Two channels of a run that could be swapped: their names differ by left and right, or front and
+/// rear.
+struct PossibleSwap {
+  std::size_t run = 0, first = 0, second = 0;  // the latter two in MeasuredRun::channels
+  double gain = 0.0;  // fall of the cost if each is compared with the other's simulation
+};
+
 struct AlignmentOptions {
   double max_lag = 0.3;  // s
   int threads = 1;
@@ -40,7 +47,8 @@ struct AlignmentOptions {
 
 struct Alignment {
   std::vector<ChannelAlignment> channels;  // by run and channel; those without motion are missing
-  std::vector<double> values;              // of the free parameters
+  std::vector<PossibleSwap> swaps;
+  std::vector<double> values;  // of the free parameters
 };
 
 /// `free`: parameters that all runs share, at their values in the model's file. Runs that cannot be

@@ -9,7 +9,7 @@
 
 namespace strut {
 
-/// Compares the runs with simulations in which the free parameters move as far as the shapes of the
+/// Compares the runs with simulations in which the parameters among the unknowns `free` move as far as the shapes of the
 /// channels demand (estimate/recording/alignment.h), and looks at the readings themselves:
 ///  - sign: most runs agree better with the negative channel;
 ///  - factor: above 1.9 or below 1 / 1.9, beyond what wear does;

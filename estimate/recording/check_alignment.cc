@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
@@ -160,6 +162,31 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
   }
 }
 
+/// Pairs that agree better when swapped in most runs; returns the channels of these.
+std::set<int> add_swaps(const std::vector<MeasuredRun>& runs, const Alignment& alignment,
+                        std::vector<RecordingFinding>& findings) {
+  constexpr double kMinGain = 2.0;
+  std::map<std::pair<int, int>, std::vector<double>> gains;
+  for (const PossibleSwap& swap : alignment.swaps) {
+    const auto& channels = runs[swap.run].channels;
+    gains[{channels[swap.first].channel, channels[swap.second].channel}].push_back(swap.gain);
+  }
+  std::set<int> swapped;
+  // The clearest first: each channel is in one pair.
+  std::vector<std::pair<double, std::pair<int, int>>> pairs;
+  for (const auto& [pair, list] : gains) pairs.emplace_back(calc_quantile(list, 0.5), pair);
+  std::sort(pairs.rbegin(), pairs.rend());
+  for (const auto& [gain, pair] : pairs) {
+    const auto [first, second] = pair;
+    if (gain < kMinGain || swapped.count(first) + swapped.count(second) > 0) continue;
+    swapped.insert({first, second});
+    findings.push_back({FindingKind::kSwapped, "", get_info(runs, first).name, gain,
+                        fmt::format("and {} look swapped", get_info(runs, second).name),
+                        "swap their columns"});
+  }
+  return swapped;
+}
+
 /// A sign that one run alone has.
 void add_single_signs(const std::vector<MeasuredRun>& runs, const ChannelSummary& c,
                       std::vector<RecordingFinding>& findings) {
@@ -180,7 +207,9 @@ void add_single_signs(const std::vector<MeasuredRun>& runs, const ChannelSummary
 std::vector<RecordingFinding> check_alignment(const std::vector<MeasuredRun>& runs,
                                               const Alignment& alignment) {
   std::vector<RecordingFinding> findings;
-  const std::vector<ChannelSummary> channels = summarize(runs, alignment);
+  const std::set<int> swapped = add_swaps(runs, alignment, findings);
+  std::vector<ChannelSummary> channels = summarize(runs, alignment);
+  std::erase_if(channels, [&](const ChannelSummary& c) { return swapped.count(c.channel) > 0; });
   if (channels.empty()) return findings;
   const bool common_sign = add_common_sign(runs, channels, findings);
   const bool common_factor = add_common_factor(runs, channels, findings);

@@ -19,6 +19,7 @@
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/settings.h"
+#include "jobs/compare/check.h"
 #include "jobs/identify/fit_report.h"
 #include "jobs/identify/result.h"
 #include "model_files/find_channel.h"
@@ -218,6 +219,7 @@ int identify_by_fit(const Arguments& arguments, const fs::path& vehicle,
   options.linearize.threads = static_cast<int>(arguments.integer_or("threads", 1, 1, 1024));
   print_detail(
       fmt::format("{} unknowns, {} threads", unknowns.all.size(), options.linearize.threads));
+  report_findings(check_recordings(runs, unknowns.all, options.linearize.threads));
   const FitResult fit = [&] {
     const Stage stage("fit");
     const ProgressLine line(fmt::format("fitting the simulation to {} runs", runs.size()));

@@ -1,0 +1,43 @@
+#include "jobs/compare/check.h"
+
+#include <fmt/format.h>
+
+#include "base/error/input_error.h"
+#include "jobs/cli/messages.h"
+#include "jobs/cli/progress.h"
+
+namespace strut {
+
+std::vector<RecordingFinding> check_campaign(const CampaignData& data, int threads) {
+  const Stage stage("check of the recordings");
+  const ProgressLine line(fmt::format("checking {} recordings", data.run_count()));
+  return check_recordings(data.runs, make_free_unknowns(data, data.list_runs(RunUse::kFit)),
+                          threads);
+}
+
+void report_findings(const std::vector<RecordingFinding>& findings) {
+  for (const RecordingFinding& finding : findings) print_note(finding.describe());
+}
+
+void check_before_fit(const CampaignData& data, int threads) {
+  const std::vector<RecordingFinding> findings = check_campaign(data, threads);
+  for (const RecordingFinding& finding : findings) {
+    if (finding.kind == FindingKind::kCopy) throw InputError(finding.describe());
+  }
+  report_findings(findings);
+}
+
+Json make_check_json(const CampaignData& data, const std::vector<RecordingFinding>& findings) {
+  Json list = Json::array();
+  for (const RecordingFinding& f : findings) {
+    list.push_back({{"kind", find_name(kFindingKinds, f.kind)},
+                    {"run", f.run},
+                    {"channel", f.channel},
+                    {"size", f.size},
+                    {"what", f.what},
+                    {"advice", f.advice}});
+  }
+  return {{"runs", data.run_count()}, {"findings", std::move(list)}};
+}
+
+}  // namespace strut
