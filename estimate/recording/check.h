@@ -15,7 +15,7 @@ namespace strut {
 ///  - factor: above 1.9 or below 1 / 1.9, beyond what wear does;
 ///  - lag: 10 ms or more of a channel against the others, 15 ms or more of all of them;
 ///  - swapped: two channels, of which each agrees better with the simulation of the other;
-///  - clock: intervals of 1.5 medians or more; jitter of a tenth of the interval or more;
+///  - clock: intervals of 1.5 medians or more, beyond the jitter; jitter of a tenth of the interval or more;
 ///  - saturation: plateaus at the largest or smallest reading that cut off a motion;
 ///  - quantization: steps above a tenth of the channel's standard deviation;
 ///  - mains: a line at 50 or 60 Hz or its double, well above its surroundings and the noise;

@@ -151,7 +151,7 @@ bool is_time_name(std::string_view name) {
 }
 
 ClockSummary summarize_clock(const std::vector<double>& times) {
-  constexpr double kGap = 1.5;
+  constexpr double kGap = 1.5, kJitters = 6.0;
   ClockSummary clock;
   clock.first = times.front();
   clock.last = times.back();
@@ -159,9 +159,12 @@ ClockSummary summarize_clock(const std::vector<double>& times) {
   intervals.reserve(times.size());
   for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
   clock.interval = calc_quantile(intervals, 0.5);
+  // A jitter of a standard deviation on both sides of the median.
+  const double jitter = 0.5 * (calc_quantile(intervals, 0.84) - calc_quantile(intervals, 0.16));
+  const double longest = std::max(kGap * clock.interval, clock.interval + kJitters * jitter);
   std::vector<double> regular;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    if (intervals[i] < kGap * clock.interval) {
+    if (intervals[i] < longest) {
       regular.push_back(intervals[i]);
       continue;
     }

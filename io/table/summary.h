@@ -14,7 +14,7 @@ struct ClockSummary {
   double first = 0.0, last = 0.0;  // s
   double interval = 0.0;           // median [s]
   double jitter = 0.0;             // standard deviation of the intervals without gaps [s]
-  std::size_t gaps = 0;            // intervals of 1.5 medians or more
+  std::size_t gaps = 0;            // intervals of 1.5 medians or more, beyond the jitter
   std::size_t dropped = 0;         // samples that these would have had
   double first_gap = 0.0;          // time before the first of them [s]
 };

@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+
+#include "diagnose/campaign/campaign_data.h"
+#include "estimate/recording/check.h"
+#include "estimate/recording/check_alignment.h"
+#include "tests/support/campaign_files.h"
+#include "tests/support/test_car.h"
+
+namespace strut {
+namespace {
+
+using Catch::Matchers::Contains;
+using test::QuarterTruth;
+using test::TemporaryFolder;
+
+/// Springs and dampers far from those of the model's file, and friction that it lacks.
+QuarterTruth make_worn(double stiffness_factor, double damping_factor) {
+  QuarterTruth truth;
+  truth.stiffness *= stiffness_factor;
+  truth.damping *= damping_factor;
+  truth.friction = 0.2;
+  truth.noise = 2e-5;
+  return truth;
+}
+
+/// Two recordings of that car; `change` alters every row of both.
+CampaignData read_worn(const QuarterTruth& truth, const test::ChangeRow& change = {}) {
+  const TemporaryFolder folder;
+  QuarterTruth other = truth;
+  other.amplitude *= 1.5;
+  other.seed = 2;
+  test::write_record(folder, "a.csv", test::record_quarter_car(truth), change);
+  test::write_record(folder, "b.csv", test::record_quarter_car(other), change);
+  return read_campaign_data(test::write_campaign(folder));
+}
+
+std::vector<RecordingFinding> check(const CampaignData& data) {
+  return check_recordings(data.runs, make_free_unknowns(data, {0}));
+}
+
+std::vector<RecordingFinding> check_changed(const test::ChangeRow& change) {
+  return check(read_worn(make_worn(0.7, 1.3), change));
+}
+
+std::vector<std::string> describe(const std::vector<RecordingFinding>& findings) {
+  std::vector<std::string> list;
+  for (const RecordingFinding& finding : findings) list.push_back(finding.describe());
+  return list;
+}
+
+/// Scales the cell of a row: 1 road, 2 unsprung, 3 sprung.
+test::ChangeRow scale_cell(std::size_t cell, double factor) {
+  return [=](std::size_t, std::array<std::string, 4>& cells) {
+    cells[cell] = test::print_number(factor * std::stod(cells[cell]));
+  };
+}
+
+using Texts = std::vector<std::string>;
+
+TEST_CASE("Wear and friction are no mistakes of a recording", "[reference]") {
+  for (const double stiffness : {0.6, 1.0, 1.4}) {
+    for (const double damping : {0.6, 1.4}) {
+      CAPTURE(stiffness, damping);
+      CHECK(describe(check(read_worn(make_worn(stiffness, damping)))) == Texts{});
+    }
+  }
+}
+
+TEST_CASE("Wrong signs and units are found in spite of wear", "[reference]") {
+  CHECK(describe(check_changed(scale_cell(3, -1.0))) ==
+        Texts{"sprung_position looks negated: sign = -1"});
+  CHECK(describe(check_changed(scale_cell(1, -1.0))) ==
+        Texts{"road_position looks negated: sign = -1"});
+  const auto large = check_changed(scale_cell(2, 9.81));
+  REQUIRE(large.size() == 1);
+  CHECK(large[0].kind == FindingKind::kFactor);
+  CHECK(large[0].channel == "unsprung_position");
+  CHECK(large[0].size == Approx(9.81).epsilon(0.1));
+  CHECK_THAT(check_changed(scale_cell(2, 100.0)).at(0).describe(), Contains("unit = \"cm\"?"));
+  const auto input = check_changed(scale_cell(1, 100.0));
+  REQUIRE(input.size() == 1);
+  CHECK(input[0].channel == "road_position");
+  CHECK_THAT(input[0].describe(), Contains("unit = \"cm\"?"));
+}
+
+/// Reads the cell from `rows` rows before.
+test::ChangeRow delay_cell(std::size_t cell, std::size_t rows) {
+  auto queue = std::make_shared<std::vector<std::string>>();
+  return [=](std::size_t row, std::array<std::string, 4>& cells) {
+    if (row == 0) queue->clear();
+    queue->push_back(cells[cell]);
+    cells[cell] = (*queue)[row < rows ? 0 : row - rows];
+  };
+}
+
+TEST_CASE("Late channels and late clocks are told apart", "[reference]") {
+  const auto single = check_changed(delay_cell(3, 4));  // 20 ms
+  REQUIRE(single.size() == 1);
+  CHECK(single[0].kind == FindingKind::kLag);
+  CHECK(single[0].channel == "sprung_position");
+  CHECK(single[0].size == Approx(0.020).margin(0.006));
+  const auto early = check_changed(delay_cell(1, 4));  // the input is late: all else is early
+  REQUIRE(early.size() == 1);
+  CHECK(early[0].channel.empty());
+  CHECK(early[0].size == Approx(-0.020).margin(0.006));
+  CHECK_THAT(early[0].describe(), Contains("is the input") && Contains("ms late?"));
+}
+
+TEST_CASE("A sensor at its limit, coarse readings and mains are found", "[unit]") {
+  const auto clip = check_changed([](std::size_t, std::array<std::string, 4>& cells) {
+    cells[3] = test::print_number(std::clamp(std::stod(cells[3]), -0.0015, 0.0015));
+  });
+  REQUIRE(clip.size() == 1);
+  CHECK_THAT(clip[0].describe(), Contains("sprung_position is cut off at 0.0015 in"));
+  const auto coarse = check_changed([](std::size_t, std::array<std::string, 4>& cells) {
+    cells[2] = test::print_number(5e-4 * std::round(std::stod(cells[2]) / 5e-4));
+  });
+  REQUIRE(coarse.size() == 1);
+  CHECK_THAT(coarse[0].describe(), Contains("unsprung_position has steps of 0.00050"));
+  const auto mains = check_changed([](std::size_t, std::array<std::string, 4>& cells) {
+    const double tone = 5e-5 * std::sin(2.0 * std::numbers::pi * 50.0 * std::stod(cells[0]));
+    cells[2] = test::print_number(std::stod(cells[2]) + tone);
+  });
+  REQUIRE(mains.size() == 1);
+  CHECK(mains[0].size == 50.0);
+  CHECK_THAT(mains[0].describe(), Contains("(and in 1 other runs)"));
+}
+
+TEST_CASE("Gaps and jitter of a clock are found", "[unit]") {
+  CampaignData data = read_worn(make_worn(0.7, 1.3));
+  MeasuredRun& run = data.runs[0];
+  const auto cut = [](std::vector<double>& v) { v.erase(v.begin() + 300, v.begin() + 303); };
+  cut(run.times);
+  for (MeasuredChannel& c : run.channels) cut(c.values);
+  const auto gap = check(data);
+  REQUIRE(gap.size() == 1);
+  CHECK(gap[0].kind == FindingKind::kDroppedSamples);
+  CHECK(gap[0].size == 3.0);
+  CHECK_THAT(gap[0].describe(),
+             Contains("a.csv: 3 samples are missing in 1 gaps, the first at 1.495"));
+  QuarterTruth truth = make_worn(0.7, 1.3);
+  truth.jitter = 0.0008;
+  const auto jitter = check(read_worn(truth));
+  REQUIRE(jitter.size() == 2);
+  CHECK(jitter[0].kind == FindingKind::kUnevenClock);
+}
+
+TEST_CASE("A held-out run that is a copy is found, also of a part", "[unit]") {
+  CampaignData data = read_worn(make_worn(0.7, 1.3));
+  data.runs[1].channels = data.runs[0].channels;
+  for (MeasuredChannel& c : data.runs[1].channels) {
+    std::rotate(c.values.begin(), c.values.begin() + 250, c.values.end());
+  }
+  std::vector<FindingKind> kinds;
+  for (const RecordingFinding& f : check(data)) kinds.push_back(f.kind);
+  CHECK(std::count(kinds.begin(), kinds.end(), FindingKind::kCopy) == 1);
+}
+
+/// A car's run with two channels, and how they agree with the simulation.
+struct CarAlignment {
+  std::vector<MeasuredRun> runs;
+  Alignment alignment;
+
+  CarAlignment() {
+    const Model car{test::make_paper_case()};
+    const auto front = find_channel(car.info(), "front_left_suspension_deflection");
+    const auto rear = find_channel(car.info(), "rear_left_suspension_deflection");
+    runs.push_back({"drive.csv", car, {0.0, 0.01}, {{front, 1e-4, {}}, {rear, 1e-4, {}}}});
+    alignment.channels = {{0, 0, 0.95, 1.1, 0.0, 5.0, 1.0}, {0, 1, 0.95, 0.9, 0.0, 5.0, 1.0}};
+  }
+  Texts describe() const { return strut::describe(check_alignment(runs, alignment)); }
+};
+
+TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
+  CarAlignment car;
+  CHECK(car.describe() == Texts{});
+  ChannelAlignment& rear = car.alignment.channels[1];
+  SECTION("a factor that wear explains") {
+    rear.factor = 1.85;
+    CHECK(car.describe() == Texts{});
+    rear.factor = 2.0;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 2.0 times what the model "
+                                  "predicts: scale = 0.50?"});
+  }
+  SECTION("a sign that the data hardly tell") {
+    rear.factor = -0.9;
+    rear.sign_ratio = 1.2;
+    CHECK(car.describe() == Texts{});
+    rear.sign_ratio = 2.0;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection looks negated: sign = -1"});
+  }
+  SECTION("lags") {
+    rear.lag = 0.02;
+    CHECK(car.describe() == Texts{});  // it explains nothing
+    rear.lag_ratio = 2.0;
+    CHECK(car.describe() ==
+          Texts{"rear_left_suspension_deflection is 20 ms late: a filter or a clock of its own?"});
+    car.alignment.channels[0].lag = 0.02;
+    car.alignment.channels[0].lag_ratio = 2.0;
+    CHECK(car.describe() ==
+          Texts{"all channels are 20 ms late: offset of time, or hit_time of the runs"});
+  }
+  SECTION("a channel that agrees with nothing") {
+    rear.factor = -3.0;
+    rear.correlation = 0.5;
+    CHECK(car.describe() == Texts{});
+  }
+  SECTION("swapped channels") {
+    car.alignment.swaps = {{0, 0, 1, 1.0}};
+    CHECK(car.describe() == Texts{});
+    car.alignment.swaps = {{0, 0, 1, 3.0}};
+    rear.lag = 0.13;
+    rear.lag_ratio = 4.0;
+    CHECK(car.describe() ==
+          Texts{"front_left_suspension_deflection and "
+                "rear_left_suspension_deflection look swapped: swap their columns"});
+  }
+}
+
+}  // namespace
+}  // namespace strut
