@@ -9,14 +9,11 @@
 
 namespace strut {
 
-Measurement read_history(const std::filesystem::path& file,
-                         const std::vector<ColumnInfo>& channels) {
-  MeasurementRequest request{{kTimeColumn}, {}, MeasuredPart::kHistory};
-  for (const ColumnInfo& channel : channels) request.required.push_back(channel.name);
-  Measurement history = read_measurement(file, request);
-  require_units(history, channels);
-  require_units(history, {{kTimeColumn, "s", ""}});
-  return history;
+Measurement read_history(const std::filesystem::path& file, const std::vector<ColumnInfo>& channels,
+                         const ColumnMap& map) {
+  std::vector<ColumnInfo> all = {{kTimeColumn, "s", ""}};
+  all.insert(all.end(), channels.begin(), channels.end());
+  return read_channels(file, MeasuredPart::kHistory, all, {}, map);
 }
 
 void require_ascending_times(const Measurement& history) {

@@ -122,8 +122,9 @@ std::vector<double> resample(const Measurement& measurement, const std::string& 
 
 }  // namespace
 
-MeasuredRecord read_record(const WindowTransform& window, const std::filesystem::path& file) {
-  const Measurement measurement = read_history(file, window.channels);
+MeasuredRecord read_record(const WindowTransform& window, const std::filesystem::path& file,
+                           const ColumnMap& map) {
+  const Measurement measurement = read_history(file, window.channels, map);
   require_ascending_times(measurement);
   require_rate(measurement, window.grid.interval);
   const TimeGrid grid = find_grid(window, measurement);

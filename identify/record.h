@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "io/store/column_map.h"
 #include "train/data/transform.h"
 
 namespace strut {
@@ -19,6 +20,7 @@ struct MeasuredRecord {
 /// six samples around each instant. A window that is not aligned is cut at its own times. Throws
 /// InputError that names the file, and the row where times do not ascend or samples lie too far
 /// apart; also where the rate is below the model's, a unit differs, or the record is too short.
-MeasuredRecord read_record(const WindowTransform& window, const std::filesystem::path& file);
+MeasuredRecord read_record(const WindowTransform& window, const std::filesystem::path& file,
+                           const ColumnMap& map = {});
 
 }  // namespace strut

@@ -10,15 +10,21 @@
 
 namespace strut {
 
-MeasuredRun read_measured_run(const std::filesystem::path& file, const Case& setup,
-                              const std::vector<int>& channels, const SensorNoise& noise) {
+std::vector<ColumnInfo> list_columns(const std::vector<int>& channels) {
   std::vector<ColumnInfo> columns;
   columns.reserve(channels.size());
   for (const int channel : channels) {
     const ChannelInfo& info = list_car_channels()[static_cast<std::size_t>(channel)];
     columns.push_back({info.name, info.unit, info.description});
   }
-  const Measurement history = read_history(file, columns);
+  return columns;
+}
+
+MeasuredRun read_measured_run(const std::filesystem::path& file, const Case& setup,
+                              const std::vector<int>& channels, const SensorNoise& noise,
+                              const ColumnMap& map) {
+  const std::vector<ColumnInfo> columns = list_columns(channels);
+  const Measurement history = read_history(file, columns, map);
   MeasuredRun run{file.string(), setup, history.values(kTimeColumn), {}};
   for (std::size_t c = 0; c < channels.size(); ++c) {
     run.channels.push_back({channels[c], noise[static_cast<std::size_t>(channels[c])],

@@ -7,13 +7,18 @@
 
 #include "estimate/measured_run.h"
 #include "estimate/sensor_noise.h"
+#include "io/store/column_map.h"
 
 namespace strut {
 
+/// Name, unit and meaning of channels (CarChannel).
+std::vector<ColumnInfo> list_columns(const std::vector<int>& channels);
+
 /// Reads the times and `channels` (CarChannel) of a file as a run of the car in `setup`, weighted
-/// by `noise`. Throws InputError that names the file.
+/// by `noise`; `map`: the file's columns. Throws InputError that names the file.
 MeasuredRun read_measured_run(const std::filesystem::path& file, const Case& setup,
-                              const std::vector<int>& channels, const SensorNoise& noise);
+                              const std::vector<int>& channels, const SensorNoise& noise,
+                              const ColumnMap& map = {});
 
 /// Keeps the samples from `from` to `to` [s]. Throws InputError where there are none.
 void keep_window(MeasuredRun& run, double from, double to);

@@ -83,9 +83,10 @@ void append_instant(const TrainedModel& model, const Measurement& history, doubl
       fmt::format("{} at {} s", history.path.string(), format_number(time)));
 }
 
-void append_table(const TrainedModel& model, const fs::path& file, Snapshots& snapshots) {
-  const Measurement table = read_measurement(file, {list_names(model.inputs), {kTimeColumn}});
-  require_units(table, model.inputs);
+void append_table(const TrainedModel& model, const fs::path& file, const ColumnMap& map,
+                  Snapshots& snapshots) {
+  const Measurement table =
+      read_channels(file, MeasuredPart::kSnapshot, model.inputs, {{kTimeColumn, "s", ""}}, map);
   if (table.find(kTimeColumn) != nullptr && table.row_count() > 1) {
     throw InputError(fmt::format(
         "{}: a time history (column '{}', {} rows); the model takes the readings at one "
@@ -98,13 +99,13 @@ void append_table(const TrainedModel& model, const fs::path& file, Snapshots& sn
 }  // namespace
 
 Snapshots read_snapshots(const TrainedModel& model, const std::vector<fs::path>& files,
-                         std::optional<double> event_time) {
+                         std::optional<double> event_time, const ColumnMap& map) {
   Snapshots snapshots;
   for (const fs::path& file : files) {
     if (event_time) {
-      append_instant(model, read_history(file, model.inputs), *event_time, snapshots);
+      append_instant(model, read_history(file, model.inputs, map), *event_time, snapshots);
     } else {
-      append_table(model, file, snapshots);
+      append_table(model, file, map, snapshots);
     }
   }
   return snapshots;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identify/identified.h"
+#include "io/store/column_map.h"
 #include "train/model/identifier.h"
 #include "train/model/model_file.h"
 
@@ -24,10 +25,11 @@ struct Snapshots {
 };
 
 /// Reads one snapshot per row of each file; with `event_time` [s] one per file, a history,
-/// interpolated linearly between the two samples around that time. Throws InputError that names
+/// interpolated linearly between the two samples around that time; `map`: the files' columns.
+/// Throws InputError that names
 /// the file and its fault; also for a history without `event_time`.
 Snapshots read_snapshots(const TrainedModel& model, const std::vector<std::filesystem::path>& files,
-                         std::optional<double> event_time);
+                         std::optional<double> event_time, const ColumnMap& map = {});
 
 /// Identifies the parameters from one snapshot; `inputs` holds one value for each of the model's.
 ///

@@ -5,6 +5,7 @@
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/unsealed.h"
+#include "jobs/identify/columns.h"
 #include "jobs/identify/fit.h"
 #include "jobs/identify/result.h"
 #include "jobs/identify/snapshot.h"
@@ -20,13 +21,15 @@ Arguments describe_identify() {
       "strut identify MODEL MEASURED... [OPTIONS]\n"
       "       strut identify VEHICLE.toml MEASURED... --maneuver MANEUVER.toml [OPTIONS]",
       "Identifies the parameters of a car from measured data, each with its 95 % interval.\n"
-      "  snapshot  MODEL is a network of `strut train`, MEASURED tables (CSV or HDF5) with a\n"
-      "            column for each of its inputs, one snapshot a row.\n"
+      "  snapshot  MODEL is a network of `strut train`, MEASURED tables with a column for each of\n"
+      "            its inputs, one snapshot a row.\n"
       "  window    MODEL is one of `strut train --window`, MEASURED histories with a column "
       "`time`\n"
       "            and one for each of its channels.\n"
       "  fit       The simulation of VEHICLE is fitted to histories with a column `time` [s] from\n"
       "            the start of the maneuver, and the --channels.\n"
+      "MEASURED are CSV or other text, HDF5 or MATLAB files. Columns have the names of the channels,\n"
+      "or --columns says which they are; units are SI unless the files or --columns say otherwise.\n"
       "Outside of the range that a network was trained on the value is `-`. The exit code is then\n"
       "1, as it is where a fit has not converged, or leaves a parameter undetermined or at a "
       "bound.",
@@ -36,7 +39,8 @@ Arguments describe_identify() {
       "      --set body_acceleration_z=-0.3 --set pitch_angle=0.008\n"
       "  strut identify vehicle.toml drive.csv --maneuver bump.toml --window 0.3:2");
   arguments.add_operand(ArgumentValue::file("MODEL|VEHICLE.toml", {"h5", "toml"}));
-  arguments.add_operands(ArgumentValue::file("MEASURED", {"csv", "h5", "hdf5"}));
+  arguments.add_operands(ArgumentValue::file("MEASURED", {"csv", "txt", "h5", "hdf5", "mat"}));
+  add_columns_option(arguments);
   add_snapshot_options(arguments);
   add_fit_options(arguments);
   add_result_options(arguments);

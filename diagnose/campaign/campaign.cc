@@ -11,7 +11,6 @@
 #include "base/text/nearest_name.h"
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
-#include "io/table/units.h"
 #include "model_files/read_model.h"
 
 namespace strut {
@@ -90,25 +89,12 @@ void read_input(const Table& table, const ModelInfo& model, CampaignColumn& c) {
 CampaignColumn read_column(const Table& columns, const std::string& channel,
                            const ModelInfo& model) {
   CampaignColumn c;
-  c.channel = channel;
-  c.si = find_channel_info(columns, model, channel).unit;
+  static_cast<MappedColumn&>(c) =
+      read_mapped_column(columns, channel, find_channel_info(columns, model, channel).unit);
   const Table table = columns.table(channel);
-  c.column = table.text_or("column", channel);
-  c.unit = table.text_or("unit", "");
-  try {
-    find_unit_scale(c.unit, c.si);
-  } catch (const InputError& e) {
-    throw table.error("unit", e.what());
-  }
-  c.sign = table.number_or("sign", 1.0);
-  c.has_sign = table.has("sign");
-  if (c.sign != 1.0 && c.sign != -1.0) throw table.error("sign", "must be 1 or -1");
-  c.scale = table.number_or("scale", 1.0);
-  c.has_scale = table.has("scale");
-  if (c.scale == 0.0) throw table.error("scale", "must not be 0");
-  c.offset = table.number_or("offset", 0.0);
   if (channel == kTime) return c;
   c.clock = table.text_or("clock", "");
+  c.delay = table.number_or("delay", 0.0);
   c.role = read_role(table, model, channel);
   c.optional = table.boolean_or("optional", false);
   if (c.role == ColumnRole::kInput) read_input(table, model, c);

@@ -11,19 +11,15 @@
 
 #include "estimate/sensor_error.h"
 #include "estimate/unknown.h"
+#include "io/store/column_map.h"
 #include "model/info/model_info.h"
 
 namespace strut {
 
 enum class ColumnRole { kInput, kOutput };
 
-/// One channel of the model and the column of the files that holds it:
-/// value = sign * (scale * SI(column)) + offset, in the channel's SI unit.
-struct CampaignColumn {
-  std::string channel, column;
-  std::string unit;  // of the column; "": what the file says, or SI
-  std::string si;    // SI unit of the channel
-  double sign = 1.0, scale = 1.0, offset = 0.0;
+/// One channel of the model and the column of the files that holds it.
+struct CampaignColumn : MappedColumn {
   std::optional<double> noise;  // standard deviation in the channel's SI unit; null: estimated
   ColumnRole role = ColumnRole::kOutput;
   bool optional = false;  // a file may lack it
@@ -31,9 +27,8 @@ struct CampaignColumn {
   Prior gain{1.0, 0.0};
   /// Half width of the local cubics that smooth an input [s]; null: chosen by its noise.
   std::optional<double> smooth;
-  bool has_sign = false;   // `sign` is given by the campaign
-  bool has_scale = false;  // `scale` is given by the campaign: without a unit, it includes that
-  std::string clock;       // column of its own times; "": the campaign's `time`
+  double delay = 0.0;  // s, of the readings against the clock
+  std::string clock;   // column of its own times; "": the campaign's `time`
 };
 
 enum class RunUse { kFit, kHoldOut };

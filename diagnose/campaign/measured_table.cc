@@ -10,46 +10,12 @@
 #include "base/text/format_number.h"
 #include "diagnose/campaign/move_to_clock.h"
 #include "io/store/measurement.h"
-#include "io/table/units.h"
 
 namespace strut {
 namespace {
 
 /// Minimum number of samples of a run.
 constexpr std::size_t kMinSamples = 20;
-
-/// Converts the cells of a column to the channel's SI unit.
-struct Conversion {
-  UnitScale unit;
-  double factor = 1.0, offset = 0.0;
-
-  double convert(double value) const {
-    return factor * (unit.factor * value + unit.offset) + offset;
-  }
-};
-
-/// The unit of a column is the campaign's or, if that gives neither unit nor scale, the file's.
-Conversion find_conversion(const Measurement& file, const CampaignColumn& c,
-                           std::vector<std::string>& notes) {
-  const std::string& stated = file.find(c.column)->unit;
-  const bool is_taken = c.unit.empty() && !c.has_scale;
-  Conversion conversion{{}, c.sign * c.scale, c.offset};
-  try {
-    conversion.unit = find_unit_scale(is_taken ? stated : c.unit, c.si);
-  } catch (const InputError& e) {
-    throw InputError(
-        fmt::format("{}: column '{}': {}; if the file is wrong, give unit in the "
-                    "campaign, [columns] {}",
-                    file.path.string(), c.column, e.what(), c.channel));
-  }
-  if (!c.unit.empty() && !stated.empty() && normalize_unit(c.unit) != normalize_unit(stated)) {
-    notes.push_back(
-        fmt::format("{}: {}: the file says that column '{}' is in {}; read in {}, as "
-                    "the campaign says",
-                    file.path.string(), c.channel, c.column, stated, c.unit));
-  }
-  return conversion;
-}
 
 /// Columns of one clock, with that first.
 Measurement read_columns(const Campaign& campaign, const CampaignRun& run,
@@ -72,7 +38,8 @@ std::vector<double> read_clock(const Campaign& campaign, const Measurement& file
   std::vector<double> times = file.values(clock);
   CampaignColumn column = campaign.time;
   column.column = clock;
-  const Conversion conversion = find_conversion(file, column, notes);
+  const ColumnConversion conversion =
+      find_conversion(file.path, file.find(clock)->unit, column, notes);
   while (!times.empty() && std::isnan(times.back())) times.pop_back();
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (std::isnan(times[i])) {
@@ -142,13 +109,17 @@ void add_columns(const Campaign& campaign, const Measurement& file, const std::s
     const CampaignColumn& c = campaign.columns[i];
     const CsvColumn* raw = file.find(c.column);
     if ((c.clock.empty() ? campaign.time.column : c.clock) != clock || raw == nullptr) continue;
-    const Conversion conversion = find_conversion(file, c, notes);
+    const ColumnConversion conversion = find_conversion(file.path, raw->unit, c, notes);
     std::vector<double> values(raw->values.begin(),
                                raw->values.begin() + static_cast<std::ptrdiff_t>(own_times.size()));
     for (double& value : values) value = conversion.convert(value);  // NaN stays NaN
-    const bool is_input = c.role == ColumnRole::kInput;
-    columns.push_back({i, c.clock.empty() ? std::move(values)
-                                          : move_to_clock(own_times, values, times, is_input)});
+    if (c.clock.empty() && c.delay == 0.0) {
+      columns.push_back({i, std::move(values)});
+      continue;
+    }
+    std::vector<double> own = own_times;
+    for (double& t : own) t -= c.delay;
+    columns.push_back({i, move_to_clock(own, values, times, c.role == ColumnRole::kInput)});
   }
 }
 
@@ -252,7 +223,7 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
     table.columns.push_back(take_column(timed.at, timed.values, rows));
     const MeasuredColumn& column = table.columns.back();
     if (c.role == ColumnRole::kOutput) check_varies(table.name, c, column);
-    if (column.missing == 0 || !c.clock.empty()) continue;
+    if (column.missing == 0 || !c.clock.empty() || c.delay != 0.0) continue;
     table.notes.push_back(fmt::format("{}: {}: {} of {} samples are missing", table.name, c.channel,
                                       column.missing, column.values.size()));
   }

@@ -15,9 +15,8 @@ std::vector<RecordingFinding> check_recordings(const std::vector<MeasuredRun>& r
   options.threads = threads;
   // The search changes parameters by factors.
   std::vector<Unknown> moved;
-  std::copy_if(free.begin(), free.end(), std::back_inserter(moved), [](const Unknown& u) {
-    return u.kind == UnknownKind::kParameter && u.start > 0.0;
-  });
+  std::copy_if(free.begin(), free.end(), std::back_inserter(moved),
+               [](const Unknown& u) { return u.kind == UnknownKind::kParameter && u.start > 0.0; });
   std::vector<RecordingFinding> findings;
   for (auto& some : {check_alignment(runs, align_recordings(runs, moved, options)),
                      check_clocks(runs), check_sensors(runs), check_copies(runs)}) {

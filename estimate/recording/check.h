@@ -9,13 +9,15 @@
 
 namespace strut {
 
-/// Compares the runs with simulations in which the parameters among the unknowns `free` move as far as the shapes of the
-/// channels demand (estimate/recording/alignment.h), and looks at the readings themselves:
+/// Compares the runs with simulations in which the parameters among the unknowns `free` move as far
+/// as the shapes of the channels demand (estimate/recording/alignment.h), and looks at the readings
+/// themselves:
 ///  - sign: most runs agree better with the negative channel;
 ///  - factor: above 1.9 or below 1 / 1.9, beyond what wear does;
 ///  - lag: 10 ms or more of a channel against the others, 15 ms or more of all of them;
 ///  - swapped: two channels, of which each agrees better with the simulation of the other;
-///  - clock: intervals of 1.5 medians or more, beyond the jitter; jitter of a tenth of the interval or more;
+///  - clock: intervals of 1.5 medians or more, beyond the jitter; jitter of a tenth of the interval
+///  or more;
 ///  - saturation: plateaus at the largest or smallest reading that cut off a motion;
 ///  - quantization: steps above a tenth of the channel's standard deviation;
 ///  - mains: a line at 50 or 60 Hz or its double, well above its surroundings and the noise;

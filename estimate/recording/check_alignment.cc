@@ -158,7 +158,8 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
     if (!has_lag(c, channels.size() > 1 ? kMaxLag : kMaxCommonLag)) continue;
     findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, c.lag,
                         fmt::format("is {}", describe_lag(c.lag)),
-                        "a filter or a clock of its own?"});
+                        fmt::format("delay = {}, if its clock is another; or a filter?",
+                                    format_significant(c.lag, 2))});
   }
 }
 

@@ -7,7 +7,6 @@
 
 #include "base/error/check.h"
 #include "io/table/mat_file.h"
-#include "io/table/units.h"
 
 namespace strut {
 namespace {
@@ -94,15 +93,6 @@ Measurement read_measurement(const fs::path& path, const MeasurementRequest& req
   take_columns(request, *file, measurement);
   check_columns(measurement, request.missing);
   return measurement;
-}
-
-void require_units(const Measurement& measurement, const std::vector<ColumnInfo>& expected) {
-  for (const ColumnInfo& column : expected) {
-    const std::string& unit = measurement.find(column.name)->unit;
-    if (unit.empty() || normalize_unit(unit) == column.unit) continue;
-    throw InputError(fmt::format("{}: {} is in {}; must be in {}", measurement.path.string(),
-                                 column.name, unit, column.unit));
-  }
 }
 
 }  // namespace strut

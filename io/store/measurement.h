@@ -48,7 +48,4 @@ std::unique_ptr<TableFile> open_table_file(const std::filesystem::path& path, Me
 /// values may be missing), columns of different lengths, or no rows.
 Measurement read_measurement(const std::filesystem::path& path, const MeasurementRequest& request);
 
-/// Throws InputError if a column of `expected`, all of which must exist, has another unit.
-void require_units(const Measurement& measurement, const std::vector<ColumnInfo>& expected);
-
 }  // namespace strut

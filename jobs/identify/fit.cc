@@ -20,6 +20,7 @@
 #include "jobs/cli/progress.h"
 #include "jobs/cli/settings.h"
 #include "jobs/compare/check.h"
+#include "jobs/identify/columns.h"
 #include "jobs/identify/fit_report.h"
 #include "jobs/identify/result.h"
 #include "model_files/find_channel.h"
@@ -85,6 +86,7 @@ std::vector<MeasuredRun> read_runs(const Arguments& arguments, const fs::path& v
   }
   const std::vector<int> channels = read_channels(arguments);
   const SensorNoise noise = read_noise(arguments, channels);
+  const ColumnMap map = read_columns_option(arguments, list_columns(channels));
   std::vector<MeasuredRun> runs;
   runs.reserve(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -92,7 +94,7 @@ std::vector<MeasuredRun> read_runs(const Arguments& arguments, const fs::path& v
                             arguments.list("set")};
     const Case setup = load_case(source);
     prepare_case(source, setup);  // names the file of a car that cannot stand
-    runs.push_back(read_measured_run(files[i], setup, channels, noise));
+    runs.push_back(read_measured_run(files[i], setup, channels, noise, map));
     keep_window_of(arguments, runs.back());
     note_constant_channels(runs.back());
   }

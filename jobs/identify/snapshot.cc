@@ -10,6 +10,7 @@
 #include "identify/snapshot.h"
 #include "io/store/shard_layout.h"
 #include "jobs/cli/settings.h"
+#include "jobs/identify/columns.h"
 #include "jobs/identify/result.h"
 
 namespace strut {
@@ -54,7 +55,7 @@ Snapshots read_measured(const Arguments& arguments, const TrainedModel& model,
   }
   std::optional<double> event_time;
   if (arguments.has("event-time")) event_time = arguments.number_or("event-time", 0.0, Range{});
-  return read_snapshots(model, files, event_time);
+  return read_snapshots(model, files, event_time, read_columns_option(arguments, model.inputs));
 }
 
 }  // namespace

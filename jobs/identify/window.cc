@@ -4,6 +4,7 @@
 
 #include "base/error/input_error.h"
 #include "identify/window.h"
+#include "jobs/identify/columns.h"
 #include "jobs/identify/result.h"
 
 namespace strut {
@@ -17,11 +18,12 @@ int identify_by_window(const Arguments& arguments, const TrainedModel& model,
     throw InputError(fmt::format(
         "--{}: for snapshots only; this model takes a window of a time history", option));
   }
+  const ColumnMap map = read_columns_option(arguments, model.window->channels);
   const Identifier identifier(model);
   std::vector<IdentifiedRow> rows;
   rows.reserve(files.size());
   for (const std::filesystem::path& file : files) {
-    rows.push_back(identify_record(model, identifier, read_record(*model.window, file),
+    rows.push_back(identify_record(model, identifier, read_record(*model.window, file, map),
                                    arguments.is_on("extrapolate")));
     rows.back().source = file.string();
   }

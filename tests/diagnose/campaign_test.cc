@@ -8,8 +8,8 @@
 
 #include "base/error/input_error.h"
 #include "diagnose/campaign/campaign_data.h"
-#include "io/table/units.h"
 #include "io/format/hdf5.h"
+#include "io/table/units.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/test_car.h"
 

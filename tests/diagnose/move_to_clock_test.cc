@@ -69,6 +69,22 @@ TEST_CASE("A campaign reads channels of different rates from one file", "[io]") 
   CHECK_NOTHROW(read_campaign_data(test::write_campaign(folder, text)));
 }
 
+TEST_CASE("A channel's delay is taken back", "[io]") {
+  const TemporaryFolder folder;
+  const test::QuarterRecord record = test::record_quarter_car({});
+  test::QuarterRecord late = record;
+  for (std::size_t i = 0; i < late.sprung.size(); ++i) {
+    late.sprung[i] = record.sprung[i < 4 ? 0 : i - 4];  // 20 ms
+  }
+  for (const char* name : {"a.csv", "b.csv"}) test::write_record(folder, name, late);
+  CampaignText text;
+  text.sprung = "{ column = \"sprung\", delay = 0.02 }";
+  const CampaignData data = read_campaign_data(test::write_campaign(folder, text));
+  const MeasuredColumn& body = *data.tables[0].find(data.campaign.columns, "sprung_position");
+  CHECK(body.values[100] == Approx(record.sprung[100]).margin(1e-9));
+  CHECK(std::isnan(body.values.back()));
+}
+
 TEST_CASE("A column in another quantity's unit is refused", "[io]") {
   const TemporaryFolder folder;
   for (const char* name : {"a.csv", "b.csv"}) {

@@ -198,8 +198,9 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
     rear.lag = 0.02;
     CHECK(car.describe() == Texts{});  // it explains nothing
     rear.lag_ratio = 2.0;
-    CHECK(car.describe() ==
-          Texts{"rear_left_suspension_deflection is 20 ms late: a filter or a clock of its own?"});
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 20 ms late: delay = 0.020, "
+                                  "if its clock is another; "
+                                  "or a filter?"});
     car.alignment.channels[0].lag = 0.02;
     car.alignment.channels[0].lag_ratio = 2.0;
     CHECK(car.describe() ==

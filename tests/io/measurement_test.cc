@@ -23,9 +23,6 @@ TEST_CASE("Measured columns come from CSV with their lines", "[io]") {
   CHECK(m.find("d") == nullptr);
   CHECK(m.row_count() == 2);
   CHECK(m.locate(1) == file.string() + ":5");
-  CHECK_NOTHROW(require_units(m, {{"a", "m", ""}, {"b", "kg", ""}}));  // b has none
-  CHECK_THROWS_WITH(require_units(m, {{"a", "mm", ""}}),
-                    Contains("m.csv: a is in m; must be in mm"));
   CHECK_THROWS_WITH(read_measurement(file, {{"bb"}}),
                     Contains("no column 'bb' among a, b, c; did you mean 'b'?"));
   CHECK_THROWS_WITH(read_measurement(folder.write("n.csv", "a,b\n1,nan\n"), {{"b"}}),
