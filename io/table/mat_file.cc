@@ -16,6 +16,9 @@ constexpr int kMaxDepth = 4;
 /// Columns of a matrix that is taken for a table.
 constexpr std::size_t kMaxTableColumns = 1024;
 
+/// Deflate packs at most 1032 to 1.
+constexpr std::size_t kMaxPacking = 1040;
+
 struct CloseMat {
   void operator()(mat_t* file) const { Mat_Close(file); }
   void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
@@ -52,7 +55,8 @@ bool is_numeric(const matvar_t& v) {
 
 class MatFile : public TableFile {
  public:
-  explicit MatFile(const fs::path& path) : path_(path) {
+  explicit MatFile(const fs::path& path)
+      : path_(path), max_values_(kMaxPacking * fs::file_size(path)) {
     const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (file == nullptr) throw InputError(path.string() + ": damaged, or not a MATLAB file");
     for (;;) {
@@ -106,6 +110,10 @@ class MatFile : public TableFile {
     const std::size_t rows = v.dims[0], columns = v.dims[1], count = rows * columns;
     const auto size = static_cast<std::size_t>(std::max(v.data_size, 0));
     if (count == 0 || size == 0 || v.nbytes / size < count) return;
+    if (rows > max_values_ || columns > max_values_ || count > max_values_) {
+      throw InputError(fmt::format("{}: {}: damaged: {} by {} values do not fit into this file",
+                                   path_.string(), name, rows, columns));
+    }
     const std::vector<double> values = copy_values(v, count);
     if (values.empty()) return;
     if (rows == 1 || columns == 1) {
@@ -122,6 +130,7 @@ class MatFile : public TableFile {
   }
 
   fs::path path_;
+  std::size_t max_values_;  // that the file's bytes can hold
   std::vector<CsvColumn> columns_;
 };
 

@@ -89,6 +89,11 @@ TEST_CASE("A damaged MATLAB file is an input error", "[io]") {
     CAPTURE(size);
     CHECK_THROWS_AS(open_mat_file(folder.write("m.mat", whole.substr(0, size))), InputError);
   }
+  // A number of rows that no file of this size holds
+  std::string huge = whole;
+  const std::size_t rows = whole.find(std::string{'\3', '\0', '\0', '\0', '\1'});
+  huge.replace(rows, 4, std::string{'\0', '\0', '\0', '\x20'});
+  CHECK_THROWS_AS(open_mat_file(folder.write("m.mat", huge)), InputError);
 }
 
 TEST_CASE("Formats that are not read are named, with the way to convert them", "[io]") {
