@@ -72,8 +72,10 @@ Arguments describe_compare() {
       "model calibrated to the runs for fitting. Reports the residuals of every channel by time,\n"
       "frequency band and state, and whether the model is adequate. Writes DIR/compare.json, CSV\n"
       "tables, figures and report.html (docs/diagnosis.md).\n"
-      "Before any fit, the recordings are checked: signs, factors, lags, swapped channels, clocks,\n"
-      "sensors at their limits, copies. --check does only that; the exit code is then 1 if anything\n"
+      "Before any fit, the recordings are checked: signs, factors, lags, swapped channels, "
+      "clocks,\n"
+      "sensors at their limits, copies. --check does only that; the exit code is then 1 if "
+      "anything\n"
       "is found.",
       "  strut compare examples/campaigns/quarter_car.toml --check\n"
       "  strut compare examples/campaigns/quarter_car.toml -o comparison");

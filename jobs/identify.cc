@@ -28,8 +28,10 @@ Arguments describe_identify() {
       "            and one for each of its channels.\n"
       "  fit       The simulation of VEHICLE is fitted to histories with a column `time` [s] from\n"
       "            the start of the maneuver, and the --channels.\n"
-      "MEASURED are CSV or other text, HDF5 or MATLAB files. Columns have the names of the channels,\n"
-      "or --columns says which they are; units are SI unless the files or --columns say otherwise.\n"
+      "MEASURED are CSV or other text, HDF5 or MATLAB files. Columns have the names of the "
+      "channels,\n"
+      "or --columns says which they are; units are SI unless the files or --columns say "
+      "otherwise.\n"
       "Outside of the range that a network was trained on the value is `-`. The exit code is then\n"
       "1, as it is where a fit has not converged, or leaves a parameter undetermined or at a "
       "bound.",

@@ -6,8 +6,8 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
-#include "io/table/csv.h"
 #include "io/format/toml_document.h"
+#include "io/table/csv.h"
 #include "model/error/model_error.h"
 #include "model_files/choices.h"
 #include "model_files/parameters.h"

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/text/build_info.h"
-#include "io/table/csv.h"
 #include "io/format/hdf5.h"
+#include "io/table/csv.h"
 #include "jobs/cli/interrupt.h"
 
 namespace strut {

@@ -5,9 +5,9 @@
 
 #include "diagnose/campaign/campaign_data.h"
 #include "estimate/sensor_noise.h"
-#include "io/table/csv.h"
 #include "io/format/toml_text.h"
 #include "io/store/measurement.h"
+#include "io/table/csv.h"
 #include "model/kernel/simulation.h"
 #include "model_files/named_files.h"
 #include "model_files/parameters.h"

@@ -84,8 +84,8 @@ TEST_CASE("Snapshots of a history are refused without an instant, or at none of 
   CHECK_THROWS_WITH(read_snapshots(model, {write_history(folder, model, x, {0.0, 0.1, 0.1})}, 0.05),
                     Contains("drive.csv:5: time must ascend"));
   CHECK_THROWS_WITH(
-      read_snapshots(model, {write_history(folder, model, x, {0.0, 0.1, 0.3}, "ms")}, 0.05),
-      Contains("time is in ms; must be in s"));
+      read_snapshots(model, {write_history(folder, model, x, {0.0, 0.1, 0.3}, "mm")}, 0.05),
+      Contains("column 'time': unit \"mm\""));
 }
 
 TEST_CASE("Identified parameters are written with their bounds, unknown numbers as nan", "[unit]") {

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <cstdio>
 
-#include "io/table/csv.h"
 #include "io/format/hdf5.h"
 #include "io/format/json.h"
+#include "io/table/csv.h"
 #include "jobs/bench/cases.h"
 #include "model/channel/car_channels.h"
 #include "tests/jobs/check_hint.h"

@@ -176,16 +176,19 @@ TEST_CASE("The example campaigns are complete except for their recordings", "[io
 
 TEST_CASE("A damper on a crank is compared by its force", "[io][threads]") {
   const test::TemporaryFolder folder;
-  std::string text = "t_s,disp_mm,force_N,temp_C\n";
-  for (int i = 0; i < 3000; ++i) {
-    const double t = std::round(i / 300.0 * 1e4) / 1e4, w = 6.6;
-    const double force = 1500.0 * 0.0187 * w * std::cos(w * i / 300.0) + 40.0 +
-                         0.5 * test::calc_test_normal(1, 0, static_cast<std::uint64_t>(i));
-    text += test::print_number(t) + "," + test::print_number(18.7 * std::sin(w * i / 300.0)) + "," +
-            test::print_number(force) + ",25\n";
-  }
-  folder.write("trial_1.csv", text);
-  folder.write("trial_2.csv", text);
+  const auto record = [](std::uint64_t seed) {
+    std::string text = "t_s,disp_mm,force_N,temp_C\n";
+    for (int i = 0; i < 3000; ++i) {
+      const double t = std::round(i / 300.0 * 1e4) / 1e4, w = 6.6;
+      const double force = 1500.0 * 0.0187 * w * std::cos(w * i / 300.0) + 40.0 +
+                           0.5 * test::calc_test_normal(seed, 0, static_cast<std::uint64_t>(i));
+      text += test::print_number(t) + "," + test::print_number(18.7 * std::sin(w * i / 300.0)) +
+              "," + test::print_number(force) + ",25\n";
+    }
+    return text;
+  };
+  folder.write("trial_1.csv", record(1));
+  folder.write("trial_2.csv", record(2));
   std::string campaign = test::read_text(kExamples + "/campaigns/damper_dyno.toml");
   campaign.replace(campaign.find("../rigs"), 7, kExamples + "/rigs");
   const test::Outcome outcome = run_program(

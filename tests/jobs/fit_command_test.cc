@@ -83,8 +83,8 @@ TEST_CASE("identify by a fit refuses wrong input", "[io]") {
       folder.write("nan.csv", "time,imu_acceleration_z,imu_rate_y\n0.5,nan,0\n");
   const std::string rows = "0.5,9.8,0\n0.6,9.8,0\n", names = "time,imu_acceleration_z,imu_rate_y\n";
   const std::string late = folder.write("late.csv", names + "100.5,9.8,0\n101,9.8,0\n");
-  const std::string unit = folder.write("unit.csv", names + "# units: s,g,rad/s\n" + rows);
-  const std::string clock = folder.write("clock.csv", names + "# units: ms,,\n" + rows);
+  const std::string unit = folder.write("unit.csv", names + "# units: s,N,rad/s\n" + rows);
+  const std::string clock = folder.write("clock.csv", names + "# units: mm,,\n" + rows);
   const std::string taken = folder.write("taken.csv", "mine");
   const std::pair<std::string, std::string> cases[] = {
       {"identify " + kVehicle + " " + good, "--maneuver: missing"},
@@ -103,8 +103,8 @@ TEST_CASE("identify by a fit refuses wrong input", "[io]") {
       {fit(good) + " --prior speed=20", "NAME=MEAN,SIGMA"},
       {fit(good) + " --prior hit_time=0,0", "sigma must be > 0"},
       {fit(late), "time runs from 100.5 to 101 s, the maneuver from 0 to 3 s"},
-      {fit(unit), "unit.csv: imu_acceleration_z is in g; must be in m/s^2"},
-      {fit(clock), "clock.csv: time is in ms; must be in s"},
+      {fit(unit), "unit.csv: column 'imu_acceleration_z': unit \"N\""},
+      {fit(clock), "clock.csv: column 'time': unit \"mm\""},
       {fit(good) + " -o " + good + " --force", "is an input of this command"},
       {fit(good) + " -o " + taken, "taken.csv: exists; --force replaces it"},
       {"identify " + kVehicle + " " + good + " --maneuver " + other + " --force -o " + other,

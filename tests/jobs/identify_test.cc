@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "base/text/format_number.h"
-#include "io/table/csv.h"
 #include "io/format/hdf5.h"
+#include "io/table/csv.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"
 #include "tests/support/test_model.h"
@@ -201,8 +201,8 @@ TEST_CASE("identify refuses what it cannot read, and says what is allowed", "[io
   check_refused(write("body_position_z,body_velocity_z,body_acceleration_z,pitch_angel\n1,2,3,4\n"),
                 {"a.csv: no column 'pitch_angle'", "did you mean 'pitch_angel'?"});
   check_refused(write(names + "1,2,3,inf\n"), {"a.csv:2: pitch_angle = 'inf'"});
-  check_refused(write(names + "# units: m,m/s,g,rad\n1,2,3,4\n"),
-                {"body_acceleration_z is in g; must be in m/s^2"});
+  check_refused(write(names + "# units: m,m/s,N,rad\n1,2,3,4\n"),
+                {"column 'body_acceleration_z': unit \"N\"", "allowed: m/s^2"});
   check_refused(write(names + "1,2,3,4\n") + desk.set(x), {"--set", "no file beside it"});
   CHECK_THAT(run_program("identify").messages, Contains("MODEL: missing"));
   CHECK_THAT(run_program("identify " + write(names)).messages,

@@ -3,8 +3,8 @@
 #include <fstream>
 
 #include "identify/window.h"
-#include "io/table/csv.h"
 #include "io/store/shard_layout.h"
+#include "io/table/csv.h"
 #include "tests/jobs/window_sweep.h"
 #include "train/model/model_file.h"
 #include "train/window/rows.h"
@@ -162,11 +162,11 @@ TEST_CASE("identify says what a record lacks for a window", "[io][slow]") {
   std::ofstream(folder / "back.csv") << "time,imu_acceleration_z,imu_rate_y\n0,9,0\n0,9,0\n";
   check(folder / "back.csv", {"back.csv:3", "time must ascend"});
   std::ofstream(folder / "unit.csv")
-      << "time,imu_acceleration_z,imu_rate_y\n# units: s,g,rad/s\n0,1,0\n0.002,1,0\n";
-  check(folder / "unit.csv", {"unit.csv: imu_acceleration_z is in g; must be in m/s^2"});
+      << "time,imu_acceleration_z,imu_rate_y\n# units: s,N,rad/s\n0,1,0\n0.002,1,0\n";
+  check(folder / "unit.csv", {"unit.csv: column 'imu_acceleration_z': unit \"N\""});
   std::ofstream(folder / "clock.csv")
-      << "time,imu_acceleration_z,imu_rate_y\n# units: ms,m/s^2,rad/s\n0,1,0\n2,1,0\n";
-  check(folder / "clock.csv", {"clock.csv: time is in ms; must be in s"});
+      << "time,imu_acceleration_z,imu_rate_y\n# units: mm,m/s^2,rad/s\n0,1,0\n2,1,0\n";
+  check(folder / "clock.csv", {"clock.csv: column 'time': unit \"mm\""});
   std::ofstream(folder / "nan.csv") << "time,imu_acceleration_z,imu_rate_y\n0,9,nan\n0.002,9,0\n";
   check(folder / "nan.csv", {"nan.csv:2: imu_rate_y = 'nan': must be a finite number"});
 }
