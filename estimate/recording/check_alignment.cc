@@ -44,14 +44,19 @@ double calc_median(const std::vector<const ChannelAlignment*>& runs, const Value
 std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
                                       const Alignment& alignment) {
   std::map<int, ChannelSummary> channels;
+  std::map<int, std::size_t> measured;
   for (const ChannelAlignment& a : alignment.channels) {
-    if (a.correlation < kComparable) continue;
     const int number = runs[a.run].channels[a.channel].channel;
+    ++measured[number];
+    if (a.correlation < kComparable) continue;
     channels[number].channel = number;
     channels[number].runs.push_back(&a);
   }
   std::vector<ChannelSummary> list;
   for (auto& [number, c] : channels) {
+    // Of a motion that the model does not have, such as roll over a straight bump, single runs may
+    // agree by chance.
+    if (2 * c.runs.size() <= measured[number]) continue;
     const auto negative = std::count_if(c.runs.begin(), c.runs.end(), [](const auto* run) {
       return run->factor < 0.0 && run->sign_ratio >= kMinSignRatio;
     });

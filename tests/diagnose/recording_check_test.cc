@@ -211,6 +211,15 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
     rear.correlation = 0.5;
     CHECK(car.describe() == Texts{});
   }
+  SECTION("a channel that agrees in one run of three") {
+    for (const std::size_t run : {1U, 2U}) {
+      car.runs.push_back(car.runs[0]);
+      car.alignment.channels.push_back({run, 0, 0.95, 1.1, 0.0, 5.0, 1.0});
+      car.alignment.channels.push_back({run, 1, 0.1, 1.0, 0.0, 1.0, 1.0});
+    }
+    car.alignment.channels[1].factor = -3.0;
+    CHECK(car.describe() == Texts{});
+  }
   SECTION("swapped channels") {
     car.alignment.swaps = {{0, 0, 1, 1.0}};
     CHECK(car.describe() == Texts{});
