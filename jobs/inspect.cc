@@ -48,6 +48,7 @@ int run_inspect(const Arguments& arguments) {
     output = find_output_file(arguments, inputs);
   }
   std::vector<InspectedFile> files;
+  files.reserve(names.size());
   for (const std::string& name : names) {
     files.push_back({name, summarize_table(*open_table_file(name, MeasuredPart::kHistory))});
   }

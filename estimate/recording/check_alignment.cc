@@ -145,6 +145,7 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
               std::vector<RecordingFinding>& findings) {
   const bool is_driven = runs.front().setup.info().is_driven_by_inputs();
   std::vector<double> lags;
+  lags.reserve(channels.size());
   for (const ChannelSummary& c : channels) lags.push_back(c.lag);
   const double common = calc_quantile(lags, 0.5);
   const bool all_late =
@@ -180,6 +181,7 @@ std::set<int> add_swaps(const std::vector<MeasuredRun>& runs, const Alignment& a
   std::set<int> swapped;
   // The clearest first: each channel is in one pair.
   std::vector<std::pair<double, std::pair<int, int>>> pairs;
+  pairs.reserve(gains.size());
   for (const auto& [pair, list] : gains) pairs.emplace_back(calc_quantile(list, 0.5), pair);
   std::sort(pairs.rbegin(), pairs.rend());
   for (const auto& [gain, pair] : pairs) {

@@ -243,6 +243,7 @@ std::vector<RecordingFinding> check_copies(const std::vector<MeasuredRun>& runs)
   constexpr double kMost = 0.5;
   std::vector<RecordingFinding> findings;
   std::vector<std::vector<std::uint64_t>> passages;
+  passages.reserve(runs.size());
   for (const MeasuredRun& run : runs)
     passages.push_back(list_passages(run.channels.front().values));
   for (std::size_t a = 0; a < runs.size(); ++a) {

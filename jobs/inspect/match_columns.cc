@@ -135,6 +135,7 @@ std::vector<ColumnMatch> match_columns(const ModelInfo& model, const TableSummar
   std::sort(found.begin(), found.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<ColumnMatch> matches;
+  matches.reserve(found.size());
   for (auto& [channel, match] : found) matches.push_back(std::move(match));
   return matches;
 }

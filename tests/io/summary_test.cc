@@ -22,6 +22,7 @@ TEST_CASE("A clock's rate, jitter and gaps are measured", "[io]") {
   CHECK(clock.dropped == 3);
   CHECK(clock.first_gap == Approx(0.39));
   std::vector<double> uneven;
+  uneven.reserve(100);
   for (int i = 0; i < 100; ++i) uneven.push_back(0.01 * i + (i % 2 == 0 ? 0.003 : 0.0));
   CHECK(summarize_clock(uneven).gaps == 0);  // intervals of 7 and 13 ms
   CHECK(summarize_clock(uneven).jitter == Approx(0.003).epsilon(0.01));
