@@ -22,18 +22,18 @@ namespace {
 
 bool may_share_lanes(const DrivenTask& a, const DrivenTask& b) {
   return a.failure.empty() && b.failure.empty() && a.run == b.run &&
-         a.variant.gain == b.variant.gain && a.sampling.step == b.sampling.step &&
+         a.variant.inputs == b.variant.inputs && a.sampling.step == b.sampling.step &&
          a.sampling.fine_step == b.sampling.fine_step;
 }
 
-/// The run's inputs times their gains.
-std::vector<InputSignal> scale_inputs(const DrivenTask& task) {
-  std::vector<InputSignal> scaled = task.run->setup.rig().inputs;
-  for (InputSignal& signal : scaled) {
+/// The run's inputs with their corrections.
+std::vector<InputSignal> correct_inputs(const DrivenTask& task) {
+  std::vector<InputSignal> corrected = task.run->setup.rig().inputs;
+  for (InputSignal& signal : corrected) {
     const int input = find_input(task.run->setup.info(), signal.channel);
-    scale_signal(signal, task.variant.gain[static_cast<std::size_t>(input)]);
+    correct_signal(signal, task.variant.inputs[static_cast<std::size_t>(input)]);
   }
-  return scaled;
+  return corrected;
 }
 
 using Take = std::function<void(std::size_t, const DrivenResult&)>;
@@ -58,7 +58,7 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
   for (std::size_t i = first; i < end; ++i) specs.push_back(&tasks[i].variant.rig);
   try {
     const LaneResults lanes = list_kernels().front().run_rigs(
-        specs.data(), static_cast<int>(specs.size()), scale_inputs(common), step, plan);
+        specs.data(), static_cast<int>(specs.size()), correct_inputs(common), step, plan);
     for (std::size_t i = first; i < end; ++i) {
       take(i, DrivenResult(tasks[i], lanes, static_cast<int>(i - first)));
     }
@@ -76,17 +76,14 @@ void simulate_together(const std::vector<DrivenTask>& tasks, std::size_t first, 
 DrivenVariant make_variant(const MeasuredRun& run, std::size_t index,
                            const std::vector<Unknown>& unknowns,
                            const std::vector<double>& values) {
-  DrivenVariant variant{run.setup.rig().rig, {}};
-  variant.gain.fill(1.0);
+  DrivenVariant variant{run.setup.rig().rig,
+                        list_corrections(unknowns, values, static_cast<int>(index))};
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
     if (!belongs(u, index)) continue;
     if (u.kind == UnknownKind::kParameter) set_rig_parameter(variant.rig, u.name, values[i]);
     if (u.kind == UnknownKind::kForceMap) {
       add_map_part(variant.rig.force_maps, *u.part, values[i]);
-    }
-    if (u.kind == UnknownKind::kInputGain) {
-      variant.gain[static_cast<std::size_t>(u.input)] *= values[i];
     }
     if (u.kind == UnknownKind::kInitialState) {
       set_initial_state(variant.rig, u.state, values[i]);

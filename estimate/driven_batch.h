@@ -15,10 +15,10 @@
 
 namespace strut {
 
-/// A run's rig with its unknowns set, and the factors on its inputs.
+/// A run's rig with its unknowns set, and the corrections of its inputs.
 struct DrivenVariant {
   RigSpec rig;
-  std::array<double, kMaxRigInputs> gain{};  // in the order of ModelInfo::inputs
+  std::array<InputCorrection, kMaxRigInputs> inputs;  // in the order of ModelInfo::inputs
 };
 
 /// Sets those of `values` that belong to run number `index`, except biases. Throws InputError where

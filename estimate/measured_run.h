@@ -20,8 +20,9 @@ struct MeasuredChannel {
 
 /// The noise of a recorded input.
 struct InputNoise {
-  double sigma = 0.0;       // standard deviation per sample, in the input's unit
+  double sigma = 0.0;       // standard deviation per sample, in the unit of what was recorded
   double half_width = 0.0;  // of the local cubics that smoothed it [s]; 0: not smoothed
+  int derivative = 0;       // time derivative of the input that was recorded
 };
 
 struct MeasuredRun {

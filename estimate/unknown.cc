@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
@@ -41,15 +42,29 @@ Unknown make_gain(const std::string& name, int input) {
   return u;
 }
 
-/// Multiplies a recorded input and its noise, where the run has it.
-void scale_input(MeasuredRun& measured, int input, double factor) {
-  const std::string& name = measured.setup.info().inputs[static_cast<std::size_t>(input)].name;
+/// Corrects the recorded inputs, and scales their noise.
+void correct_inputs(MeasuredRun& measured,
+                    const std::array<InputCorrection, kMaxRigInputs>& corrections) {
   std::vector<InputSignal>& signals = measured.setup.rig().inputs;
   for (std::size_t k = 0; k < signals.size(); ++k) {
-    if (signals[k].channel != name) continue;
-    scale_signal(signals[k], factor);
-    if (k < measured.input_noise.size()) measured.input_noise[k].sigma *= std::abs(factor);
+    const int input = find_input(measured.setup.info(), signals[k].channel);
+    const InputCorrection& correction = corrections[static_cast<std::size_t>(input)];
+    if (correction == InputCorrection{}) continue;
+    correct_signal(signals[k], correction);
+    if (k >= measured.input_noise.size()) continue;
+    measured.input_noise[k].sigma *= std::abs(correction.gain);
   }
+}
+
+/// The spread of an input over the run's readings; 0 where the run lacks it.
+double calc_input_spread(const MeasuredRun& run, const std::string& input) {
+  std::vector<double> values;
+  values.reserve(run.times.size());
+  for (const InputSignal& signal : run.setup.rig().inputs) {
+    if (signal.channel != input) continue;
+    for (const double t : run.times) values.push_back(calc_signal(signal, t).value);
+  }
+  return calc_spread(values);
 }
 
 }  // namespace
@@ -84,8 +99,13 @@ Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::str
     (p->is_effect ? names : plain).push_back(p->name);
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    const int input = static_cast<int>(i);
     plain.push_back(model.inputs[i].name + kGainSuffix);
-    if (plain.back() == name) return make_gain(name, static_cast<int>(i));
+    if (plain.back() == name) return make_gain(name, input);
+    plain.push_back(model.inputs[i].name + kBiasSuffix);
+    if (plain.back() != name) continue;
+    return make_input_bias(model, kEveryRun, {input, 0}, {},
+                           calc_input_spread(run, model.inputs[i].name));
   }
   for (const MeasuredChannel& c : run.channels) {
     Unknown u = make_bias(model, kEveryRun, c.channel, {});
@@ -126,6 +146,41 @@ Unknown make_bias(const ModelInfo& model, int run, int channel, const Prior& pri
   u.high = kInfinity;
   u.prior = prior;
   return u;
+}
+
+Unknown make_input_bias(const ModelInfo& model, int run, const InputDerivative& sensor,
+                        const Prior& prior, double scale) {
+  const InputInfo& input = model.inputs[static_cast<std::size_t>(sensor.input)];
+  const int channel = sensor.derivative == 0   ? find_channel(model, input.name)
+                      : sensor.derivative == 1 ? input.rate
+                                               : input.second_rate;
+  STRUT_CHECK(channel >= 0, input.name + " has a channel for each of its sensors");
+  Unknown u = make_bias(model, run, channel, prior);
+  u.kind = UnknownKind::kInputBias;
+  u.channel = -1;
+  u.input = sensor.input;
+  u.derivative = sensor.derivative;
+  if (scale > 0.0) u.scale = scale;
+  return u;
+}
+
+std::array<InputCorrection, kMaxRigInputs> list_corrections(const std::vector<Unknown>& unknowns,
+                                                            const std::vector<double>& values,
+                                                            int run) {
+  std::array<InputCorrection, kMaxRigInputs> corrections;
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    if (u.input < 0 || (u.run != kEveryRun && u.run != run)) continue;
+    InputCorrection& c = corrections[static_cast<std::size_t>(u.input)];
+    if (u.kind == UnknownKind::kInputGain) c.gain *= values[i];
+    if (u.kind == UnknownKind::kInputBias) {
+      c.offset[static_cast<std::size_t>(u.derivative)] -= values[i];
+    }
+  }
+  for (InputCorrection& c : corrections) {
+    for (double& offset : c.offset) offset *= c.gain;
+  }
+  return corrections;
 }
 
 Unknown make_sensor_unknown(UnknownKind kind, const ModelInfo& model, int run, int channel,
@@ -196,18 +251,20 @@ MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unkno
       case UnknownKind::kForceMap:
         add_map_part(measured.setup.force_maps(), *u.part, values[i]);
         break;
-      case UnknownKind::kInputGain:
-        scale_input(measured, u.input, values[i]);
-        break;
       case UnknownKind::kInitialState:
         set_initial_state(measured.setup.rig().rig, u.state, values[i]);
         break;
+      case UnknownKind::kInputGain:  // below, all at once
+      case UnknownKind::kInputBias:
       case UnknownKind::kHitTime:
       case UnknownKind::kBias:
       case UnknownKind::kSensorGain:
       case UnknownKind::kSensorSkew:
         break;
     }
+  }
+  if (measured.setup.info().is_driven_by_inputs()) {
+    correct_inputs(measured, list_corrections(unknowns, values, run));
   }
   return measured;
 }

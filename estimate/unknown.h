@@ -1,6 +1,7 @@
 // The unknowns of a fit: parameters of the model, and nuisances of each run.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "estimate/measured_run.h"
 #include "model/effects/force_map.h"
+#include "model/rig/rigs.h"
 
 namespace strut {
 
@@ -16,6 +18,7 @@ enum class UnknownKind {
   kHitTime,       // simulated time minus the time of the measuring clock [s]
   kBias,          // offset added to a simulated channel, in its unit
   kInputGain,     // factor on a recorded input
+  kInputBias,     // offset of the sensor of an input or of one of its time derivatives
   kInitialState,  // initial offset of a mass from rest [m], or its initial velocity [m/s]
   kForceMap,      // factor on a part of a strut's force map
   kSensorGain,    // relative error of a channel's gain (estimate/sensor_error.h)
@@ -38,7 +41,8 @@ struct Unknown {
   std::string unit;     // "1" if dimensionless
   int run = kEveryRun;  // index of its run, or kEveryRun: one value for all runs
   int channel = -1;     // of a sensor's error: index in ModelInfo::channels
-  int input = -1;       // kInputGain: index in ModelInfo::inputs
+  int input = -1;       // kInputGain, kInputBias: index in ModelInfo::inputs
+  int derivative = 0;   // kInputBias: time derivative of the input that its sensor reads
   int state = -1;      // kInitialState: index in the list of all masses' positions, then velocities
   double start = 0.0;  // initial guess
   double scale = 1.0;  // 100 %: its size, or the sigma of its prior where it starts from 0
@@ -74,9 +78,22 @@ inline bool is_simulated(const Unknown& u) {
 Unknown make_parameter(const std::vector<MeasuredRun>& runs, const std::string& name,
                        int run = kEveryRun);
 
-/// Makes an unknown that all runs share, by its name: a parameter, INPUT_gain, or CHANNEL_bias of a
-/// channel of runs.front(). Throws InputError with the nearest known name.
+/// Makes an unknown that all runs share, by its name: a parameter, INPUT_gain, INPUT_bias, or
+/// CHANNEL_bias of a channel of runs.front(). Throws InputError with the nearest known name.
 Unknown make_shared_unknown(const std::vector<MeasuredRun>& runs, const std::string& name);
+
+/// Makes the bias of a sensor that reads an input or one of its time derivatives: its reading less
+/// the true value, starts at prior.mean. `scale`: the size of the readings. Throws CheckError for a
+/// derivative that the input does not have.
+Unknown make_input_bias(const ModelInfo& model, int run, const InputDerivative& sensor,
+                        const Prior& prior, double scale);
+
+/// Corrections of recorded inputs by the gains and biases among `values` that belong to every run
+/// or to run number `run`, in the order of ModelInfo::inputs. A gain acts on the reading less its
+/// bias.
+std::array<InputCorrection, kMaxRigInputs> list_corrections(const std::vector<Unknown>& unknowns,
+                                                            const std::vector<double>& values,
+                                                            int run);
 
 /// Makes a hit time, bounded by mean +/- kHitTimeReach sigma. sigma > 0.
 Unknown make_hit_time(int run, const Prior& prior);
@@ -111,7 +128,7 @@ bool is_among(const std::vector<Unknown>& unknowns, const std::string& name);
 std::vector<double> list_starts(const std::vector<Unknown>& unknowns);
 
 /// Returns the run with the unknowns set that belong to every run or to run number `run`:
-/// parameters, force maps, gains of inputs (which also scale the input's noise) and initial states,
+/// parameters, force maps, gains (which also scale the noise) and biases of inputs, initial states,
 /// but not hit times and biases. Throws as set_parameter does.
 MeasuredRun set_unknowns(MeasuredRun measured, const std::vector<Unknown>& unknowns,
                          const std::vector<double>& values, int run = kEveryRun);

@@ -44,6 +44,13 @@ double calc_moved_mass(const RigSpec& rig) {
   return 1.0 / (1.0 / rig.sprung_mass + 1.0 / rig.unsprung_mass);
 }
 
+double calc_guide_step(const RigSpec& rig) {
+  const double inverse_speed = 1.0 / rig.guide_speed;
+  return std::min(
+      calc_friction_step({rig.guide_friction, inverse_speed}, rig.sprung_mass),
+      calc_friction_step({rig.unsprung_guide_friction, inverse_speed}, rig.unsprung_mass));
+}
+
 StrutEffectNumbers<double> make_numbers(const RigSpec& rig) {
   return make_strut_effect_numbers({rig.effects, get_rig_info(rig.kind)}, PlaceName::kRig, {});
 }
@@ -59,8 +66,7 @@ double calc_longest_settled_step(const RigSpec& rig) {
   const double mass = calc_moved_mass(rig);
   const double mode = get_rig_info(rig.kind).calc_fastest_mode(rig);
   const double linear = mode > 0.0 ? kModeRadians / mode : kUnlimited;
-  const double guide = calc_friction_step({rig.guide_friction, 1.0 / rig.guide_speed}, mass);
-  return std::min({linear, guide, calc_settled_step(make_numbers(rig), mass)});
+  return std::min({linear, calc_guide_step(rig), calc_settled_step(make_numbers(rig), mass)});
 }
 
 double calc_longest_step(const VehicleSpec& vehicle,

@@ -41,12 +41,15 @@ const ChannelInfo& find_channel_info(const Table& columns, const ModelInfo& mode
 }
 
 ColumnRole read_role(const Table& table, const ModelInfo& model, const std::string& channel) {
-  const bool drives = find_input(model, channel) >= 0;
+  const InputDerivative sensor = find_input_derivative(model, channel);
+  const bool drives = sensor.input >= 0 && sensor.derivative == 0;
   const auto role =
       static_cast<ColumnRole>(table.choice_or("role", drives ? 0 : 1, list_names(kRoles)));
-  if (role == ColumnRole::kInput && !drives) {
+  if (role == ColumnRole::kInput && sensor.input < 0) {
     std::vector<std::string> names;
-    for (const InputInfo& input : model.inputs) names.push_back(input.name);
+    for (const ChannelInfo& c : model.channels) {
+      if (find_input_derivative(model, c.name).input >= 0) names.push_back(c.name);
+    }
     throw table.error("role", fmt::format("'{}' is not an input of this model; inputs: {}", channel,
                                           names.empty() ? "none, a car is driven by its maneuver"
                                                         : join_names(names)));
@@ -76,13 +79,15 @@ Prior read_known(const Table& table, const std::string& key) {
   }
 }
 
-/// Reads the gain and smoothing of an input. The gain of an actuator's command is unknown unless
-/// the campaign gives it.
+/// Reads the gain, bias and smoothing of an input. The gain of an actuator's command and the bias
+/// of a derivative are unknown unless the campaign gives them.
 void read_input(const Table& table, const ModelInfo& model, CampaignColumn& c) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  const auto input = static_cast<std::size_t>(find_input(model, c.channel));
-  if (model.inputs[input].is_command) c.gain.sigma = kUnknown;
+  c.input = find_input_derivative(model, c.channel);
+  if (model.inputs[static_cast<std::size_t>(c.input.input)].is_command) c.gain.sigma = kUnknown;
+  if (c.input.derivative > 0) c.bias.sigma = kUnknown;
   if (table.has("gain")) c.gain = read_known(table, "gain");
+  if (table.has("bias")) c.bias = read_known(table, "bias");
   if (table.has("smooth")) c.smooth = table.number("smooth", at_least(0.0, "s"));
 }
 
@@ -114,10 +119,21 @@ void read_columns(const Table& root, Campaign& campaign) {
   if (!any_output) throw columns.error("no channel to compare; every column is an input");
 }
 
-void read_fit(const Table& root, CampaignFit& fit) {
+/// Frees the parameters of the effects that are on, beside those that the campaign lists.
+void free_effects(const Campaign& campaign, CampaignFit& fit) {
+  for (const EffectAtPlace& effect : campaign.effects.on) {
+    for (std::string& name : list_parameter_names(effect, *campaign.info)) {
+      const bool is_listed = std::find(fit.free.begin(), fit.free.end(), name) != fit.free.end();
+      if (!is_listed) fit.free.push_back(std::move(name));
+    }
+  }
+}
+
+void read_fit(const Table& root, const Campaign& campaign, CampaignFit& fit) {
   const auto table = root.find_table("fit");
+  if (table && table->has("free")) fit.free = table->texts("free");
+  free_effects(campaign, fit);
   if (!table) return;
-  if (table->has("free")) fit.free = table->texts("free");
   if (const auto fix = table->find_table("fix")) {
     for (const std::string& name : fix->keys()) fit.fix.emplace_back(name, fix->number(name));
   }
@@ -213,7 +229,8 @@ Campaign read_campaign(const std::filesystem::path& path) {
   campaign.model = root.file("model");
   campaign.info = &read_model_info(campaign.model);
   read_columns(root, campaign);
-  read_fit(root, campaign.fit);
+  campaign.effects = read_campaign_effects(root, *campaign.info);
+  read_fit(root, campaign, campaign.fit);
   read_noise(root, campaign.noise);
   read_runs(root, campaign);
   document.check_all_read();

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "diagnose/campaign/campaign_effects.h"
 #include "estimate/sensor_error.h"
 #include "estimate/unknown.h"
 #include "io/store/column_map.h"
@@ -23,8 +24,12 @@ struct CampaignColumn : MappedColumn {
   std::optional<double> noise;  // standard deviation in the channel's SI unit; null: estimated
   ColumnRole role = ColumnRole::kOutput;
   bool optional = false;  // a file may lack it
+  InputDerivative input;  // the input that it gives, or whose time derivative
   /// Factor on an input. sigma 0: known exactly; infinite: unknown.
   Prior gain{1.0, 0.0};
+  /// Bias of an input's sensor in a run, in the channel's SI unit, as `gain`. That of a derivative
+  /// is unknown by default, since it adds up.
+  Prior bias{0.0, 0.0};
   /// Half width of the local cubics that smooth an input [s]; null: chosen by its noise.
   std::optional<double> smooth;
   double delay = 0.0;  // s, of the readings against the clock
@@ -63,7 +68,8 @@ struct Campaign {
   const ModelInfo* info = nullptr;  // the model's
   CampaignColumn time;
   std::vector<CampaignColumn> columns;  // without time
-  CampaignFit fit;
+  CampaignEffects effects;
+  CampaignFit fit;  // with the parameters of the effects that are on
   CampaignNoise noise;
   std::vector<CampaignRun> runs;
 

@@ -96,20 +96,26 @@ std::vector<MeasuredChannel> make_channels(const CampaignData& data, const Measu
   return channels;
 }
 
+const InputInfo& get_input(const CampaignData& data, const CampaignColumn& c) {
+  return data.model().inputs[static_cast<std::size_t>(c.input.input)];
+}
+
 /// The readings, without missing ones, as a signal over a clock that starts at 0. Smoothed as far
 /// as that removes only noise (choose_half_width), since forces follow the rate.
 InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
                        const MeasuredColumn& column, InputNoise& noise) {
   const CampaignColumn& c = data.campaign.columns[column.at];
   const double gain = c.gain.sigma == 0.0 ? c.gain.mean : 1.0;
+  const double bias = c.bias.sigma == 0.0 ? c.bias.mean : 0.0;
   std::vector<double> times, values;
   times.reserve(table.times.size());
   values.reserve(table.times.size());
   for (std::size_t i = 0; i < table.times.size(); ++i) {
     if (std::isnan(column.values[i])) continue;
     times.push_back(table.times[i] - table.times.front());
-    values.push_back(gain * column.values[i]);
+    values.push_back(gain * (column.values[i] - bias));
   }
+  noise.derivative = c.input.derivative;
   noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
   // Masses smooth their inputs; a strut's force follows the velocity itself.
   const bool smooths = !data.model().masses.empty();
@@ -117,7 +123,10 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
                      : smooths ? 0.0
                                : choose_half_width(times, values, noise.sigma);
   try {
-    return make_sampled_input(c.channel, times, values, noise.half_width);
+    InputSignal input =
+        make_sampled_input(get_input(data, c).name, times, values, noise.half_width);
+    for (int i = 0; i < c.input.derivative; ++i) input = integrate_signal(input);
+    return input;
   } catch (const ModelError& e) {
     throw InputError(fmt::format("{}: {}", table.name, e.what()));
   }
@@ -209,6 +218,7 @@ void make_runs(CampaignData& data) {
     const MeasuredTable& table = data.tables[r];
     MeasuredRun run{table.name, model, table.times, make_channels(data, table), true};
     if (!data.has_inputs()) run.setup.car().maneuver = read_maneuver(entry.maneuver);
+    switch_on(data.campaign.effects.on, run.setup);
     name_table(data, "fit.fix", [&] {
       for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);
     });
@@ -300,10 +310,9 @@ void add_gains(const CampaignData& data, const std::vector<MeasuredRun>& runs,
                std::vector<Unknown>& unknowns) {
   for (const CampaignColumn& c : data.campaign.columns) {
     if (c.role != ColumnRole::kInput || c.gain.sigma == 0.0) continue;
-    Unknown u = make_shared_unknown(runs, c.channel + "_gain");
-    const auto driven = [&](const MeasuredRun& run) {
-      return find_input(run, c.channel) != nullptr;
-    };
+    const std::string& input = get_input(data, c).name;
+    Unknown u = make_shared_unknown(runs, input + "_gain");
+    const auto driven = [&](const MeasuredRun& run) { return find_input(run, input) != nullptr; };
     if (is_among(unknowns, u.name) || std::none_of(runs.begin(), runs.end(), driven)) continue;
     u.prior = c.gain;
     u.start = c.gain.mean;
@@ -351,6 +360,34 @@ std::vector<Unknown> make_free_unknowns(const CampaignData& data,
   });
 }
 
+namespace {
+
+/// The bias of an input's sensor in a run and, of an acceleration, the initial velocity, too. Where
+/// nothing is known of a bias, it may be as large as the readings.
+void add_input_biases(const CampaignData& data, std::size_t run, int index,
+                      std::vector<Unknown>& unknowns) {
+  for (const MeasuredColumn& column : data.tables[run].columns) {
+    const CampaignColumn& c = data.campaign.columns[column.at];
+    if (c.role != ColumnRole::kInput || c.bias.sigma == 0.0) continue;
+    const auto add = [&](int derivative, const Prior& known, double spread) {
+      const Prior prior = known.informs() ? known : Prior{known.mean, spread};
+      if (!(prior.sigma > 0.0)) return;
+      const InputDerivative sensor{c.input.input, derivative};
+      Unknown u = make_input_bias(data.model(), index, sensor, prior, 0.0);
+      if (!is_among(unknowns, u.name)) unknowns.push_back(std::move(u));
+    };
+    add(c.input.derivative, c.bias, calc_spread(column.values));
+    if (c.input.derivative < kMaxInputDerivative) continue;
+    const InputSignal& signal = *find_input(data.runs[run], get_input(data, c).name);
+    std::vector<double> rates;
+    rates.reserve(data.times(run).size());
+    for (const double t : data.times(run)) rates.push_back(calc_signal(signal, t).rate);
+    add(c.input.derivative - 1, {}, calc_spread(rates));
+  }
+}
+
+}  // namespace
+
 double get_nominal(const CampaignData& data, const Unknown& unknown) {
   if (unknown.kind == UnknownKind::kParameter) {
     return get_parameter(data.runs[0].setup, unknown.name);
@@ -368,6 +405,13 @@ std::vector<Unknown> make_run_unknowns(const CampaignData& data,
   sigmas.bias = make_default_bias();
   for (double& sigma : sigmas.bias) sigma *= kWide;
   std::vector<Unknown> unknowns = make_nuisances(selected, sigmas, chosen);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    std::vector<Unknown> biases;
+    add_input_biases(data, runs[r], static_cast<int>(r), biases);
+    for (Unknown& u : biases) {
+      if (!is_among(chosen, u.name)) unknowns.push_back(std::move(u));
+    }
+  }
   for (std::size_t r = 0; r < runs.size(); ++r) {
     for (const auto& [name, known] : data.campaign.runs[runs[r]].known) {
       if (is_among(chosen, name)) continue;

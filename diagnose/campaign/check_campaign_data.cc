@@ -61,9 +61,12 @@ RateNeed find_need(const CampaignData& data, std::size_t r) {
     return {kRecommendedPerPeriod * mode, kRequiredPerPeriod * mode,
             fmt::format("the model's fastest mode has {} Hz", format_rounded(mode))};
   }
-  const MeasuredColumn* stroke =
-      data.tables[r].find(data.campaign.columns, data.model().inputs.front().name);
-  const double f = stroke ? calc_frequency(stroke->values, run.times.back()) : 0.0;
+  double f = 0.0;
+  for (const MeasuredColumn& column : data.tables[r].columns) {
+    const CampaignColumn& c = data.campaign.columns[column.at];
+    const bool is_stroke = c.role == ColumnRole::kInput && c.input.input == 0;
+    if (is_stroke) f = calc_frequency(column.values, run.times.back());
+  }
   return {kRecommendedPerStroke * f, kRequiredPerStroke * f,
           fmt::format("the strut is driven at {} Hz", format_rounded(f))};
 }

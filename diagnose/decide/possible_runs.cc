@@ -90,7 +90,7 @@ std::vector<PossibleRun> list_amplitudes(const CampaignData& data, std::size_t r
     if (std::abs(factor - 1.0) < kSame) continue;
     CampaignData one = take_run(data, run);
     for (InputSignal& signal : one.runs[0].setup.rig().inputs) {
-      if (moves(data, signal)) scale_signal(signal, factor);
+      if (moves(data, signal)) correct_signal(signal, {factor, {}});
     }
     list.push_back({fmt::format("repeat {} at {} times its amplitude", data.campaign.runs[run].name,
                                 format_rounded(factor)),

@@ -132,14 +132,12 @@ bool is_compared(const CampaignData& data, const std::string& channel) {
 
 std::vector<std::vector<double>> make_beginnings(
     const std::vector<const EffectParameter*>& parameters, const SearchStarts& chosen) {
-  constexpr double kStartFraction = 0.2;  // of the typical size
   std::vector<std::vector<double>> beginnings;
   for (const auto& values : chosen) {
     beginnings.emplace_back();
     for (const EffectParameter* p : parameters) {
       const auto found = values.find(p->name);
-      double value =
-          p->switches ? p->neutral + kStartFraction * (p->typical - p->neutral) : p->typical;
+      double value = p->calc_start();
       if (found != values.end()) value = found->second;
       beginnings.back().push_back(std::clamp(value, p->low, p->high));
     }
@@ -250,6 +248,7 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       continue;  // a bias of every run and channel is always free
     const auto parameters = list_effect_parameters(effect, model);
     for (const std::string& place : list_effect_places(effect, model)) {
+      if (contains(data.campaign.effects.exclude, effect.name, place)) continue;
       const OnAt on = find_on(model_effects, effect.name, place);
       if (on == OnAt::kOverlapping) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;

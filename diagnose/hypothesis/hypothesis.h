@@ -65,10 +65,10 @@ bool is_one_sided(const CampaignData& data, const Hypothesis& h);
 /// One unknown per parameter of a hypothesis, which all runs share.
 std::vector<Unknown> make_unknowns(const CampaignData& data, const Hypothesis& h);
 
-/// Lists the hypotheses that exist in the campaign's model, except those with a parameter among
-/// `free`. An effect that `model_effects` switches on may be changed at its place; it may not be
-/// added at an overlapping one. Start values are fractions of the struts' forces, deflections and
-/// velocities in the runs for fitting, simulated at `shared`.
+/// Lists the hypotheses that exist in the campaign's model, except those that the campaign excludes
+/// and those with a parameter among `free`. An effect that `model_effects` switches on may be
+/// changed at its place; it may not be added at an overlapping one. Start values are fractions of
+/// the struts' forces, deflections and velocities in the runs for fitting, simulated at `shared`.
 std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedValues& shared,
                                         const EffectSettings& model_effects,
                                         const std::vector<Unknown>& free = {});

@@ -281,6 +281,17 @@ std::vector<std::vector<double>> simulate_input_pulse(MeasuredRun run, std::size
   return std::move(curves.channel);
 }
 
+/// Divides a source by (2 pi i f)^derivative. Drift slower than the run counts as that of half of
+/// its lowest frequency, since the biases are unknowns of the fit.
+void integrate_source(int derivative, const NoiseSpectrum& s, Eigen::MatrixXcd& source) {
+  const double step = 1.0 / (static_cast<double>(s.samples) * s.interval);
+  for (Eigen::Index f = 0; f < source.cols(); ++f) {
+    const double frequency = std::max(static_cast<double>(f), 0.5) * step;
+    const std::complex<double> rate(0.0, 2.0 * kPi * frequency);
+    source.col(f) /= std::pow(rate, derivative);
+  }
+}
+
 /// Responses to one wrong sample of each input: differences against the run without it, which a
 /// mass without a spring spends falling.
 NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
@@ -314,6 +325,7 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
         source(static_cast<Eigen::Index>(k), f) = of[static_cast<std::size_t>(f)];
       }
     }
+    integrate_source(noise.derivative, s, source);
     add_source(source, s);
   }
   return s;

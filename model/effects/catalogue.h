@@ -35,6 +35,9 @@ struct EffectParameter {
   bool exists_in(const ModelInfo& model) const {
     return (model.parts & needs) == needs && (model.parts & without) == 0;
   }
+  /// Start value of a search: a fifth of the typical size of a parameter that switches the effect,
+  /// so that the search may end on either side; the typical value of one that shapes it.
+  double calc_start() const { return switches ? neutral + 0.2 * (typical - neutral) : typical; }
 };
 
 struct EffectInfo {

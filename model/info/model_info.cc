@@ -33,4 +33,14 @@ int find_input(const ModelInfo& model, const std::string& name) {
   return find_named(model.inputs, name);
 }
 
+InputDerivative find_input_derivative(const ModelInfo& model, const std::string& channel) {
+  const int input = find_input(model, channel), number = find_channel(model, channel);
+  if (input >= 0 || number < 0) return {input, 0};
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    if (model.inputs[i].rate == number) return {static_cast<int>(i), 1};
+    if (model.inputs[i].second_rate == number) return {static_cast<int>(i), 2};
+  }
+  return {};
+}
+
 }  // namespace strut

@@ -26,6 +26,9 @@ struct InputInfo {
   bool moves = true;        // it excites motion that scales with it; false: a temperature
   bool is_ground = false;   // the position above which the masses rest
   bool is_command = false;  // the actual quantity may differ from it in size or sign
+  /// The channels of its first and second time derivative, which may be recorded in its place; -1:
+  /// none.
+  int rate = -1, second_rate = -1;
 };
 
 /// A weighted sum of channels.
@@ -90,5 +93,12 @@ std::vector<double> calc_sum(const ChannelSum& sum,
 /// The number of the channel or input of this name; -1 where there is none.
 int find_channel(const ModelInfo& model, const std::string& name);
 int find_input(const ModelInfo& model, const std::string& name);
+
+/// An input of a model (an index of ModelInfo::inputs) by one of its time derivatives; 0: itself.
+struct InputDerivative {
+  int input = -1, derivative = 0;
+};
+/// The input that a channel gives, itself or as a time derivative; input = -1 where there is none.
+InputDerivative find_input_derivative(const ModelInfo& model, const std::string& channel);
 
 }  // namespace strut

@@ -28,6 +28,7 @@ struct StrutRigChannel {
     kTime,
     kDisplacement,
     kVelocity,
+    kAcceleration,
     kForce,
     kSpringForce,
     kDamperForce,
@@ -45,6 +46,7 @@ struct SingleMassChannel {
     kForce,
     kSpringForce,
     kDamperForce,
+    kGuideForce,
     kCount
   };
 };

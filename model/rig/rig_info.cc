@@ -1,6 +1,8 @@
 #include "model/rig/rig_info.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "base/text/format_number.h"
@@ -33,6 +35,62 @@ RigField make_optional(const std::string& name, const std::string& unit, double 
   return f;
 }
 
+/// An optional parameter of either sign, 0 by default.
+RigField make_signed(const std::string& name, const std::string& unit, double reach,
+                     const std::string& description, double RigSpec::*field) {
+  RigField f = make_optional(name, unit, reach, description, 0.0, field);
+  f.allowed.low = -reach;
+  return f;
+}
+
+/// Dry friction of masses on guides that stand on the ground.
+void add_guide(std::vector<RigField>& fields) {
+  using S = RigSpec;
+  constexpr double kMaxFriction = 1e5;
+  const bool has_wheel = std::any_of(fields.begin(), fields.end(), [](const RigField& f) {
+    return f.field == &RigSpec::unsprung_mass;
+  });
+  fields.push_back(make_optional("guide_friction", "N", kMaxFriction,
+                                 has_wheel ? "dry friction between sprung mass and guide"
+                                           : "dry friction between mass and guide",
+                                 0.0, &S::guide_friction));
+  if (has_wheel) {
+    fields.push_back(make_optional("unsprung_guide_friction", "N", kMaxFriction,
+                                   "dry friction between unsprung mass and guide", 0.0,
+                                   &S::unsprung_guide_friction));
+  }
+  fields.push_back(make_signed("guide_asymmetry", "1", 1.0,
+                               "a: the guide's friction is (1 + a) times as large upwards, (1 - a) "
+                               "times downwards",
+                               &S::guide_asymmetry));
+  fields.back().typical = 0.1;
+  fields.push_back(make_optional("guide_speed", "m/s", 10.0,
+                                 "speed at which 76 % of the guide's friction acts", 0.01,
+                                 &S::guide_speed));
+  fields.back().allowed.open_low = true;
+}
+
+/// Gains of a controlled force between the masses, by the four states of a quarter car's linear
+/// quadratic regulator (Hrovat, Automatica 33, 1997).
+void add_feedback(std::vector<RigField>& fields) {
+  using S = RigSpec;
+  constexpr double kMaxGain = 1e7;
+  for (const auto& [name, unit, state, field] :
+       {std::tuple{"deflection_feedback", "N/m", "sprung less unsprung position",
+                   &S::deflection_feedback},
+        std::tuple{"sprung_velocity_feedback", "N s/m", "sprung velocity",
+                   &S::sprung_velocity_feedback},
+        std::tuple{"tire_deflection_feedback", "N/m", "unsprung less road position",
+                   &S::tire_deflection_feedback},
+        std::tuple{"unsprung_velocity_feedback", "N s/m", "unsprung velocity",
+                   &S::unsprung_velocity_feedback}}) {
+    fields.push_back(make_signed(
+        name, unit, kMaxGain,
+        std::string("of a controlled force that pushes the masses apart: gain by the ") + state,
+        field));
+  }
+}
+
 RigField make_gravity(double default_value) {
   return make_optional("gravity", "m/s^2", 100.0, "gravity along the guide", default_value,
                        &RigSpec::gravity);
@@ -49,14 +107,18 @@ StateInfo make_velocity(const std::string& name, ChannelSum sum) {
 
 std::vector<RigField> list_quarter_car_fields() {
   using S = RigSpec;
-  return {make_field("sprung_mass", "kg", 1e5, "mass on the strut", &S::sprung_mass),
-          make_field("unsprung_mass", "kg", 1e5, "mass between strut and tire", &S::unsprung_mass),
-          make_field("stiffness", "N/m", 1e8, "rate of the strut's spring", &S::stiffness),
-          make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
-          make_field("tire_stiffness", "N/m", 1e8, "vertical rate of the tire", &S::tire_stiffness),
-          make_optional("tire_damping", "N s/m", 1e6, "vertical damping of the tire", 0.0,
-                        &S::tire_damping),
-          make_gravity(kEarthGravity)};
+  std::vector<RigField> fields = {
+      make_field("sprung_mass", "kg", 1e5, "mass on the strut", &S::sprung_mass),
+      make_field("unsprung_mass", "kg", 1e5, "mass between strut and tire", &S::unsprung_mass),
+      make_field("stiffness", "N/m", 1e8, "rate of the strut's spring", &S::stiffness),
+      make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
+      make_field("tire_stiffness", "N/m", 1e8, "vertical rate of the tire", &S::tire_stiffness),
+      make_optional("tire_damping", "N s/m", 1e6, "vertical damping of the tire", 0.0,
+                    &S::tire_damping),
+      make_gravity(kEarthGravity)};
+  add_guide(fields);
+  add_feedback(fields);
+  return fields;
 }
 
 RigInfo make_quarter_car() {
@@ -82,7 +144,9 @@ RigInfo make_quarter_car() {
   info.inputs = {{.name = "road_position",
                   .unit = "m",
                   .description = "height of the road under the tire",
-                  .is_ground = true},
+                  .is_ground = true,
+                  .rate = C::kRoadVelocity,
+                  .second_rate = C::kRoadAcceleration},
                  {.name = "actuator_force",
                   .unit = "N",
                   .description = "between the masses, positive where it pushes them apart",
@@ -98,7 +162,9 @@ RigInfo make_quarter_car() {
                  {StateKind::kTireLoad, "", "tire_load", "N", {{C::kTireForce, 1.0}}}};
   info.fields = list_quarter_car_fields();
   info.calc_fastest_mode = [](const RigSpec& spec) {
-    return std::sqrt((spec.stiffness + spec.tire_stiffness) / spec.unsprung_mass);
+    const double feedback =
+        std::abs(spec.deflection_feedback) + std::abs(spec.tire_deflection_feedback);
+    return std::sqrt((spec.stiffness + spec.tire_stiffness + feedback) / spec.unsprung_mass);
   };
   return info;
 }
@@ -109,6 +175,10 @@ std::vector<RigField> list_strut_rig_fields() {
   using S = RigSpec;
   return {make_optional("stiffness", "N/m", 1e8, "rate of the strut's spring", 0.0, &S::stiffness),
           make_optional("damping", "N s/m", 1e6, "rate of the strut's damper", 0.0, &S::damping),
+          make_optional("moving_mass", "kg", 1e4,
+                        "mass that is moved between the load cell and the strut: a clevis, a rod "
+                        "or the whole of a driven mass",
+                        0.0, &S::moving_mass),
           make_optional("temperature", "K", 1000.0, "temperature where no input gives it", 293.15,
                         &S::temperature)};
 }
@@ -119,17 +189,21 @@ RigInfo make_strut_rig() {
   info.kind = RigKind::kStrutRig;
   info.name = "strut_rig";
   info.parts = kHasDamperTemperature | kHasStaticForce;
-  info.channels = {{"time", "s", "time since the start"},
-                   {"displacement", "m", "compression of the strut"},
-                   {"velocity", "m/s", "rate of displacement"},
-                   {"force", "N", "force of the whole strut, positive in compression"},
-                   {"spring_force", "N", "strut's spring, positive in compression"},
-                   {"damper_force", "N", "strut's damper, positive in compression"},
-                   {"temperature", "K", "temperature of the damper, as given"}};
+  info.channels = {
+      {"time", "s", "time since the start"},
+      {"displacement", "m", "compression of the strut"},
+      {"velocity", "m/s", "rate of displacement"},
+      {"acceleration", "m/s^2", "rate of velocity"},
+      {"force", "N", "force on the strut and the moving mass, positive in compression"},
+      {"spring_force", "N", "strut's spring, positive in compression"},
+      {"damper_force", "N", "strut's damper, positive in compression"},
+      {"temperature", "K", "temperature of the damper, as given"}};
   info.inputs = {{.name = "displacement",
                   .unit = "m",
                   .description = "compression of the strut",
-                  .required = true},
+                  .required = true,
+                  .rate = C::kVelocity,
+                  .second_rate = C::kAcceleration},
                  {.name = "temperature",
                   .unit = "K",
                   .description = "temperature of the damper",
@@ -152,11 +226,13 @@ double calc_single_mode(const RigSpec& spec) {
 
 std::vector<RigField> list_single_mass_fields() {
   using S = RigSpec;
-  return {
+  std::vector<RigField> fields = {
       make_field("mass", "kg", 1e5, "the mass on the guide", &S::sprung_mass),
       make_optional("stiffness", "N/m", 1e8, "rate of the spring to ground", 0.0, &S::stiffness),
       make_optional("damping", "N s/m", 1e6, "rate of the damper to ground", 0.0, &S::damping),
       make_gravity(0.0)};
+  add_guide(fields);
+  return fields;
 }
 
 RigInfo make_single_mass() {
@@ -171,7 +247,8 @@ RigInfo make_single_mass() {
                    {"acceleration", "m/s^2", "rate of velocity"},
                    {"force", "N", "applied to the mass, as given"},
                    {"spring_force", "N", "spring to ground, positive in compression"},
-                   {"damper_force", "N", "damper to ground, positive in compression"}};
+                   {"damper_force", "N", "damper to ground, positive in compression"},
+                   {"guide_force", "N", "friction of the guide on the mass, upwards"}};
   info.inputs = {
       {.name = "force", .unit = "N", .description = "force on the mass, along its position"}};
   info.masses = {{C::kPosition, C::kVelocity}};
@@ -198,12 +275,8 @@ std::vector<RigField> list_guided_mass_fields() {
       make_field("mass", "kg", 1e5, "the mass on the guide", &S::sprung_mass),
       make_field("stiffness", "N/m", 1e8, "rate of the spring to the base", &S::stiffness),
       make_optional("damping", "N s/m", 1e6, "rate of the damper to the base", 0.0, &S::damping),
-      make_optional("guide_friction", "N", 1e5, "dry friction between mass and guide", 0.0,
-                    &S::guide_friction),
-      make_optional("guide_speed", "m/s", 10.0, "speed at which 76 % of the guide's friction acts",
-                    0.01, &S::guide_speed),
       make_gravity(0.0)};
-  fields[4].allowed.open_low = true;
+  add_guide(fields);
   return fields;
 }
 
@@ -228,7 +301,9 @@ RigInfo make_guided_mass() {
       {.name = "base_position",
        .unit = "m",
        .description = "height of the base",
-       .is_ground = true},
+       .is_ground = true,
+       .rate = C::kBaseVelocity,
+       .second_rate = C::kBaseAcceleration},
       {.name = "force", .unit = "N", .description = "force on the mass, along its position"}};
   info.masses = {{C::kPosition, C::kVelocity}};
   const ChannelSum deflection = {{C::kBasePosition, 1.0}, {C::kPosition, -1.0}};

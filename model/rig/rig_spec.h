@@ -20,17 +20,24 @@ enum RigCoordinate : int { kUnsprung = 0, kSprung = 1 };
 struct RigSpec {
   RigKind kind = RigKind::kQuarterCar;
   std::string name;
-  double sprung_mass = 0.0;      // kg; the only mass of a rig with one mass
-  double unsprung_mass = 0.0;    // kg
-  double stiffness = 0.0;        // N/m, strut; 0: no spring, where a rig allows it
-  double damping = 0.0;          // N s/m, strut
-  double tire_stiffness = 0.0;   // N/m
-  double tire_damping = 0.0;     // N s/m
-  double guide_friction = 0.0;   // N, between mass and guide
-  double guide_speed = 0.01;     // m/s, at which 76 % of it acts
-  double gravity = 0.0;          // m/s^2, along the guide
-  double temperature = 293.15;   // K, without an input for it
-  bool unilateral_tire = false;  // true: the car's tire law, which lifts off
+  double sprung_mass = 0.0;              // kg; the only mass of a rig with one mass
+  double unsprung_mass = 0.0;            // kg
+  double stiffness = 0.0;                // N/m, strut; 0: no spring, where a rig allows it
+  double damping = 0.0;                  // N s/m, strut
+  double tire_stiffness = 0.0;           // N/m
+  double tire_damping = 0.0;             // N s/m
+  double guide_friction = 0.0;           // N, between the (sprung) mass and its guide on the ground
+  double unsprung_guide_friction = 0.0;  // N
+  double guide_asymmetry = 0.0;          // friction (1 + a) upwards, (1 - a) downwards
+  double guide_speed = 0.01;             // m/s, at which 76 % of the friction acts
+  double moving_mass = 0.0;              // kg, moved by a stand between its load cell and the strut
+  double deflection_feedback = 0.0;      // N/m, of the force between the masses by their states
+  double sprung_velocity_feedback = 0.0;    // N s/m
+  double tire_deflection_feedback = 0.0;    // N/m
+  double unsprung_velocity_feedback = 0.0;  // N s/m
+  double gravity = 0.0;                     // m/s^2, along the guide
+  double temperature = 293.15;              // K, without an input for it
+  bool unilateral_tire = false;             // true: the car's tire law, which lifts off
   /// Initial state, as an offset from rest on the ground's first position [m], [m/s]; by
   /// RigCoordinate.
   std::array<double, kRigCoordinates> initial_position{}, initial_velocity{};

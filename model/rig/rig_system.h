@@ -21,7 +21,9 @@ struct RigWorkspace {
   std::array<SignalPoint<T>, kMaxRigInputs> input;  // in the order of the rig's inputs
   std::array<CornerMotion<T>, 1> motion;            // only length and length_q are used
   std::array<StrutForce<T>, 1> strut;
-  T unclamped_load, tire_force, guide_force;    // N
+  T unclamped_load, tire_force;                 // N
+  std::array<T, kRigCoordinates> guide_force;   // N, on the masses, upwards
+  T actuator_force;                             // N, between the masses, pushes them apart
   std::array<T, kRigCoordinates> acceleration;  // m/s^2
   std::array<T, kStatesPerStrut> strut_decay;   // 1/s
 };
@@ -78,12 +80,13 @@ class RigSystem {
         break;
       case RigKind::kSingleMass:
         update_strut(x[0], x[1]);
+        update_guide(0, x[1]);
         accelerate_one_mass(ws_.input[0].value);
         break;
       case RigKind::kGuidedMass:
         update_strut(x[0] - ws_.input[0].value, x[1] - ws_.input[0].rate);
-        ws_.guide_force = calc_guide_force(x[1]);
-        accelerate_one_mass(ws_.input[1].value + ws_.guide_force);
+        update_guide(0, x[1]);
+        accelerate_one_mass(ws_.input[1].value);
         break;
     }
     for (int i = 0; i < count_; ++i) {
@@ -220,19 +223,42 @@ class RigSystem {
     const RigParameters<T>& p = rig_.numbers;
     update_strut(x[kSprung] - x[kUnsprung], x[2 + kSprung] - x[2 + kUnsprung]);
     update_tire(x);
-    const T between = ws_.strut[0].generalized + ws_.input[1].value;
-    ws_.acceleration[kUnsprung] =
-        (ws_.tire_force - between) * (T(1.0) / p.mass[kUnsprung]) - p.gravity;
-    ws_.acceleration[kSprung] = between * (T(1.0) / p.mass[kSprung]) - p.gravity;
+    update_actuator(x);
+    update_guide(kUnsprung, x[2 + kUnsprung]);
+    update_guide(kSprung, x[2 + kSprung]);
+    const T between = ws_.strut[0].generalized + ws_.actuator_force;
+    const auto accelerate = [&](int mass, const T& force) {
+      ws_.acceleration[at(mass)] =
+          (force + ws_.guide_force[at(mass)]) * (T(1.0) / p.mass[at(mass)]) - p.gravity;
+    };
+    accelerate(kUnsprung, ws_.tire_force - between);
+    accelerate(kSprung, between);
   }
 
-  /// `applied`: all forces except the strut's force and the weight.
+  /// `applied`: all forces except those of strut and guide, and the weight.
   void accelerate_one_mass(const T& applied) {
-    ws_.acceleration[0] = (applied + ws_.strut[0].generalized) * (T(1.0) / rig_.numbers.mass[0]) -
+    ws_.acceleration[0] = (applied + ws_.guide_force[0] + ws_.strut[0].generalized) *
+                              (T(1.0) / rig_.numbers.mass[0]) -
                           rig_.numbers.gravity;
   }
 
-  T calc_guide_force(const T& velocity) const { return rig_.numbers.guide.calc_force(-velocity); }
+  /// The recorded command and the feedback of the states.
+  void update_actuator(const T* x) {
+    ws_.actuator_force = ws_.input[1].value;
+    if (!rig_.layout.has_feedback) return;
+    const auto& [deflection, sprung, tire, unsprung] = rig_.numbers.feedback;
+    ws_.actuator_force += deflection * (x[kSprung] - x[kUnsprung]) + sprung * x[2 + kSprung] +
+                          tire * (x[kUnsprung] - ws_.input[0].value) + unsprung * x[2 + kUnsprung];
+  }
+
+  /// Friction of a guide on the ground, against the velocity of its mass.
+  void update_guide(int mass, const T& velocity) {
+    ws_.guide_force[at(mass)] = T(0.0);
+    if (!rig_.layout.has_guide) return;
+    const T& a = rig_.numbers.guide_asymmetry;
+    const T side = select(velocity > T(0.0), T(1.0) + a, T(1.0) - a);
+    ws_.guide_force[at(mass)] = side * rig_.numbers.guide[at(mass)].calc_force(-velocity);
+  }
 
   void observe_quarter_car(const T& t, const T* x, T* out) const {
     using C = QuarterCarChannel;
@@ -245,7 +271,7 @@ class RigSystem {
       out[C::kUnsprungVelocity + i] = x[2 + i];
       out[C::kUnsprungAcceleration + i] = ws_.acceleration[at(i)];
     }
-    out[C::kActuatorForce] = ws_.input[1].value;
+    out[C::kActuatorForce] = ws_.actuator_force;
     out[C::kSpringForce] = ws_.strut[0].spring_force;
     out[C::kDamperForce] = ws_.strut[0].damper_force;
     out[C::kTireForce] = ws_.tire_force;
@@ -256,7 +282,8 @@ class RigSystem {
     out[C::kTime] = t;
     out[C::kDisplacement] = ws_.input[0].value;
     out[C::kVelocity] = ws_.input[0].rate;
-    out[C::kForce] = ws_.strut[0].generalized;
+    out[C::kAcceleration] = ws_.input[0].second_rate;
+    out[C::kForce] = ws_.strut[0].generalized + rig_.numbers.moving_mass * ws_.input[0].second_rate;
     out[C::kSpringForce] = ws_.strut[0].spring_force;
     out[C::kDamperForce] = ws_.strut[0].damper_force;
     out[C::kTemperature] = get_temperature();
@@ -271,6 +298,7 @@ class RigSystem {
     out[C::kForce] = ws_.input[0].value;
     out[C::kSpringForce] = ws_.strut[0].spring_force;
     out[C::kDamperForce] = ws_.strut[0].damper_force;
+    out[C::kGuideForce] = ws_.guide_force[0];
   }
 
   void observe_guided_mass(const T& t, const T* x, T* out) const {
@@ -285,7 +313,7 @@ class RigSystem {
     out[C::kForce] = ws_.input[1].value;
     out[C::kSpringForce] = ws_.strut[0].spring_force;
     out[C::kDamperForce] = ws_.strut[0].damper_force;
-    out[C::kGuideForce] = ws_.guide_force;
+    out[C::kGuideForce] = ws_.guide_force[0];
   }
 
   const Rig<T>& rig_;

@@ -120,7 +120,13 @@ RigParameters<double> make_rig_parameters(const RigSpec& given) {
         calc_static_deflection((spec.sprung_mass + spec.unsprung_mass) * spec.gravity,
                                p.tire.stiffness, p.tire.progression);
   }
-  p.guide = {spec.guide_friction, 1.0 / spec.guide_speed};
+  const double inverse_speed = 1.0 / spec.guide_speed;
+  p.guide = {{{spec.unsprung_guide_friction, inverse_speed}, {spec.guide_friction, inverse_speed}}};
+  if (rig.masses.size() == 1) p.guide[0] = p.guide[1];
+  p.guide_asymmetry = spec.guide_asymmetry;
+  p.moving_mass = spec.moving_mass;
+  p.feedback = {spec.deflection_feedback, spec.sprung_velocity_feedback,
+                spec.tire_deflection_feedback, spec.unsprung_velocity_feedback};
   p.ground_gain = 1.0 + get_value(values, E::kRoadGain, "gain");
   p.gravity = spec.gravity;
   p.temperature = spec.temperature;
@@ -134,13 +140,19 @@ RigForceMap make_rig_force_map(const RigSpec& spec) {
 
 RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,
                           int count) {
-  RigLayout layout{specs[0]->kind, specs[0]->unilateral_tire, 0, false};
+  RigLayout layout{.kind = specs[0]->kind, .unilateral_tire = specs[0]->unilateral_tire};
+  const auto is_on = [](double value) { return value != 0.0; };
   for (int i = 0; i < count; ++i) {
     if (specs[i]->kind != layout.kind || specs[i]->unilateral_tire != layout.unilateral_tire) {
       throw ModelError("rigs of one batch must have the same type and tire contact");
     }
     layout.strut_effects |= find_strut_effects(numbers[i].effects);
     layout.progressive_tire = layout.progressive_tire || numbers[i].tire.progression != 0.0;
+    layout.has_guide =
+        layout.has_guide || numbers[i].guide[0].force != 0.0 || numbers[i].guide[1].force != 0.0;
+    const auto& feedback = numbers[i].feedback;
+    layout.has_feedback =
+        layout.has_feedback || std::any_of(feedback.begin(), feedback.end(), is_on);
   }
   return layout;
 }

@@ -7,14 +7,18 @@
 // strut and actuator are positive where they push their two ends apart. With gravity = 0, and for
 // any rig whose tire cannot lift off, the motion is therefore that of the deviations from rest.
 //
-//   quarter_car  m_u a_u = F_t - F_s - F_a - m_u g,   m_s a_s = F_s + F_a - m_s g
-//   single_mass  m a = F + F_s - m g
-//   strut_rig    F = F_s at the given displacement and its rate
-//   guided_mass  m a = F + F_s + F_g - m g,   F_g = -f tanh(v / v_f)
+//   quarter_car  m_u a_u = F_t - F_s - F_a + F_gu - m_u g,   m_s a_s = F_s + F_a + F_gs - m_s g
+//   single_mass  m a = F + F_s + F_g - m g
+//   strut_rig    F = F_s + m_m a at the given displacement, its rate and second rate a
+//   guided_mass  m a = F + F_s + F_g - m g
 //
-// F_s: sum of the strut's elements, F_t: tire, F_a: actuator force, F: applied force, F_g: friction
-// of the guide on the mass (f: guide_friction, v_f: guide_speed), against its velocity. The strut
-// of the guided mass stands on the base, whose position is an input.
+//   F_g = -f (1 + A sgn v) tanh(v / v_f),   F_a = u + g_d (z_s - z_u) + g_s v_s + g_t (z_u - z_r)
+//                                               + g_u v_u
+//
+// F_s: sum of the strut's elements, F_t: tire, F: applied force, F_g: friction of the guide on a
+// mass (f: guide_friction or unsprung_guide_friction, A: guide_asymmetry, v_f: guide_speed), F_a:
+// actuator force (u: as recorded, g: the gains of the feedback), m_m: moving_mass. The strut of the
+// guided mass stands on the base, whose position is an input.
 #pragma once
 
 #include <array>
@@ -43,11 +47,14 @@ struct RigParameters {
   LinearDamper<T> damper;
   StrutEffectNumbers<T> effects;
   TireVertical<T> tire;
-  DryFriction<T> guide;
-  T static_deflection;  // m, of the tire at rest
-  T ground_gain;        // factor on the input that moves the ground
-  T gravity;            // m/s^2
-  T temperature;        // K
+  std::array<DryFriction<T>, kRigCoordinates> guide;  // by RigCoordinate
+  T guide_asymmetry;
+  T moving_mass;              // kg
+  std::array<T, 4> feedback;  // of deflection, sprung velocity, tire deflection, unsprung velocity
+  T static_deflection;        // m, of the tire at rest
+  T ground_gain;              // factor on the input that moves the ground
+  T gravity;                  // m/s^2
+  T temperature;              // K
 };
 
 /// The properties common to all simulations of a batch.
@@ -56,6 +63,8 @@ struct RigLayout {
   bool unilateral_tire = false;
   unsigned strut_effects = 0;  // StrutEffectBits
   bool progressive_tire = false;
+  bool has_guide = false;     // with friction
+  bool has_feedback = false;  // of the force between the masses
 };
 
 template <class T>

@@ -186,9 +186,30 @@ InputSignal make_bump(const std::string& channel, double height, double begin, d
   return make_signal(channel, times, values, rates);
 }
 
-void scale_signal(InputSignal& signal, double factor) {
-  for (SignalCell& cell : signal.cells) {
-    for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= factor;
+InputSignal integrate_signal(const InputSignal& signal) {
+  const std::size_t cells = signal.cells.size() - 1;
+  Samples times, values, rates;
+  double sum = 0.0;
+  for (std::size_t i = 0; i <= cells; ++i) {
+    times.push_back(i < cells ? signal.cells[i].begin : signal.end);
+    values.push_back(sum);
+    rates.push_back(calc_signal(signal, times.back()).value);
+    if (i == cells) break;
+    const SignalCell& c = signal.cells[i];
+    const double h = (i + 1 < cells ? signal.cells[i + 1].begin : signal.end) - c.begin;
+    sum += h * (c.c0 + h * (c.c1 / 2.0 + h * (c.c2 / 3.0 + h * c.c3 / 4.0)));
+  }
+  return make_signal(signal.channel, times, values, rates);
+}
+
+void correct_signal(InputSignal& signal, const InputCorrection& correction) {
+  const auto& [constant, rate, second_rate] = correction.offset;
+  for (std::size_t i = 0; i + 1 < signal.cells.size(); ++i) {
+    SignalCell& cell = signal.cells[i];
+    for (double* c : {&cell.c0, &cell.c1, &cell.c2, &cell.c3}) *c *= correction.gain;
+    cell.c0 += constant + cell.begin * (rate + 0.5 * second_rate * cell.begin);
+    cell.c1 += rate + second_rate * cell.begin;
+    cell.c2 += 0.5 * second_rate;
   }
 }
 

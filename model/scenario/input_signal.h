@@ -50,8 +50,21 @@ InputSignal make_signal(const std::string& channel, const std::vector<double>& t
 InputSignal make_chirp(const std::string& channel, double amplitude, double begin_frequency,
                        double end_frequency, double duration);
 
-/// Multiplies the signal by a factor.
-void scale_signal(InputSignal& signal, double factor);
+/// The integral over time from the first sample on, zero there [u s]; Hermite interpolation between
+/// the samples, where it is exact.
+InputSignal integrate_signal(const InputSignal& signal);
+
+/// Highest time derivative of an input that a sensor may record in its place.
+inline constexpr int kMaxInputDerivative = 2;
+
+/// Correction of a recorded input u: gain u + offset[0] + offset[1] t + offset[2] t^2 / 2.
+struct InputCorrection {
+  double gain = 1.0;
+  std::array<double, kMaxInputDerivative + 1> offset{};  // [u], [u/s], [u/s^2]
+  bool operator==(const InputCorrection&) const = default;
+};
+
+void correct_signal(InputSignal& signal, const InputCorrection& correction);
 
 /// 0 until `begin` [s], then linearly within `rise` [s] > 0 to `height`.
 InputSignal make_step(const std::string& channel, double height, double begin, double rise);
