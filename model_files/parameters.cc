@@ -208,9 +208,12 @@ void add_maneuver(Parameters& list) {
       list, "duration", 3.0, between(1e-3, 3600.0, "s"), "simulated time", kPaperText,
       [](auto& c) -> auto& { return c.maneuver.duration; });
   add_number(
-      list, "drive_torque", 500.0, between(-20000.0, 20000.0, "N m"),
-      "total drive torque, reacted by the chassis", kPaperText,
-      [](auto& c) -> auto& { return c.maneuver.drive_torque; });
+      list, "drive_torque", 500.0, between(-20000.0, 20000.0, "N m"), "total drive torque",
+      kPaperText, [](auto& c) -> auto& { return c.maneuver.drive_torque; });
+  add_number(
+      list, "drive_reaction", 1.0, between(0.0, 1.0),
+      "fraction of the drive torque that the chassis reacts; 0: it comes from outside", kPaperText,
+      [](auto& c) -> auto& { return c.maneuver.drive_reaction; });
   add_number(
       list, "bump_distance", 10.0, between(-1000.0, 10000.0, "m"),
       "bump center ahead of the front wheel centers at the start", kStrutChoice,

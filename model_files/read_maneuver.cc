@@ -76,6 +76,8 @@ ManeuverSpec read_maneuver(const std::filesystem::path& path) {
   maneuver.speed = read_parameter(root, "speed", "speed");
   maneuver.duration = read_parameter(root, "duration", "duration");
   maneuver.drive_torque = read_parameter(root, "drive_torque", "drive_torque");
+  maneuver.drive_reaction = root.number_or("drive_reaction", maneuver.drive_reaction,
+                                           find_parameter("drive_reaction").allowed);
   maneuver.gravity = root.number_or("gravity", maneuver.gravity, find_parameter("gravity").allowed);
   maneuver.trim = static_cast<TrimKind>(root.choice_or("trim", 0, list_names(kTrims)));
   read_bump(root.table("bump"), maneuver);

@@ -234,10 +234,11 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const T tire_spin_moment = dot(arm_moment, m.axis);
     // The drive torque acts on the wheel and, as reaction, on the chassis, but not on the upright.
     const T& drive = vehicle.numbers.drive_torque[c];
+    const T& reaction = vehicle.numbers.drive_reaction[c];
     ws.spin_moment[c] = tire_spin_moment + drive;
 
     force += tire.force - rate2 * m.moment_qq;
-    moment += cross(contact_point, tire.force) + tire.moment - ws.spin_moment[c] * m.axis -
+    moment += cross(contact_point, tire.force) + tire.moment - (tire_spin_moment + reaction) * m.axis -
               rate * inertia_w - rate2 * m.coupling_q - (momentum * rate) * m.axis_q;
     const T upright_spin = dot(m.axis, m.upright_rate);
     const T tire_on_corner = dot(tire.force, m.center_q) + dot(arm_moment, m.upright_rate);
@@ -248,7 +249,7 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const T relative_spin = spin - upright_spin * rate - dot(m.axis, w);
     power += ws.strut[c].power + dot(tire.force, v) + dot(cross(contact_point, tire.force), w) +
              dot(tire.moment, w) + tire_on_corner * rate + tire_spin_moment * relative_spin +
-             drive * (spin - dot(m.axis, w));
+             drive * spin - reaction * dot(m.axis, w);
   }
   if (vehicle.layout.has_lift) power += add_lift(vehicle, v, w, force, moment);
   rhs.force = force - cross(w, p);

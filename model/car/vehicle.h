@@ -22,6 +22,7 @@ struct VehicleParameters {
   std::array<StrutEffectNumbers<T>, kCorners> effects;
   std::array<AntiRollBar<T>, kAxles> anti_roll_bar;
   std::array<T, kCorners> drive_torque;             // N m, on each wheel
+  std::array<T, kCorners> drive_reaction;           // N m, of each on the chassis
   std::array<T, kLines * kCorners> nominal_length;  // m, lines at nominal trim
   std::array<TireVertical<T>, kAxles> tire;
   std::array<WheelRunout<T>, kCorners> runout;

@@ -21,6 +21,7 @@ Case strip_to_mechanism(const Case& c) {
   key.maneuver.speed = neutral.speed;
   key.maneuver.duration = neutral.duration;
   key.maneuver.drive_torque = neutral.drive_torque;
+  key.maneuver.drive_reaction = neutral.drive_reaction;
   key.maneuver.bump_distance = neutral.bump_distance;
   key.maneuver.trim = neutral.trim;
   return key;
@@ -64,7 +65,10 @@ void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
 /// The start state of the maneuver: steady rolling on flat road, with the drive torque or without.
 State<double> trim(const Case& c, const Mechanism& mechanism, Vehicle<double> vehicle) {
   vehicle.layout.on_bump.fill(false);
-  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
+  if (c.maneuver.trim == TrimKind::kStatic) {
+    vehicle.numbers.drive_torque.fill(0.0);
+    vehicle.numbers.drive_reaction.fill(0.0);
+  }
   return solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, c.maneuver.speed)
       .state;
 }

@@ -13,7 +13,8 @@ enum class TrimKind {
 struct ManeuverSpec {
   double speed = 20.0;          // m/s, initial forward speed
   double duration = 3.0;        // s
-  double drive_torque = 500.0;  // N m, sum over the wheels, reacted by the chassis
+  double drive_torque = 500.0;  // N m, sum over the wheels
+  double drive_reaction = 1.0;  // fraction of it that the chassis reacts; 0: it comes from outside
   double bump_distance = 10.0;  // m, bump center ahead of the front wheel centers at t = 0
   TrimKind trim = TrimKind::kSteady;
   double gravity = 9.81;  // m/s^2

@@ -189,5 +189,32 @@ TEST_CASE("Samples that make no signal are refused by name", "[unit][input_signa
   CHECK(message({0.0, 1.0}, {1.0, std::nan("")}) == "road_position, sample 2: must be finite");
 }
 
+TEST_CASE("The integral of a signal is exact for cubics, at uneven samples", "[unit]") {
+  const std::vector<double> times = {0.0, 0.1, 0.25, 0.3, 0.55, 0.8, 1.0};
+  std::vector<double> values, rates;
+  for (const double t : times) {
+    values.push_back(2.0 - t + 3.0 * t * t - 4.0 * t * t * t);
+    rates.push_back(-1.0 + 6.0 * t - 12.0 * t * t);
+  }
+  const InputSignal sum = integrate_signal(make_signal("force", times, values, rates));
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double t = times[i];
+    const SignalPoint<double> point = calc_signal(sum, t);
+    CHECK(point.value == Approx(2.0 * t - t * t / 2.0 + t * t * t - t * t * t * t).margin(1e-14));
+    CHECK(point.rate == Approx(values[i]).margin(1e-14));
+  }
+}
+
+TEST_CASE("A correction scales a signal and adds a parabola", "[unit]") {
+  InputSignal signal = make_chirp("force", 3.0, 0.5, 2.0, 2.0);
+  const InputSignal recorded = signal;
+  correct_signal(signal, {-1.5, {0.4, 2.0, -6.0}});
+  for (double t = 0.0; t < 2.0; t += 0.037) {
+    const SignalPoint<double> before = calc_signal(recorded, t), after = calc_signal(signal, t);
+    CHECK(after.value == Approx(-1.5 * before.value + 0.4 + 2.0 * t - 3.0 * t * t).margin(1e-12));
+    CHECK(after.rate == Approx(-1.5 * before.rate + 2.0 - 6.0 * t).margin(1e-10));
+  }
+}
+
 }  // namespace
 }  // namespace strut

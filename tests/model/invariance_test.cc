@@ -217,26 +217,30 @@ TEST_CASE("Gravity accelerates by the mass matrix of the kinetic energy", "[unit
   }
 }
 
-TEST_CASE("Drive torque turns the wheel against the chassis, not the upright", "[unit][property]") {
+TEST_CASE("Drive torque turns the wheel against the chassis or the ground, not the upright",
+          "[unit][property]") {
+  const double fraction = GENERATE(1.0, 0.3, 0.0);  // that the chassis reacts
   Car car = make_paper_car_on(BumpShape::kNone);
   Random random(15);
   constexpr double kTorque = 700.0;
   for (int corner = 0; corner < kCorners; ++corner) {
     const State<double> x = car.make_state(random);
     car.vehicle().numbers.drive_torque.fill(0.0);
+    car.vehicle().numbers.drive_reaction.fill(0.0);
     const State<double> without = car.evaluate(x);
     car.vehicle().numbers.drive_torque[corner] = kTorque;
+    car.vehicle().numbers.drive_reaction[corner] = fraction * kTorque;
     const State<double> with = car.evaluate(x);
     const Vec3<double> u = car.ws.motion[corner].axis;
     const Vec3<double> w = get_vec3(x.data(), I::kAngularVelocity);
     VectorXd force = VectorXd::Zero(kVelocities);
-    force.segment<3>(3) << -kTorque * u.x, -kTorque * u.y, -kTorque * u.z;
+    const double reaction = fraction * kTorque;
+    force.segment<3>(3) << -reaction * u.x, -reaction * u.y, -reaction * u.z;
     force[10 + corner] = kTorque;
     const VectorXd expected = calc_mass_matrix(car, x).ldlt().solve(force);
     CHECK(compare(get_velocities(with) - get_velocities(without), expected) < tolerance(1e-9));
-    const double relative_spin = x[I::kSpin + corner] - dot(u, w);
     CHECK(with[I::kWork] - without[I::kWork] ==
-          Approx(kTorque * relative_spin).epsilon(tolerance(1e-9)));
+          Approx(kTorque * x[I::kSpin + corner] - reaction * dot(u, w)).epsilon(tolerance(1e-9)));
   }
 }
 

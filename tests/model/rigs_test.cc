@@ -171,6 +171,102 @@ TEST_CASE("A force accelerates a free mass", "[reference][rigs]") {
   }
 }
 
+TEST_CASE("Friction of a guide stops a mass sooner in one direction", "[reference][rigs]") {
+  RigSpec spec = make_single_mass();
+  spec.stiffness = spec.damping = 0.0;
+  spec.guide_friction = 4.0;
+  spec.guide_asymmetry = 0.5;
+  spec.guide_speed = 1e-3;
+  const double sign = GENERATE(1.0, -1.0);
+  spec.initial_velocity = {2.0 * sign, 0.0};
+  const LaneResults run = simulate_rig(spec, {}, make_steps(1e-4), make_plan(3.0, 0.05));
+  // 3 or 1 m/s^2 until the mass stands; tanh is 1 to rounding above 0.02 m/s.
+  const double slowing = sign > 0.0 ? 3.0 : 1.0, stop = 2.0 / slowing;
+  for (int i = 0; i <= 60; ++i) {
+    const double t = std::min(0.05 * i, stop);
+    // At rest the smoothed friction lets the mass creep on for a millimeter per second at most.
+    const double creep = t < stop - 0.02 ? 1e-9 : 2e-5;
+    CHECK(run.get_sample(i, SingleMassChannel::kPosition) ==
+          Approx(sign * (2.0 * t - 0.5 * slowing * t * t)).margin(creep));
+  }
+  CHECK(run.get_sample(0, SingleMassChannel::kGuideForce) == Approx(-sign * slowing * 2.0));
+}
+
+TEST_CASE("A guide's friction acts on each mass of a quarter car", "[reference][rigs]") {
+  RigSpec spec = make_quarter_car();
+  spec.guide_friction = 5.0;
+  spec.unsprung_guide_friction = 3.0;
+  spec.guide_speed = 1e-3;
+  spec.initial_velocity = {-0.5, 0.5};
+  const RigSpec* const specs[] = {&spec};
+  const Rig<double> rig = make_rig<double>(specs);
+  RigSystem<double> system(rig, {});
+  auto x = system.make_start();
+  std::array<double, 4> with{}, decay{};
+  system.calc_derivative(0.0, x.data(), with.data(), decay.data());
+  RigSpec free = spec;
+  free.guide_friction = free.unsprung_guide_friction = 0.0;
+  const RigSpec* const others[] = {&free};
+  const Rig<double> plain = make_rig<double>(others);
+  RigSystem<double> without(plain, {});
+  std::array<double, 4> dx{};
+  without.calc_derivative(0.0, x.data(), dx.data(), decay.data());
+  CHECK(with[2] - dx[2] == Approx(3.0 / spec.unsprung_mass));
+  CHECK(with[3] - dx[3] == Approx(-5.0 / spec.sprung_mass));
+}
+
+TEST_CASE("A stand needs the force of the mass that it moves", "[reference][rigs]") {
+  RigSpec spec;
+  spec.kind = RigKind::kStrutRig;
+  spec.stiffness = 1000.0;
+  spec.moving_mass = 3.0;
+  std::vector<double> times, values;
+  for (int i = 0; i <= 20; ++i) {
+    times.push_back(0.1 * i);
+    values.push_back(0.5 * 0.4 * times.back() * times.back());  // a spline has parabolas exactly
+  }
+  const LaneResults run =
+      simulate_rig(spec, {make_signal("displacement", times, values, Interpolation::kSpline)},
+                   make_steps(1e-2), make_plan(2.0, 0.1));
+  for (int i = 1; i < 20; ++i) {
+    const double x = 0.2 * 0.01 * i * i;
+    CHECK(run.get_sample(i, StrutRigChannel::kForce) == Approx(1000.0 * x + 3.0 * 0.4));
+    CHECK(run.get_sample(i, StrutRigChannel::kAcceleration) == Approx(0.4));
+  }
+}
+
+TEST_CASE("Feedback of the states changes a quarter car's transfer functions",
+          "[reference][rigs]") {
+  RigSpec spec = make_quarter_car();
+  spec.deflection_feedback = -150.0;
+  spec.sprung_velocity_feedback = -12.0;
+  spec.tire_deflection_feedback = 80.0;
+  spec.unsprung_velocity_feedback = 4.0;
+  const double w = 2.0 * std::numbers::pi * 2.5, road = 0.002;
+  const Complex iw(0.0, w);
+  const Complex z = spec.stiffness + iw * spec.damping;
+  const Complex zt = spec.tire_stiffness + iw * spec.tire_damping;
+  const Complex by_unsprung = 150.0 + 80.0 + iw * 4.0, by_sprung = -150.0 - iw * 12.0;
+  Eigen::Matrix2cd m;
+  m << z + zt - w * w * spec.unsprung_mass + by_unsprung, -z + by_sprung, -z - by_unsprung,
+      z - w * w * spec.sprung_mass - by_sprung;
+  const Eigen::Vector2cd response =
+      m.inverse() * Eigen::Vector2cd((zt + 80.0) * road, -80.0 * road);
+  const LaneResults run = simulate_rig(start_steady(spec, response, w),
+                                       {make_chirp("road_position", road, 2.5, 2.5, 2.0)},
+                                       make_steps(1e-3), make_plan(2.0, 0.02));
+  for (int i = 0; i <= 100; ++i) {
+    const Complex turn = std::polar(1.0, 0.02 * w * i);
+    const Eigen::Vector2cd x = response * turn;
+    for (int k = 0; k < 2; ++k) {
+      CHECK(get_quarter(run, i, Quarter::kUnsprungPosition + k) ==
+            Approx(x[k].imag()).margin(2e-9));
+    }
+    const Complex force = by_unsprung * x[0] + by_sprung * x[1] - 80.0 * road * turn;
+    CHECK(get_quarter(run, i, Quarter::kActuatorForce) == Approx(force.imag()).margin(2e-6));
+  }
+}
+
 /// Largest error of the positions at the end of steps of `step` [s] under a sine road.
 double measure_step_error(double step, Stepper stepper) {
   const double w = 2.0 * std::numbers::pi * 3.0;

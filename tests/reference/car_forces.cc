@@ -141,7 +141,7 @@ std::vector<Wrench> calc_wrenches(const CarForces& forces, const CarLayout& layo
     const Vector3d torque =
         c.drive_share * forces.drive_torque * at(state, c.upright).rotate(c.spin_axis);
     wheel.moment += torque;
-    wrenches[0].moment -= torque;
+    wrenches[0].moment -= forces.drive_reaction * torque;
     add_contact(calc_contact(forces, layout, corner, state), at(state, c.wheel), &wheel);
   }
   return wrenches;

@@ -38,9 +38,10 @@ struct CarForces {
   std::array<CornerStrut, kCorners> strut;
   TireContactSpec tire;
   ReferenceLaws laws;
-  double gravity = 9.81;      // m/s^2
-  double drive_torque = 0.0;  // N m in all
-  bool frictionless = false;  // no forces and moments in the plane of the road
+  double gravity = 9.81;        // m/s^2
+  double drive_torque = 0.0;    // N m in all
+  double drive_reaction = 1.0;  // fraction of it on the chassis
+  bool frictionless = false;    // no forces and moments in the plane of the road
 };
 
 WheelContact calc_contact(const CarForces& forces, const CarLayout& layout, int corner,

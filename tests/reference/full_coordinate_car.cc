@@ -88,6 +88,7 @@ FullCoordinateCar::FullCoordinateCar(const VehicleSpec& spec, const ManeuverSpec
   forces_.laws = std::move(laws);
   forces_.gravity = maneuver.gravity;
   forces_.drive_torque = maneuver.drive_torque;
+  forces_.drive_reaction = maneuver.drive_reaction;
   for (int corner = 0; corner < kCorners; ++corner) {
     const StrutSpec& strut =
         spec.suspension[index_of(axle_of(corner))].strut[is_right(corner) ? 1 : 0];
@@ -296,7 +297,8 @@ double FullCoordinateCar::calc_power(const ReferenceState& state) const {
     power += damper.force * damper.rate;
     power += contact.force.dot(wheel.velocity + w.cross(contact.point - wheel.position)) +
              contact.moment.dot(w);
-    power += c.drive_share * forces_.drive_torque * u.dot(w - state.bodies[0].angular_velocity);
+    power += c.drive_share * forces_.drive_torque *
+             u.dot(w - forces_.drive_reaction * state.bodies[0].angular_velocity);
   }
   return power;
 }
