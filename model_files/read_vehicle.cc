@@ -132,20 +132,6 @@ std::vector<std::string> read_multilink(const Table& table, SuspensionSpec& susp
   return names;
 }
 
-/// A rod turns freely about the line of its joints, so only a point on that line has a motion.
-void check_on_rod(const Table& table, const std::string& end, const Vec3<double>& point,
-                  const RodSpec& rod, const std::string& name) {
-  constexpr double kMaxOffset = 2e-3;  // m, of hardpoints rounded to millimeters
-  const Vec3<double> axis = rod.upright - rod.chassis;
-  const double offset = norm(cross(point - rod.chassis, axis)) / norm(axis);
-  if (offset <= kMaxOffset) return;
-  throw table.error(
-      end, fmt::format("lies {} mm off the line of the joints of '{}', which may turn about that "
-                       "line; must be at most {} mm off: give the point on the line that moves "
-                       "alike, or mount it on the upright",
-                       format_rounded(1e3 * offset), name, format_number(1e3 * kMaxOffset)));
-}
-
 /// Keys: `<end>`, a point, and `<end>_on`, the part to which it is fixed.
 MountSpec read_mount(const Table& table, const std::string& end, const SuspensionSpec& suspension,
                      const std::vector<std::string>& rod_names) {
@@ -162,10 +148,6 @@ MountSpec read_mount(const Table& table, const std::string& end, const Suspensio
   mount.body = part < fixed_parts ? bodies[static_cast<std::size_t>(part)] : MountBody::kRod;
   mount.rod = part < fixed_parts ? 0 : part - fixed_parts;
   mount.position = read_point(table, end);
-  if (mount.body == MountBody::kRod) {
-    check_on_rod(table, end, mount.position, suspension.rods[static_cast<std::size_t>(mount.rod)],
-                 parts[static_cast<std::size_t>(part)]);
-  }
   return mount;
 }
 

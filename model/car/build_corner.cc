@@ -126,10 +126,13 @@ void add_lines(const SuspensionSpec& spec, const Placement& place, BuiltCorner& 
       parts.topology.line[line][end] = find_attachment(mount, parts);
       geometry.line_point[line][end] = place.point(mount.position);
       geometry.rod_fraction[line][end] = 0.0;
+      geometry.rod_offset[line][end] = {0.0, 0.0, 0.0};
       if (mount.body == MountBody::kRod) {
         const Vec3<double> a = geometry.rod_chassis[mount.rod];
         const Vec3<double> d = geometry.rod_upright[mount.rod] - a;
-        geometry.rod_fraction[line][end] = dot(place.point(mount.position) - a, d) / dot(d, d);
+        const Vec3<double> arm = place.point(mount.position) - a;
+        geometry.rod_fraction[line][end] = dot(arm, d) / dot(d, d);
+        geometry.rod_offset[line][end] = arm - geometry.rod_fraction[line][end] * d;
       }
     }
   }

@@ -29,7 +29,8 @@ enum class JointKind : std::int8_t { kRevolute, kPrismatic };
 /// Attachment of one end of a line: to a part (joint index or kChassisPart), or to a rod.
 struct Attachment {
   int part = kChassisPart;
-  int rod = -1;  // >= 0: on this rod, `rod_fraction` of the way from chassis to upright
+  int rod = -1;  // >= 0: on this rod, `rod_fraction` of the way from chassis to upright, and
+                 // `rod_offset` beside its line
 };
 
 /// Joints and loops of a kind of suspension. Values of this type are template arguments, so that
@@ -110,6 +111,7 @@ struct CornerGeometry {
   Vec3<T> wheel_center, spin_axis;  // spin axis is a unit vector
   std::array<std::array<Vec3<T>, 2>, kLines> line_point;
   std::array<std::array<T, 2>, kLines> rod_fraction;
+  std::array<std::array<Vec3<T>, 2>, kLines> rod_offset;  // perpendicular to the rod
 };
 
 /// Rigid body at nominal trim: mass [kg], center of mass [m], central inertia [kg m^2].

@@ -129,21 +129,47 @@ void add_rod(const RodInertia<T>& rod, const Vec3<T>& a, const PointMotion<T>& b
   motion.mass_q += T(2.0) * rod.bb * dot(b.r_q, b.r_qq);
 }
 
-/// Motion of one end of a line; `fraction` is its position on a rod.
+/// A point with its derivative by q.
 template <class T>
-PointMotion<T> calc_attachment(const CornerGeometry<T>& geometry, const CornerPose<T>& pose,
-                               const PartMotion<T>& parts, const Attachment& attachment,
-                               int upright, const Vec3<T>& nominal, const T& fraction) {
-  const Vec3<T> zero{T(0.0), T(0.0), T(0.0)};
+struct PointRate {
+  Vec3<T> r, r_q;
+};
+
+/// The offset s of a mount beside its rod, whose unit vector has turned from e0 to e: turned by the
+/// shortest rotation, since the rod's bushing keeps it from turning about its own line,
+///
+///   s' = s - (e . s) / (1 + e0 . e) (e0 + e)
+template <class T>
+PointRate<T> turn_offset(const Vec3<T>& s, const Vec3<T>& e0, const Vec3<T>& e,
+                         const Vec3<T>& e_q) {
+  const T scale = T(1.0) / (T(1.0) + dot(e0, e)), along = dot(e, s) * scale;
+  const T along_q = (dot(e_q, s) - along * dot(e0, e_q)) * scale;
+  return {s - along * (e0 + e), -(along_q * (e0 + e) + along * e_q)};
+}
+
+/// One end of a line.
+template <class T>
+PointRate<T> calc_attachment(const CornerTopology& topology, const CornerGeometry<T>& geometry,
+                             const CornerPose<T>& pose, const PartMotion<T>& parts, int upright,
+                             int line, int end) {
+  const Attachment& attachment = topology.line[line][end];
+  const Vec3<T>& nominal = geometry.line_point[line][end];
   if (attachment.rod >= 0) {
-    const PointMotion<T> end =
-        calc_point_at(parts.rate[upright], parts.accel[upright], pose.rod_end[attachment.rod]);
-    const Vec3<T>& a = geometry.rod_chassis[attachment.rod];
-    return {a + fraction * (end.r - a), fraction * end.r_q, fraction * end.r_qq};
+    const int rod = attachment.rod;
+    const PointMotion<T> tip =
+        calc_point_at(parts.rate[upright], parts.accel[upright], pose.rod_end[rod]);
+    const Vec3<T>& a = geometry.rod_chassis[rod];
+    const T shortness = T(1.0) / geometry.rod_length[rod];
+    const PointRate<T> beside =
+        turn_offset(geometry.rod_offset[line][end], shortness * (geometry.rod_upright[rod] - a),
+                    shortness * (tip.r - a), shortness * tip.r_q);
+    const T& fraction = geometry.rod_fraction[line][end];
+    return {a + fraction * (tip.r - a) + beside.r, fraction * tip.r_q + beside.r_q};
   }
-  if (attachment.part == kChassisPart) return {nominal, zero, zero};
-  return calc_point(pose.part[attachment.part], parts.rate[attachment.part],
-                    parts.accel[attachment.part], nominal);
+  if (attachment.part == kChassisPart) return {nominal, {T(0.0), T(0.0), T(0.0)}};
+  const PointMotion<T> point = calc_point(pose.part[attachment.part], parts.rate[attachment.part],
+                                          parts.accel[attachment.part], nominal);
+  return {point.r, point.r_q};
 }
 
 /// Wheel center and axis, lengths of the lines.
@@ -162,10 +188,9 @@ void update_wheel_and_lines(const CornerTopology& topology, const CornerGeometry
   motion.upright_rate = parts.rate[upright].w;
   motion.axis_q = cross(motion.upright_rate, motion.axis);
   for (int line = 0; line < kLines; ++line) {
-    PointMotion<T> end[2];
+    PointRate<T> end[2];
     for (int e = 0; e < 2; ++e) {
-      end[e] = calc_attachment(geometry, pose, parts, topology.line[line][e], upright,
-                               geometry.line_point[line][e], geometry.rod_fraction[line][e]);
+      end[e] = calc_attachment(topology, geometry, pose, parts, upright, line, e);
     }
     const Vec3<T> d = end[1].r - end[0].r;
     motion.length[line] = norm(d);

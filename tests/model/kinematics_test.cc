@@ -1,9 +1,11 @@
 #include "model/car/kinematics.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "io/table/csv.h"
+#include "tests/model/test_corner.h"
 #include "tests/support/test_car.h"
 
 namespace strut {
@@ -103,6 +105,41 @@ TEST_CASE("The rear corner follows the closure the equations of motion use", "[u
     CHECK(norm(motion.center - moved) < tolerance(1e-11));
     CHECK(std::abs(motion.length[kSpringLine] - points[i].spring_length) < tolerance(1e-11));
   }
+}
+
+TEST_CASE("A spring beside the line of its rod follows the rod's shortest rotation",
+          "[unit][reference]") {
+  VehicleSpec spec = reference::make_paper_sedan_spec();
+  SuspensionSpec& rear = spec.suspension[kRear];
+  constexpr int kRod = 3;
+  const RodSpec& rod = rear.rods[kRod];
+  rear.spring_lower = {MountBody::kRod, kRod,
+                       0.6 * rod.chassis + 0.4 * rod.upright + Vec3<double>{0.04, -0.03, 0.11}};
+  const AssembledVehicle car = test::make_car(spec);
+  const CornerGeometry<double>& geometry = car.numbers.geometry[kRearLeft];
+  const auto to_eigen = [](const Vec3<double>& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
+  const Eigen::Vector3d chassis = to_eigen(geometry.rod_chassis[kRod]);
+  const Eigen::Vector3d before = to_eigen(geometry.rod_upright[kRod]) - chassis;
+  const Eigen::Vector3d mount = to_eigen(test::place(car, kRearLeft, rear.spring_lower.position));
+  const Eigen::Vector3d upper = to_eigen(test::place(car, kRearLeft, rear.spring_upper.position));
+  double moved = 0.0;
+  for (const double q : test::make_travels(9)) {
+    const CornerPose<double> pose = test::calc_pose(car, kRearLeft, q);
+    const Eigen::Vector3d after = to_eigen(pose.rod_end[kRod]) - chassis;
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(before, after);
+    const Eigen::Vector3d lower = chassis + turn * (mount - chassis);
+    const test::Motion motion = test::calc_motion(car, kRearLeft, q);
+    CHECK(motion.length[kSpringLine] == Approx((upper - lower).norm()).margin(tolerance(1e-12)));
+    constexpr double kStep = 1e-5;  // central difference: 1e-10 of it by the third derivative
+    const double slope = (test::calc_motion(car, kRearLeft, q + kStep).length[kSpringLine] -
+                          test::calc_motion(car, kRearLeft, q - kStep).length[kSpringLine]) /
+                         (2.0 * kStep);
+    CHECK(motion.length_q[kSpringLine] == Approx(slope).margin(tolerance(1e-8)));
+    const double on_line =
+        (upper - chassis - (mount - chassis).dot(before) / before.squaredNorm() * after).norm();
+    moved = std::max(moved, std::abs(on_line - motion.length[kSpringLine]));
+  }
+  CHECK(moved > 0.05);  // a projected mount would differ by this
 }
 
 TEST_CASE("Travel beyond what the links allow is an error that names axle and travel", "[unit]") {
