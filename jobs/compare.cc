@@ -102,6 +102,7 @@ int run_compare(const Arguments& arguments) {
     return compare_campaign(data, threads);
   }();
   print_failures(comparison);
+  print_notes(comparison.notes);
   const std::string json = format_json(make_compare_json(data, comparison)) + "\n";
   {
     const InterruptGuard guard;

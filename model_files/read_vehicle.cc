@@ -151,13 +151,23 @@ MountSpec read_mount(const Table& table, const std::string& end, const Suspensio
   return mount;
 }
 
+/// Reads a number of both struts of an axle, and `KEY_left` and `KEY_right`, which replace it.
+std::array<double, 2> read_sides(const Table& table, const std::string& key,
+                                 const std::string& parameter) {
+  const double both = read_parameter(table, key, parameter);
+  const Range& allowed = find_parameter(parameter).allowed;
+  return {table.number_or(key + "_left", both, allowed),
+          table.number_or(key + "_right", both, allowed)};
+}
+
 void read_springs(const Table& spring, const std::string& axle, SuspensionSpec& suspension) {
-  const double stiffness = read_parameter(spring, "stiffness", axle + "_stiffness");
-  const double nominal =
-      spring.number_or("nominal_stiffness", stiffness, find_parameter(axle + "_stiffness").allowed);
-  for (StrutSpec& strut : suspension.strut) {
-    strut.stiffness = stiffness;
-    strut.nominal_stiffness = nominal;
+  const std::string parameter = axle + "_stiffness";
+  const std::array<double, 2> stiffness = read_sides(spring, "stiffness", parameter);
+  for (std::size_t side = 0; side < stiffness.size(); ++side) {
+    StrutSpec& strut = suspension.strut[side];
+    strut.stiffness = stiffness[side];
+    strut.nominal_stiffness =
+        spring.number_or("nominal_stiffness", stiffness[side], find_parameter(parameter).allowed);
   }
 }
 
@@ -165,8 +175,9 @@ void read_lines(const Table& table, const std::string& axle,
                 const std::vector<std::string>& rod_names, SuspensionSpec& suspension) {
   const Table spring = table.table("spring"), damper = table.table("damper");
   read_springs(spring, axle, suspension);
-  for (StrutSpec& strut : suspension.strut) {
-    strut.damping = read_parameter(damper, "damping", axle + "_damping");
+  const std::array<double, 2> damping = read_sides(damper, "damping", axle + "_damping");
+  for (std::size_t side = 0; side < damping.size(); ++side) {
+    suspension.strut[side].damping = damping[side];
   }
   suspension.spring_upper = read_mount(spring, "upper", suspension, rod_names);
   suspension.spring_lower = read_mount(spring, "lower", suspension, rod_names);

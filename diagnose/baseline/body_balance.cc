@@ -155,11 +155,18 @@ void add_kinematics(const MeasuredRun& run, int position, int acceleration, doub
   b.kinematics.push_back(k);
 }
 
+/// Whether forces act on the sprung mass that depend on more than the strut's motion.
+bool has_other_forces(const RigSpec& rig) {
+  return rig.guide_friction != 0.0 || rig.deflection_feedback != 0.0 ||
+         rig.sprung_velocity_feedback != 0.0 || rig.tire_deflection_feedback != 0.0 ||
+         rig.unsprung_velocity_feedback != 0.0;
+}
+
 }  // namespace
 
 std::optional<BodyBalance> calc_body_balance(const MeasuredRun& run) {
   const ModelInfo& model = run.setup.info();
-  if (model.masses.size() != 2) return std::nullopt;
+  if (model.masses.size() != 2 || has_other_forces(run.setup.rig().rig)) return std::nullopt;
   const MassInfo &below = model.masses[kUnsprung], &above = model.masses[kSprung];
   const MeasuredChannel* sprung = find(run, above.position);
   const MeasuredChannel* unsprung = find(run, below.position);

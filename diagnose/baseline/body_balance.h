@@ -40,8 +40,8 @@ struct BodyBalance {
   std::vector<KinematicResidual> kinematics;
 };
 
-/// Calculates the balance at a run's setup (set_unknowns). Null unless the model has two masses and
-/// both positions are measured.
+/// Calculates the balance at a run's setup (set_unknowns). Null unless the model has two masses,
+/// both positions are measured, and only the strut and a recorded actuator act on the sprung mass.
 std::optional<BodyBalance> calc_body_balance(const MeasuredRun& run);
 
 }  // namespace strut

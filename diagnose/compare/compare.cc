@@ -8,6 +8,7 @@
 #include "base/error/input_error.h"
 #include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
+#include "diagnose/compare/deciding_noise.h"
 #include "diagnose/noise/whitened_fit.h"
 #include "model_files/parameters.h"
 
@@ -132,6 +133,10 @@ Comparison compare_campaign(const CampaignData& data, int threads) {
                                 run.calibrated.conflicts.end());
     comparison.runs.push_back(std::move(run));
   }
+  std::vector<const ModelComparison*> models;
+  models.reserve(comparison.runs.size());
+  for (const RunComparison& run : comparison.runs) models.push_back(&run.calibrated);
+  comparison.notes = describe_deciding_noise(data, models);
   return comparison;
 }
 

@@ -54,6 +54,7 @@ struct Comparison {
   std::vector<std::string> not_identifiable;  // combinations that the runs do not identify
   std::vector<Misfit> misfits;                // of the calibrated model, by run and channel
   std::vector<PriorConflict> conflicts;       // of the calibrated model
+  std::vector<std::string> notes;             // for the user
 
   /// Whether every channel of every run agrees with the calibrated model within its noise.
   bool is_adequate() const { return misfits.empty(); }

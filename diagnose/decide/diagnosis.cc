@@ -8,6 +8,7 @@
 
 #include "base/error/check.h"
 #include "base/text/format_number.h"
+#include "diagnose/compare/deciding_noise.h"
 #include "diagnose/decide/acceptance.h"
 #include "diagnose/decide/improvement.h"
 #include "diagnose/decide/next_measurement.h"
@@ -113,6 +114,17 @@ void check_results(Diagnosis& diagnosis) {
       diagnosis.notes.push_back(model->evaluation.failure);
       diagnosis.is_whole = false;
     }
+  }
+}
+
+/// Notes on channels whose agreement with the last model rests on an estimated noise.
+void add_noise_notes(const CampaignData& data, Diagnosis& diagnosis) {
+  std::vector<const ModelComparison*> models;
+  for (const DiagnosedRun& run : diagnosis.runs) {
+    models.push_back(diagnosis.is_extended() ? &run.after : &run.before);
+  }
+  for (std::string& note : describe_deciding_noise(data, models)) {
+    diagnosis.notes.push_back(std::move(note));
   }
 }
 
@@ -225,6 +237,7 @@ Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& opt
   check_verdict(diagnosis.verdict, diagnosis.force.has_value());
   check_extension(diagnosis);
   check_results(diagnosis);
+  add_noise_notes(data, diagnosis);
   const Selection& selection = diagnosis.selection;
   diagnosis.parameters = list_parameter_changes(data, selection, diagnosis.verdict.positions);
   if (diagnosis.is_extended()) {

@@ -189,7 +189,9 @@ Json make_compare_json(const CampaignData& data, const Comparison& comparison) {
   json["not_identifiable"] = comparison.not_identifiable;
   json["sensor_errors"] = make_sensor_errors(comparison.baseline.fit);
   json["noise"] = make_noise(data);
-  json["notes"] = data.notes;
+  Json notes = data.notes;
+  for (const std::string& note : comparison.notes) notes.push_back(note);
+  json["notes"] = notes;
   json["runs"] = make_runs(data, comparison);
   return json;
 }

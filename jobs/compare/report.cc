@@ -32,7 +32,9 @@ void write_compare_report(const CompareFolder& folder, const CampaignData& data,
   ReportPage page;
   page.title = "Measured against simulated: " + data.campaign.path.filename().string();
   page.lead = {make_verdict_text(data, comparison)};
-  page.sections.push_back({"Overview", data.notes, make_compare_tables(data, comparison)});
+  std::vector<std::string> notes = data.notes;
+  notes.insert(notes.end(), comparison.notes.begin(), comparison.notes.end());
+  page.sections.push_back({"Overview", notes, make_compare_tables(data, comparison)});
   for (const RunComparison& run : comparison.runs) {
     page.sections.push_back(make_run_section(data, run, drawer));
   }

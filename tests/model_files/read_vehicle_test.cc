@@ -216,5 +216,22 @@ TEST_CASE("A profile must run forward", "[io]") {
   CHECK_THROWS_WITH(read("position,z\n0,0\n1,0\n"), Contains("no column 'height'"));
 }
 
+TEST_CASE("Springs and dampers may differ from left to right", "[io]") {
+  const ChangedFile file(kSedan, "damping = 1980.0                # [1]\nupper = [-0.02897",
+                         "damping = 1980.0\ndamping_right = 1500\nupper = [-0.02897");
+  const SuspensionSpec front = read_vehicle(file.path()).suspension[kFront];
+  CHECK(front.strut[0].damping == 1980.0);
+  CHECK(front.strut[1].damping == 1500.0);
+  const ChangedFile softer(kSedan, "stiffness = 35000.0             # [1]",
+                           "stiffness = 35000.0\nstiffness_left = 30000");
+  const SuspensionSpec rear = read_vehicle(softer.path()).suspension[kRear];
+  CHECK(rear.strut[0].stiffness == 30000.0);
+  CHECK(rear.strut[0].nominal_stiffness == 30000.0);
+  CHECK(rear.strut[1].stiffness == 35000.0);
+  check_refused("damping = 1980.0                # [1]\nupper = [-0.02897",
+                "damping_left = -1\ndamping = 1980\nupper = [-0.02897",
+                "front_suspension.damper.damping_left = -1");
+}
+
 }  // namespace
 }  // namespace strut
