@@ -12,6 +12,7 @@
 #include "model/error/model_error.h"
 #include "model/rig/rig_system.h"
 #include "model_files/choices.h"
+#include "model_files/read_damper_curve.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
 #include "model_files/read_force_maps.h"
@@ -166,6 +167,8 @@ RigSpec read_rig(const std::filesystem::path& path) {
   if (get_rig_info(spec.kind).has(kHasTire)) {
     spec.unilateral_tire = root.choice("tire_contact", list_names(kTireContacts)) == 1;
   }
+  spec.damper_curve = read_damper_curve(root, "damper_curve", "damping");
+  if (!spec.damper_curve.empty()) spec.damping = calc_curve_rate(spec.damper_curve);
   read_initial(root, spec);
   read_fitted(root, spec);
   spec.effects = read_effects(root, get_rig_info(spec.kind));

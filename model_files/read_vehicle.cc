@@ -11,6 +11,7 @@
 #include "model/model.h"
 #include "model_files/choices.h"
 #include "model_files/parameters.h"
+#include "model_files/read_damper_curve.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
 #include "model_files/read_force_maps.h"
@@ -151,10 +152,9 @@ MountSpec read_mount(const Table& table, const std::string& end, const Suspensio
   return mount;
 }
 
-/// Reads a number of both struts of an axle, and `KEY_left` and `KEY_right`, which replace it.
-std::array<double, 2> read_sides(const Table& table, const std::string& key,
+/// Reads `KEY_left` and `KEY_right`, each of which replaces the number `both` of an axle's struts.
+std::array<double, 2> read_sides(const Table& table, const std::string& key, double both,
                                  const std::string& parameter) {
-  const double both = read_parameter(table, key, parameter);
   const Range& allowed = find_parameter(parameter).allowed;
   return {table.number_or(key + "_left", both, allowed),
           table.number_or(key + "_right", both, allowed)};
@@ -162,7 +162,8 @@ std::array<double, 2> read_sides(const Table& table, const std::string& key,
 
 void read_springs(const Table& spring, const std::string& axle, SuspensionSpec& suspension) {
   const std::string parameter = axle + "_stiffness";
-  const std::array<double, 2> stiffness = read_sides(spring, "stiffness", parameter);
+  const std::array<double, 2> stiffness =
+      read_sides(spring, "stiffness", read_parameter(spring, "stiffness", parameter), parameter);
   for (std::size_t side = 0; side < stiffness.size(); ++side) {
     StrutSpec& strut = suspension.strut[side];
     strut.stiffness = stiffness[side];
@@ -171,14 +172,27 @@ void read_springs(const Table& spring, const std::string& axle, SuspensionSpec& 
   }
 }
 
+void read_dampers(const Table& damper, const std::string& axle, SuspensionSpec& suspension) {
+  const std::string parameter = axle + "_damping";
+  suspension.damper_curve = read_damper_curve(damper, "curve", "damping");
+  const double rate = suspension.damper_curve.empty() ? read_parameter(damper, "damping", parameter)
+                                                      : calc_curve_rate(suspension.damper_curve);
+  const Range& allowed = find_parameter(parameter).allowed;
+  if (!allowed.contains(rate)) {
+    throw damper.error("curve", fmt::format("has a rate of {} N s/m: {}", format_rounded(rate),
+                                            allowed.describe()));
+  }
+  const std::array<double, 2> damping = read_sides(damper, "damping", rate, parameter);
+  for (std::size_t side = 0; side < damping.size(); ++side) {
+    suspension.strut[side].damping = damping[side];
+  }
+}
+
 void read_lines(const Table& table, const std::string& axle,
                 const std::vector<std::string>& rod_names, SuspensionSpec& suspension) {
   const Table spring = table.table("spring"), damper = table.table("damper");
   read_springs(spring, axle, suspension);
-  const std::array<double, 2> damping = read_sides(damper, "damping", axle + "_damping");
-  for (std::size_t side = 0; side < damping.size(); ++side) {
-    suspension.strut[side].damping = damping[side];
-  }
+  read_dampers(damper, axle, suspension);
   suspension.spring_upper = read_mount(spring, "upper", suspension, rod_names);
   suspension.spring_lower = read_mount(spring, "lower", suspension, rod_names);
   suspension.damper_upper = read_mount(damper, "upper", suspension, rod_names);

@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstdint>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -184,6 +185,8 @@ std::vector<std::uint64_t> list_passages(const std::vector<double>& values) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(i);
     std::array<double, kLength> passage;
     std::copy(begin, begin + kLength, passage.begin());
+    const auto is_missing = [](double v) { return std::isnan(v); };
+    if (std::any_of(passage.begin(), passage.end(), is_missing)) continue;
     std::uint64_t digest = 14695981039346656037ULL;  // FNV-1a, by words
     for (const double v : passage) {
       digest = (digest ^ std::bit_cast<std::uint64_t>(v)) * 1099511628211ULL;
@@ -195,6 +198,34 @@ std::vector<std::uint64_t> list_passages(const std::vector<double>& values) {
   std::sort(passages.begin(), passages.end());
   passages.erase(std::unique(passages.begin(), passages.end()), passages.end());
   return passages;
+}
+
+/// Passages by channel.
+using RunPassages = std::map<int, std::vector<std::uint64_t>>;
+
+RunPassages list_passages(const MeasuredRun& run) {
+  RunPassages passages;
+  for (const MeasuredChannel& c : run.channels) {
+    std::vector<std::uint64_t> of_channel = list_passages(c.values);
+    if (!of_channel.empty()) passages.emplace(c.channel, std::move(of_channel));
+  }
+  return passages;
+}
+
+/// Fraction of the shorter run's passages that both have, in the channel that has least in common;
+/// 0 where no channel can be compared.
+double calc_common_fraction(const RunPassages& a, const RunPassages& b) {
+  std::optional<double> fraction;
+  for (const auto& [channel, of_a] : a) {
+    const auto of_b = b.find(channel);
+    if (of_b == b.end()) continue;
+    std::vector<std::uint64_t> both;
+    std::set_intersection(of_a.begin(), of_a.end(), of_b->second.begin(), of_b->second.end(),
+                          std::back_inserter(both));
+    const auto fewer = static_cast<double>(std::min(of_a.size(), of_b->second.size()));
+    fraction = std::min(fraction.value_or(1.0), static_cast<double>(both.size()) / fewer);
+  }
+  return fraction.value_or(0.0);
 }
 
 }  // namespace
@@ -242,24 +273,16 @@ std::vector<RecordingFinding> check_sensors(const std::vector<MeasuredRun>& runs
 std::vector<RecordingFinding> check_copies(const std::vector<MeasuredRun>& runs) {
   constexpr double kMost = 0.5;
   std::vector<RecordingFinding> findings;
-  std::vector<std::vector<std::uint64_t>> passages;
+  std::vector<RunPassages> passages;
   passages.reserve(runs.size());
-  for (const MeasuredRun& run : runs)
-    passages.push_back(list_passages(run.channels.front().values));
+  for (const MeasuredRun& run : runs) passages.push_back(list_passages(run));
   for (std::size_t a = 0; a < runs.size(); ++a) {
     for (std::size_t b = a + 1; b < runs.size(); ++b) {
-      const std::size_t fewer = std::min(passages[a].size(), passages[b].size());
-      if (fewer == 0 || runs[a].channels.front().channel != runs[b].channels.front().channel)
-        continue;
-      std::vector<std::uint64_t> both;
-      std::set_intersection(passages[a].begin(), passages[a].end(), passages[b].begin(),
-                            passages[b].end(), std::back_inserter(both));
-      const auto common = static_cast<double>(both.size());
-      if (common < kMost * static_cast<double>(fewer)) continue;
-      findings.push_back(
-          {FindingKind::kCopy, runs[b].name, get_name(runs[b], runs[b].channels.front()),
-           common / static_cast<double>(fewer), "is a copy of that in " + runs[a].name,
-           "a held-out run must be another one"});
+      const double common = calc_common_fraction(passages[a], passages[b]);
+      if (common < kMost) continue;
+      findings.push_back({FindingKind::kCopy, runs[b].name, "", common,
+                          "is a copy of " + runs[a].name, "a held-out run must be another one",
+                          runs[a].name});
     }
   }
   return findings;

@@ -39,9 +39,12 @@ struct RecordingFinding {
   FindingKind kind = FindingKind::kSign;
   std::string run;      // the file; "": all of them
   std::string channel;  // "": all of them, or the clock
-  double size = 0.0;    // -1, the factor, the lag [s], the number of samples, the frequency [Hz]
+  /// kSign: -1; kFactor: the factor; kLag: s; kDroppedSamples: their number; kUnevenClock: jitter
+  /// [s]; kQuantization: the step; kMains: Hz; kCopy: the fraction of common readings.
+  double size = 0.0;
   std::string what;     // "looks negated"
   std::string advice;   // "sign = -1"; "": none
+  std::string other{};  // kCopy: the run that it is a copy of
 
   /// "drive.csv: front_left_deflection looks negated: sign = -1"
   std::string describe() const;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/error/input_error.h"
+#include "base/text/nearest_name.h"
 
 namespace strut {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kTimeChannel[] = "time";
+/// Keys of a channel that move its readings to another clock.
+constexpr const char* kUnusedKeys[] = {"clock", "delay"};
 
 fs::path make_canonical(const fs::path& path) {
   std::error_code error;  // a path that does not exist stays as it is
@@ -30,9 +33,20 @@ void keep_rows(std::size_t first, std::size_t last, Measurement& measurement) {
   cut(measurement.lines);
 }
 
-void cut_window(const std::pair<double, double>& window, Measurement& measurement) {
+/// Keeps the rows in the file's window. Of several windows none is meant.
+void cut_window(const ColumnMap& map, Measurement& measurement) {
   const CsvColumn* time = measurement.find(kTimeChannel);
-  if (time == nullptr) return;
+  const auto found = map.windows.find(make_canonical(measurement.path));
+  if (time == nullptr || found == map.windows.end()) return;
+  if (found->second.size() > 1) {
+    measurement.notes.push_back(
+        fmt::format("{}: the whole file is used; the campaign has {} windows of it",
+                    measurement.path.string(), found->second.size()));
+    return;
+  }
+  const std::pair<double, double>& window = found->second.front();
+  measurement.notes.push_back(fmt::format("{}: only {} to {} s is used, the campaign's window",
+                                          measurement.path.string(), window.first, window.second));
   const auto is_inside = [&](double t) { return t >= window.first && t <= window.second; };
   const auto first = std::find_if(time->values.begin(), time->values.end(), is_inside);
   const auto last = std::find_if(time->values.rbegin(), time->values.rend(), is_inside).base();
@@ -103,15 +117,25 @@ MappedColumn ColumnMap::find(const ColumnInfo& channel) const {
   return own;
 }
 
-ColumnMap read_column_map(const fs::path& campaign, const std::vector<ColumnInfo>& channels) {
+ColumnMap read_column_map(const fs::path& campaign, const std::vector<ColumnInfo>& channels,
+                          const std::vector<std::string>& known) {
   const Document document(campaign);
   const Table root = document.root();
   const Table columns = root.table("columns");
   ColumnMap map;
   for (const ColumnInfo& channel : channels) {
-    if (columns.has(channel.name)) {
-      map.columns.push_back(read_mapped_column(columns, channel.name, channel.unit));
+    if (!columns.has(channel.name)) continue;
+    map.columns.push_back(read_mapped_column(columns, channel.name, channel.unit));
+    const Table entry = columns.table(channel.name);
+    for (const char* key : kUnusedKeys) {
+      if (!entry.has(key)) continue;
+      throw entry.error(key, "is for compare and diagnose; identify reads channels of one clock");
     }
+  }
+  for (const std::string& name : columns.keys()) {
+    const auto is_known = [&](const std::string& other) { return other == name; };
+    if (std::any_of(known.begin(), known.end(), is_known)) continue;
+    throw columns.error(name, "is not a channel of this model" + suggest_name(name, known));
   }
   if (!root.has("run")) return map;
   for (const Table& run : root.tables("run")) {
@@ -120,7 +144,7 @@ ColumnMap read_column_map(const fs::path& campaign, const std::vector<ColumnInfo
     if (window.size() != 2 || !(window[0] < window[1])) {
       throw run.error("window", "must be [from, to] in s, from < to");
     }
-    map.windows[make_canonical(run.file("file"))] = {window[0], window[1]};
+    map.windows[make_canonical(run.file("file"))].emplace_back(window[0], window[1]);
   }
   return map;
 }
@@ -135,20 +159,21 @@ Measurement read_channels(const fs::path& file, MeasuredPart part,
   Measurement measurement = read_measurement(file, request);
   std::vector<ColumnInfo> all = channels;
   all.insert(all.end(), optional.begin(), optional.end());
+  std::vector<CsvColumn> converted;  // beside those of the file, since columns may swap their names
   for (const ColumnInfo& channel : all) {
     const MappedColumn mapped = map.find(channel);
-    const auto at = std::find_if(measurement.columns.begin(), measurement.columns.end(),
-                                 [&](const CsvColumn& c) { return c.name == mapped.column; });
-    if (at == measurement.columns.end()) continue;
-    const ColumnConversion conversion = find_conversion(file, at->unit, mapped, measurement.notes);
-    for (double& value : at->values) value = conversion.convert(value);
-    at->name = channel.name;
-    at->unit = channel.unit;
+    const CsvColumn* const found = measurement.find(mapped.column);
+    if (found == nullptr) continue;
+    CsvColumn column = *found;
+    const ColumnConversion conversion =
+        find_conversion(file, column.unit, mapped, measurement.notes);
+    for (double& value : column.values) value = conversion.convert(value);
+    column.name = channel.name;
+    column.unit = channel.unit;
+    converted.push_back(std::move(column));
   }
-  const auto window = map.windows.find(make_canonical(file));
-  if (window != map.windows.end() && part == MeasuredPart::kHistory) {
-    cut_window(window->second, measurement);
-  }
+  measurement.columns = std::move(converted);
+  if (part == MeasuredPart::kHistory) cut_window(map, measurement);
   return measurement;
 }
 

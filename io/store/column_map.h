@@ -48,19 +48,22 @@ ColumnConversion find_conversion(const std::filesystem::path& file, const std::s
 /// columns of their own name.
 struct ColumnMap {
   std::vector<MappedColumn> columns;
-  std::map<std::filesystem::path, std::pair<double, double>> windows;  // by canonical path [s]
+  /// By canonical path [s]; a file with several runs may have several.
+  std::map<std::filesystem::path, std::vector<std::pair<double, double>>> windows;
 
   MappedColumn find(const ColumnInfo& channel) const;
 };
 
 /// Reads the entries of `channels` in the table [columns] of a campaign, and the windows of its
-/// runs. Throws InputError as read_mapped_column, and for a campaign without [columns].
+/// runs. `known`: the names that an entry may have. Throws InputError as read_mapped_column, for a
+/// campaign without [columns], for an unknown name, and for a channel with a clock of its own.
 ColumnMap read_column_map(const std::filesystem::path& campaign,
-                          const std::vector<ColumnInfo>& channels);
+                          const std::vector<ColumnInfo>& channels,
+                          const std::vector<std::string>& known);
 
 /// Reads channels in SI; the result's columns have the channels' names. Of a history (`part`) with
-/// a window, only its rows. `channels`: required; `optional`: read if the file has them. Throws
-/// InputError as read_measurement and find_conversion.
+/// one window, only its rows, which a note says. `channels`: required; `optional`: read if the file
+/// has them. Throws InputError as read_measurement and find_conversion.
 Measurement read_channels(const std::filesystem::path& file, MeasuredPart part,
                           const std::vector<ColumnInfo>& channels,
                           const std::vector<ColumnInfo>& optional, const ColumnMap& map);

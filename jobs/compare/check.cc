@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
@@ -15,6 +18,22 @@ std::vector<RecordingFinding> check_campaign(const CampaignData& data, int threa
                           threads);
 }
 
+namespace {
+
+/// Whether a held-out run is a copy of one for fitting. Two copies of one use only count twice.
+bool is_copied_hold_out(const CampaignData& data, const RecordingFinding& finding) {
+  if (finding.kind != FindingKind::kCopy) return false;
+  const auto find_use = [&](const std::string& name) {
+    const auto found = std::find_if(data.runs.begin(), data.runs.end(),
+                                    [&](const MeasuredRun& run) { return run.name == name; });
+    STRUT_CHECK(found != data.runs.end(), "a finding's run is one of the campaign");
+    return data.campaign.runs[static_cast<std::size_t>(found - data.runs.begin())].use;
+  };
+  return find_use(finding.run) != find_use(finding.other);
+}
+
+}  // namespace
+
 void report_findings(const std::vector<RecordingFinding>& findings) {
   for (const RecordingFinding& finding : findings) print_note(finding.describe());
 }
@@ -22,7 +41,7 @@ void report_findings(const std::vector<RecordingFinding>& findings) {
 void check_before_fit(const CampaignData& data, int threads) {
   const std::vector<RecordingFinding> findings = check_campaign(data, threads);
   for (const RecordingFinding& finding : findings) {
-    if (finding.kind == FindingKind::kCopy) throw InputError(finding.describe());
+    if (is_copied_hold_out(data, finding)) throw InputError(finding.describe());
   }
   report_findings(findings);
 }

@@ -7,6 +7,7 @@
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
+#include "identify/fit.h"
 #include "io/format/toml_text.h"
 #include "io/table/units.h"
 #include "jobs/inspect/match_columns.h"
@@ -102,8 +103,9 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
   return text + "# channels: " + join_names(names) + "\n";
 }
 
-/// Springs and dampers of the suspension, which wear.
+/// Springs and dampers of the suspension, which wear: of a car, those of the axles.
 std::vector<std::string> list_wearing(const ModelTables& tables) {
+  if (tables.model->has(kHasCar)) return list_default_free_parameters();
   std::vector<std::string> names;
   for (const ListedParameter& listed : tables.parameters) {
     const std::string& name = listed.parameter->name;
@@ -141,8 +143,8 @@ std::string write_runs(const std::vector<InspectedFile>& files, const ModelInfo&
   const double middle = times.first + 0.6 * (times.last - times.first);
   const std::string file = quote_path(files.front().path, folder);
   const auto window = [](double from, double to) {
-    return fmt::format("window = [{}, {}]   # s, on the file's clock\n", format_rounded(from),
-                       format_rounded(to));
+    return fmt::format("window = [{}, {}]   # s, on the file's clock\n", format_number(from),
+                       format_number(to));
   };
   return write_run(file, "fit", model, window(times.first, middle)) +
          write_run(file, "hold_out", model, window(middle, times.last));

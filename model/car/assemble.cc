@@ -171,8 +171,8 @@ void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneu
     numbers.spring[c] = {strut.stiffness, length + car.preload[c] / rate};
     numbers.damper[c] = {strut.damping};
     numbers.drive_torque[c] = 0.5 * suspension.drive_share * maneuver.drive_torque;
-    numbers.drive_reaction[c] = maneuver.drive_reaction * numbers.drive_torque[c];
   }
+  numbers.drive_reaction = maneuver.drive_reaction;
 }
 
 Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver) {

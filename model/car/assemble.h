@@ -63,7 +63,7 @@ void fill_strut_elements(Vehicle<T>& vehicle, const CornerForceMaps* const* maps
     const unsigned bits = layout.strut_effects[c];
     std::get<0>(vehicle.struts).add(c, numbers.spring[c]);
     if ((bits & kShapedDamper) == 0) std::get<1>(vehicle.struts).add(c, numbers.damper[c]);
-    vehicle.effects.add(c, bits, numbers.effects[c]);
+    vehicle.effects.add(c, bits, numbers.effects[c], layout.damper_curve[axle_of(c)]);
   }
   for (int axle = 0; axle < kAxles; ++axle) {
     if (!layout.has_anti_roll_bar[axle]) continue;

@@ -31,13 +31,17 @@ void scale_bump(double height, double length, RoadSpec& road) {
   for (double& x : road.table_x) x *= length;
 }
 
-void set_struts(const EffectValues& values, VehicleLayout& layout,
+void set_struts(const VehicleSpec& spec, const EffectValues& values, VehicleLayout& layout,
                 VehicleParameters<double>& numbers) {
+  for (int axle = 0; axle < kAxles; ++axle) {
+    layout.damper_curve[axle] = make_damper_curve(spec.suspension[axle].damper_curve);
+  }
   for (int c = 0; c < kCorners; ++c) {
     const PlainStrut strut = {numbers.spring[c].stiffness, numbers.damper[c].damping,
                               numbers.nominal_length[c * kLines + kSpringLine]};
     numbers.effects[c] = make_strut_effect_numbers(values, kCornerNames[c], strut);
     layout.strut_effects[c] = find_strut_effects(numbers.effects[c]);
+    if (layout.damper_curve[axle_of(c)]) layout.strut_effects[c] |= kShapedDamper;
   }
   for (int axle = 0; axle < kAxles; ++axle) {
     const std::size_t left = 2 * axle * kLines + kSpringLine, right = left + kLines;
@@ -136,7 +140,7 @@ Case apply_case_effects(const Case& c) {
 void set_effects(const VehicleSpec& spec, VehicleLayout& layout,
                  VehicleParameters<double>& numbers) {
   const EffectValues values{spec.effects, get_car_info()};
-  set_struts(values, layout, numbers);
+  set_struts(spec, values, layout, numbers);
   set_tires(values, layout, numbers);
   set_body(spec, values, numbers);
   set_lift(values, layout, numbers);

@@ -234,12 +234,13 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const T tire_spin_moment = dot(arm_moment, m.axis);
     // The drive torque acts on the wheel and, as reaction, on the chassis, but not on the upright.
     const T& drive = vehicle.numbers.drive_torque[c];
-    const T& reaction = vehicle.numbers.drive_reaction[c];
+    const T reaction = vehicle.numbers.drive_reaction * drive;
     ws.spin_moment[c] = tire_spin_moment + drive;
 
     force += tire.force - rate2 * m.moment_qq;
-    moment += cross(contact_point, tire.force) + tire.moment - (tire_spin_moment + reaction) * m.axis -
-              rate * inertia_w - rate2 * m.coupling_q - (momentum * rate) * m.axis_q;
+    moment += cross(contact_point, tire.force) + tire.moment -
+              (tire_spin_moment + reaction) * m.axis - rate * inertia_w - rate2 * m.coupling_q -
+              (momentum * rate) * m.axis_q;
     const T upright_spin = dot(m.axis, m.upright_rate);
     const T tire_on_corner = dot(tire.force, m.center_q) + dot(arm_moment, m.upright_rate);
     rhs.corner[c] = tire_on_corner - tire_spin_moment * upright_spin + ws.strut[c].generalized +

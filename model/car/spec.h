@@ -14,6 +14,7 @@
 #include "base/names/corners.h"
 #include "model/effects/force_map.h"
 #include "model/effects/setting.h"
+#include "model/force/damper_curve.h"
 #include "model/force/pac2002.h"
 #include "model/multibody/corner.h"
 #include "model/scenario/road.h"
@@ -78,6 +79,7 @@ struct SuspensionSpec {
 
   MountSpec spring_upper, spring_lower, damper_upper, damper_lower;
   std::array<StrutSpec, 2> strut;  // left, right
+  DamperCurveSpec damper_curve;    // that the dampers' rates scale; empty: a straight line
   double drive_share = 0.0;        // fraction of the drive torque on this axle, half to each wheel
   bool operator==(const SuspensionSpec&) const = default;
 };

@@ -22,7 +22,7 @@ struct VehicleParameters {
   std::array<StrutEffectNumbers<T>, kCorners> effects;
   std::array<AntiRollBar<T>, kAxles> anti_roll_bar;
   std::array<T, kCorners> drive_torque;             // N m, on each wheel
-  std::array<T, kCorners> drive_reaction;           // N m, of each on the chassis
+  T drive_reaction;                                 // fraction of them that the chassis reacts
   std::array<T, kLines * kCorners> nominal_length;  // m, lines at nominal trim
   std::array<TireVertical<T>, kAxles> tire;
   std::array<WheelRunout<T>, kCorners> runout;
@@ -41,6 +41,7 @@ struct VehicleLayout {
   Pac2002Parts tire_parts;
   std::array<bool, kCorners> on_bump{true, true, true, true};  // wheels that see the bump
   std::array<unsigned, kCorners> strut_effects{};              // StrutEffectBits
+  std::array<std::shared_ptr<const DamperCurve>, kAxles> damper_curve{};
   std::array<bool, kAxles> has_anti_roll_bar{};
   bool progressive_tire = false, has_runout = false, has_lift = false;
 };

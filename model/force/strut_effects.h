@@ -4,6 +4,7 @@
 // d = nominal length - length and v = -d(length)/dt are deflection and speed in compression.
 #pragma once
 
+#include "model/force/damper_curve.h"
 #include "model/force/damper_law.h"
 #include "model/force/force_map.h"
 
@@ -114,6 +115,13 @@ struct ShapedDamper {
   /// Beside a damper with states, at the strut's speed v; behind a worn joint at the damper's w.
   DryFriction<T> friction;
   bool has_friction = false;
+  const DamperCurve* curve = nullptr;  // that the law's rate scales; null: a straight line
+
+  /// F / v [N s/m], as DamperLaw.
+  T calc_rate(const T& speed, const T& warming) const {
+    const T rate = law.calc_rate(speed, warming);
+    return curve == nullptr ? rate : rate * calc_rate_factor(*curve, speed);
+  }
 };
 
 template <class T>
@@ -125,17 +133,22 @@ struct StrutEffects {
   ElementList<AntiRollBar<T>> bars;                               // at the axle's left corner
   int count = 0;                                                  // elements of all lists
   std::shared_ptr<const std::vector<double>> map_coefficients{};  // those of the mapped forces
+  std::array<std::shared_ptr<const DamperCurve>, kMaxElements> curves{};  // by corner
 
   bool has_states() const { return series.count > 0; }
 
-  void add(int corner, unsigned bits, const StrutEffectNumbers<T>& numbers) {
+  /// `curve`: of the damper, common to all lanes; null: none.
+  void add(int corner, unsigned bits, const StrutEffectNumbers<T>& numbers,
+           const std::shared_ptr<const DamperCurve>& curve) {
+    curves[static_cast<std::size_t>(corner)] = curve;
     const auto add_if = [&](unsigned bit, auto& list, const auto& element) {
       if ((bits & bit) == 0) return;
       list.add(corner, element);
       ++count;
     };
     const bool has_friction = (bits & kSeriesDamper) != 0 && (bits & kDryFriction) != 0;
-    const ShapedDamper<T> damper{numbers.law, numbers.series, numbers.friction, has_friction};
+    const ShapedDamper<T> damper{numbers.law, numbers.series, numbers.friction, has_friction,
+                                 curve.get()};
     add_if(kSeriesDamper, series, damper);
     if ((bits & kSeriesDamper) == 0) add_if(kShapedDamper, shaped, damper);
     add_if(kCubicSpring, std::get<0>(added), numbers.spring);
@@ -198,7 +211,7 @@ void add_shaped_dampers(const ElementList<ShapedDamper<T>>& list,
       s.joint = states.value[2 * Corners + c];
       speed = calc_joint_speed(damper.series, speed, s);
     }
-    const T law_rate = damper.law.calc_rate(speed, warming);
+    const T law_rate = damper.calc_rate(speed, warming);
     T force = law_rate * speed;
     if (states.value != nullptr) {
       force = calc_series_force(damper.series, force, law_rate, s);

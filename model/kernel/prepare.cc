@@ -65,10 +65,7 @@ void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
 /// The start state of the maneuver: steady rolling on flat road, with the drive torque or without.
 State<double> trim(const Case& c, const Mechanism& mechanism, Vehicle<double> vehicle) {
   vehicle.layout.on_bump.fill(false);
-  if (c.maneuver.trim == TrimKind::kStatic) {
-    vehicle.numbers.drive_torque.fill(0.0);
-    vehicle.numbers.drive_reaction.fill(0.0);
-  }
+  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
   return solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, c.maneuver.speed)
       .state;
 }
@@ -115,11 +112,13 @@ bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closu
   if (a.duration != b.duration) return false;
   if (a.mechanism == b.mechanism) return true;
   const VehicleSpec &va = a.mechanism->vehicle, &vb = b.mechanism->vehicle;
-  const bool same_layout = va.tire.contact == vb.tire.contact &&
-                           va.tire.relaxation == vb.tire.relaxation &&
-                           a.vehicle.layout.on_bump == b.vehicle.layout.on_bump &&
-                           va.suspension[kFront].kind == vb.suspension[kFront].kind &&
-                           va.suspension[kRear].kind == vb.suspension[kRear].kind;
+  const bool same_layout =
+      va.tire.contact == vb.tire.contact && va.tire.relaxation == vb.tire.relaxation &&
+      a.vehicle.layout.on_bump == b.vehicle.layout.on_bump &&
+      va.suspension[kFront].damper_curve == vb.suspension[kFront].damper_curve &&
+      va.suspension[kRear].damper_curve == vb.suspension[kRear].damper_curve &&
+      va.suspension[kFront].kind == vb.suspension[kFront].kind &&
+      va.suspension[kRear].kind == vb.suspension[kRear].kind;
   return same_layout && closure == Closure::kTable;
 }
 

@@ -333,6 +333,7 @@ void validate(const RigSpec& spec) {
     if (field.allowed.contains(value)) continue;
     throw ModelError(field.name + " = " + format_number(value) + ": " + field.allowed.describe());
   }
+  validate(spec.damper_curve);
   validate(spec.effects, rig);
   validate(spec.force_maps, rig);
 }

@@ -171,9 +171,9 @@ class RigSystem {
   void settle_strut(T* x) {
     update_inputs(T(0.0));
     const T speed = calc_strut_rate(x, ws_.input[0].rate);
-    const StrutEffectNumbers<T>& numbers = rig_.numbers.effects;
-    x[2 * count_] = x[2 * count_ + 1] = numbers.law.calc_rate(speed, calc_warming()) * speed;
-    x[2 * count_ + 2] = calc_settled_joint(numbers.series, speed);
+    const ShapedDamper<T>& damper = rig_.effects.series.element.front();
+    x[2 * count_] = x[2 * count_ + 1] = damper.calc_rate(speed, calc_warming()) * speed;
+    x[2 * count_ + 2] = calc_settled_joint(damper.series, speed);
   }
 
   /// Speed of the strut [m/s], positive in compression, at state `x` and the rate of the input that

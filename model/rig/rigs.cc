@@ -143,8 +143,9 @@ RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<doub
   RigLayout layout{.kind = specs[0]->kind, .unilateral_tire = specs[0]->unilateral_tire};
   const auto is_on = [](double value) { return value != 0.0; };
   for (int i = 0; i < count; ++i) {
-    if (specs[i]->kind != layout.kind || specs[i]->unilateral_tire != layout.unilateral_tire) {
-      throw ModelError("rigs of one batch must have the same type and tire contact");
+    if (specs[i]->kind != layout.kind || specs[i]->unilateral_tire != layout.unilateral_tire ||
+        specs[i]->damper_curve != specs[0]->damper_curve) {
+      throw ModelError("rigs of one batch must have the same type, tire contact and damper curve");
     }
     layout.strut_effects |= find_strut_effects(numbers[i].effects);
     layout.progressive_tire = layout.progressive_tire || numbers[i].tire.progression != 0.0;
@@ -154,6 +155,8 @@ RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<doub
     layout.has_feedback =
         layout.has_feedback || std::any_of(feedback.begin(), feedback.end(), is_on);
   }
+  layout.damper_curve = make_damper_curve(specs[0]->damper_curve);
+  if (layout.damper_curve) layout.strut_effects |= kShapedDamper;
   return layout;
 }
 

@@ -65,6 +65,7 @@ struct RigLayout {
   bool progressive_tire = false;
   bool has_guide = false;     // with friction
   bool has_feedback = false;  // of the force between the masses
+  std::shared_ptr<const DamperCurve> damper_curve{};
 };
 
 template <class T>
@@ -82,7 +83,8 @@ RigSpec take_strut(const RigSpec& rig);
 /// Numbers of a rig at its rest position. Throws ModelError as validate does.
 RigParameters<double> make_rig_parameters(const RigSpec& spec);
 
-/// Layout of rigs that may share lanes. Throws ModelError where kind or tire contact differ.
+/// Layout of rigs that may share lanes. Throws ModelError where kind, tire contact or damper curve
+/// differ.
 RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,
                           int count);
 
@@ -101,7 +103,7 @@ Rig<T> make_rig(const RigSpec* const specs[]) {
   std::get<0>(rig.struts).add(0, rig.numbers.spring);
   const unsigned bits = rig.layout.strut_effects;
   if ((bits & kShapedDamper) == 0) std::get<1>(rig.struts).add(0, rig.numbers.damper);
-  rig.effects.add(0, bits, rig.numbers.effects);
+  rig.effects.add(0, bits, rig.numbers.effects, rig.layout.damper_curve);
   std::array<RigForceMap, lanes.size()> maps;
   std::array<const RigForceMap*, lanes.size()> map_of_lane;
   for (std::size_t i = 0; i < lanes.size(); ++i) {

@@ -121,7 +121,7 @@ TEST_CASE("A force sensor's bias is found where the campaign frees it", "[refere
                                    "force = { column = \"F\"") +
                            (is_free ? ", bias = [0, 2]" : "") +
                            " }\nposition = { column = \"x\" }\n"
-                       "[noise]\ngain = 0\n"  // the sensor's gain and the mass have one effect
+                           "[noise]\ngain = 0\n"  // the sensor's gain and the mass have one effect
                            "[fit]\nfree = [\"mass\", \"damping\"]\n"
                            "[[run]]\nfile = \"a.csv\"\nuse = \"fit\"\n"
                            "[[run]]\nfile = \"b.csv\"\nuse = \"hold_out\"\n"));

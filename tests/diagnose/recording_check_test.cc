@@ -162,6 +162,25 @@ TEST_CASE("A held-out run that is a copy is found, also of a part", "[unit]") {
   CHECK(std::count(kinds.begin(), kinds.end(), FindingKind::kCopy) == 1);
 }
 
+TEST_CASE("Runs with a slow channel, or with one equal channel of two, are no copies", "[unit]") {
+  const auto count_copies = [](const CampaignData& data) {
+    std::vector<FindingKind> kinds;
+    for (const RecordingFinding& f : check(data)) kinds.push_back(f.kind);
+    return std::count(kinds.begin(), kinds.end(), FindingKind::kCopy);
+  };
+  CampaignData slow = read_worn(make_worn(0.7, 1.3));
+  for (MeasuredRun& run : slow.runs) {
+    std::vector<double>& values = run.channels.front().values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i % 20 != 0) values[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  CHECK(count_copies(slow) == 0);
+  CampaignData half = read_worn(make_worn(0.7, 1.3));
+  half.runs[1].channels.front() = half.runs[0].channels.front();
+  CHECK(count_copies(half) == 0);
+}
+
 /// A car's run with two channels, and how they agree with the simulation.
 struct CarAlignment {
   std::vector<MeasuredRun> runs;

@@ -172,26 +172,6 @@ TEST_CASE("The right corner mirrors the left", "[unit][property]") {
   }
 }
 
-TEST_CASE("A line mounted on a rod ends at the foot of its point on the rod", "[unit]") {
-  VehicleSpec spec = reference::make_paper_sedan_spec();
-  SuspensionSpec& rear = spec.suspension[kRear];
-  const RodSpec& rod = rear.rods[3];
-  rear.damper_lower = {MountBody::kRod, 3, {0.31, 0.60, -0.02}};  // some centimeters off the rod
-  const AssembledVehicle car = make_car(spec);
-  const Vec3<double> along = normalized(rod.upright - rod.chassis);
-  const double distance = dot(rear.damper_lower.position - rod.chassis, along);
-  for (const int corner : {kRearLeft, kRearRight}) {
-    for (const double q : make_travels(11)) {
-      const CornerPose<double> pose = calc_pose(car, corner, q);
-      const Vec3<double> inner = place(car, corner, rod.chassis);
-      const Vec3<double> outer = pose.part[5].apply(place(car, corner, rod.upright));
-      const Vec3<double> foot = inner + distance * normalized(outer - inner);
-      const double length = norm(foot - place(car, corner, rear.damper_upper.position));
-      CHECK(std::abs(calc_motion(car, corner, q).length[kDamperLine] - length) < tolerance(1e-12));
-    }
-  }
-}
-
 /// Message with which the assembly of `spec` fails; empty if it succeeds.
 std::string find_refusal(const VehicleSpec& spec) {
   try {

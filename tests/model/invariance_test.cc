@@ -226,10 +226,9 @@ TEST_CASE("Drive torque turns the wheel against the chassis or the ground, not t
   for (int corner = 0; corner < kCorners; ++corner) {
     const State<double> x = car.make_state(random);
     car.vehicle().numbers.drive_torque.fill(0.0);
-    car.vehicle().numbers.drive_reaction.fill(0.0);
     const State<double> without = car.evaluate(x);
     car.vehicle().numbers.drive_torque[corner] = kTorque;
-    car.vehicle().numbers.drive_reaction[corner] = fraction * kTorque;
+    car.vehicle().numbers.drive_reaction = fraction;
     const State<double> with = car.evaluate(x);
     const Vec3<double> u = car.ws.motion[corner].axis;
     const Vec3<double> w = get_vec3(x.data(), I::kAngularVelocity);

@@ -233,5 +233,20 @@ TEST_CASE("Springs and dampers may differ from left to right", "[io]") {
                 "front_suspension.damper.damping_left = -1");
 }
 
+TEST_CASE("A damper may be a measured curve", "[io]") {
+  const std::string rate = "damping = 1980.0                # [1]\nupper = [-0.02897";
+  const ChangedFile file(kSedan, rate,
+                         "curve = [[-0.5, -1200], [0, 0], [0.5, 600]]\nupper = [-0.02897");
+  const SuspensionSpec front = read_vehicle(file.path()).suspension[kFront];
+  CHECK(front.damper_curve.force == std::vector<double>{-1200.0, 0.0, 600.0});
+  CHECK(front.strut[1].damping == Approx(1800.0));  // the mean of 2400 and 1200
+  check_refused(rate, "curve = [[-0.5, -1200], [0, 0]]\nupper = [-0.02897",
+                "front_suspension.damper.curve = ");
+  check_refused(rate, "curve = [[-0.5, -1200, 1]]\nupper = [-0.02897",
+                "front_suspension.damper.curve = ");
+  check_refused(rate, "curve = [[-1, -1], [0, 0], [1, 1]]\ndamping = 1\nupper = [-0.02897",
+                "front_suspension.damper.curve = ");
+}
+
 }  // namespace
 }  // namespace strut

@@ -197,7 +197,11 @@ class CornerBuilder {
     }
     const int body = rods_.at(static_cast<std::size_t>(mount.rod));
     const Vector3d& axis = layout_.bodies[static_cast<std::size_t>(body)].rod_axis;
-    return {body, axis.dot(from_center(body, p)) * axis};
+    const Vector3d arm = from_center(body, p);
+    if (axis.cross(arm).norm() > 1e-9) {
+      throw std::invalid_argument("full-coordinate model: a mount beside the line of its rod");
+    }
+    return {body, arm};
   }
 
   const SuspensionSpec& suspension_;

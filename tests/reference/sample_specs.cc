@@ -72,7 +72,11 @@ SuspensionSpec make_rear() {
   rear.static_toe = 0.0015;
   rear.static_camber = -0.015;
   rear.spring_upper = make_mount(MountBody::kChassis, {0.030, 0.50, 0.25});
-  rear.spring_lower = make_mount(MountBody::kRod, {0.032, 0.56, -0.10}, 2);
+  const RodSpec& link = rear.rods[2];  // the reference car has mounts on the lines of rods alone
+  const Vec3<double> along = link.upright - link.chassis;
+  const double fraction =
+      dot(Vec3<double>{0.032, 0.56, -0.10} - link.chassis, along) / dot(along, along);
+  rear.spring_lower = make_mount(MountBody::kRod, link.chassis + fraction * along, 2);
   rear.damper_upper = make_mount(MountBody::kChassis, {-0.05, 0.56, 0.38});
   rear.damper_lower = make_mount(MountBody::kUpright, {-0.05, 0.66, -0.08});
   rear.strut[0] = rear.strut[1] = {35000.0, 1980.0};
