@@ -1,0 +1,82 @@
+// Figures of the shock-absorber test of inspection stands: a wheel on a plate that sweeps from 25
+// Hz down to rest with a fixed stroke of about 6 mm.
+//
+//   EUSAMA value       100 min F / W, F: contact force, W: static load (EUSAMA TS-02-76)
+//   phase angle        min of the phase by which the first harmonic of F leads that of the plate's
+//                      position, between the resonances of body and wheel (A. Tsymberov, SAE
+//                      960735)
+//   Lehr's damping     D = c / (2 sqrt(k m)), body: k = k_s, m = m_s; wheel: k = k_s + k_t, m = m_u
+//
+// The first two need no model: in windows of whole cycles of the plate, the least-squares fit
+//
+//   F(t) = sum over n = 0..3 of p_n(t) cos n theta + q_n(t) sin n theta
+//
+// with theta the plate's phase and p, q polynomials of time, gives them with standard errors from
+// the scatter of its residuals. The third is derived from the parameters of a fit of the
+// simulation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimate/fit.h"
+
+namespace strut {
+
+/// A reading of plate and contact force over time, in SI units.
+struct PlateRecord {
+  std::string name;              // the file, for messages
+  std::vector<double> times;     // s, ascending
+  std::vector<double> position;  // m, plate, up positive
+  std::vector<double> force;     // N, of the plate on the tire, upwards, static load included
+};
+
+/// A number with its standard error.
+struct PlateFigure {
+  double value = 0.0, sigma = 0.0;
+  double frequency = 0.0;  // Hz, of the plate, where it was found
+};
+
+/// The response in one window of the sweep.
+struct PlateResponse {
+  double frequency = 0.0;  // Hz
+  PlateFigure min_force;   // N, lowest contact force of a cycle
+  PlateFigure phase;       // degrees within 0 and 360, force before position
+  double noise = 0.0;      // N, standard deviation of the force's residuals
+};
+
+struct PlateFigures {
+  double static_load = 0.0;              // N
+  PlateFigure eusama;                    // %
+  PlateFigure phase_angle;               // degrees
+  bool at_wheel_mode = false;            // the phase has no minimum below the frequency of `eusama`
+  double noise = 0.0;                    // N, median over the windows
+  std::vector<PlateResponse> responses;  // over falling or rising frequency, as measured
+};
+
+/// Throws InputError where the plate makes fewer than 8 cycles, or too few readings fall on a
+/// cycle.
+std::vector<PlateResponse> calc_plate_responses(const PlateRecord& record);
+
+/// Derives the figures of a record. The static load is the mean contact force over whole cycles,
+/// which equals the weight since the momentum stays bounded, also where the tire lifts off. A
+/// lowest force below zero counts as zero. `body_frequency` [Hz]: lower end of the band of the
+/// phase angle. Throws as calc_plate_responses.
+PlateFigures calc_plate_figures(const PlateRecord& record, double body_frequency);
+
+/// Fits masses, rates and dampings of the quarter car in `rig` to the contact force, driven by the
+/// plate; the static load carries no unknown offset. `noise` [N] weights the readings. Throws
+/// InputError.
+FitResult fit_plate(const PlateRecord& record, const RigSpec& rig, double noise, int threads);
+
+/// Undamped frequency [Hz] of the body on spring and tire in series.
+double calc_body_frequency(const RigSpec& rig);
+
+/// Lehr's damping of body and wheel at a result of fit_plate, by linear propagation of its widened
+/// covariance.
+struct LehrDamping {
+  PlateFigure body, wheel;
+};
+LehrDamping calc_lehr_damping(const FitResult& fit);
+
+}  // namespace strut
