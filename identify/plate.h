@@ -16,6 +16,7 @@
 // simulation.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,9 @@ std::vector<PlateResponse> calc_plate_responses(const PlateRecord& record);
 /// lowest force below zero counts as zero. `body_frequency` [Hz]: lower end of the band of the
 /// phase angle. Throws as calc_plate_responses.
 PlateFigures calc_plate_figures(const PlateRecord& record, double body_frequency);
+
+/// Number of parameters that fit_plate fits; they precede the initial states in its result.
+inline constexpr std::size_t kPlateParameters = 6;
 
 /// Fits masses, rates and dampings of the quarter car in `rig` to the contact force, driven by the
 /// plate; the static load carries no unknown offset. `noise` [N] weights the readings. Throws

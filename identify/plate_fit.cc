@@ -11,6 +11,7 @@ namespace {
 
 /// The parameters of a corner, in the order of RigInfo::fields, without gravity.
 enum Fitted : std::size_t { kBody, kWheel, kSpring, kDamper, kTire, kTireDamper, kFittedCount };
+static_assert(kFittedCount == kPlateParameters);
 
 std::vector<Unknown> make_unknowns(const std::vector<MeasuredRun>& runs, double static_load) {
   const RigInfo& info = get_rig_info(RigKind::kQuarterCar);
