@@ -9,6 +9,7 @@
 #include "jobs/identify/fit.h"
 #include "jobs/identify/result.h"
 #include "jobs/identify/snapshot.h"
+#include "jobs/identify/wear.h"
 #include "jobs/identify/window.h"
 #include "train/model/model_file.h"
 
@@ -39,12 +40,15 @@ Arguments describe_identify() {
       "  strut identify model.h5 drive.csv --event-time 0.632 --noise pitch_angle=2e-4 --json\n"
       "  strut identify model.h5 --set body_position_z=0.55 --set body_velocity_z=0.02 \\\n"
       "      --set body_acceleration_z=-0.3 --set pitch_angle=0.008\n"
-      "  strut identify vehicle.toml drive.csv --maneuver bump.toml --window 0.3:2");
+      "  strut identify vehicle.toml drive.csv --maneuver bump.toml --window 0.3:2\n"
+      "  strut identify vehicle.toml drive.csv --maneuver bump.toml --limit 25 \\\n"
+      "      --nuisance body_payload_mass=75,75 --before last_year.csv");
   arguments.add_operand(ArgumentValue::file("MODEL|VEHICLE.toml", {"h5", "toml"}));
   arguments.add_operands(ArgumentValue::file("MEASURED", {"csv", "txt", "h5", "hdf5", "mat"}));
   add_columns_option(arguments);
   add_snapshot_options(arguments);
   add_fit_options(arguments);
+  add_wear_options(arguments);
   add_result_options(arguments);
   return arguments;
 }
