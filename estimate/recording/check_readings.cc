@@ -280,9 +280,13 @@ std::vector<RecordingFinding> check_copies(const std::vector<MeasuredRun>& runs)
     for (std::size_t b = a + 1; b < runs.size(); ++b) {
       const double common = calc_common_fraction(passages[a], passages[b]);
       if (common < kMost) continue;
-      findings.push_back({FindingKind::kCopy, runs[b].name, "", common,
-                          "is a copy of " + runs[a].name, "a held-out run must be another one",
-                          runs[a].name});
+      findings.push_back({FindingKind::kCopy,
+                          runs[b].name,
+                          "",
+                          common,
+                          "is a copy of " + runs[a].name,
+                          "a held-out run must be another one",
+                          {a, b}});
     }
   }
   return findings;

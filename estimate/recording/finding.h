@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,10 @@ struct RecordingFinding {
   /// kSign: -1; kFactor: the factor; kLag: s; kDroppedSamples: their number; kUnevenClock: jitter
   /// [s]; kQuantization: the step; kMains: Hz; kCopy: the fraction of common readings.
   double size = 0.0;
-  std::string what;     // "looks negated"
-  std::string advice;   // "sign = -1"; "": none
-  std::string other{};  // kCopy: the run that it is a copy of
+  std::string what;    // "looks negated"
+  std::string advice;  // "sign = -1"; "": none
+  /// kCopy: numbers of the two runs, whose files may have one name.
+  std::array<std::size_t, 2> copies{};
 
   /// "drive.csv: front_left_deflection looks negated: sign = -1"
   std::string describe() const;

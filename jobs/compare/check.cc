@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
@@ -23,13 +20,8 @@ namespace {
 /// Whether a held-out run is a copy of one for fitting. Two copies of one use only count twice.
 bool is_copied_hold_out(const CampaignData& data, const RecordingFinding& finding) {
   if (finding.kind != FindingKind::kCopy) return false;
-  const auto find_use = [&](const std::string& name) {
-    const auto found = std::find_if(data.runs.begin(), data.runs.end(),
-                                    [&](const MeasuredRun& run) { return run.name == name; });
-    STRUT_CHECK(found != data.runs.end(), "a finding's run is one of the campaign");
-    return data.campaign.runs[static_cast<std::size_t>(found - data.runs.begin())].use;
-  };
-  return find_use(finding.run) != find_use(finding.other);
+  const auto& [first, second] = finding.copies;
+  return data.campaign.runs[first].use != data.campaign.runs[second].use;
 }
 
 }  // namespace
