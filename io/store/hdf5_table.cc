@@ -87,6 +87,10 @@ class ForeignDatasets : public TableFile {
  public:
   ForeignDatasets(const fs::path& path, Hdf5Reader file) : path_(path), file_(std::move(file)) {
     add_group("", 0);
+    if (!columns_.empty()) return;
+    throw make_error(path, "/",
+                     "no dataset of numbers of one or two dimensions; the fields of records "
+                     "(compound types) must be datasets of their own");
   }
 
   std::string format() const override { return is_matlab_ ? "MATLAB 7.3 (HDF5)" : "HDF5"; }
@@ -98,11 +102,16 @@ class ForeignDatasets : public TableFile {
     return names;
   }
 
+  std::vector<std::string> notes() const override { return notes_; }
+
   CsvColumn read(const std::string& name) const override {
     const auto found = std::find_if(columns_.begin(), columns_.end(),
                                     [&](const Place& place) { return place.name == name; });
     if (found == columns_.end()) throw missing_column_error(path_, name, names());
-    const Hdf5Dataset data = file_.read("/" + found->dataset);
+    // The columns of a matrix are read one after another.
+    if (found->dataset != last_dataset_) last_ = file_.read("/" + found->dataset);
+    last_dataset_ = found->dataset;
+    const Hdf5Dataset& data = last_;
     CsvColumn column{name, data.label.unit, {}};
     if (column.unit.empty() && data.label.units.size() == 1) column.unit = data.label.units[0];
     for (std::size_t i = 0; i < found->count; ++i) {
@@ -122,11 +131,16 @@ class ForeignDatasets : public TableFile {
     constexpr int kMaxDepth = 4;
     constexpr std::size_t kMaxColumns = 16384;
     for (const std::string& name : file_.list("/" + group)) {
-      const std::string object = group.empty() ? name : group + "/" + name;
-      const Hdf5Kind kind = file_.find_kind("/" + object);
       if (name.starts_with('#')) continue;  // MATLAB's own
+      const std::string object = group.empty() ? name : group + "/" + name;
+      Hdf5Kind kind = Hdf5Kind::kOther;
+      try {
+        kind = file_.find_kind("/" + object);
+        if (kind == Hdf5Kind::kNumbers) add_dataset(object);
+      } catch (const InputError& error) {  // a link into another file, a view of one
+        notes_.push_back(fmt::format("{} (left out)", error.what()));
+      }
       if (kind == Hdf5Kind::kGroup && depth < kMaxDepth) add_group(object, depth + 1);
-      if (kind == Hdf5Kind::kNumbers) add_dataset(object);
       if (columns_.size() > kMaxColumns) {
         throw make_error(path_, "/", fmt::format("more than {} columns", kMaxColumns));
       }
@@ -156,7 +170,10 @@ class ForeignDatasets : public TableFile {
   fs::path path_;
   Hdf5Reader file_;
   std::vector<Place> columns_;
+  std::vector<std::string> notes_;
   bool is_matlab_ = false;
+  mutable Hdf5Dataset last_;
+  mutable std::string last_dataset_;
 };
 
 }  // namespace

@@ -73,7 +73,8 @@ enum class MissingCells {
 ///  - lines of other text above the names, and a line of units below them; units beside the names
 ///    ("AccZ [g]", column_name.h) or in a comment; without names: column_1, column_2, ...; the
 ///    first column is `time` if it alone has no name;
-///  - clock times (csv_cell.h), as seconds since the first row;
+///  - clock times (csv_cell.h), and times since 1970 in ms, us or ns, as seconds since the first
+///  row;
 ///  - comments (#, %, //), empty lines and trailing separators anywhere.
 /// Columns of one name get a number: "acc (1)", "acc (2)".
 /// Throws InputError with file and line for a missing file, a row of the wrong length, a line of

@@ -26,7 +26,10 @@ std::vector<std::string> split_line(std::string_view line, const CsvLayout& layo
 std::vector<std::string> find_headers(const std::vector<NumberedLine>& lines,
                                       const CsvLayout& layout, const std::string& comment) {
   if (layout.names >= 0) {
-    return split_line(lines[static_cast<std::size_t>(layout.names)].text, layout);
+    auto names = split_line(lines[static_cast<std::size_t>(layout.names)].text, layout);
+    // LabVIEW names a column that only the first row of a file may have.
+    if (names.size() == layout.columns + 1 && names.back() == "Comment") names.pop_back();
+    return names;
   }
   std::vector<std::string> names = split_line(trim(comment, "#%/ \t"), layout);
   const bool fits = names.size() == layout.columns &&

@@ -4,6 +4,9 @@
 #include <matio.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
 #include <utility>
 
 namespace strut {
@@ -53,6 +56,27 @@ bool is_numeric(const matvar_t& v) {
   return v.class_type >= MAT_C_DOUBLE && v.class_type <= MAT_C_UINT32 && v.isComplex == 0;
 }
 
+/// Whether the elements of the file, each with its size, end where the file does.
+bool is_whole(const fs::path& path) {
+  constexpr std::uintmax_t kHeader = 128, kTag = 8;
+  constexpr std::size_t kEndianMark = 126;
+  const std::uintmax_t size = fs::file_size(path);
+  std::ifstream stream(path, std::ios::binary);
+  std::array<char, kHeader> header{};
+  stream.read(header.data(), header.size());
+  const bool is_little = header[kEndianMark] == 'I';
+  std::uintmax_t at = kHeader;
+  while (at + kTag <= size) {
+    std::array<unsigned char, kTag> tag{};
+    stream.seekg(static_cast<std::streamoff>(at));
+    stream.read(reinterpret_cast<char*>(tag.data()), tag.size());
+    std::uintmax_t bytes = 0;
+    for (std::size_t i = 0; i < 4; ++i) bytes = bytes << 8U | tag[is_little ? 7 - i : 4 + i];
+    at += kTag + bytes;
+  }
+  return stream && at == size;
+}
+
 class MatFile : public TableFile {
  public:
   explicit MatFile(const fs::path& path)
@@ -66,6 +90,10 @@ class MatFile : public TableFile {
     }
     if (columns_.empty()) {
       throw InputError(path.string() + ": no numeric variable, or damaged from its first one on");
+    }
+    if (!is_whole(path)) {
+      notes_.push_back(fmt::format("{}: the file is cut off; what follows {} is missing",
+                                   path.string(), columns_.back().name));
     }
   }
 
@@ -84,6 +112,8 @@ class MatFile : public TableFile {
     }
     throw missing_column_error(path_, name, names());
   }
+
+  std::vector<std::string> notes() const override { return notes_; }
 
  private:
   void add(const matvar_t& v, const std::string& name, int depth) {
@@ -132,6 +162,7 @@ class MatFile : public TableFile {
   fs::path path_;
   std::size_t max_values_;  // that the file's bytes can hold
   std::vector<CsvColumn> columns_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -26,17 +27,47 @@ namespace fs = std::filesystem;
 /// mistake.
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxColumns = 16384;
-/// Lines from which the layout is found.
-constexpr std::size_t kHeadLines = 100;
+/// The layout is found from the first lines, at most so many and about so many bytes.
+constexpr std::size_t kHeadLines = 1000, kHeadBytes = std::size_t{1} << 22U;
 
 bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
 }
 
+/// What the cells of a column are: numbers or clock times, as the first one shows, or clock times
+/// without colons.
+enum class CellKind { kAny, kCompactClock };
+
+/// Makes times since 1970, which may count milliseconds to nanoseconds, seconds since the first
+/// row. A recording in seconds begins before the year 5138.
+void convert_epoch(CsvColumn& column, std::vector<std::string>& notes) {
+  if (!column.unit.empty() || column.values.empty()) return;
+  std::string name = column.name;
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name.find("time") == std::string::npos) return;
+  struct Unit {
+    double begin, factor;
+    const char* name;
+  };
+  constexpr Unit kUnits[] = {
+      {1e17, 1e-9, "nanoseconds"}, {1e14, 1e-6, "microseconds"}, {1e11, 1e-3, "milliseconds"}};
+  const double first = column.values.front();
+  for (const Unit& unit : kUnits) {
+    if (!(first > unit.begin)) continue;
+    for (double& value : column.values) value = (value - first) * unit.factor;
+    column.unit = "s";
+    notes.push_back(fmt::format("{}: {} since 1970, read as seconds since the first row",
+                                column.name, unit.name));
+    return;
+  }
+}
+
 /// Converts the cells of one column; the first cell that is a clock time makes it a clock.
 class CellReader {
  public:
-  CellReader(char decimal, MissingCells missing) : decimal_(decimal), missing_(missing) {}
+  CellReader(char decimal, MissingCells missing, CellKind kind)
+      : decimal_(decimal), missing_(missing), kind_(kind) {}
 
   void add(const TextLine& line, std::string_view cell, CsvColumn& column) {
     if (!column.fault.empty()) return;
@@ -73,28 +104,37 @@ class CellReader {
   }
 
   std::optional<double> read(std::string_view cell) {
+    if (kind_ == CellKind::kCompactClock) return advance(parse_compact_clock(cell));
     if (!is_clock_) {
       if (const auto number = parse_cell_number(cell, decimal_)) return number;
       if (!is_empty_) return std::nullopt;
     }
-    auto time = parse_cell_clock(cell);
-    if (!time) return std::nullopt;
-    constexpr double kDay = 86400.0;
-    if (!is_clock_) begin_ = *time;
+    return advance(parse_cell_clock(cell));
+  }
+
+  std::optional<double> advance(const std::optional<CellClock>& clock) {
+    if (!clock) return std::nullopt;
     is_clock_ = true;
-    // Midnight, unless the clock was set back.
-    if (*time + days_ * kDay < last_ - 0.5 * kDay) ++days_;
-    last_ = *time + days_ * kDay;
-    return last_ - begin_;
+    return clock_.advance(*clock);
   }
 
   char decimal_;
   MissingCells missing_;
+  CellKind kind_;
   std::string first_missing_;
   bool is_clock_ = false, is_empty_ = true;
-  double begin_ = 0.0, last_ = 0.0;
-  int days_ = 0;
+  RunningClock clock_;
 };
+
+/// Whether lines end with carriage returns alone, as far as the begin of the file shows.
+bool has_old_line_ends(std::istream& stream) {
+  std::string begin(std::size_t{1} << 16U, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<std::size_t>(stream.gcount()));
+  stream.clear();
+  stream.seekg(0);
+  return begin.find('\n') == std::string::npos && begin.find('\r') != std::string::npos;
+}
 
 class TableReader {
  public:
@@ -128,6 +168,7 @@ class TableReader {
     drop_empty_columns();
     for (std::size_t c = 0; c < table_.columns.size(); ++c) {
       readers_[c].finish(table_.columns[c]);
+      convert_epoch(table_.columns[c], table_.notes);
     }
     table_.format = layout_.describe();
     return std::move(table_);
@@ -154,7 +195,8 @@ class TableReader {
       pending_ = {line.number, std::string(line.text)};
     } else {
       head_.push_back({line.number, std::string(line.text)});
-      if (head_.size() == kHeadLines) begin();
+      head_bytes_ += line.text.size();
+      if (head_.size() == kHeadLines || head_bytes_ > kHeadBytes) begin();
     }
   }
 
@@ -168,7 +210,11 @@ class TableReader {
           fmt::format("{} columns; at most {} are allowed", layout_.columns, kMaxColumns));
     }
     table_.columns = make_csv_columns(head_, layout_, comment_);
-    readers_.assign(table_.columns.size(), CellReader(layout_.decimal, missing_));
+    for (const CsvColumn& column : table_.columns) {
+      const bool is_compact = layout_.is_vbox && column.name == "time";
+      readers_.emplace_back(layout_.decimal, missing_,
+                            is_compact ? CellKind::kCompactClock : CellKind::kAny);
+    }
     for (std::size_t i = layout_.first_row; i < head_.size(); ++i) {
       add_pending(true);
       pending_ = head_[i];
@@ -182,7 +228,7 @@ class TableReader {
     std::vector<std::string_view> cells = split_cells(line.text, layout_.separator);
     const std::size_t count = table_.columns.size();
     while (cells.size() > count && cells.back().empty()) cells.pop_back();
-    if (cells.size() < count && !is_whole && table_.row_count() > 0) {
+    if (!is_whole && is_cut_off(cells)) {
       table_.notes.push_back(fmt::format("{}:{}: the last line is cut off and was left out",
                                          table_.path.string(), line.number));
       return;
@@ -194,7 +240,17 @@ class TableReader {
     for (std::size_t c = 0; c < cells.size(); ++c) {
       readers_[c].add(line, cells[c], table_.columns[c]);
     }
+    shortest_last_cell_ = std::min(shortest_last_cell_, cells.back().size());
     table_.lines.push_back(line.number);
+  }
+
+  /// Whether the last line, which no line end follows, lacks cells, or has a last one that is
+  /// shorter than those of all other rows of a recording.
+  bool is_cut_off(const std::vector<std::string_view>& cells) const {
+    constexpr std::size_t kMinRows = 20;
+    const std::size_t rows = table_.row_count();
+    if (cells.size() < table_.columns.size()) return rows > 0;
+    return rows >= kMinRows && cells.back().size() < shortest_last_cell_;
   }
 
   void set_comment_units() {
@@ -224,6 +280,8 @@ class TableReader {
   CsvTable table_;
   MissingCells missing_;
   std::vector<NumberedLine> head_;
+  std::size_t head_bytes_ = 0;
+  std::size_t shortest_last_cell_ = std::numeric_limits<std::size_t>::max();
   NumberedLine pending_, units_;
   std::string comment_;  // the last before the first line of another kind
   bool is_begun_ = false, is_last_whole_ = true;
@@ -239,6 +297,10 @@ CsvTable read_csv(const fs::path& path, MissingCells missing) {
   if (!*stream) throw EnvironmentError(fmt::format("{}: {}", path.string(), kNotRead));
   if (starts_as_utf16(*stream)) {
     stream = std::make_unique<std::istringstream>(convert_utf16(path, read_text_file(path)));
+  } else if (has_old_line_ends(*stream)) {
+    std::string text = read_text_file(path);
+    std::replace(text.begin(), text.end(), '\r', '\n');
+    stream = std::make_unique<std::istringstream>(std::move(text));
   }
   TableReader reader(path, missing);
   reader.read(*stream);

@@ -27,7 +27,7 @@ std::string describe_remarks(const TableSummary& table, const ColumnSummary& col
                              std::size_t at) {
   std::string text = column.is_clock ? describe_clock(column.times) : "";
   for (const std::string& remark : column.remarks) text += (text.empty() ? "" : "; ") + remark;
-  if (!column.fault.empty()) text = "not numbers";
+  if (!column.fault.empty()) text = fmt::format("not numbers ({})", column.fault);
   // Only where there are several clocks.
   std::size_t clocks = 0;
   for (const ColumnSummary& other : table.columns) clocks += other.is_clock ? 1 : 0;

@@ -1,6 +1,8 @@
 #include "io/table/column_name.h"
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <optional>
 
 #include "io/table/csv_cell.h"
 
@@ -50,12 +52,27 @@ TEST_CASE("Cells are numbers with a point or a comma, clock times or missing", "
   CHECK_FALSE(parse_cell_number("1,5", '.'));
   CHECK_FALSE(parse_cell_number("1.234,5", ','));  // thousands
   CHECK_FALSE(parse_cell_number("inf", '.'));
-  CHECK(parse_cell_clock("01:02:03.25") == 3723.25);
-  CHECK(parse_cell_clock("2026-05-03T01:02:03,25Z") == 3723.25);
-  CHECK(parse_cell_clock("02:03.25") == 123.25);
+  const auto read_time = [](const char* cell) { return parse_cell_clock(cell).value().time; };
+  CHECK(read_time("01:02:03.25") == 3723.25);
+  CHECK(read_time("2026-05-03T01:02:03,25Z") == 3723.25);
+  CHECK(read_time("2026-05-03T01:02:03.25+01:00") == 123.25);
+  CHECK(read_time("2026-05-03T01:02:03.25-0130") == 3723.25 + 5400.0);
+  CHECK(read_time("12:02:03.25 AM") == 123.25);
+  CHECK(read_time("1:02:03.25 pm") == 13.0 * 3600.0 + 123.25);
+  CHECK(read_time("02:03.25") == 123.25);
+  CHECK(parse_compact_clock("010203.25").value().time == 3723.25);
+  CHECK(parse_compact_clock("203.25").value().time == 123.25);
+  CHECK_FALSE(parse_compact_clock("017000"));
+  CHECK_FALSE(parse_compact_clock("1-2"));
   CHECK_FALSE(parse_cell_clock("25:00:00"));
   CHECK_FALSE(parse_cell_clock("1:2:3:4"));
   CHECK_FALSE(parse_cell_clock("ratio 1:x"));
+  // Days since 1970: 3 May 2026 is 20576, 5 March 20517.
+  using Days = std::array<std::optional<int>, 2>;
+  CHECK(parse_cell_clock("2026-05-03 01:02:03")->days == Days{20576, 20576});
+  CHECK(parse_cell_clock("03.05.26 01:02:03")->days == Days{20576, 20517});
+  CHECK(parse_cell_clock("31/12/2026 01:02:03")->days == Days{20818, std::nullopt});
+  CHECK(parse_cell_clock("3 x 01:02:03")->days == Days{});
   CHECK(is_missing_cell("NaN"));
   CHECK(is_missing_cell("#N/A"));
   CHECK_FALSE(is_missing_cell("0"));

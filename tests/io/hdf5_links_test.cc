@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "io/format/hdf5.h"
+#include "io/store/hdf5_table.h"
 #include "tests/support/temporary_folder.h"
 
 namespace strut {
@@ -90,6 +91,39 @@ TEST_CASE("A dataset whose numbers lie in another file is not read", "[io]") {
     REQUIRE(reader.has(name));
     CHECK_THROWS_WITH(reader.read(name), Catch::Contains("a view over shards cannot be verified"));
   }
+}
+
+TEST_CASE("Columns that lie in another file are left out and noted, the others read", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path secret = write_secret(folder);
+  const fs::path path = make_file(folder, [&](hid_t file) {
+    H5Lcreate_external(secret.c_str(), "/group/values", file, "there", H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t size = kValues.size();
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    const hid_t data =
+        H5Dcreate2(file, "here", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, kValues.data());
+    H5Dclose(data);
+    H5Sclose(space);
+  });
+  const auto table = open_hdf5_table(path, MeasuredPart::kHistory);
+  CHECK(table->names() == std::vector<std::string>{"here"});
+  CHECK(table->read("here").values == std::vector<double>(kValues.begin(), kValues.end()));
+}
+
+TEST_CASE("An HDF5 file without numbers says what is missing", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path path = make_file(folder, [](hid_t file) {
+    const hid_t record = H5Tcreate(H5T_COMPOUND, sizeof(double));
+    H5Tinsert(record, "force", 0, H5T_NATIVE_DOUBLE);
+    const hsize_t size = kValues.size();
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    H5Dclose(H5Dcreate2(file, "runs", record, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+    H5Tclose(record);
+  });
+  CHECK_THROWS_WITH(open_hdf5_table(path, MeasuredPart::kHistory),
+                    Catch::Contains("compound types"));
 }
 
 }  // namespace

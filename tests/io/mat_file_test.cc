@@ -96,6 +96,17 @@ TEST_CASE("A damaged MATLAB file is an input error", "[io]") {
   CHECK_THROWS_AS(open_mat_file(folder.write("m.mat", huge)), InputError);
 }
 
+TEST_CASE("A MATLAB file that is cut off says what may be missing", "[io]") {
+  const test::TemporaryFolder folder;
+  const std::string whole =
+      make_file(make_array("t", 3, 1, {0.0, 0.5, 1.0}) + make_array("F", 3, 1, {1.0, 2.0, 3.0}));
+  CHECK(open_mat_file(folder.write("m.mat", whole))->notes().empty());
+  const auto cut = open_mat_file(folder.write("m.mat", whole.substr(0, whole.size() - 40)));
+  CHECK(cut->names() == std::vector<std::string>{"t"});
+  REQUIRE(cut->notes().size() == 1);
+  CHECK_THAT(cut->notes().front(), Contains("is cut off; what follows t is missing"));
+}
+
 TEST_CASE("Formats that are not read are named, with the way to convert them", "[io]") {
   const test::TemporaryFolder folder;
   CHECK_THROWS_WITH(find_table_format(folder.write("a.mf4", "MDF     4.10    ")),
