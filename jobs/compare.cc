@@ -89,6 +89,9 @@ Arguments describe_compare() {
 }
 
 int run_compare(const Arguments& arguments) {
+  if (arguments.is_on("check") && arguments.has("output")) {
+    throw arguments.usage_error("--check writes no folder: give it or --output, not both");
+  }
   const CampaignData data = read_campaign_data(arguments.only_operand());
   if (arguments.is_on("check")) return run_check(arguments, data);
   const CompareFolder folder = find_compare_folder(arguments, data);

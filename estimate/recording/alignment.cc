@@ -86,6 +86,7 @@ struct PreparedChannel {
   std::size_t run = 0, channel = 0;
   int number = 0;  // in ModelInfo::channels
   double interval = 0.0, energy = 0.0;
+  double period = 0.0;  // as in ChannelAlignment
   std::size_t count = 0, size = 0;
   std::vector<double> values;  // even, without their mean
   Spectrum spectrum;
@@ -173,6 +174,33 @@ Simulated compare(const PreparedChannel& m, const std::vector<double>& times,
   return out;
 }
 
+/// Period of a channel that repeats itself: of the largest autocorrelation after its first zero, by
+/// the number of samples that overlap; 0 where that is small.
+double find_period(const PreparedChannel& m) {
+  constexpr double kRepeats = 0.8;
+  constexpr std::size_t kLeastOverlap = 3;  // of the record, the inverse
+  Spectrum power = m.spectrum;
+  for (auto& p : power) p *= std::conj(p);
+  std::vector<double> correlation;
+  Eigen::FFT<double> fft;
+  fft.inv(correlation, power);
+  const std::size_t end = m.count - m.count / kLeastOverlap;
+  const auto at = [&](std::size_t lag) {
+    const double overlap = static_cast<double>(m.count - lag) / static_cast<double>(m.count);
+    return correlation[lag] / (m.energy * overlap);
+  };
+  std::size_t lag = 0;
+  while (lag < end && at(lag) > 0.0) ++lag;
+  double most = kRepeats;
+  std::size_t period = 0;
+  for (; lag < end; ++lag) {
+    if (at(lag) <= most) continue;
+    most = at(lag);
+    period = lag;
+  }
+  return m.interval * static_cast<double>(period);
+}
+
 class Search {
  public:
   Search(const std::vector<MeasuredRun>& runs, const std::vector<Unknown>& free,
@@ -252,6 +280,7 @@ class Search {
     if (!(c.energy > 0.0)) return;
     c.size = find_transform_size(2 * c.count);
     c.spectrum = transform(c.values, c.size);
+    c.period = find_period(c);
     channels_.push_back(std::move(c));
   }
 
@@ -369,9 +398,11 @@ std::vector<PossibleSwap> compare_swapped(const std::vector<MeasuredRun>& runs,
                                           const std::vector<PreparedChannel>& channels,
                                           const std::vector<Simulated>& all, double max_lag) {
   std::vector<PossibleSwap> swaps;
+  // What two channels must share: the quantity of a corner or, on a rig, the unit.
   const auto get_quantity = [&](const PreparedChannel& c) {
-    return get_corner_quantity(
-        runs[c.run].setup.info().channels[static_cast<std::size_t>(c.number)].name);
+    const ModelInfo& info = runs[c.run].setup.info();
+    const ChannelInfo& channel = info.channels[static_cast<std::size_t>(c.number)];
+    return info.is_driven_by_inputs() ? channel.unit : get_corner_quantity(channel.name);
   };
   for (std::size_t a = 0; a < channels.size(); ++a) {
     for (std::size_t b = a + 1; b < channels.size() && channels[b].run == channels[a].run; ++b) {
@@ -408,7 +439,8 @@ Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vect
     alignment.channels.push_back(
         {search.channels()[i].run, search.channels()[i].channel, std::abs(c.best.rho),
          c.best.factor, c.best.lag + delay, calc_rest(c.other_sign.rho) / calc_rest(c.best.rho),
-         calc_rest(bare[i].correlation.rho_without_lag) / calc_rest(c.best.rho)});
+         calc_rest(bare[i].correlation.rho_without_lag) / calc_rest(c.best.rho),
+         search.channels()[i].period});
   }
   return alignment;
 }

@@ -31,10 +31,13 @@ struct ChannelAlignment {
   double sign_ratio = 1.0;
   /// The same for no lag at all.
   double lag_ratio = 1.0;
+  /// Time [s] after which the motion repeats itself, nearly; 0: it does not. Lags of half of it or
+  /// more are ambiguous, and smaller ones may be the phase of a resonance.
+  double period = 0.0;
 };
 
 /// Two channels of a run that could be swapped: their names differ by left and right, or front and
-/// rear.
+/// rear, or they are channels of a rig in one unit.
 struct PossibleSwap {
   std::size_t run = 0, first = 0, second = 0;  // the latter two in MeasuredRun::channels
   double gain = 0.0;  // fall of the cost if each is compared with the other's simulation

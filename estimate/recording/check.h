@@ -14,8 +14,10 @@ namespace strut {
 /// themselves:
 ///  - sign: most runs agree better with the negative channel;
 ///  - factor: above 1.9 or below 1 / 1.9, beyond what wear does;
-///  - lag: 10 ms or more of a channel against the others, 15 ms or more of all of them;
+///  - lag: 10 ms or more of a channel against the others, 15 ms or more of all of them; of a motion
+///  that repeats itself at most an eighth of its period;
 ///  - swapped: two channels, of which each agrees better with the simulation of the other;
+///  - no agreement: a channel of a rig, or all of a car, that resembles nothing the model does;
 ///  - clock: intervals of 1.5 medians or more, beyond the jitter; jitter of a tenth of the interval
 ///  or more;
 ///  - saturation: plateaus at the largest or smallest reading that cut off a motion;

@@ -132,9 +132,15 @@ bool add_common_sign(const std::vector<MeasuredRun>& runs,
   return true;
 }
 
+/// Whether a run's lag may be the phase of a motion that repeats itself.
+bool is_phase(const ChannelAlignment& run) {
+  constexpr double kMaxPart = 0.125;
+  return run.period > 0.0 && std::abs(run.lag) > kMaxPart * run.period;
+}
+
 bool has_lag(const ChannelSummary& c, double least) {
   const auto same = std::count_if(c.runs.begin(), c.runs.end(), [&](const auto* run) {
-    return run->lag * c.lag > 0.0 && std::abs(run->lag) > 0.5 * std::abs(c.lag);
+    return run->lag * c.lag > 0.0 && std::abs(run->lag) > 0.5 * std::abs(c.lag) && !is_phase(*run);
   });
   return std::abs(c.lag) >= least && c.lag_ratio >= kMinLagRatio &&
          2 * static_cast<std::size_t>(same) > c.runs.size();
@@ -210,12 +216,40 @@ void add_single_signs(const std::vector<MeasuredRun>& runs, const ChannelSummary
   }
 }
 
+/// A channel that moves and resembles nothing that the model does, in any run. A car's channels may
+/// follow the road's roughness, which the simulation does not have; all of them never do.
+void add_strangers(const std::vector<MeasuredRun>& runs, const Alignment& alignment,
+                   const std::set<int>& swapped, std::vector<RecordingFinding>& findings) {
+  constexpr double kMinSpread = 5.0;  // of a channel, in standard deviations of its noise
+  std::map<int, std::vector<double>> correlations;
+  for (const ChannelAlignment& a : alignment.channels) {
+    const MeasuredChannel& channel = runs[a.run].channels[a.channel];
+    if (calc_spread(channel.values) < kMinSpread * channel.sigma) continue;
+    correlations[channel.channel].push_back(a.correlation);
+  }
+  std::vector<std::pair<int, double>> strangers;
+  for (const auto& [channel, list] : correlations) {
+    const double most = *std::max_element(list.begin(), list.end());
+    if (most < kComparable && swapped.count(channel) == 0) strangers.emplace_back(channel, most);
+  }
+  const bool is_driven = runs.front().setup.info().is_driven_by_inputs();
+  if (!is_driven && strangers.size() < correlations.size()) return;
+  for (const auto& [channel, most] : strangers) {
+    findings.push_back(
+        {FindingKind::kStranger, "", get_info(runs, channel).name, most,
+         fmt::format("resembles nothing that the model does (correlation {:.2f})", most),
+         "another column or run, far start values, or a clock that is off by more than "
+         "0.3 s?"});
+  }
+}
+
 }  // namespace
 
 std::vector<RecordingFinding> check_alignment(const std::vector<MeasuredRun>& runs,
                                               const Alignment& alignment) {
   std::vector<RecordingFinding> findings;
   const std::set<int> swapped = add_swaps(runs, alignment, findings);
+  add_strangers(runs, alignment, swapped, findings);
   std::vector<ChannelSummary> channels = summarize(runs, alignment);
   std::erase_if(channels, [&](const ChannelSummary& c) { return swapped.count(c.channel) > 0; });
   if (channels.empty()) return findings;

@@ -1,4 +1,4 @@
-// Findings about signs, factors, lags and swapped channels.
+// Findings about signs, factors, lags, swapped and strange channels.
 #pragma once
 
 #include <vector>

@@ -15,6 +15,7 @@ enum class FindingKind {
   kFactor,
   kLag,
   kSwapped,
+  kStranger,
   kDroppedSamples,
   kUnevenClock,
   kSaturation,
@@ -22,11 +23,12 @@ enum class FindingKind {
   kMains,
   kCopy,
 };
-inline constexpr std::array<Named<FindingKind>, 10> kFindingKinds = {{
+inline constexpr std::array<Named<FindingKind>, 11> kFindingKinds = {{
     {FindingKind::kSign, "sign"},
     {FindingKind::kFactor, "factor"},
     {FindingKind::kLag, "lag"},
     {FindingKind::kSwapped, "swapped"},
+    {FindingKind::kStranger, "no_agreement"},
     {FindingKind::kDroppedSamples, "dropped_samples"},
     {FindingKind::kUnevenClock, "uneven_clock"},
     {FindingKind::kSaturation, "saturation"},
@@ -40,7 +42,8 @@ struct RecordingFinding {
   FindingKind kind = FindingKind::kSign;
   std::string run;      // the file; "": all of them
   std::string channel;  // "": all of them, or the clock
-  /// kSign: -1; kFactor: the factor; kLag: s; kDroppedSamples: their number; kUnevenClock: jitter
+  /// kSign: -1; kFactor: the factor; kLag: s; kStranger: the largest correlation;
+  /// kDroppedSamples: their number; kUnevenClock: jitter
   /// [s]; kQuantization: the step; kMains: Hz; kCopy: the fraction of common readings.
   double size = 0.0;
   std::string what;    // "looks negated"

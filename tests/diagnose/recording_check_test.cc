@@ -112,6 +112,46 @@ TEST_CASE("Late channels and late clocks are told apart", "[reference]") {
   CHECK_THAT(early[0].describe(), Contains("is the input") && Contains("ms late?"));
 }
 
+TEST_CASE("A column of something else is found, and two that are swapped", "[reference]") {
+  const auto other = check_changed([](std::size_t, std::array<std::string, 4>& cells) {
+    cells[3] = test::print_number(2e-3 * std::sin(70.0 * std::stod(cells[0])));
+  });
+  REQUIRE(other.size() == 1);
+  CHECK(other[0].kind == FindingKind::kStranger);
+  CHECK(other[0].channel == "sprung_position");
+  CHECK(describe(check_changed([](std::size_t, std::array<std::string, 4>& cells) {
+          std::swap(cells[2], cells[3]);
+        })) == Texts{"unsprung_position and sprung_position look swapped: swap their columns"});
+}
+
+TEST_CASE("Start values so far off that nothing agrees are named as a cause", "[reference]") {
+  QuarterTruth truth = make_worn(1.0, 1.0);
+  truth.stiffness *= 3.2;
+  const auto findings = check(read_worn(truth));
+  REQUIRE(findings.size() == 2);
+  CHECK(findings[0].kind == FindingKind::kStranger);
+  CHECK_THAT(findings[1].describe(), Contains("far start values"));
+}
+
+TEST_CASE("The phase of a steady oscillation is no lag", "[unit]") {
+  ChannelAlignment run;
+  run.correlation = 0.99;
+  run.lag = 0.03;
+  run.sign_ratio = run.lag_ratio = 5.0;
+  const auto find = [&](double period) {
+    run.period = period;
+    CampaignData data = read_worn(make_worn(1.0, 1.0));
+    data.runs.erase(data.runs.begin() + 1, data.runs.end());
+    data.runs[0].channels.erase(data.runs[0].channels.begin() + 1, data.runs[0].channels.end());
+    Alignment alignment;
+    alignment.channels = {run};
+    return check_alignment(data.runs, alignment).size();
+  };
+  CHECK(find(0.0) == 1);    // a motion that does not repeat itself
+  CHECK(find(0.5) == 1);    // 2 Hz: a sixteenth of a turn
+  CHECK(find(0.125) == 0);  // 8 Hz: a quarter of a turn
+}
+
 TEST_CASE("A sensor at its limit, coarse readings and mains are found", "[unit]") {
   const auto clip = check_changed([](std::size_t, std::array<std::string, 4>& cells) {
     cells[3] = test::print_number(std::clamp(std::stod(cells[3]), -0.0015, 0.0015));
