@@ -12,12 +12,6 @@
 
 namespace strut {
 
-const std::vector<std::string>& list_default_free_parameters() {
-  static const std::vector<std::string> names = {"front_stiffness", "front_damping",
-                                                 "rear_stiffness", "rear_damping"};
-  return names;
-}
-
 std::vector<Unknown> make_free_unknowns(const std::vector<MeasuredRun>& runs,
                                         const std::vector<std::string>& names) {
   std::vector<Unknown> unknowns;
@@ -58,6 +52,17 @@ void set_prior(const ModelInfo& model, const std::string& name, const Prior& pri
                                suggest_name(name, names)));
 }
 
+void add_nuisance(const std::vector<MeasuredRun>& runs, const std::string& name, const Prior& prior,
+                  std::vector<Unknown>& unknowns) {
+  if (!is_among(unknowns, name)) {
+    for (Unknown& u : make_free_unknowns(runs, {name})) {
+      u.scale = prior.sigma;
+      unknowns.push_back(std::move(u));
+    }
+  }
+  set_prior(runs.front().setup.info(), name, prior, unknowns);
+}
+
 IdentifiedParameter make_estimate(const FitResult& fit, std::size_t i) {
   IdentifiedParameter p;
   p.name = fit.unknowns[i].name;
@@ -66,6 +71,7 @@ IdentifiedParameter make_estimate(const FitResult& fit, std::size_t i) {
   const bool known = fit.uncertainty.identifiable[i];
   p.half_width =
       known ? kNormal95 * fit.uncertainty.sigma[i] : std::numeric_limits<double>::infinity();
+  p.widened_half_width = known ? kNormal95 * fit.widened.sigma[i] : p.half_width;
   p.in_range = known && !fit.at_bound[i];
   return p;
 }

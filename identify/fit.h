@@ -9,9 +9,6 @@
 
 namespace strut {
 
-/// Lists the parameters that a fit identifies by default: stiffness and damping of both axles.
-const std::vector<std::string>& list_default_free_parameters();
-
 /// Makes the unknowns of the parameters in `names`; the speed has one value per run, other
 /// parameters one for all runs. Throws InputError where a name is unknown or given twice.
 std::vector<Unknown> make_free_unknowns(const std::vector<MeasuredRun>& runs,
@@ -21,6 +18,12 @@ std::vector<Unknown> make_free_unknowns(const std::vector<MeasuredRun>& runs,
 /// bounds. Throws InputError where there is no such unknown.
 void set_prior(const ModelInfo& model, const std::string& name, const Prior& prior,
                std::vector<Unknown>& unknowns);
+
+/// Adds the parameter `name` to the unknowns as a nuisance with a prior, which is also its scale:
+/// it may be known from the prior alone. One that is a nuisance already, as the speed, only gets
+/// the prior. Throws InputError where the name is unknown.
+void add_nuisance(const std::vector<MeasuredRun>& runs, const std::string& name, const Prior& prior,
+                  std::vector<Unknown>& unknowns);
 
 /// Makes the estimate of unknown `i`: half width 1.96 sigma, infinite where it is not identifiable;
 /// not in range where it is not identifiable or held by a bound.

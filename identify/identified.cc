@@ -18,22 +18,30 @@ bool are_in_range(const std::vector<IdentifiedRow>& rows) {
 
 void write_identified_csv(const std::filesystem::path& path,
                           const std::vector<IdentifiedRow>& rows) {
-  std::vector<CsvColumn> columns = {{"row", "1", {}}};
-  columns.reserve(3 * rows.front().parameters.size() + 2);
-  for (const IdentifiedParameter& p : rows.front().parameters) {
-    for (const char* end : {"", "_low", "_high"}) columns.push_back({p.name + end, p.unit, {}});
-  }
-  columns.push_back({"in_range", "1", {}});
+  std::vector<CsvColumn> columns;
   for (const IdentifiedRow& row : rows) {
     std::size_t c = 0;
-    const auto add = [&](double value) { columns[c++].values.push_back(value); };
-    add(static_cast<double>(&row - rows.data()));
+    const auto add = [&](const std::string& name, const std::string& unit, double value) {
+      if (c == columns.size()) columns.push_back({name, unit, {}});
+      columns[c++].values.push_back(value);
+    };
+    const auto add_interval = [&](const std::string& name, const std::string& unit, double value,
+                                  double half_width) {
+      add(name, unit, value);
+      add(name + "_low", unit, value - half_width);
+      add(name + "_high", unit, value + half_width);
+    };
+    add("row", "1", static_cast<double>(&row - rows.data()));
     for (const IdentifiedParameter& p : row.parameters) {
-      add(p.value);
-      add(p.low());
-      add(p.high());
+      add_interval(p.name, p.unit, p.value, p.half_width);
     }
-    add(row.in_range() ? 1.0 : 0.0);
+    add("in_range", "1", row.in_range() ? 1.0 : 0.0);
+    for (const IdentifiedParameter& p : row.parameters) {
+      if (!p.wear) continue;
+      add_interval(p.name + "_wear", "%", p.wear->percent, p.wear->half_width);
+      add(p.name + "_beyond_limit", "1", p.wear->beyond);
+      if (p.change) add_interval(p.name + "_change", "%", p.change->percent, p.change->half_width);
+    }
   }
   write_csv(path, columns);
 }

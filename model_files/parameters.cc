@@ -133,7 +133,8 @@ void add_axles(Parameters& list) {
       kVehicleFile, [](auto& s) -> auto& { return s.static_camber; });
 }
 
-/// Adds a number of the springs or dampers for both corners of each axle, then for each corner.
+/// Adds a rate of the springs or dampers, which wear lowers, for both corners of each axle, then
+/// for each corner.
 void add_strut(Parameters& list, const std::string& name, std::array<double, kAxles> defaults,
                const Range& allowed, const std::string& description, double StrutSpec::*field) {
   for (std::size_t axle = 0; axle < kAxles; ++axle) {
@@ -146,6 +147,7 @@ void add_strut(Parameters& list, const std::string& name, std::array<double, kAx
                     [axle, field](Case& c, double value) {
                       for (StrutSpec& s : c.vehicle.suspension[axle].strut) s.*field = value;
                     }});
+    list.back().wears_at = kAxleNames[axle];
   }
   for (std::size_t corner = 0; corner < kCorners; ++corner) {
     const std::size_t axle = corner / 2, side = corner % 2;
@@ -154,6 +156,7 @@ void add_strut(Parameters& list, const std::string& name, std::array<double, kAx
         description + ", " + kCornerWords[corner], kTable1,
         [ axle, side,
           field ](auto& c) -> auto& { return c.vehicle.suspension[axle].strut[side].*field; });
+    list.back().wears_at = kCornerNames[corner];
   }
 }
 

@@ -13,6 +13,11 @@ namespace strut {
 /// Half width of the central 95 % interval of a normal distribution, in standard deviations.
 inline constexpr double kNormal95 = 1.959963984540054;
 
+/// Probability that a standard normal number is below `z`: erfc(-z / sqrt(2)) / 2.
+inline double calc_normal_probability(double z) {
+  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
 /// Two independent standard normal numbers, by the trigonometric form of G. E. P. Box, M. E. Muller
 /// (1958).
 inline std::pair<double, double> calc_normal_pair(std::uint64_t seed, std::uint64_t stream,

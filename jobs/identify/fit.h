@@ -8,8 +8,8 @@
 
 namespace strut {
 
-/// --maneuver, --free, --channels, --window, --prior, --no-nuisances, --threads. A fit also reads
-/// --noise and --set, which add_snapshot_options adds.
+/// --maneuver, --free, --by, --channels, --window, --nuisance, --prior, --no-nuisances, --threads.
+/// A fit also reads --noise and --set, which add_snapshot_options adds.
 void add_fit_options(Arguments& arguments);
 
 /// Throws InputError where one of them is given; other methods would ignore it.

@@ -144,9 +144,9 @@ void report_undetermined(const FitResult& fit) {
 
 }  // namespace
 
-Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
-                   std::size_t parameter_count) {
-  Json json = make_identified_json({make_fit_row(fit, parameter_count)});
+Json make_fit_json(const Fit& all, const IdentifiedRow& row) {
+  const auto& [runs, fit, parameter_count] = all;
+  Json json = make_identified_json({row});
   json["converged"] = fit.converged;
   json["distance"] = fit.distance;
   json["at_kink"] = fit.at_kink;
@@ -163,21 +163,22 @@ Json make_fit_json(const FitResult& fit, const std::vector<MeasuredRun>& runs,
   return json;
 }
 
-void print_fit(const FitResult& fit, const std::vector<MeasuredRun>& runs,
-               std::size_t parameter_count) {
-  IdentifiedRow table;
-  table.parameters.reserve(fit.unknowns.size());
-  for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
-    IdentifiedParameter p = make_estimate(fit, i);
-    p.in_range = true;  // reasons are reported below the table
-    if (i >= parameter_count && runs.size() > 1)
-      p.name += fmt::format(" of {}", get_run_name(fit, runs, i));
-    table.parameters.push_back(std::move(p));
+void report_fit(const Fit& fit) {
+  report_quality(fit.result);
+  report_noise(fit.result, fit.runs);
+  report_undetermined(fit.result);
+}
+
+void print_fit(const Fit& fit, const IdentifiedRow& row) {
+  IdentifiedRow table = row;
+  for (std::size_t i = row.parameters.size(); i < fit.result.unknowns.size(); ++i) {
+    table.parameters.push_back(make_estimate(fit.result, i));
+    if (fit.runs.size() > 1)
+      table.parameters.back().name += fmt::format(" of {}", get_run_name(fit.result, fit.runs, i));
   }
+  for (IdentifiedParameter& p : table.parameters) p.in_range = true;  // reasons: report_fit
   print_identified({table});
-  report_quality(fit);
-  report_noise(fit, runs);
-  report_undetermined(fit);
+  report_fit(fit);
 }
 
 }  // namespace strut

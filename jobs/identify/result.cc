@@ -12,6 +12,7 @@
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/standard_output.h"
+#include "jobs/identify/wear.h"
 
 namespace strut {
 namespace {
@@ -56,6 +57,7 @@ Json make_row_json(const IdentifiedRow& row) {
     values["ci95"] = bounds;
     values["unit"] = p.unit;
     values["in_range"] = p.in_range;
+    add_wear_json(p, values);
     parameters[p.name] = values;
   }
   Json outside = Json::array();
@@ -160,6 +162,7 @@ Json make_identified_json(const std::vector<IdentifiedRow>& rows) {
 
 void print_identified(const std::vector<IdentifiedRow>& rows) {
   rows.size() == 1 ? print_one(rows.front()) : print_many(rows);
+  print_wear(rows);
   report_out_of_range(rows);
 }
 
@@ -178,7 +181,9 @@ void suggest_next_simulation(const std::vector<IdentifiedRow>& rows, const std::
   suggest_next(words, rows.size() == 1 ? "" : "the car of the first row");
 }
 
-int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& rows) {
+int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& identified,
+                    std::vector<IdentifiedRow> before) {
+  const std::vector<IdentifiedRow> rows = add_wear_by_options(arguments, {}, identified, before);
   if (arguments.has("output")) {
     write_identified_csv(find_output_file(arguments, arguments.positional()), rows);
   }
@@ -187,7 +192,8 @@ int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>
   } else {
     print_identified(rows);
   }
-  if (!are_in_range(rows)) {
+  if (!are_in_range(rows) || !are_in_range(before)) {
+    report_out_of_range(before);
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
                  "a sweep whose grid covers the measurements, to train a network on");
     return kExitNegative;

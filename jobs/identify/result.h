@@ -10,13 +10,13 @@
 
 namespace strut {
 
-/// One row: {"parameters": {NAME: {"value":, "ci95": [low, high], "unit":, "in_range":}},
-/// "in_range":, "outside": [{"channel":, ...}]}. Several: {"rows": [the same with "place"],
-/// "in_range": true if all are}. Unknown numbers are null.
+/// One row: {"parameters": {NAME: {"value":, "ci95": [low, high], "unit":, "in_range":, and those
+/// of add_wear_json}}, "in_range":, "outside": [{"channel":, ...}]}. Several: {"rows": [the same
+/// with "place"], "in_range": true if all are}. Unknown numbers are null.
 Json make_identified_json(const std::vector<IdentifiedRow>& rows);
 
-/// Prints one row as a table of parameters, several as one line each, to standard output, and why a
-/// row is not in range to standard error.
+/// Prints one row as a table of parameters, several as one line each, and the wear where it is
+/// known, to standard output, and why a row is not in range to standard error.
 void print_identified(const std::vector<IdentifiedRow>& rows);
 
 /// --output, --force, --json
@@ -28,8 +28,9 @@ void suggest_next_simulation(const std::vector<IdentifiedRow>& rows,
                              const std::string& vehicle = "VEHICLE.toml",
                              const std::string& maneuver = "MANEUVER.toml");
 
-/// Prints and writes one row or more as the options ask. Returns kExitDone, or kExitNegative where
-/// a row is not in range.
-int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& rows);
+/// Prints and writes one row or more of a network as the options ask, with the change since the
+/// rows `before`, as many or none. Returns kExitDone, or kExitNegative where a row is not in range.
+int show_identified(const Arguments& arguments, const std::vector<IdentifiedRow>& identified,
+                    std::vector<IdentifiedRow> before);
 
 }  // namespace strut

@@ -12,6 +12,7 @@
 #include "jobs/cli/settings.h"
 #include "jobs/identify/columns.h"
 #include "jobs/identify/result.h"
+#include "jobs/identify/wear.h"
 
 namespace strut {
 namespace {
@@ -43,6 +44,11 @@ Snapshots read_command_line(const Arguments& arguments, const TrainedModel& mode
       fmt::format("--set: missing {}; the model needs {}", join_names(missing), join_names(names)));
 }
 
+std::optional<double> read_event_time(const Arguments& arguments) {
+  if (!arguments.has("event-time")) return std::nullopt;
+  return arguments.number_or("event-time", 0.0, Range{});
+}
+
 Snapshots read_measured(const Arguments& arguments, const TrainedModel& model,
                         const std::vector<fs::path>& files) {
   if (arguments.has("set") && !files.empty()) {
@@ -53,9 +59,8 @@ Snapshots read_measured(const Arguments& arguments, const TrainedModel& model,
     throw arguments.usage_error(
         "MEASURED: missing; name a table with a column for each input, or give --set");
   }
-  std::optional<double> event_time;
-  if (arguments.has("event-time")) event_time = arguments.number_or("event-time", 0.0, Range{});
-  return read_snapshots(model, files, event_time, read_columns_option(arguments, model.inputs));
+  return read_snapshots(model, files, read_event_time(arguments),
+                        read_columns_option(arguments, model.inputs));
 }
 
 }  // namespace
@@ -78,7 +83,10 @@ int identify_by_snapshot(const Arguments& arguments, const TrainedModel& model,
                          const std::vector<fs::path>& files) {
   const SnapshotOptions options = read_options(arguments, model);
   const Snapshots snapshots = read_measured(arguments, model, files);
-  return show_identified(arguments, identify_snapshots(model, options, snapshots));
+  const Snapshots before = read_snapshots(model, list_before(arguments), read_event_time(arguments),
+                                          read_columns_option(arguments, model.inputs));
+  return show_identified(arguments, identify_snapshots(model, options, snapshots),
+                         identify_snapshots(model, options, before));
 }
 
 }  // namespace strut

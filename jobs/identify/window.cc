@@ -6,6 +6,7 @@
 #include "identify/window.h"
 #include "jobs/identify/columns.h"
 #include "jobs/identify/result.h"
+#include "jobs/identify/wear.h"
 
 namespace strut {
 
@@ -20,14 +21,17 @@ int identify_by_window(const Arguments& arguments, const TrainedModel& model,
   }
   const ColumnMap map = read_columns_option(arguments, model.window->channels);
   const Identifier identifier(model);
-  std::vector<IdentifiedRow> rows;
-  rows.reserve(files.size());
-  for (const std::filesystem::path& file : files) {
-    rows.push_back(identify_record(model, identifier, read_record(*model.window, file, map),
-                                   arguments.is_on("extrapolate")));
-    rows.back().source = file.string();
-  }
-  return show_identified(arguments, rows);
+  const auto identify = [&](const std::vector<std::filesystem::path>& records) {
+    std::vector<IdentifiedRow> rows;
+    rows.reserve(records.size());
+    for (const std::filesystem::path& file : records) {
+      rows.push_back(identify_record(model, identifier, read_record(*model.window, file, map),
+                                     arguments.is_on("extrapolate")));
+      rows.back().source = file.string();
+    }
+    return rows;
+  };
+  return show_identified(arguments, identify(files), identify(list_before(arguments)));
 }
 
 }  // namespace strut

@@ -7,7 +7,7 @@
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
-#include "identify/fit.h"
+#include "identify/wear.h"
 #include "io/format/toml_text.h"
 #include "io/table/units.h"
 #include "jobs/inspect/match_columns.h"
@@ -105,7 +105,7 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
 
 /// Springs and dampers of the suspension, which wear: of a car, those of the axles.
 std::vector<std::string> list_wearing(const ModelTables& tables) {
-  if (tables.model->has(kHasCar)) return list_default_free_parameters();
+  if (tables.model->has(kHasCar)) return list_wear_parameters(WearLocations::kByAxle);
   std::vector<std::string> names;
   for (const ListedParameter& listed : tables.parameters) {
     const std::string& name = listed.parameter->name;

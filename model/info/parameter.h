@@ -21,6 +21,8 @@ struct Parameter {
   double typical = 0.0;
   bool is_effect = false;
   bool is_maneuver = false;  // belongs to the maneuver's file, not to the vehicle's
+  /// Axle or corner of the part that loses this rate as it wears; "": no such part.
+  std::string wears_at{};
 };
 
 /// A parameter with access to its value in a Subject.
