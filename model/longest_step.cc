@@ -15,8 +15,13 @@ namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+constexpr double kSpringRadians = 0.2;  // of a stop or a flank
+
+/// A flank softens friction; one that is so stiff that its spring is the faster is passive.
 double calc_friction_step(const DryFriction<double>& friction, double mass) {
-  return friction.force > 0.0 ? mass / (friction.force * friction.inverse_speed) : kUnlimited;
+  if (!(friction.force > 0.0)) return kUnlimited;
+  const double rigid = mass / (friction.force * friction.inverse_speed);
+  return std::max(rigid, kSpringRadians * std::sqrt(mass * friction.stroke / friction.force));
 }
 
 double calc_contact_step(const StrutEffectNumbers<double>& n) {
@@ -27,10 +32,9 @@ double calc_contact_step(const StrutEffectNumbers<double>& n) {
 
 /// `mass` [kg]: infinite where the motion is given.
 double calc_settled_step(const StrutEffectNumbers<double>& n, double mass) {
-  constexpr double kStopRadians = 0.2;
   const double friction = calc_friction_step(n.friction, mass);
   if (!(n.stop.stiffness > 0.0)) return friction;
-  return std::min(friction, kStopRadians * std::sqrt(mass / n.stop.stiffness));
+  return std::min(friction, kSpringRadians * std::sqrt(mass / n.stop.stiffness));
 }
 
 double calc_strut_step(const StrutEffectNumbers<double>& n, double mass) {
@@ -47,8 +51,8 @@ double calc_moved_mass(const RigSpec& rig) {
 double calc_guide_step(const RigSpec& rig) {
   const double inverse_speed = 1.0 / rig.guide_speed;
   return std::min(
-      calc_friction_step({rig.guide_friction, inverse_speed}, rig.sprung_mass),
-      calc_friction_step({rig.unsprung_guide_friction, inverse_speed}, rig.unsprung_mass));
+      calc_friction_step({rig.guide_friction, inverse_speed, rig.guide_stroke}, rig.sprung_mass),
+      calc_friction_step({rig.unsprung_guide_friction, inverse_speed, rig.guide_stroke}, rig.unsprung_mass));
 }
 
 StrutEffectNumbers<double> make_numbers(const RigSpec& rig) {

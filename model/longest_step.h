@@ -15,7 +15,8 @@ namespace strut {
 ///   0.1 / w            w: fastest linear mode, where the phase error of RK4 is 1e-6
 ///   1.2 / r            r: rate at which the contact at the end of a lost stroke yields, at least
 ///                      kShortestContact; the error is 1 to 2 % of the effect, 40 % at 4 / r
-///   v_s m / F_c        dry friction: 1e-3 of the effect at 1.4 times this step, unstable at 2.7
+///   v_s m / F_c        dry friction: 1e-3 of the effect at 1.4 times this step, unstable at 2.7;
+///                      with a flank, where that is more, 0.2 sqrt(m b / F_c)
 ///   0.2 sqrt(m / k_b)  bump stop: 1 % of the effect
 ///
 /// m: the mass that the strut moves (of two the reduced one).

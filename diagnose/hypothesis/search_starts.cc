@@ -42,7 +42,9 @@ Starts start_stroke(const char* name, Motion m) {
 }
 
 Starts start_friction(Motion m) {
-  return {{{"force", 0.1 * m.damper_force()}, {"speed", 0.05 * m.velocity}}};
+  const double force = 0.1 * m.damper_force(), speed = 0.05 * m.velocity;
+  return {{{"force", force}, {"speed", speed}, {"stroke", 0.0}},
+          {{"force", force}, {"speed", speed}, {"stroke", 0.05 * m.deflection}}};
 }
 
 Starts start_top_mount(Motion m) {

@@ -23,8 +23,8 @@ struct StateIndex {
   static constexpr int kKappa = 30;            // 4, relaxed longitudinal slip
   static constexpr int kTanAlpha = 34;         // 4, relaxed lateral slip
   static constexpr int kStrut = 38;            // states of effects: 4 lagged forces [N], 4 of
-  static constexpr int kStrutCount = 12;       // mounts [N], 4 joints [m]
-  static constexpr int kCount = 50;
+  static constexpr int kStrutCount = 16;       // mounts [N], 4 joints [m], 4 flanks [m]
+  static constexpr int kCount = 54;
   static constexpr int kCountWithoutStruts = 38;
   static constexpr int kCountWithoutRelaxation = 30;
 };

@@ -69,13 +69,17 @@ EffectInfo make_strut_friction() {
   return {
       EffectName::kStrutFriction,
       "dry friction of seals, guide and bushings",
-      "F = F_c tanh(v / v_s), behind a joint_play F_c tanh(w / v_s); explicit steps need "
-      "h F_c / (v_s m) < 2.7",
+      "F = F_c tanh(v / v_s), behind a joint_play F_c tanh(w / v_s); with a stroke b > 0 F = F_c "
+      "z, "
+      "z = (s - clamp(s, -p / 2, p / 2)) / b, ds/dt = v - z v / tanh(v / v_s), p the play of "
+      "joint_play; explicit steps need h F_c / (v_s m) < 2.7 or h^2 F_c / (b m) < 8",
       "regularized Coulomb friction; 20 to 150 N an axle, mostly in the struts: Deubel and Prokop, "
-      "2022",
+      "2022; elastic flank: Dahl, 1968",
       kOnStrut,
       {make_switch("force", "N", "F_c: sliding friction", 0.0, 2e4, 50.0),
-       make_shape("speed", "m/s", "v_s: speed over which it builds up", 0.01, 1e-3, 0.2, 0.01)}};
+       make_shape("speed", "m/s", "v_s: speed over which it builds up", 0.01, 1e-3, 0.2, 0.01),
+       make_shape("stroke", "m", "b: stroke over which it builds up, elastically; 0: at once", 0.0,
+                  0.0, 0.02, 5e-4)}};
 }
 
 EffectInfo make_progressive_spring() {

@@ -44,7 +44,8 @@ StrutEffectNumbers<double> make_strut_effect_numbers(const EffectValues& values,
   n.stop = {get(EffectName::kBumpStop, "stiffness"), get(EffectName::kBumpStop, "progression"),
             length - get(EffectName::kBumpStop, "gap")};
   n.friction = {get(EffectName::kStrutFriction, "force"),
-                1.0 / get(EffectName::kStrutFriction, "speed")};
+                1.0 / get(EffectName::kStrutFriction, "speed"),
+                get(EffectName::kStrutFriction, "stroke"), joint_play};
   n.gas = {get(EffectName::kGasForce, "force")};
   return n;
 }
@@ -60,6 +61,7 @@ unsigned find_strut_effects(const StrutEffectNumbers<double>& n) {
   add_if(n.spring.rate != 0.0, kCubicSpring);
   add_if(n.stop.stiffness != 0.0, kBumpStop);
   add_if(n.friction.force != 0.0, kDryFriction);
+  add_if(n.friction.force != 0.0 && n.friction.stroke > 0.0, kShapedDamper | kSeriesDamper);
   add_if(n.gas.force != 0.0, kGasForce);
   return bits;
 }

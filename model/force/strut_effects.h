@@ -54,18 +54,61 @@ T calc_tanh(const T& x) {
   return select(x < T(0.0), -size, size);
 }
 
-/// F = F_c tanh(v / v_s).
+/// F = F_c tanh(v / v_s); with a flank b > 0 behind a play p the law of calc_elastic_friction.
 template <class T>
 struct DryFriction {
   static constexpr Line kLine = kDamperLine;
   static constexpr bool kConservative = false;
   T force;          // F_c, N
   T inverse_speed;  // 1 / v_s, s/m
+  T stroke{0.0};    // b, m
+  T play{0.0};      // p, m, where there is a flank
 
   T calc_force(const T& speed) const { return force * calc_tanh(speed * inverse_speed); }
   T calc_force(const LineState<T>& line) const { return calc_force(-line.rate); }
   T calc_energy(const LineState<T>&) const { return T(0.0); }
 };
+
+/// State s [m] of a DryFriction with a flank, its time derivative, and its decay rate [1/s].
+template <class T>
+struct FrictionState {
+  T value, rate, decay;
+};
+
+/// Friction with an elastic flank and a play before it, of relative size z [1]:
+///
+///   z = (s - clamp(s, -p / 2, p / 2)) / b,   ds/dt = v - z v / tanh(v / v_s)
+///
+/// s is the displacement of play and flank. Sliding steadily, z is tanh(v / v_s), the law without a
+/// flank, which the limit b = 0 is; after a reversal the force falls along the flank of stiffness
+/// F_c / b, is 0 over the play, and rises along the flank, exponentially: 1 - z falls by e over b.
+/// At rest it keeps its force but for a creep of v_s. P. R. Dahl, A Solid Friction Model, Aerospace
+/// Corporation TOR-0158(3107-18)-1, 1968, for p = 0. F_c z v is at least the growth of the energy
+/// F_c b z^2 / 2.
+template <class T>
+T calc_elastic_friction(const DryFriction<T>& friction, const T& speed, FrictionState<T>& state) {
+  constexpr double kSmall = 1e-4;  // v / v_s, below which tanh is its argument
+  const auto has_flank = friction.stroke > T(0.0);
+  const T stroke = select(has_flank, friction.stroke, T(1.0));
+  const T relative = speed * friction.inverse_speed;
+  const auto small = abs(relative) < T(kSmall);
+  const T slope = select(small, T(1.0) / friction.inverse_speed,
+                         speed / select(small, T(1.0), calc_tanh(relative)));
+  const T half = T(0.5) * friction.play;
+  const T z = (state.value - min(max(state.value, -half), half)) / stroke;
+  state.rate = select(has_flank, speed - z * slope, T(0.0));
+  state.decay = select(has_flank, slope / stroke, T(0.0));
+  return friction.force * z;
+}
+
+/// State s of a flank after a long motion at constant speed [m].
+template <class T>
+T calc_settled_friction(const DryFriction<T>& friction, const T& speed) {
+  const T side = select(speed > T(0.0), T(0.5), select(speed < T(0.0), T(-0.5), T(0.0)));
+  const T settled =
+      friction.play * side + friction.stroke * calc_tanh(speed * friction.inverse_speed);
+  return select(friction.stroke > T(0.0), settled, T(0.0));
+}
 
 /// F = F_g.
 template <class T>
@@ -99,20 +142,21 @@ struct StrutEffectNumbers {
 /// The elements of a strut other than spring and damper; bits of a set, common to a batch.
 enum StrutEffectBits : unsigned {
   kShapedDamper = 1,  // instead of the linear damper
-  kSeriesDamper = 2,  // a shaped damper with states
+  kSeriesDamper = 2,  // a shaped damper with states, of its own or of its friction
   kCubicSpring = 4,
   kBumpStop = 8,
   kDryFriction = 16,
   kGasForce = 32,
 };
 
-inline constexpr int kStatesPerStrut = 3;  // states of a DamperSeries
+inline constexpr int kStatesPerStrut = 4;  // three of a DamperSeries, one of a DryFriction
 
 template <class T>
 struct ShapedDamper {
   DamperLaw<T> law;
   DamperSeries<T> series;
-  /// Beside a damper with states, at the strut's speed v; behind a worn joint at the damper's w.
+  /// Beside a damper with states, at the strut's speed v; without a flank, behind a worn joint at
+  /// the damper's w.
   DryFriction<T> friction;
   bool has_friction = false;
   const DamperCurve* curve = nullptr;  // that the law's rate scales; null: a straight line
@@ -185,7 +229,8 @@ struct StrutEffects {
 };
 
 /// States of all struts with their time derivatives and decay rates: the lagged forces of all
-/// struts, then the mount forces, then the joint displacements; null without states.
+/// struts, then the mount forces, then the displacements of the joints, then those of friction's
+/// flanks; null without states.
 template <class T>
 struct StrutStates {
   const T* value = nullptr;
@@ -223,8 +268,13 @@ void add_shaped_dampers(const ElementList<ShapedDamper<T>>& list,
       states.decay[2 * Corners + c] = s.joint_decay;
     }
     if (damper.has_friction) {
+      FrictionState<T> flank{states.value[3 * Corners + c], T(0.0), T(0.0)};
+      const T elastic = calc_elastic_friction(damper.friction, -rate, flank);
+      states.rate[3 * Corners + c] = flank.rate;
+      states.decay[3 * Corners + c] = flank.decay;
       const T rubbing = select(damper.series.joint_play > T(0.0), speed, -rate);
-      force += damper.friction.calc_force(rubbing);
+      force +=
+          select(damper.friction.stroke > T(0.0), elastic, damper.friction.calc_force(rubbing));
     }
     out[corner].damper_force += force;
     out[corner].generalized += force * motion[corner].length_q[kDamperLine];

@@ -22,7 +22,7 @@
 
 namespace strut {
 
-inline constexpr int kMaxStiff = 16;
+inline constexpr int kMaxStiff = 20;
 
 /// Weights of the exponential formulas for each stiff component over one step.
 template <class T>

@@ -68,6 +68,11 @@ void add_guide(std::vector<RigField>& fields) {
                                  "speed at which 76 % of the guide's friction acts", 0.01,
                                  &S::guide_speed));
   fields.back().allowed.open_low = true;
+  fields.push_back(make_optional("guide_stroke", "m", 0.02,
+                                 "stroke over which the guide's friction builds up elastically; 0: "
+                                 "at once",
+                                 0.0, &S::guide_stroke));
+  fields.back().typical = 5e-4;
 }
 
 /// Gains of a controlled force between the masses, by the four states of a quarter car's linear

@@ -31,6 +31,7 @@ struct RigSpec {
   double unsprung_guide_friction = 0.0;  // N
   double guide_asymmetry = 0.0;          // friction (1 + a) upwards, (1 - a) downwards
   double guide_speed = 0.01;             // m/s, at which 76 % of the friction acts
+  double guide_stroke = 0.0;             // m, over which it builds up; 0: at once
   double moving_mass = 0.0;              // kg, moved by a stand between its load cell and the strut
   double deflection_feedback = 0.0;      // N/m, of the force between the masses by their states
   double sprung_velocity_feedback = 0.0;    // N s/m

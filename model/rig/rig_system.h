@@ -2,7 +2,8 @@
 //
 // State: the positions, then the velocities, of the rig's masses (two by RigCoordinate, one, or
 // none for strut_rig, whose inputs impose the motion); then, where effects give the strut states,
-// its lagged force, the force of its mount and the displacement of its joint.
+// its lagged force, the force of its mount and the displacements of its joint and of its friction;
+// then, where the guides' friction has a flank, its displacements by mass.
 //
 // A kink of a piecewise linear input is not an event: where the order of the integrator matters,
 // choose steps that end at the samples, or interpolate by a spline.
@@ -25,7 +26,8 @@ struct RigWorkspace {
   std::array<T, kRigCoordinates> guide_force;   // N, on the masses, upwards
   T actuator_force;                             // N, between the masses, pushes them apart
   std::array<T, kRigCoordinates> acceleration;  // m/s^2
-  std::array<T, kStatesPerStrut> strut_decay;   // 1/s
+  /// Of the states of the strut, then of the guides [1/s].
+  std::array<T, kStatesPerStrut + kRigCoordinates> stiff_decay;
 };
 
 /// Temperature at which a damper has its nominal rate [K].
@@ -34,7 +36,7 @@ inline constexpr double kReferenceTemperature = 293.15;
 template <class T>
 class RigSystem {
  public:
-  static constexpr int kCapacity = 2 * kRigCoordinates + kStatesPerStrut;
+  static constexpr int kCapacity = 3 * kRigCoordinates + kStatesPerStrut;
   using Mask = MaskOf<T>;
 
   /// `inputs` by assign_rig_inputs. Rig and signals must outlive the system.
@@ -46,10 +48,11 @@ class RigSystem {
 
   int size() const { return 2 * count_ + stiff_count(); }
   int stiff_at(int i) const { return 2 * count_ + i; }
-  int stiff_count() const { return rig_.effects.has_states() ? kStatesPerStrut : 0; }
+  int stiff_count() const { return strut_state_count() + (rig_.layout.has_flanks ? count_ : 0); }
 
   /// The initial state: at rest on the ground's first position, plus the initial offsets; the
-  /// states of a strut as after a long motion at its initial speed.
+  /// states of a strut as after a long motion at its initial speed; friction of guides with a flank
+  /// holds the masses where they are, as far as it can.
   std::array<T, kCapacity> make_start() {
     std::array<T, kCapacity> x;
     x.fill(T(0.0));
@@ -61,14 +64,18 @@ class RigSystem {
       x[at(count_ + i)] = rig_.numbers.initial_velocity[at(i)];
     }
     if (rig_.effects.has_states()) settle_strut(x.data());
+    if (rig_.layout.has_flanks) settle_guides(x.data());
     return x;
   }
 
   void calc_derivative(const T& t, const T* x, T* dx, T* decay) {
     update_inputs(t);
-    states_ = {};
-    if (rig_.effects.has_states()) {
-      states_ = {x + 2 * count_, dx + 2 * count_, ws_.strut_decay.data()};
+    states_ = flanks_ = {};
+    const int stiff = 2 * count_;
+    if (rig_.effects.has_states()) states_ = {x + stiff, dx + stiff, ws_.stiff_decay.data()};
+    if (rig_.layout.has_flanks) {
+      const int first = strut_state_count();
+      flanks_ = {x + stiff + first, dx + stiff + first, ws_.stiff_decay.data() + first};
     }
     failed_ = !is_finite(T(0.0));
     switch (rig_.layout.kind) {
@@ -94,7 +101,7 @@ class RigSystem {
       dx[count_ + i] = ws_.acceleration[at(i)];
       failed_ = failed_ | (!is_finite(dx[count_ + i])) | (abs(dx[i]) > T(kDivergenceSpeed));
     }
-    for (int i = 0; i < stiff_count(); ++i) decay[i] = ws_.strut_decay[at(i)];
+    for (int i = 0; i < stiff_count(); ++i) decay[i] = ws_.stiff_decay[at(i)];
   }
 
   /// The tire's lift-off and touch-down.
@@ -152,6 +159,8 @@ class RigSystem {
  private:
   static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+  int strut_state_count() const { return rig_.effects.has_states() ? kStatesPerStrut : 0; }
+
   /// A gain scales the motion of the ground; other inputs are as recorded.
   SignalPoint<T> read_first_input(const T& t) const {
     if (!inputs_[0]) return {0.0, 0.0, 0.0};
@@ -174,6 +183,23 @@ class RigSystem {
     const ShapedDamper<T>& damper = rig_.effects.series.element.front();
     x[2 * count_] = x[2 * count_ + 1] = damper.calc_rate(speed, calc_warming()) * speed;
     x[2 * count_ + 2] = calc_settled_joint(damper.series, speed);
+    if (damper.has_friction) {
+      x[2 * count_ + 3] = calc_settled_friction(damper.friction, speed);
+    }
+  }
+
+  void settle_guides(T* x) {
+    std::array<T, kCapacity> dx, decay;
+    calc_derivative(T(0.0), x, dx.data(), decay.data());
+    for (int i = 0; i < count_; ++i) {
+      const DryFriction<T>& friction = rig_.numbers.guide[at(i)];
+      const T pull = rig_.numbers.mass[at(i)] * ws_.acceleration[at(i)];
+      const T most = friction.force * calc_guide_side(pull);
+      const auto acts = most > T(0.0);
+      const T z = pull / select(acts, most, T(1.0));
+      x[2 * count_ + strut_state_count() + i] =
+          select(acts, friction.stroke * min(max(z, T(-1.0)), T(1.0)), T(0.0));
+    }
   }
 
   /// Speed of the strut [m/s], positive in compression, at state `x` and the rate of the input that
@@ -251,13 +277,25 @@ class RigSystem {
                           tire * (x[kUnsprung] - ws_.input[0].value) + unsprung * x[2 + kUnsprung];
   }
 
+  T calc_guide_side(const T& z) const {
+    const T& a = rig_.numbers.guide_asymmetry;
+    return select(z > T(0.0), T(1.0) + a, T(1.0) - a);
+  }
+
   /// Friction of a guide on the ground, against the velocity of its mass.
   void update_guide(int mass, const T& velocity) {
     ws_.guide_force[at(mass)] = T(0.0);
     if (!rig_.layout.has_guide) return;
-    const T& a = rig_.numbers.guide_asymmetry;
-    const T side = select(velocity > T(0.0), T(1.0) + a, T(1.0) - a);
-    ws_.guide_force[at(mass)] = side * rig_.numbers.guide[at(mass)].calc_force(-velocity);
+    const DryFriction<T>& friction = rig_.numbers.guide[at(mass)];
+    T force = friction.calc_force(velocity);
+    if (rig_.layout.has_flanks) {
+      FrictionState<T> flank{flanks_.value[mass], T(0.0), T(0.0)};
+      const T elastic = calc_elastic_friction(friction, velocity, flank);
+      flanks_.rate[mass] = flank.rate;
+      flanks_.decay[mass] = flank.decay;
+      force = select(friction.stroke > T(0.0), elastic, force);
+    }
+    ws_.guide_force[at(mass)] = -calc_guide_side(force) * force;
   }
 
   void observe_quarter_car(const T& t, const T* x, T* out) const {
@@ -321,7 +359,7 @@ class RigSystem {
   int count_;
   bool on_ground_;
   RigWorkspace<T> ws_{};
-  StrutStates<T> states_;
+  StrutStates<T> states_, flanks_;  // of the strut, of the guides' friction
   Mask failed_{};
 };
 

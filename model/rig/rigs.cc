@@ -121,7 +121,8 @@ RigParameters<double> make_rig_parameters(const RigSpec& given) {
                                p.tire.stiffness, p.tire.progression);
   }
   const double inverse_speed = 1.0 / spec.guide_speed;
-  p.guide = {{{spec.unsprung_guide_friction, inverse_speed}, {spec.guide_friction, inverse_speed}}};
+  p.guide = {{{spec.unsprung_guide_friction, inverse_speed, spec.guide_stroke},
+              {spec.guide_friction, inverse_speed, spec.guide_stroke}}};
   if (rig.masses.size() == 1) p.guide[0] = p.guide[1];
   p.guide_asymmetry = spec.guide_asymmetry;
   p.moving_mass = spec.moving_mass;
@@ -151,6 +152,7 @@ RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<doub
     layout.progressive_tire = layout.progressive_tire || numbers[i].tire.progression != 0.0;
     layout.has_guide =
         layout.has_guide || numbers[i].guide[0].force != 0.0 || numbers[i].guide[1].force != 0.0;
+    layout.has_flanks = layout.has_flanks || (layout.has_guide && specs[i]->guide_stroke > 0.0);
     const auto& feedback = numbers[i].feedback;
     layout.has_feedback =
         layout.has_feedback || std::any_of(feedback.begin(), feedback.end(), is_on);

@@ -12,11 +12,12 @@
 //   strut_rig    F = F_s + m_m a at the given displacement, its rate and second rate a
 //   guided_mass  m a = F + F_s + F_g - m g
 //
-//   F_g = -f (1 + A sgn v) tanh(v / v_f),   F_a = u + g_d (z_s - z_u) + g_s v_s + g_t (z_u - z_r)
+//   F_g = -f (1 + A sgn z) z, z = tanh(v / v_f),   F_a = u + g_d (z_s - z_u) + g_s v_s + g_t (z_u - z_r)
 //                                               + g_u v_u
 //
 // F_s: sum of the strut's elements, F_t: tire, F: applied force, F_g: friction of the guide on a
-// mass (f: guide_friction or unsprung_guide_friction, A: guide_asymmetry, v_f: guide_speed), F_a:
+// mass (f: guide_friction or unsprung_guide_friction, A: guide_asymmetry, v_f: guide_speed; with a
+// guide_stroke z is that of calc_elastic_friction), F_a:
 // actuator force (u: as recorded, g: the gains of the feedback), m_m: moving_mass. The strut of the
 // guided mass stands on the base, whose position is an input.
 #pragma once
@@ -64,6 +65,7 @@ struct RigLayout {
   unsigned strut_effects = 0;  // StrutEffectBits
   bool progressive_tire = false;
   bool has_guide = false;     // with friction
+  bool has_flanks = false;    // of the guides' friction
   bool has_feedback = false;  // of the force between the masses
   std::shared_ptr<const DamperCurve> damper_curve{};
 };

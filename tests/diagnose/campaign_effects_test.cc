@@ -78,7 +78,7 @@ TEST_CASE("An effect known to be present is fitted by the baseline", "[reference
     }
   }
   CHECK(std::count_if(found.unknowns.begin(), found.unknowns.end(),
-                      [](const Unknown& u) { return u.name.starts_with("strut_friction"); }) == 2);
+                      [](const Unknown& u) { return u.name.starts_with("strut_friction"); }) == 3);
   CHECK_FALSE(is_listed(data, "strut_friction"));
 }
 

@@ -246,7 +246,7 @@ TEST_CASE("A size at the limit of its range is not plausible", "[unit]") {
   CHECK(is_possible("damper_asymmetry", {-0.89}));
   CHECK_FALSE(is_possible("damper_hysteresis", {0.05}));
   CHECK(is_possible("damper_hysteresis", {0.0}));
-  CHECK(is_possible("strut_friction", {0.01, 1e-3}));  // small beside a range up to 20 kN
+  CHECK(is_possible("strut_friction", {0.01, 1e-3, 0.0}));  // small beside a range up to 20 kN
 }
 
 double get_fitted(const Selection& selection, const std::string& name) {

@@ -62,7 +62,7 @@ TEST_CASE("Each corner of a car has the force law of its effects", "[unit][refer
     const State<double> x = make_state(seed);
     const auto plain = calc_struts(make_case(), x);
     const auto bent = calc_struts(make_case({{"damper_asymmetry", "rear", {side}},
-                                             {"strut_friction", "front_left", {90.0, 0.03}},
+                                             {"strut_friction", "front_left", {90.0, 0.03, 0.0}},
                                              {"bump_stop", "front", {6e4, 0.01, 40.0}},
                                              {"progressive_spring", "rear_right", {70.0}},
                                              {"gas_force", "front_right", {210.0}}}),
@@ -313,7 +313,7 @@ EffectSettings make_many() {
           {"damper_blow_off", "rear", {0.5, 0.3}},
           {"damper_hysteresis", "front", {3e-3}},
           {"top_mount_compliance", "rear_left", {2e-6, 2e-3}},
-          {"strut_friction", "front", {40.0, 0.05}},
+          {"strut_friction", "front", {40.0, 0.05, 0.0}},
           {"progressive_spring", "rear", {60.0}},
           {"bump_stop", "front", {4e4, 0.03, 50.0}},
           {"anti_roll_bar", "front", {12000.0}},
@@ -373,7 +373,7 @@ EffectSettings mirror(EffectSettings effects) {
 
 TEST_CASE("Effects of the left are those of the right in the mirror", "[unit][property][effects]") {
   const EffectSettings effects = {{"damper_asymmetry", "front_left", {0.3}},
-                                  {"strut_friction", "rear_right", {50.0, 0.03}},
+                                  {"strut_friction", "rear_right", {50.0, 0.03, 0.0}},
                                   {"bump_stop", "front_right", {4e4, 0.01, 50.0}},
                                   {"damper_hysteresis", "rear_left", {4e-3}},
                                   {"anti_roll_bar", "front", {10000.0}}};

@@ -50,7 +50,7 @@ std::vector<Law> list_laws() {
        [=](double d, double v, double warm) {
          return k * d + c * std::pow(0.99004983374916805, warm) * v;
        }},
-      {{{"strut_friction", "", {60.0, 0.02}}},
+      {{{"strut_friction", "", {60.0, 0.02, 0.0}}},
        [=](double d, double v, double) { return k * d + c * v + 60.0 * std::tanh(v / 0.02); }},
       {{{"progressive_spring", "", {200.0}}},
        [=](double d, double v, double) { return k * d + k * 200.0 * d * d * d + c * v; }},
@@ -196,7 +196,7 @@ TEST_CASE("Dry friction is behind a worn joint, but acts on while a damper loses
                                         Interpolation::kLinear);
   const auto run = [&](const EffectSettings& stroke) {
     EffectSettings effects = stroke;
-    effects.push_back({"strut_friction", "", {friction, slow}});
+    effects.push_back({"strut_friction", "", {friction, slow, 0.0}});
     return simulate_rig(make_rig(RigKind::kStrutRig, effects), {input}, make_steps(1e-5),
                         make_plan(0.3, 5e-4));
   };
@@ -327,7 +327,7 @@ TEST_CASE("A quarter car with many effects moves as one written anew", "[unit][r
                                   {"damper_blow_off", "", {0.5, 0.2}},
                                   {"damper_hysteresis", "", {2e-3}},
                                   {"top_mount_compliance", "", {1.5e-6, 2e-3}},
-                                  {"strut_friction", "", {40.0, 0.02}},
+                                  {"strut_friction", "", {40.0, 0.02, 0.0}},
                                   {"progressive_spring", "", {60.0}},
                                   {"bump_stop", "", {5e4, 0.03, 50.0}},
                                   {"payload", "", {45.0}},
@@ -373,7 +373,7 @@ TEST_CASE("Springs and stops give back what they take", "[unit][property][rigs]"
 }
 
 TEST_CASE("Dampers and friction only take energy", "[unit][property][rigs]") {
-  const EffectSetting effect = GENERATE(EffectSetting{"strut_friction", "", {80.0, 0.01}},
+  const EffectSetting effect = GENERATE(EffectSetting{"strut_friction", "", {80.0, 0.01, 0.0}},
                                         EffectSetting{"damper_asymmetry", "", {0.6}},
                                         EffectSetting{"damper_blow_off", "", {0.9, 0.1}},
                                         EffectSetting{"damper_fade", "", {0.5}});

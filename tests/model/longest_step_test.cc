@@ -71,7 +71,9 @@ TEST_CASE("The longest step resolves lost strokes, stiff friction and stops", "[
       {RigKind::kStrutRig, {{"joint_play", "", {3e-4}}}, StrutRigChannel::kForce},
       {RigKind::kStrutRig, {{"damper_leak", "", {5e-3}}}, StrutRigChannel::kForce},
       {RigKind::kQuarterCar, {{"damper_leak", "", {1e-4}}}, Quarter::kSprungAcceleration},
-      {RigKind::kQuarterCar, {{"strut_friction", "", {1.0, 0.001}}}, Quarter::kSprungAcceleration},
+      {RigKind::kQuarterCar,
+       {{"strut_friction", "", {1.0, 0.001, 0.0}}},
+       Quarter::kSprungAcceleration},
       {RigKind::kQuarterCar,
        {{"bump_stop", "", {5e4, 0.0015, 50.0}}},
        Quarter::kSprungAcceleration}};
@@ -115,11 +117,12 @@ TEST_CASE("Fine steps are taken only where a joint crosses its play", "[referenc
 TEST_CASE("Plain models and soft effects need no step of their own", "[unit]") {
   CHECK(std::isinf(calc_longest_step(make_rig(RigKind::kStrutRig, {}))));
   // Nothing moves by the forces of a strut on a stand.
-  CHECK(std::isinf(
-      calc_longest_step(make_rig(RigKind::kStrutRig, {{"strut_friction", "", {100.0, 0.001}}}))));
+  CHECK(std::isinf(calc_longest_step(
+      make_rig(RigKind::kStrutRig, {{"strut_friction", "", {100.0, 0.001, 0.0}}}))));
   Case car = test::make_paper_case();
   CHECK(std::isinf(calc_longest_step(car)));
-  car.vehicle.effects = {{"strut_friction", "front", {50.0, 0.01}}, {"joint_play", "rear", {0.01}}};
+  car.vehicle.effects = {{"strut_friction", "front", {50.0, 0.01, 0.0}},
+                         {"joint_play", "rear", {0.01}}};
   CHECK(calc_longest_step(car) > kDefaultStep);
   car.vehicle.effects = {{"joint_play", "rear_left", {1e-4}}};
   CHECK(calc_longest_step(car) == Approx(1.2 / std::hypot(1e3, 5e3)));

@@ -359,7 +359,7 @@ TEST_CASE("A step allocates nothing", "[unit][property]") {
   const bool with_history = GENERATE(false, true);
   if (with_history) {
     c.vehicle.effects = {{"damper_hysteresis", "rear", {2e-3}},
-                         {"strut_friction", "front", {30.0, 0.02}},
+                         {"strut_friction", "front", {30.0, 0.02, 0.0}},
                          {"wheel_runout", "front_left", {1e-4, 0.0}}};
   }
   const IntegrateOptions options = make_options(stepper, 1e-3, closure);
