@@ -52,7 +52,8 @@ double calc_guide_step(const RigSpec& rig) {
   const double inverse_speed = 1.0 / rig.guide_speed;
   return std::min(
       calc_friction_step({rig.guide_friction, inverse_speed, rig.guide_stroke}, rig.sprung_mass),
-      calc_friction_step({rig.unsprung_guide_friction, inverse_speed, rig.guide_stroke}, rig.unsprung_mass));
+      calc_friction_step({rig.unsprung_guide_friction, inverse_speed, rig.guide_stroke},
+                         rig.unsprung_mass));
 }
 
 StrutEffectNumbers<double> make_numbers(const RigSpec& rig) {

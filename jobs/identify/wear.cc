@@ -60,6 +60,8 @@ std::vector<WearScale> read_scales(const Arguments& arguments, const fs::path& v
 
 /// A number with its half width; "-" where it is unknown.
 std::string format_interval(double value, double half_width) {
+  constexpr double kShown = 0.005;
+  if (std::abs(value) < kShown) value = 0.0;  // not "-0.00"
   if (!std::isfinite(value)) return fmt::format("{:>9}{:>9}", "-", "-");
   if (!std::isfinite(half_width)) return fmt::format("{:>9.2f}{:>9}", value, "-");
   return fmt::format("{:>9.2f}{:>9.2f}", value, half_width);

@@ -12,7 +12,8 @@
 //   strut_rig    F = F_s + m_m a at the given displacement, its rate and second rate a
 //   guided_mass  m a = F + F_s + F_g - m g
 //
-//   F_g = -f (1 + A sgn z) z, z = tanh(v / v_f),   F_a = u + g_d (z_s - z_u) + g_s v_s + g_t (z_u - z_r)
+//   F_g = -f (1 + A sgn z) z, z = tanh(v / v_f),   F_a = u + g_d (z_s - z_u) + g_s v_s + g_t (z_u -
+//   z_r)
 //                                               + g_u v_u
 //
 // F_s: sum of the strut's elements, F_t: tire, F: applied force, F_g: friction of the guide on a

@@ -80,7 +80,7 @@ TEST_CASE("The fit of an effect converges from far starts, or says that it has n
   const FrictionSearch search;
   for (const double force : {3.0, 40.0, 1500.0}) {
     INFO(force);
-    const HypothesisFit fit = search.bench.fit(search.friction, {force, 0.03});
+    const HypothesisFit fit = search.bench.fit(search.friction, {force, 0.03, 0.0});
     REQUIRE(fit.failure.empty());
     CHECK(fit.converged);
     CHECK(fit.distance <= 0.1);
@@ -89,14 +89,14 @@ TEST_CASE("The fit of an effect converges from far starts, or says that it has n
     CHECK(std::abs(found - kFriction) < tolerance(4.0 * fit.sigma[0]));
     CHECK(fit.sigma[0] < 1.5);
   }
-  const HypothesisFit one_step = search.bench.fit(search.friction, {3.0, 0.03}, {1, 0.1});
+  const HypothesisFit one_step = search.bench.fit(search.friction, {3.0, 0.03, 0.0}, {1, 0.1});
   CHECK_FALSE(one_step.converged);
   CHECK(one_step.distance > 0.1);
 }
 
 TEST_CASE("A fit that goes on from values ends where one search does", "[unit]") {
   const FrictionSearch search;
-  const std::vector<double> start = {40.0, 0.02};
+  const std::vector<double> start = {40.0, 0.02, 0.0};
   const HypothesisFit whole = search.bench.fit(search.friction, start);
   const HypothesisFit first = search.bench.fit(search.friction, start, {2, 0.1});
   const HypothesisFit rest = search.bench.fit(search.friction, start, {60, 0.1}, first.values);

@@ -48,9 +48,10 @@ TEST_CASE("A car's effect from its file and by a setting give one run", "[io][ef
 TEST_CASE("A rig's effect from its file and by a setting give one run", "[io][effects]") {
   const test::TemporaryFolder folder;
   const std::string plain = kExamples / "rigs/quarter_car.toml";
-  const std::string extended = folder.write(
-      "rig.toml", replace_effects(test::read_text(plain), {{"strut_friction", "", {1.0, 0.01, 0.0}}},
-                                  get_rig_info(RigKind::kQuarterCar)));
+  const std::string extended =
+      folder.write("rig.toml", replace_effects(test::read_text(plain),
+                                               {{"strut_friction", "", {1.0, 0.01, 0.0}}},
+                                               get_rig_info(RigKind::kQuarterCar)));
   const std::string maneuver = kExamples / "rigs/maneuvers/bump.toml";
   const auto simulate = [&](const std::string& rig, const std::string& more) {
     const std::string file = folder / "run.csv";
