@@ -94,6 +94,14 @@ def check_sizes(verdict):
         check(found and low <= found[0] <= high, f"{effect} {parameter} between {low} and {high}: {found}")
 
 
+def check_lost_motion(verdict):
+    low, high = recording["lost_motion"]
+    found = {c["effect"]: c["parameters"] for c in verdict["causes"]}
+    lost = found["joint_play"]["play"]["value"] + 2 * found["strut_friction"]["stroke"]["value"]
+    print(f"play and both flanks: {1e3 * lost:.2f} mm")
+    check(low <= lost <= high, f"play and both flanks between {low} and {high} m")
+
+
 if not all((data / file).is_file() for file in recording["files"].values()):
     print(f"skipped: no recordings in {data} (set STRUT_MEASURED)")
     sys.exit(77)
@@ -106,3 +114,5 @@ if "of_static_law" in recording:
     check_static_law(verdict)
 check_errors(verdict)
 check_sizes(verdict)
+if "lost_motion" in recording:
+    check_lost_motion(verdict)
