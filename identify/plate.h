@@ -84,7 +84,8 @@ inline constexpr std::size_t kPlateParameters = 6;
 /// Fits masses, rates and dampings of the quarter car in `rig` to the contact force, driven by the
 /// plate; the static load carries no unknown offset. `noise` [N] weights the readings. Throws
 /// InputError.
-FitResult fit_plate(const PlateRecord& record, const RigSpec& rig, double noise, int threads);
+FitResult fit_plate(const PlateRecord& record, const RigSpec& rig, double static_load, double noise,
+                    int threads);
 
 /// Resonances at a result of fit_plate, by linear propagation of its widened covariance.
 PhaseBand calc_phase_band(const FitResult& fit);

@@ -76,7 +76,8 @@ PlateFigure calc_lehr(const FitResult& fit, const std::vector<Fitted>& springs, 
 
 }  // namespace
 
-FitResult fit_plate(const PlateRecord& record, const RigSpec& rig, double noise, int threads) {
+FitResult fit_plate(const PlateRecord& record, const RigSpec& rig, double static_load, double noise,
+                    int threads) {
   MeasuredRun run{record.name, RigCase{rig, {}}, record.times, {}};
   const RigInfo& info = get_rig_info(RigKind::kQuarterCar);
   STRUT_CHECK(rig.kind == RigKind::kQuarterCar, "fit_plate: the rig must be a quarter car");
@@ -89,7 +90,7 @@ FitResult fit_plate(const PlateRecord& record, const RigSpec& rig, double noise,
   const std::vector<MeasuredRun> runs = {run};
   FitOptions options;
   options.linearize.threads = threads;
-  return fit_simulation(runs, make_unknowns(runs, calc_static_load(record)), options);
+  return fit_simulation(runs, make_unknowns(runs, static_load), options);
 }
 
 PhaseBand calc_phase_band(const FitResult& fit) {

@@ -31,6 +31,9 @@ std::vector<WearScale> make_wear_scales(const Case& fresh, const std::vector<std
 /// with the nearest one, and for a limit outside of (0, 100) %.
 void set_wear_limit(std::vector<WearScale>& scales, const std::string& name, double limit);
 
+/// Least probability of wear beyond a limit, and of none, that is reported.
+inline constexpr double kLeastBeyond = 1e-3;
+
 /// Measures the wear of the row's parameters on the scales of their names:
 ///
 ///   wear = 100 (1 - value / fresh), half width 100 h / fresh,
@@ -42,7 +45,6 @@ void set_wear_limit(std::vector<WearScale>& scales, const std::string& name, dou
 /// network as the normal distribution with the same 95 % interval. Its tails are not known beyond
 /// kLeastBeyond, which bounds the probability and its complement. A parameter that is not in range
 /// has neither interval nor probability.
-inline constexpr double kLeastBeyond = 1e-3;
 void add_wear(IdentifiedRow& row, const std::vector<WearScale>& scales);
 
 /// Sets the change of wear since `before`, a measurement of the same car by the same method, both

@@ -398,7 +398,8 @@ std::vector<PossibleSwap> compare_swapped(const std::vector<MeasuredRun>& runs,
                                           const std::vector<PreparedChannel>& channels,
                                           const std::vector<Simulated>& all, double max_lag) {
   std::vector<PossibleSwap> swaps;
-  // What two channels must share: the quantity of a corner or, on a rig, the unit.
+  // Channels of a rig can be swapped if they have the same unit, those of a car if they measure the
+  // same quantity at different corners.
   const auto get_quantity = [&](const PreparedChannel& c) {
     const ModelInfo& info = runs[c.run].setup.info();
     const ChannelInfo& channel = info.channels[static_cast<std::size_t>(c.number)];

@@ -238,8 +238,7 @@ void add_strangers(const std::vector<MeasuredRun>& runs, const Alignment& alignm
     findings.push_back(
         {FindingKind::kStranger, "", get_info(runs, channel).name, most,
          fmt::format("resembles nothing that the model does (correlation {:.2f})", most),
-         "another column or run, far start values, or a clock that is off by more than "
-         "0.3 s?"});
+         "another column or run, far start values, or a clock that is off by more than 0.3 s?"});
   }
 }
 

@@ -55,7 +55,8 @@ std::vector<std::string_view> split_at_blanks(std::string_view line) {
   return cells;
 }
 
-/// What counts as a row: most of its cells that are not missing are numbers or clock times, or any.
+/// A line is a row if most (kMost) or at least one (kAny) of its cells are numbers or clock times;
+/// missing cells do not count.
 enum class RowRule { kMost, kAny };
 
 bool is_row(const std::vector<std::string_view>& cells, char decimal, RowRule rule) {

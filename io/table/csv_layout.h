@@ -39,11 +39,11 @@ std::vector<std::string_view> split_cells(std::string_view line, char separator)
 
 /// Finds the layout of the table that begins with `lines`, none of them empty or a comment: the
 /// separator and decimal sign with which most lines are rows of numbers, clock times and missing
-/// samples of one length; where fewer than half from
-/// the first row on are, a row need only have one number besides other
-/// text. The names are in the line above the first row, or above a line of units up to two lines
-/// higher; a line that numbers the columns is none of them, and is the names where there are no
-/// others. Lines without any such row are a line of names, separated by commas, and what follows.
+/// samples of one length. Where fewer than half of the lines from the first row on are, a row need
+/// only have one number besides other text. The names are in the line above the first row, or above
+/// a line of units up to two lines higher. A line that numbers the columns is not a row; it is the
+/// line of names where there is no other. Lines without any such row are a line of names, separated
+/// by commas, and what follows.
 CsvLayout find_csv_layout(const std::vector<NumberedLine>& lines);
 
 }  // namespace strut

@@ -34,8 +34,8 @@ bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
 }
 
-/// What the cells of a column are: numbers or clock times, as the first one shows, or clock times
-/// without colons.
+/// kAny: the first cell decides whether the column holds numbers or clock times; kCompactClock:
+/// clock times without colons.
 enum class CellKind { kAny, kCompactClock };
 
 /// Makes times since 1970, which may count milliseconds to nanoseconds, seconds since the first

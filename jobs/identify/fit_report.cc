@@ -23,15 +23,10 @@ Json make_nuisances_json(const FitResult& fit, const std::vector<MeasuredRun>& r
   Json list = Json::array();
   for (std::size_t i = first; i < fit.unknowns.size(); ++i) {
     const IdentifiedParameter p = make_estimate(fit, i);
-    Json bounds = Json::array();
-    bounds.push_back(p.low());
-    bounds.push_back(p.high());
     Json json = Json::object();
     json["file"] = get_run_name(fit, runs, i);
     json["name"] = p.name;
-    json["value"] = p.value;
-    json["ci95"] = bounds;
-    json["unit"] = p.unit;
+    add_estimate_json(p, json);
     list.push_back(json);
   }
   return list;

@@ -61,13 +61,8 @@ Json make_bench_json(const std::vector<NamedFigure>& figures, const PlateFigures
   Json json = Json::object();
   for (const NamedFigure& f : figures) {
     const IdentifiedParameter p = make_parameter_of(f);
-    Json bounds = Json::array();
-    bounds.push_back(p.low());
-    bounds.push_back(p.high());
     Json one = Json::object();
-    one["value"] = p.value;
-    one["ci95"] = bounds;
-    one["unit"] = p.unit;
+    add_estimate_json(p, one);
     one["frequency"] = f.figure.frequency;
     json[f.name] = one;
   }
@@ -121,7 +116,7 @@ int identify_by_plate(const Arguments& arguments, const fs::path& path,
   const double noise = std::max(calc_plate_noise(responses), 1e-6 * load);
   const FitResult fit = [&] {
     const ProgressLine line("fitting the simulation to the plate");
-    return fit_plate(record, rig, noise, threads);
+    return fit_plate(record, rig, load, noise, threads);
   }();
   const PlateFigures bench = calc_plate_figures(responses, load, calc_phase_band(fit), record.name);
   IdentifiedRow row;

@@ -49,13 +49,8 @@ std::string format_width(const IdentifiedParameter& p) {
 Json make_row_json(const IdentifiedRow& row) {
   Json parameters = Json::object();
   for (const IdentifiedParameter& p : row.parameters) {
-    Json bounds = Json::array();
-    bounds.push_back(p.low());
-    bounds.push_back(p.high());
     Json values = Json::object();
-    values["value"] = p.value;
-    values["ci95"] = bounds;
-    values["unit"] = p.unit;
+    add_estimate_json(p, values);
     values["in_range"] = p.in_range;
     add_wear_json(p, values);
     parameters[p.name] = values;
@@ -145,6 +140,19 @@ void report_out_of_range(const std::vector<IdentifiedRow>& rows) {
 }
 
 }  // namespace
+
+Json make_interval_json(double value, double half_width) {
+  Json bounds = Json::array();
+  bounds.push_back(value - half_width);
+  bounds.push_back(value + half_width);
+  return bounds;
+}
+
+void add_estimate_json(const IdentifiedParameter& parameter, Json& values) {
+  values["value"] = parameter.value;
+  values["ci95"] = make_interval_json(parameter.value, parameter.half_width);
+  values["unit"] = parameter.unit;
+}
 
 Json make_identified_json(const std::vector<IdentifiedRow>& rows) {
   if (rows.size() == 1) return make_row_json(rows.front());

@@ -10,6 +10,12 @@
 
 namespace strut {
 
+/// [value - half_width, value + half_width]
+Json make_interval_json(double value, double half_width);
+
+/// Adds "value", "ci95" and "unit".
+void add_estimate_json(const IdentifiedParameter& parameter, Json& values);
+
 /// One row: {"parameters": {NAME: {"value":, "ci95": [low, high], "unit":, "in_range":, and those
 /// of add_wear_json}}, "in_range":, "outside": [{"channel":, ...}]}. Several: {"rows": [the same
 /// with "place"], "in_range": true if all are}. Unknown numbers are null.

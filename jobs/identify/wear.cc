@@ -12,6 +12,7 @@
 #include "base/text/parse_number.h"
 #include "identify/wear.h"
 #include "jobs/cli/settings.h"
+#include "jobs/identify/result.h"
 #include "model_files/read_vehicle.h"
 
 namespace strut {
@@ -113,11 +114,8 @@ std::vector<IdentifiedRow> add_wear_by_options(const Arguments& arguments, const
 
 void add_wear_json(const IdentifiedParameter& parameter, Json& values) {
   const auto add_interval = [&](const std::string& name, double value, double half_width) {
-    Json bounds = Json::array();
-    bounds.push_back(value - half_width);
-    bounds.push_back(value + half_width);
     values[name + "_percent"] = value;
-    values[name + "_ci95"] = bounds;
+    values[name + "_ci95"] = make_interval_json(value, half_width);
   };
   if (!parameter.wear) return;
   const Wear& wear = *parameter.wear;

@@ -101,6 +101,17 @@ T calc_elastic_friction(const DryFriction<T>& friction, const T& speed, Friction
   return friction.force * z;
 }
 
+/// calc_elastic_friction at `speed` in lanes with a flank, elsewhere calc_force at `rigid_speed`;
+/// leaves `state` as it is where no lane has a flank.
+template <class T>
+T calc_friction(const DryFriction<T>& friction, const T& rigid_speed, const T& speed,
+                FrictionState<T>& state) {
+  const T rigid = friction.calc_force(rigid_speed);
+  const auto has_flank = friction.stroke > T(0.0);
+  if (!any(has_flank)) return rigid;
+  return select(has_flank, calc_elastic_friction(friction, speed, state), rigid);
+}
+
 /// State s of a flank after a long motion at constant speed [m].
 template <class T>
 T calc_settled_friction(const DryFriction<T>& friction, const T& speed) {
@@ -268,13 +279,11 @@ void add_shaped_dampers(const ElementList<ShapedDamper<T>>& list,
       states.decay[2 * Corners + c] = s.joint_decay;
     }
     if (damper.has_friction) {
+      const T rubbing = select(damper.series.joint_play > T(0.0), speed, -rate);
       FrictionState<T> flank{states.value[3 * Corners + c], T(0.0), T(0.0)};
-      const T elastic = calc_elastic_friction(damper.friction, -rate, flank);
+      force += calc_friction(damper.friction, rubbing, -rate, flank);
       states.rate[3 * Corners + c] = flank.rate;
       states.decay[3 * Corners + c] = flank.decay;
-      const T rubbing = select(damper.series.joint_play > T(0.0), speed, -rate);
-      force +=
-          select(damper.friction.stroke > T(0.0), elastic, damper.friction.calc_force(rubbing));
     }
     out[corner].damper_force += force;
     out[corner].generalized += force * motion[corner].length_q[kDamperLine];

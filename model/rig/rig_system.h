@@ -26,7 +26,7 @@ struct RigWorkspace {
   std::array<T, kRigCoordinates> guide_force;   // N, on the masses, upwards
   T actuator_force;                             // N, between the masses, pushes them apart
   std::array<T, kRigCoordinates> acceleration;  // m/s^2
-  /// Of the states of the strut, then of the guides [1/s].
+  /// Decay rates [1/s] of the strut's states, followed by those of the guides' states.
   std::array<T, kStatesPerStrut + kRigCoordinates> stiff_decay;
 };
 
@@ -287,13 +287,12 @@ class RigSystem {
     ws_.guide_force[at(mass)] = T(0.0);
     if (!rig_.layout.has_guide) return;
     const DryFriction<T>& friction = rig_.numbers.guide[at(mass)];
-    T force = friction.calc_force(velocity);
+    FrictionState<T> flank{T(0.0), T(0.0), T(0.0)};
+    if (rig_.layout.has_flanks) flank.value = flanks_.value[mass];
+    const T force = calc_friction(friction, velocity, velocity, flank);
     if (rig_.layout.has_flanks) {
-      FrictionState<T> flank{flanks_.value[mass], T(0.0), T(0.0)};
-      const T elastic = calc_elastic_friction(friction, velocity, flank);
       flanks_.rate[mass] = flank.rate;
       flanks_.decay[mass] = flank.decay;
-      force = select(friction.stroke > T(0.0), elastic, force);
     }
     ws_.guide_force[at(mass)] = -calc_guide_side(force) * force;
   }

@@ -109,25 +109,22 @@ TEST_CASE("identify refuses wrong questions about wear", "[io]") {
       {" --nuisance payload=75,75", "payload"},
       {" --nuisance body_payload_mass=75", "NAME=MEAN,SIGMA"},
   };
-  for (const auto& [options, message] : cases) {
-    const test::Outcome outcome = run_program(identify(good + options));
-    CAPTURE(options);
-    CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains(message));
-  }
-  const std::string file = simulate(folder, "new.csv", "");
+  const auto check_refused = [](const std::string& file, const auto& questions) {
+    for (const auto& [options, message] : questions) {
+      const test::Outcome outcome = run_program(identify(file + options));
+      CAPTURE(options);
+      CHECK(outcome.code == 2);
+      CHECK_THAT(outcome.messages, Contains(message));
+    }
+  };
+  check_refused(good, cases);
   const std::pair<std::string, std::string> limits[] = {
       {" --limit 120", "--limit: 120: must be above 0 and below 100"},
       {" --limit rear_dampin=20", "did you mean 'rear_damping'"},
       {" --limit much", "must be PERCENT"},
       {" --free yaw_inertia --limit 20", "no identified parameter"},
   };
-  for (const auto& [options, message] : limits) {
-    const test::Outcome outcome = run_program(identify(file + options));
-    CAPTURE(options);
-    CHECK(outcome.code == 2);
-    CHECK_THAT(outcome.messages, Contains(message));
-  }
+  check_refused(simulate(folder, "new.csv", ""), limits);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "base/math/xsimd_backend.h"
 #include "model/effects/catalogue.h"
 #include "model/rig/rig_system.h"
+#include "tests/support/midpoint.h"
 #include "tests/support/test_car.h"
 #include "tests/support/test_rig.h"
 #include "tests/support/test_run.h"
@@ -309,16 +310,7 @@ std::array<double, 2> integrate_anew(double duration, const InputSignal& road) {
     const double tire = kt * y + kt * q * y * std::fabs(y) + ct * (1.02 * z.rate - x[2]);
     return {x[2], x[3], (tire - strut) / mu - g, strut / ms - g, (law - x[4]) / tau, mount_rate};
   };
-  const double h = 1e-5;
-  State x{};
-  const auto add = [](State a, double scale, const State& b) {
-    for (std::size_t i = 0; i < a.size(); ++i) a[i] += scale * b[i];
-    return a;
-  };
-  for (long i = 0, steps = std::lround(duration / h); i < steps; ++i) {
-    const double t = h * static_cast<double>(i);
-    x = add(x, h, f(t + 0.5 * h, add(x, 0.5 * h, f(t, x))));
-  }
+  const State x = test::integrate_by_midpoint<State>(duration, 1e-5, f);
   return {x[0], x[1]};
 }
 
