@@ -24,14 +24,16 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Interpolates the readings of the sensors of every channel of a car at the run's times.
+/// Interpolates the readings of the sensors of `channels` of a car at the run's times.
 void read_history(const LaneRun& simulated, const EffectSettings& effects,
                   const std::vector<double>& times, double hit_time, double step,
-                  RunCurves& curves) {
-  curves.channel.assign(CarChannel::kCount, std::vector<double>(times.size(), kNan));
-  for (std::size_t c = 0; c < curves.channel.size(); ++c) {
-    const std::vector<double> series = read_sensor(effects, list_car_channels()[c].name, step,
-                                                   simulated.get_series(static_cast<int>(c)));
+                  const std::vector<int>& channels, RunCurves& curves) {
+  curves.channel.resize(CarChannel::kCount);
+  for (const int channel : channels) {
+    const auto c = static_cast<std::size_t>(channel);
+    curves.channel[c].assign(times.size(), kNan);
+    const std::vector<double> series =
+        read_sensor(effects, list_car_channels()[c].name, step, simulated.get_series(channel));
     for (std::size_t t = 0; t < times.size(); ++t) {
       const double at = (times[t] + hit_time) / step, index = std::floor(at);
       if (index < static_cast<double>(kCurveMargin)) continue;
@@ -54,46 +56,80 @@ Case make_case(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
   return c;
 }
 
-RunCurves simulate_crossing(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
-                            const std::vector<double>& values) {
-  RunCurves curves;
-  const double hit_time = get_hit_time(unknowns, values, 0);
+using Points = std::vector<std::vector<double>>;
+
+std::vector<RunCurves> simulate_crossings(const MeasuredRun& run,
+                                          const std::vector<Unknown>& unknowns,
+                                          const Points& points, const std::vector<int>& channels) {
   const LinearizeOptions options;
   SamplePlan plan;
   plan.interval = 1.0 / options.rate;
   plan.snapshot = false;
-  try {
-    CasePreparer preparer;
-    const Case c = make_case(run, unknowns, values, hit_time);
-    const std::vector<PreparedCase> cases = {preparer.prepare(c)};
-    const LaneRun simulated = run_prepared(cases, options.integrate, plan).front();
-    if (simulated.status() != RunStatus::kDone) {
-      curves.failure =
-          fmt::format("{}: the simulation fails: {}", run.name, get_name(simulated.status()));
-      return curves;
+  plan.recorded = channels;
+  std::vector<RunCurves> curves(points.size());
+  std::vector<PreparedCase> cases;
+  std::vector<std::size_t> prepared;  // points of the cases
+  std::vector<EffectSettings> effects;
+  CasePreparer preparer;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const Case c = make_case(run, unknowns, points[p], get_hit_time(unknowns, points[p], 0));
+    try {
+      cases.push_back(preparer.prepare(c));
+    } catch (const ModelError& e) {
+      curves[p].failure = fmt::format("{}: {}", run.name, e.what());
+      continue;
     }
-    read_history(simulated, c.vehicle.effects, run.times, hit_time, plan.interval, curves);
-  } catch (const ModelError& e) {
-    curves.failure = fmt::format("{}: {}", run.name, e.what());
+    prepared.push_back(p);
+    effects.push_back(c.vehicle.effects);
+  }
+  const std::vector<LaneRun> simulated = run_prepared(cases, options.integrate, plan);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    RunCurves& at = curves[prepared[i]];
+    if (simulated[i].status() != RunStatus::kDone) {
+      at.failure =
+          fmt::format("{}: the simulation fails: {}", run.name, get_name(simulated[i].status()));
+      continue;
+    }
+    read_history(simulated[i], effects[i], run.times,
+                 get_hit_time(unknowns, points[prepared[i]], 0), plan.interval, channels, at);
   }
   return curves;
 }
 
-RunCurves simulate_driven(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
-                          const std::vector<double>& values) {
-  const DrivenTask task(run, 0, unknowns, values, {});
-  if (!task.failure.empty()) throw InputError(task.failure);
-  RunCurves curves;
-  std::vector<int> channels(run.setup.info().channels.size());
-  std::iota(channels.begin(), channels.end(), 0);
-  simulate_tasks({task}, channels, 1, [&](std::size_t, const DrivenResult& result) {
-    curves.failure = result.failure();
-    if (!curves.failure.empty()) return;
-    curves.channel.assign(channels.size(), std::vector<double>(run.times.size()));
+std::vector<RunCurves> simulate_driven(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                                       const Points& points, const std::vector<int>& channels) {
+  std::vector<DrivenTask> tasks;
+  for (const std::vector<double>& values : points) {
+    tasks.emplace_back(run, 0, unknowns, values, LinearizeOptions{});
+    if (!tasks.back().failure.empty()) throw InputError(tasks.back().failure);
+  }
+  std::vector<RunCurves> curves(points.size());
+  simulate_tasks(tasks, channels, 1, [&](std::size_t p, const DrivenResult& result) {
+    curves[p].failure = result.failure();
+    if (!curves[p].failure.empty()) return;
+    curves[p].channel.resize(run.setup.info().channels.size());
     for (std::size_t c = 0; c < channels.size(); ++c) {
-      for (std::size_t t = 0; t < run.times.size(); ++t) curves.channel[c][t] = result.read(t, c);
+      std::vector<double>& channel = curves[p].channel[static_cast<std::size_t>(channels[c])];
+      channel.resize(run.times.size());
+      for (std::size_t t = 0; t < run.times.size(); ++t) channel[t] = result.read(t, c);
     }
   });
+  return curves;
+}
+
+std::vector<RunCurves> simulate_channels(const MeasuredRun& run,
+                                         const std::vector<Unknown>& unknowns, const Points& points,
+                                         const std::vector<int>& channels) {
+  std::vector<RunCurves> curves = run.setup.info().is_driven_by_inputs()
+                                      ? simulate_driven(run, unknowns, points, channels)
+                                      : simulate_crossings(run, unknowns, points, channels);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (!curves[p].failure.empty()) continue;
+    for (const int c : channels) {
+      add_sensor_error(collect_sensor_error(unknowns, points[p], 0, c), run.times,
+                       curves[p].channel[static_cast<std::size_t>(c)]);
+    }
+  }
   return curves;
 }
 
@@ -101,15 +137,16 @@ RunCurves simulate_driven(const MeasuredRun& run, const std::vector<Unknown>& un
 
 RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                        const std::vector<double>& values) {
-  RunCurves curves = run.setup.info().is_driven_by_inputs()
-                         ? simulate_driven(run, unknowns, values)
-                         : simulate_crossing(run, unknowns, values);
-  if (!curves.failure.empty()) return curves;
-  for (std::size_t c = 0; c < curves.channel.size(); ++c) {
-    add_sensor_error(collect_sensor_error(unknowns, values, 0, static_cast<int>(c)), run.times,
-                     curves.channel[c]);
-  }
-  return curves;
+  std::vector<int> all(run.setup.info().channels.size());
+  std::iota(all.begin(), all.end(), 0);
+  return std::move(simulate_channels(run, unknowns, {values}, all).front());
+}
+
+std::vector<RunCurves> simulate_points(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                                       const std::vector<std::vector<double>>& points) {
+  std::vector<int> compared;
+  for (const MeasuredChannel& c : run.channels) compared.push_back(c.channel);
+  return simulate_channels(run, unknowns, points, compared);
 }
 
 }  // namespace strut

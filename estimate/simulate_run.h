@@ -1,4 +1,4 @@
-// Simulates one measured run: every channel at the times of the readings.
+// Simulates one measured run at the times of the readings.
 #pragma once
 
 #include <string>
@@ -17,5 +17,10 @@ struct RunCurves {
 /// and adds the biases to their channels. Throws InputError where a value is out of its range.
 RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                        const std::vector<double>& values);
+
+/// simulate_run at each of several points, in the processor's lanes, with the run's compared
+/// channels only; the others stay empty.
+std::vector<RunCurves> simulate_points(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                                       const std::vector<std::vector<double>>& points);
 
 }  // namespace strut

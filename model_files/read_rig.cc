@@ -12,9 +12,9 @@
 #include "model/error/model_error.h"
 #include "model/rig/rig_system.h"
 #include "model_files/choices.h"
-#include "model_files/read_damper_curve.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
+#include "model_files/read_force_curve.h"
 #include "model_files/read_force_maps.h"
 
 namespace strut {
@@ -160,15 +160,21 @@ RigSpec read_rig(const std::filesystem::path& path) {
   RigSpec spec;
   spec.kind = static_cast<RigKind>(root.choice("type", list_type_names()));
   spec.name = root.text_or("name", path.stem().string());
+  const bool has_tire = get_rig_info(spec.kind).has(kHasTire);
   for (const RigField& f : get_rig_info(spec.kind).fields) {
+    if (has_tire && f.name == "tire_stiffness" && root.has("tire_curve")) continue;
     spec.*f.field = f.default_value ? root.number_or(f.name, *f.default_value, f.allowed)
                                     : root.number(f.name, f.allowed);
   }
-  if (get_rig_info(spec.kind).has(kHasTire)) {
+  if (has_tire) {
     spec.unilateral_tire = root.choice("tire_contact", list_names(kTireContacts)) == 1;
   }
   spec.damper_curve = read_damper_curve(root, "damper_curve", "damping");
   if (!spec.damper_curve.empty()) spec.damping = calc_curve_rate(spec.damper_curve);
+  if (has_tire) {
+    spec.tire_curve = read_tire_curve(root, "tire_curve", "tire_stiffness");
+    if (!spec.tire_curve.empty()) spec.tire_stiffness = calc_curve_rate(spec.tire_curve);
+  }
   read_initial(root, spec);
   read_fitted(root, spec);
   spec.effects = read_effects(root, get_rig_info(spec.kind));

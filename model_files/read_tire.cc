@@ -14,7 +14,9 @@
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "base/text/range.h"
+#include "io/format/text_line.h"
 #include "io/format/tir.h"
+#include "model/error/model_error.h"
 
 namespace strut {
 namespace {
@@ -35,6 +37,8 @@ const std::vector<Coefficient>& get_coefficients() {
   };
   return kCoefficients;
 }
+
+constexpr const char* kCurveSection = "DEFLECTION_LOAD_CURVE";
 
 /// Required keys with their sections.
 constexpr std::array<std::array<const char*, 2>, 11> kRequired = {{
@@ -238,11 +242,33 @@ void check_units(const TirFile& file) {
 
 void check_tables(const TirFile& file) {
   for (const TirTable& table : file.tables) {
-    if (table.section == "SHAPE") continue;
-    throw InputError(fmt::format(
-        "{}:{}: [{}]: not modeled; the vertical force is VERTICAL_STIFFNESS times deflection",
-        file.path.string(), table.line, table.section));
+    if (table.section == "SHAPE" || table.section == kCurveSection) continue;
+    throw InputError(fmt::format("{}:{}: [{}]: not modeled; allowed: [{}] {{pen fz}}",
+                                 file.path.string(), table.line, table.section, kCurveSection));
   }
+}
+
+ForceCurveSpec read_vertical_curve(const TirFile& file) {
+  ForceCurveSpec curve;
+  for (const TirTable& table : file.tables) {
+    if (table.section != kCurveSection) continue;
+    const auto refuse = [&](const std::string& what) {
+      return line_error(file.path, table.line, fmt::format("[{}]: {}", kCurveSection, what));
+    };
+    if (!curve.empty()) throw refuse("a second table; allowed: one");
+    for (const std::vector<double>& row : table.rows) {
+      if (row.size() != 2) throw refuse("must be rows of two numbers, deflection [m] and load [N]");
+      curve.x.push_back(row[0]);
+      curve.force.push_back(row[1]);
+    }
+    try {
+      validate_tire_curve(curve);
+    } catch (const ModelError& e) {
+      throw refuse(e.what());
+    }
+    if (curve.empty()) throw refuse("must have rows of deflection [m] and load [N]");
+  }
+  return curve;
 }
 
 InputError unknown_key(const TirFile& file, const TirEntry& entry) {
@@ -360,6 +386,10 @@ TireData read_tire(const std::filesystem::path& path) {
   apply_side(file, tire.pacejka);
   tire.unloaded_radius = tire.pacejka.UNLOADED_RADIUS;
   tire.vertical_stiffness = read_number(file, *file.find("VERTICAL_STIFFNESS"), above(0.0, "N/m"));
+  tire.vertical_curve = read_vertical_curve(file);
+  if (!tire.vertical_curve.empty()) {
+    tire.vertical_stiffness = calc_curve_rate(tire.vertical_curve);
+  }
   if (const TirEntry* damping = file.find("VERTICAL_DAMPING")) {
     tire.vertical_damping = read_number(file, *damping, at_least(0.0, "N s/m"));
   }

@@ -11,9 +11,9 @@
 #include "model/model.h"
 #include "model_files/choices.h"
 #include "model_files/parameters.h"
-#include "model_files/read_damper_curve.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
+#include "model_files/read_force_curve.h"
 #include "model_files/read_force_maps.h"
 #include "model_files/read_tire.h"
 
@@ -253,7 +253,10 @@ void read_tire_contact(const Table& table, VehicleSpec& vehicle) {
   vehicle.pacejka = data.pacejka;
   tire.unloaded_radius = read_or("unloaded_radius", data.unloaded_radius, "tire_radius");
   vehicle.pacejka.UNLOADED_RADIUS = tire.unloaded_radius;
-  tire.stiffness = read_or("stiffness", data.vertical_stiffness, "tire_stiffness");
+  tire.curve = read_tire_curve(table, "curve", "stiffness");
+  if (tire.curve.empty()) tire.curve = data.vertical_curve;
+  const double rate = tire.curve.empty() ? data.vertical_stiffness : calc_curve_rate(tire.curve);
+  tire.stiffness = read_or("stiffness", rate, "tire_stiffness");
   tire.damping = read_or("damping", data.vertical_damping, "tire_damping");
   tire.footprint = read_or("footprint", tire.footprint, "footprint");
   tire.contact = static_cast<ContactKind>(table.choice_or("contact", 0, list_names(kContacts)));

@@ -211,21 +211,27 @@ class Search {
     }
   }
 
-  /// The simulation at a point: the logarithms of the parameters' changes, then the delay of all
-  /// channels in units of kDelayScale. By prepared channel; empty shapes where the run cannot be
-  /// simulated, and of runs from number `run_count` on.
-  std::vector<Simulated> simulate(const Eigen::VectorXd& point,
-                                  std::size_t run_count = SIZE_MAX) const {
-    const std::vector<double> values = list_values(point);
-    std::vector<Simulated> result(channels_.size());
+  using Points = std::vector<Eigen::VectorXd>;
+
+  /// The simulation at some points, each the logarithms of the parameters' changes, then the delay
+  /// of all channels in units of kDelayScale. By point and prepared channel; empty shapes where the
+  /// run cannot be simulated, and of runs from number `run_count` on.
+  std::vector<std::vector<Simulated>> simulate(const Points& points,
+                                               std::size_t run_count = SIZE_MAX) const {
+    std::vector<std::vector<double>> values;
+    for (const Eigen::VectorXd& point : points) values.push_back(list_values(point));
+    std::vector<std::vector<Simulated>> result(points.size(),
+                                               std::vector<Simulated>(channels_.size()));
     share_items(options_.threads, std::min(run_count, runs_.size()), [&](std::size_t r, int) {
-      const RunCurves curves = simulate_run(runs_[r], free_, values);
-      if (!curves.failure.empty()) return;
-      for (std::size_t k = 0; k < channels_.size(); ++k) {
-        if (channels_[k].run != r) continue;
-        const auto& simulated = curves.channel[static_cast<std::size_t>(channels_[k].number)];
-        result[k] =
-            compare(channels_[k], runs_[r].times, simulated, options_.max_lag, get_delay(point));
+      const std::vector<RunCurves> curves = simulate_points(runs_[r], free_, values);
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        if (!curves[p].failure.empty()) continue;
+        for (std::size_t k = 0; k < channels_.size(); ++k) {
+          if (channels_[k].run != r) continue;
+          const auto& simulated = curves[p].channel[static_cast<std::size_t>(channels_[k].number)];
+          result[p][k] = compare(channels_[k], runs_[r].times, simulated, options_.max_lag,
+                                 get_delay(points[p]));
+        }
       }
     });
     return result;
@@ -236,8 +242,10 @@ class Search {
   Eigen::VectorXd minimize() const {
     constexpr std::size_t kStarts = 2;
     std::vector<std::pair<double, Eigen::VectorXd>> starts;
-    for (const Eigen::VectorXd& start : list_starts()) {
-      starts.emplace_back(calc_cost(simulate(start, kSearchedRuns), start), start);
+    const Points points = list_starts();
+    const std::vector<std::vector<Simulated>> at = simulate(points, kSearchedRuns);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      starts.emplace_back(calc_cost(at[i], points[i]), points[i]);
     }
     const std::size_t count = std::min(kStarts, starts.size());
     std::partial_sort(starts.begin(), starts.begin() + static_cast<std::ptrdiff_t>(count),
@@ -302,7 +310,7 @@ class Search {
     constexpr int kMaxSteps = 8, kMaxTries = 4;
     constexpr double kSmallFall = 0.02;
     const double reach = std::log(kMaxChange);
-    std::vector<Simulated> at = simulate(point, kSearchedRuns);
+    std::vector<Simulated> at = simulate({point}, kSearchedRuns).front();
     double cost = calc_cost(at, point), damping = 1e-3;
     for (int step = 0; step < kMaxSteps; ++step) {
       const auto [information, gradient] = linearize(at, point, holds_lags);
@@ -314,7 +322,7 @@ class Search {
         const double most_delay = options_.max_lag / kDelayScale;
         next.head(next.size() - 1) = next.head(next.size() - 1).cwiseMax(-reach).cwiseMin(reach);
         next[next.size() - 1] = std::clamp(next[next.size() - 1], -most_delay, most_delay);
-        std::vector<Simulated> there = simulate(next, kSearchedRuns);
+        std::vector<Simulated> there = simulate({next}, kSearchedRuns).front();
         const double changed = calc_cost(there, next);
         if (!(changed < cost)) continue;
         point = next;
@@ -341,12 +349,9 @@ class Search {
                                                         bool holds_lags) const {
     constexpr double kStep = 0.01;
     const Eigen::Index n = logs.size();
-    std::vector<std::vector<Simulated>> beside;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      Eigen::VectorXd moved = logs;
-      moved[i] += kStep;
-      beside.push_back(simulate(moved, kSearchedRuns));
-    }
+    Points moved(static_cast<std::size_t>(n), logs);
+    for (Eigen::Index i = 0; i < n; ++i) moved[static_cast<std::size_t>(i)][i] += kStep;
+    const std::vector<std::vector<Simulated>> beside = simulate(moved, kSearchedRuns);
     const double prior = 1.0 / (kExpectedChange * kExpectedChange);
     Eigen::MatrixXd information = prior * Eigen::MatrixXd::Identity(n, n);
     information(n - 1, n - 1) = 1e-6;  // the delay's cost is no parabola
@@ -359,10 +364,10 @@ class Search {
       Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(count, n);
       const Eigen::Map<const Eigen::VectorXd> shape(at[k].shape.data(), count);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const std::vector<double>& moved = beside[static_cast<std::size_t>(i)][k].shape;
-        if (moved.empty()) continue;
+        const std::vector<double>& there = beside[static_cast<std::size_t>(i)][k].shape;
+        if (there.empty()) continue;
         slopes.col(i) = std::abs(best.rho) / kStep *
-                        (Eigen::Map<const Eigen::VectorXd>(moved.data(), count) - shape);
+                        (Eigen::Map<const Eigen::VectorXd>(there.data(), count) - shape);
       }
       // m(t + T) has the clock of the simulation.
       const auto shift = holds_lags ? 0 : std::llround(best.lag / channels_[k].interval);
@@ -432,7 +437,8 @@ Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vect
   // Without the delay, so that lags and what they explain are against the clock as it is.
   Eigen::VectorXd undelayed = point;
   undelayed[point.size() - 1] = 0.0;
-  const std::vector<Simulated> all = search.simulate(point), bare = search.simulate(undelayed);
+  const std::vector<std::vector<Simulated>> at = search.simulate({point, undelayed});
+  const std::vector<Simulated>&all = at[0], &bare = at[1];
   alignment.swaps = compare_swapped(runs, search.channels(), all, options.max_lag);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Correlation& c = all[i].correlation;

@@ -14,7 +14,10 @@ constexpr double kMinSpringRatio = 0.05;
 
 /// Height of a wheel center over flat ground under a load; the camber tilts the wheel's axis.
 double calc_center_height(const VehicleSpec& spec, const Vec3<double>& axis, double load) {
-  const double loaded_radius = spec.tire.unloaded_radius - load / spec.tire.stiffness;
+  const TireVertical<double> tire = {spec.tire.unloaded_radius, spec.tire.stiffness,
+                                     spec.tire.damping, 0.0};
+  const double loaded_radius =
+      tire.radius - calc_static_deflection(tire, make_force_curve(spec.tire.curve).get(), load);
   return loaded_radius * std::sqrt(1.0 - square(axis.z));
 }
 
@@ -146,6 +149,7 @@ AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& m
   car.numbers.imu = spec.imu_position;
   car.center_height = spec.whole.centroid_height;
   car.layout.contact = spec.tire.contact;
+  car.layout.tire_curve = make_force_curve(spec.tire.curve);
   car.layout.relaxation = spec.tire.relaxation;
   car.layout.tire_parts = find_parts(spec.pacejka);
   car.layout.on_bump = find_wheels_on_bump(maneuver.road);

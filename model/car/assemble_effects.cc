@@ -34,7 +34,7 @@ void scale_bump(double height, double length, RoadSpec& road) {
 void set_struts(const VehicleSpec& spec, const EffectValues& values, VehicleLayout& layout,
                 VehicleParameters<double>& numbers) {
   for (int axle = 0; axle < kAxles; ++axle) {
-    layout.damper_curve[axle] = make_damper_curve(spec.suspension[axle].damper_curve);
+    layout.damper_curve[axle] = make_force_curve(spec.suspension[axle].damper_curve);
   }
   for (int c = 0; c < kCorners; ++c) {
     const PlainStrut strut = {numbers.spring[c].stiffness, numbers.damper[c].damping,

@@ -113,7 +113,14 @@ TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int 
       vehicle.numbers.tire[axle], vehicle.layout.contact, vehicle.layout.progressive_tire,
       join_pair(ws.wheel[left], ws.wheel[right]), normal, normal_z, clearance);
   split_pair(contact, ws.contact[left], ws.contact[right]);
-  return contact;
+  if (!vehicle.layout.tire_curve) return contact;
+  for (int c = left; c <= right; ++c) {
+    TireContact<T>& wheel = ws.contact[c];
+    wheel.unclamped_load +=
+        calc_curved_load(vehicle.numbers.tire[axle], *vehicle.layout.tire_curve, wheel.deflection);
+    wheel.load = max(wheel.unclamped_load, T(0.0));
+  }
+  return join_pair(ws.contact[left], ws.contact[right]);
 }
 
 /// Forces on both tires of an axle.

@@ -14,7 +14,7 @@
 #include "base/names/corners.h"
 #include "model/effects/force_map.h"
 #include "model/effects/setting.h"
-#include "model/force/damper_curve.h"
+#include "model/force/force_curve.h"
 #include "model/force/pac2002.h"
 #include "model/multibody/corner.h"
 #include "model/scenario/road.h"
@@ -79,7 +79,7 @@ struct SuspensionSpec {
 
   MountSpec spring_upper, spring_lower, damper_upper, damper_lower;
   std::array<StrutSpec, 2> strut;  // left, right
-  DamperCurveSpec damper_curve;    // that the dampers' rates scale; empty: a straight line
+  ForceCurveSpec damper_curve;     // that the dampers' rates scale; empty: a straight line
   double drive_share = 0.0;        // fraction of the drive torque on this axle, half to each wheel
   bool operator==(const SuspensionSpec&) const = default;
 };
@@ -91,6 +91,7 @@ struct TireContactSpec {
   double unloaded_radius = 0.0;  // m
   double stiffness = 0.0;        // N/m
   double damping = 0.0;          // N s/m
+  ForceCurveSpec curve;          // that `stiffness` scales; empty: a straight line
   double footprint = 0.12;       // m, contact patch length that smooths short obstacles
   ContactKind contact = ContactKind::kEnvelope;
   bool relaxation = false;  // first-order slip dynamics (PTX*, PTY*)

@@ -41,7 +41,8 @@ struct VehicleLayout {
   Pac2002Parts tire_parts;
   std::array<bool, kCorners> on_bump{true, true, true, true};  // wheels that see the bump
   std::array<unsigned, kCorners> strut_effects{};              // StrutEffectBits
-  std::array<std::shared_ptr<const DamperCurve>, kAxles> damper_curve{};
+  std::array<std::shared_ptr<const ForceCurve>, kAxles> damper_curve{};
+  std::shared_ptr<const ForceCurve> tire_curve{};
   std::array<bool, kAxles> has_anti_roll_bar{};
   bool progressive_tire = false, has_runout = false, has_lift = false;
 };

@@ -4,8 +4,8 @@
 // d = nominal length - length and v = -d(length)/dt are deflection and speed in compression.
 #pragma once
 
-#include "model/force/damper_curve.h"
 #include "model/force/damper_law.h"
+#include "model/force/force_curve.h"
 #include "model/force/force_map.h"
 
 namespace strut {
@@ -170,7 +170,7 @@ struct ShapedDamper {
   /// the damper's w.
   DryFriction<T> friction;
   bool has_friction = false;
-  const DamperCurve* curve = nullptr;  // that the law's rate scales; null: a straight line
+  const ForceCurve* curve = nullptr;  // that the law's rate scales; null: a straight line
 
   /// F / v [N s/m], as DamperLaw.
   T calc_rate(const T& speed, const T& warming) const {
@@ -188,13 +188,13 @@ struct StrutEffects {
   ElementList<AntiRollBar<T>> bars;                               // at the axle's left corner
   int count = 0;                                                  // elements of all lists
   std::shared_ptr<const std::vector<double>> map_coefficients{};  // those of the mapped forces
-  std::array<std::shared_ptr<const DamperCurve>, kMaxElements> curves{};  // by corner
+  std::array<std::shared_ptr<const ForceCurve>, kMaxElements> curves{};  // by corner
 
   bool has_states() const { return series.count > 0; }
 
   /// `curve`: of the damper, common to all lanes; null: none.
   void add(int corner, unsigned bits, const StrutEffectNumbers<T>& numbers,
-           const std::shared_ptr<const DamperCurve>& curve) {
+           const std::shared_ptr<const ForceCurve>& curve) {
     curves[static_cast<std::size_t>(corner)] = curve;
     const auto add_if = [&](unsigned bit, auto& list, const auto& element) {
       if ((bits & bit) == 0) return;

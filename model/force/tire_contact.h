@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/math/spatial.h"
+#include "model/force/force_curve.h"
 #include "model/force/pac2002.h"
 #include "model/scenario/road.h"
 
@@ -70,6 +71,18 @@ template <class C, class T>
 T calc_progressive_load(const TireVertical<C>& tire, const T& deflection) {
   return (tire.stiffness * tire.progression) * (deflection * abs(deflection));
 }
+
+/// k d (L_0(d) / (k_0 d) - 1), L_0 the curve: load of a tire with a curve in addition to that of
+/// the linear tire [N].
+template <class C, class T>
+T calc_curved_load(const TireVertical<C>& tire, const ForceCurve& curve, const T& deflection) {
+  return tire.stiffness * deflection * (calc_rate_factor(curve, deflection) - T(1.0));
+}
+
+/// Deflection [m] at which the tire carries `load` >= 0 [N] at rest. `curve`: null for none.
+/// Throws ModelError if there is none.
+double calc_static_deflection(const TireVertical<double>& tire, const ForceCurve* curve,
+                              double load);
 
 /// Contact with the effective road under the wheel: `normal` of the road, its vertical component
 /// `normal_z` in the world, and `clearance`, the height of the wheel center over the road [m].

@@ -114,7 +114,7 @@ bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closu
   const VehicleSpec &va = a.mechanism->vehicle, &vb = b.mechanism->vehicle;
   const bool same_layout =
       va.tire.contact == vb.tire.contact && va.tire.relaxation == vb.tire.relaxation &&
-      a.vehicle.layout.on_bump == b.vehicle.layout.on_bump &&
+      va.tire.curve == vb.tire.curve && a.vehicle.layout.on_bump == b.vehicle.layout.on_bump &&
       va.suspension[kFront].damper_curve == vb.suspension[kFront].damper_curve &&
       va.suspension[kRear].damper_curve == vb.suspension[kRear].damper_curve &&
       va.suspension[kFront].kind == vb.suspension[kFront].kind &&

@@ -169,7 +169,8 @@ RigInfo make_quarter_car() {
   info.calc_fastest_mode = [](const RigSpec& spec) {
     const double feedback =
         std::abs(spec.deflection_feedback) + std::abs(spec.tire_deflection_feedback);
-    return std::sqrt((spec.stiffness + spec.tire_stiffness + feedback) / spec.unsprung_mass);
+    const double tire = spec.tire_stiffness * calc_steepness(spec.tire_curve);
+    return std::sqrt((spec.stiffness + tire + feedback) / spec.unsprung_mass);
   };
   return info;
 }
@@ -338,7 +339,8 @@ void validate(const RigSpec& spec) {
     if (field.allowed.contains(value)) continue;
     throw ModelError(field.name + " = " + format_number(value) + ": " + field.allowed.describe());
   }
-  validate(spec.damper_curve);
+  validate_damper_curve(spec.damper_curve);
+  validate_tire_curve(spec.tire_curve);
   validate(spec.effects, rig);
   validate(spec.force_maps, rig);
 }

@@ -7,7 +7,7 @@
 
 #include "model/effects/force_map.h"
 #include "model/effects/setting.h"
-#include "model/force/damper_curve.h"
+#include "model/force/force_curve.h"
 #include "model/scenario/input_signal.h"
 
 namespace strut {
@@ -43,7 +43,8 @@ struct RigSpec {
   /// Initial state, as an offset from rest on the ground's first position [m], [m/s]; by
   /// RigCoordinate.
   std::array<double, kRigCoordinates> initial_position{}, initial_velocity{};
-  DamperCurveSpec damper_curve;  // that `damping` scales; empty: a straight line
+  ForceCurveSpec damper_curve;  // that `damping` scales; empty: a straight line
+  ForceCurveSpec tire_curve;    // that `tire_stiffness` scales; empty: a straight line
   EffectSettings effects;
   ForceMaps force_maps;  // at most one; its force at rest reduces the load of the spring
   bool operator==(const RigSpec&) const = default;

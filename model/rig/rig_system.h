@@ -242,6 +242,9 @@ class RigSystem {
     if (rig_.layout.progressive_tire) {
       ws_.unclamped_load += calc_progressive_load(p.tire, deflection);
     }
+    if (rig_.layout.tire_curve) {
+      ws_.unclamped_load += calc_curved_load(p.tire, *rig_.layout.tire_curve, deflection);
+    }
     ws_.tire_force = unilateral ? max(ws_.unclamped_load, T(0.0)) : ws_.unclamped_load;
   }
 

@@ -54,13 +54,6 @@ LinearSpring<double> make_spring(const RigSpec& spec) {
   return {spec.stiffness, spec.stiffness > 0.0 ? load / spec.stiffness : 0.0};
 }
 
-/// Solves k (x + q x^2) = load >= 0 for the deflection x.
-double calc_static_deflection(double load, double stiffness, double progression) {
-  const double linear = load / stiffness;
-  if (progression == 0.0) return linear;
-  return 2.0 * linear / (1.0 + std::sqrt(1.0 + 4.0 * progression * linear));
-}
-
 }  // namespace
 
 std::array<const InputSignal*, kMaxRigInputs> assign_rig_inputs(
@@ -117,8 +110,8 @@ RigParameters<double> make_rig_parameters(const RigSpec& given) {
             get_value(values, E::kTireProgressive, "progression")};
   if (rig.has(kHasTire)) {
     p.static_deflection =
-        calc_static_deflection((spec.sprung_mass + spec.unsprung_mass) * spec.gravity,
-                               p.tire.stiffness, p.tire.progression);
+        calc_static_deflection(p.tire, make_force_curve(spec.tire_curve).get(),
+                               (spec.sprung_mass + spec.unsprung_mass) * spec.gravity);
   }
   const double inverse_speed = 1.0 / spec.guide_speed;
   p.guide = {{{spec.unsprung_guide_friction, inverse_speed, spec.guide_stroke},
@@ -145,8 +138,9 @@ RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<doub
   const auto is_on = [](double value) { return value != 0.0; };
   for (int i = 0; i < count; ++i) {
     if (specs[i]->kind != layout.kind || specs[i]->unilateral_tire != layout.unilateral_tire ||
-        specs[i]->damper_curve != specs[0]->damper_curve) {
-      throw ModelError("rigs of one batch must have the same type, tire contact and damper curve");
+        specs[i]->damper_curve != specs[0]->damper_curve ||
+        specs[i]->tire_curve != specs[0]->tire_curve) {
+      throw ModelError("rigs of one batch must have the same type, tire contact and curves");
     }
     layout.strut_effects |= find_strut_effects(numbers[i].effects);
     layout.progressive_tire = layout.progressive_tire || numbers[i].tire.progression != 0.0;
@@ -157,8 +151,9 @@ RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<doub
     layout.has_feedback =
         layout.has_feedback || std::any_of(feedback.begin(), feedback.end(), is_on);
   }
-  layout.damper_curve = make_damper_curve(specs[0]->damper_curve);
+  layout.damper_curve = make_force_curve(specs[0]->damper_curve);
   if (layout.damper_curve) layout.strut_effects |= kShapedDamper;
+  layout.tire_curve = make_force_curve(specs[0]->tire_curve);
   return layout;
 }
 

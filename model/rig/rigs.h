@@ -68,7 +68,7 @@ struct RigLayout {
   bool has_guide = false;     // with friction
   bool has_flanks = false;    // of the guides' friction
   bool has_feedback = false;  // of the force between the masses
-  std::shared_ptr<const DamperCurve> damper_curve{};
+  std::shared_ptr<const ForceCurve> damper_curve{}, tire_curve{};
 };
 
 template <class T>
@@ -86,7 +86,7 @@ RigSpec take_strut(const RigSpec& rig);
 /// Numbers of a rig at its rest position. Throws ModelError as validate does.
 RigParameters<double> make_rig_parameters(const RigSpec& spec);
 
-/// Layout of rigs that may share lanes. Throws ModelError where kind, tire contact or damper curve
+/// Layout of rigs that may share lanes. Throws ModelError where kind, tire contact or a curve
 /// differ.
 RigLayout make_rig_layout(const RigSpec* const specs[], const RigParameters<double>* numbers,
                           int count);

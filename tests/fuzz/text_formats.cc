@@ -8,6 +8,7 @@
 #include "io/format/toml_text.h"
 #include "io/store/measurement.h"
 #include "io/table/csv.h"
+#include "io/table/summary.h"
 #include "model/kernel/simulation.h"
 #include "model_files/named_files.h"
 #include "model_files/parameters.h"
@@ -144,6 +145,13 @@ void read_any_csv(const fs::path& path) {
   }
 }
 
+/// As `strut inspect` does, whatever the format.
+void read_recording(const fs::path& path) {
+  for (const MeasuredPart part : {MeasuredPart::kHistory, MeasuredPart::kSnapshot}) {
+    summarize_table(*open_table_file(path, part));
+  }
+}
+
 }  // namespace
 
 std::vector<Format> list_text_formats() {
@@ -166,6 +174,32 @@ std::vector<Format> list_text_formats() {
       true,
       {",", "\n", "\r\n", "#", "\"", ";", "# units: ", "nan", "inf", "\t", "time", ",,"},
       {","}};
+  const Dictionary recording = {true,
+                                {",",
+                                 ";",
+                                 "\t",
+                                 "\n",
+                                 "\r",
+                                 "\r\n",
+                                 "\"",
+                                 "'",
+                                 "\xef\xbb\xbf",
+                                 "nan",
+                                 "Infinity",
+                                 "-1,5",
+                                 "1e308",
+                                 "***End_of_Header***\n",
+                                 "[data]\n",
+                                 "[column names]\n",
+                                 "Time [s]",
+                                 "(mm/s)",
+                                 "23:59:59.9",
+                                 "31.12.2026",
+                                 "2026-02-29T24:00:60Z",
+                                 "+14:00",
+                                 "12:00 AM",
+                                 "1700000000000000000"},
+                                {",", ";"}};
   return {
       {"vehicle",
        "vehicles/input.toml",
@@ -210,6 +244,19 @@ std::vector<Format> list_text_formats() {
        {"maneuvers/measured_profile.csv", "extended_loop/truth.csv"},
        csv,
        read_any_csv},
+      {"recording",
+       "recordings/input.csv",
+       {"recordings/labview.seed", "recordings/vbox.seed", "recordings/aim.seed",
+        "recordings/european.seed"},
+       recording,
+       read_recording},
+      {"mat",
+       "recordings/input.mat",
+       {"recordings/mat.seed"},
+       {false,
+        {std::string(8, '\0'), std::string(4, '\xff'), std::string{'\x0e', '\0', '\0', '\0'}},
+        {}},
+       read_recording},
   };
 }
 

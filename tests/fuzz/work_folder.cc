@@ -10,6 +10,7 @@
 #include "sweep/merge.h"
 #include "sweep/shard_store.h"
 #include "tests/fuzz/format.h"
+#include "tests/support/mat_bytes.h"
 #include "train/model/checkpoint.h"
 #include "train/model/model_file.h"
 #include "train/network/network.h"
@@ -125,6 +126,35 @@ void write_networks(const fs::path& work) {
   write_checkpoint(work / "checkpoint.h5", checkpoint);
 }
 
+/// Files as the programs of data loggers write them.
+void write_recordings(const fs::path& work) {
+  const fs::path folder = work / "recordings";
+  fs::create_directory(folder);
+  write_text_file(
+      folder / "labview.seed",
+      "LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\nChannels\t2\t\t\n"
+      "Samples\t3\t3\nY_Unit_Label\tVolts\tVolts\nX0\t0.0\t0.0\nDelta_X\t0.001\t0.001\n"
+      "***End_of_Header***\t\t\nX_Value\tUntitled\tUntitled 1\tComment\n0.000\t1.5\t-2\t\n"
+      "0.001\t1.6\t-3\n0.002\t1.7\t-4\n");
+  write_text_file(
+      folder / "vbox.seed",
+      "File created on 03/05/2026 at 13:45\n\n[header]\nsatellites\ntime\nvelocity kmh\n\n"
+      "[column names]\nsats time velocity\n\n[data]\n007 134559.90 050.00\n"
+      "007 134600.00 050.10\n007 134600.10 050.20\n");
+  write_text_file(folder / "aim.seed",
+                  "\"Format\",\"AiM CSV File\"\n\"Time\",\"Damper\",\"Acc\"\n\"s\",\"mm\",\"g\"\n\n"
+                  "\"1\",\"2\",\"3\"\n\"0.000\",\"1.5\",\"0.9\"\n\"0.010\",\"1.6\",\"1.0\"\n");
+  write_text_file(folder / "european.seed",
+                  "Datum;Uhrzeit;Weg [mm];Kraft (kN)\n01.02.2026;23:59:59,98;1,5;-0,25\n"
+                  "01.02.2026;23:59:59,99;1,6;-0,26\n02.02.2026;00:00:00,00;;n/a\n");
+  const std::vector<double> values = {0.0, 0.5, 1.0, 1.5};
+  write_text_file(
+      folder / "mat.seed",
+      test::make_mat_file(
+          test::make_mat_array("t", 4, 1, values) + test::make_mat_array("xy", 2, 2, values) +
+          test::make_mat_struct("run", "force", test::make_mat_array("", 1, 4, values))));
+}
+
 /// Copies a file that will be overwritten, as a seed.
 void keep(const fs::path& file) { fs::copy_file(file, file.string() + ".seed"); }
 
@@ -136,6 +166,7 @@ void make_work_folder(const fs::path& work) {
   keep(sweep.plan());
   keep(sweep.journal());
   write_networks(work);
+  write_recordings(work);
 
   const std::string runner = "host.1.ab";
   write_text_file(sweep.root / "claim.seed", runner + "\n");

@@ -96,6 +96,23 @@ TEST_CASE("A rig's file is read completely or refused", "[io][rigs]") {
   check_contains(refuse("tire_contact = \"glued\"\n"), "unilateral");
   check_contains(refuse("tire_contact = \"bilateral\"\ngravitty = 9.81\n"), "gravity");
   check_contains(refuse("tire_contact = \"bilateral\"\ngravity = -9.81\n"), "rig.toml:9: gravity");
+  check_contains(refuse("tire_contact = \"bilateral\"\ntire_curve = [[0, 0], [0.01, 90]]\n"),
+                 "tire_curve = ");
+}
+
+TEST_CASE("A rig's tire may be a measured curve", "[io][rigs]") {
+  const test::TemporaryFolder folder;
+  const std::string text =
+      "type = \"quarter_car\"\nsprung_mass = 2.0\nunsprung_mass = 1.0\nstiffness = 900\n"
+      "tire_damping = 5\ntire_contact = \"bilateral\"\n";
+  const auto read = [&](const std::string& curve) {
+    return read_rig(folder.write("rig.toml", text + "tire_curve = " + curve + "\n"));
+  };
+  const RigSpec spec = read("[[0, 0], [0.01, 10], [0.02, 30]]");
+  CHECK(spec.tire_curve.x == std::vector<double>{0.0, 0.01, 0.02});
+  CHECK(spec.tire_stiffness == Approx((0.1 + 0.6) / 5e-4));
+  check_contains(get_message([&] { read("[[0], [0.01]]"); }), "[m, N]");
+  check_contains(get_message([&] { read("[[0, 0], [0.01, 10], [0.02, 5]]"); }), "must increase");
 }
 
 TEST_CASE("A recording drives a rig by its own columns and times", "[io][rigs]") {

@@ -145,7 +145,25 @@ TEST_CASE("A wrong tire file is refused with key, value and range", "[io]") {
         "PDX2 = -0.16395: PDX1 + PDX2 df_z is");
   check("LFZO  ", "LCX = 1.5\nLFZO  ", "LCX = 1.5: PCX1 LCX must lie in (0, 2]");
   check("[DIMENSION]", "[DIMENSION]\nPCX1 = 1.6", "PCX1 = 1.6411: already given in line");
-  check("[DIMENSION]", "[DEFLECTION_LOAD_CURVE]\n{pen fz}\n0 0\n[DIMENSION]", "not modeled");
+  const auto check_curve = [&](const std::string& rows, const std::string& what) {
+    check("[DIMENSION]", "[DEFLECTION_LOAD_CURVE]\n{pen fz}\n" + rows + "[DIMENSION]", what);
+  };
+  check_curve("", "[DEFLECTION_LOAD_CURVE]: must have rows");
+  check_curve("0 0\n", "two points or more");
+  check_curve("0 0\n0.01 2000 3\n", "two numbers");
+  check_curve("0 0\n0.01 2000\n0.02 1000\n", "1000 N at 0.02 m after 2000 N");
+  check_curve("0 0\n0.01 2000\n[DEFLECTION_LOAD_CURVE]\n{pen fz}\n0 0\n", "a second table");
+  check("[DIMENSION]", "[BOTTOMING_CURVE]\n{pen fz}\n0 0\n[DIMENSION]", "not modeled");
+}
+
+TEST_CASE("A tire's load over its deflection may be a table", "[io]") {
+  const ChangedTire tire("[DIMENSION]",
+                         "[DEFLECTION_LOAD_CURVE]\n{pen fz}\n0.000 0.0\n"
+                         "0.010 1800.0\n0.030 6600.0 $ stiffer\n[DIMENSION]");
+  const TireData data = read_tire(tire.path());
+  CHECK(data.vertical_curve.x == std::vector<double>{0.0, 0.01, 0.03});
+  CHECK(data.vertical_curve.force == std::vector<double>{0.0, 1800.0, 6600.0});
+  CHECK(data.vertical_stiffness == Approx((18.0 + 198.0) / 0.001));
 }
 
 TEST_CASE("A message starts with file and line", "[io]") {
