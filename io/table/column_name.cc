@@ -51,10 +51,11 @@ bool is_plain_unit(std::string_view text) {
 /// Splits at the first `mark` behind which a unit stands. In "speed m/s" none does.
 bool split_behind(std::string_view text, std::string_view mark, ColumnName& out) {
   for (auto at = text.find(mark); at != std::string_view::npos; at = text.find(mark, at + 1)) {
-    const std::string_view name = trim(text.substr(0, at), kBlanks);
     const std::string_view unit = strip_brackets(trim(text.substr(at + mark.size()), kBlanks));
+    if (!is_plain_unit(unit)) continue;
+    const std::string_view name = trim(text.substr(0, at), kBlanks);
     const std::string_view last_word = name.substr(name.find_last_of(kBlanks) + 1);
-    if (name.empty() || !is_plain_unit(unit) || is_plain_unit(last_word)) continue;
+    if (name.empty() || is_plain_unit(last_word)) continue;
     out = {std::string(name), normalize_unit(unit)};
     return true;
   }
@@ -86,6 +87,7 @@ bool is_unit_cell(std::string_view cell) {
 
 std::string guess_name_unit(std::string_view name) {
   for (auto at = name.find('_'); at != std::string_view::npos; at = name.find('_', at + 1)) {
+    if (name.size() - at > kMaxUnitLength) continue;
     std::string unit(name.substr(at + 1));
     // "mm_s" and "m_s2" for mm/s and m/s2
     std::replace(unit.begin(), unit.end(), '_', '/');

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "io/table/column_name.h"
 #include "io/table/csv_cell.h"
@@ -40,26 +41,19 @@ std::vector<std::string> find_headers(const std::vector<NumberedLine>& lines,
   return names;
 }
 
-template <class Key>
-bool is_unique(const std::vector<CsvColumn>& columns, const Key& key, const std::string& value) {
-  return std::count_if(columns.begin(), columns.end(),
-                       [&](const CsvColumn& column) { return key(column) == value; }) == 1;
-}
-
 void tell_apart(std::vector<CsvColumn>& columns) {
-  const std::vector<CsvColumn> given = columns;
-  const auto get_name = [](const CsvColumn& column) { return column.name; };
-  const auto get_header = [](const CsvColumn& column) { return column.header; };
-  std::vector<std::string> seen;
+  std::map<std::string, int> names, headers, seen;
+  for (const CsvColumn& column : columns) {
+    ++names[column.name];
+    ++headers[column.header];
+  }
   for (CsvColumn& column : columns) {
-    if (is_unique(given, get_name, column.name)) continue;
-    if (is_unique(given, get_header, column.header)) {
+    if (names[column.name] == 1) continue;
+    if (headers[column.header] == 1) {
       column.name = column.header;
       continue;
     }
-    seen.push_back(column.header);
-    column.name =
-        fmt::format("{} ({})", column.header, std::count(seen.begin(), seen.end(), column.header));
+    column.name = fmt::format("{} ({})", column.header, ++seen[column.header]);
     column.header = column.name;
   }
 }

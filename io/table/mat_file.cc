@@ -4,10 +4,9 @@
 #include <matio.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <fstream>
 #include <utility>
+
+#include "io/table/mat_structure.h"
 
 namespace strut {
 namespace {
@@ -18,9 +17,6 @@ namespace fs = std::filesystem;
 constexpr int kMaxDepth = 4;
 /// Columns of a matrix that is taken for a table.
 constexpr std::size_t kMaxTableColumns = 1024;
-
-/// Deflate packs at most 1032 to 1.
-constexpr std::size_t kMaxPacking = 1040;
 
 struct CloseMat {
   void operator()(mat_t* file) const { Mat_Close(file); }
@@ -56,34 +52,13 @@ bool is_numeric(const matvar_t& v) {
   return v.class_type >= MAT_C_DOUBLE && v.class_type <= MAT_C_UINT32 && v.isComplex == 0;
 }
 
-/// Whether the elements of the file, each with its size, end where the file does.
-bool is_whole(const fs::path& path) {
-  constexpr std::uintmax_t kHeader = 128, kTag = 8;
-  constexpr std::size_t kEndianMark = 126;
-  const std::uintmax_t size = fs::file_size(path);
-  std::ifstream stream(path, std::ios::binary);
-  std::array<char, kHeader> header{};
-  stream.read(header.data(), header.size());
-  const bool is_little = header[kEndianMark] == 'I';
-  std::uintmax_t at = kHeader;
-  while (at + kTag <= size) {
-    std::array<unsigned char, kTag> tag{};
-    stream.seekg(static_cast<std::streamoff>(at));
-    stream.read(reinterpret_cast<char*>(tag.data()), tag.size());
-    std::uintmax_t bytes = 0;
-    for (std::size_t i = 0; i < 4; ++i) bytes = bytes << 8U | tag[is_little ? 7 - i : 4 + i];
-    at += kTag + bytes;
-  }
-  return stream && at == size;
-}
-
 class MatFile : public TableFile {
  public:
-  explicit MatFile(const fs::path& path)
-      : path_(path), max_values_(kMaxPacking * fs::file_size(path)) {
+  explicit MatFile(const fs::path& path) : path_(path) {
+    const MatStructure structure = check_mat_structure(path);
     const std::unique_ptr<mat_t, CloseMat> file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (file == nullptr) throw InputError(path.string() + ": damaged, or not a MATLAB file");
-    for (;;) {
+    for (std::size_t i = 0; i < structure.whole_count; ++i) {
       const std::unique_ptr<matvar_t, CloseMat> variable(Mat_VarReadNext(file.get()));
       if (variable == nullptr) break;
       if (variable->name != nullptr) add(*variable, variable->name, 0);
@@ -91,7 +66,7 @@ class MatFile : public TableFile {
     if (columns_.empty()) {
       throw InputError(path.string() + ": no numeric variable, or damaged from its first one on");
     }
-    if (!is_whole(path)) {
+    if (structure.is_cut_off) {
       notes_.push_back(fmt::format("{}: the file is cut off; what follows {} is missing",
                                    path.string(), columns_.back().name));
     }
@@ -140,10 +115,6 @@ class MatFile : public TableFile {
     const std::size_t rows = v.dims[0], columns = v.dims[1], count = rows * columns;
     const auto size = static_cast<std::size_t>(std::max(v.data_size, 0));
     if (count == 0 || size == 0 || v.nbytes / size < count) return;
-    if (rows > max_values_ || columns > max_values_ || count > max_values_) {
-      throw InputError(fmt::format("{}: {}: damaged: {} by {} values do not fit into this file",
-                                   path_.string(), name, rows, columns));
-    }
     const std::vector<double> values = copy_values(v, count);
     if (values.empty()) return;
     if (rows == 1 || columns == 1) {
@@ -160,7 +131,6 @@ class MatFile : public TableFile {
   }
 
   fs::path path_;
-  std::size_t max_values_;  // that the file's bytes can hold
   std::vector<CsvColumn> columns_;
   std::vector<std::string> notes_;
 };

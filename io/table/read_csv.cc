@@ -204,12 +204,12 @@ class TableReader {
   void begin() {
     is_begun_ = true;
     layout_ = find_csv_layout(head_);
-    if (layout_.columns > kMaxColumns) {
+    table_.columns = make_csv_columns(head_, layout_, comment_);
+    if (table_.columns.size() > kMaxColumns) {
       throw line_error(
           table_.path, head_.front().number,
-          fmt::format("{} columns; at most {} are allowed", layout_.columns, kMaxColumns));
+          fmt::format("{} columns; at most {} are allowed", table_.columns.size(), kMaxColumns));
     }
-    table_.columns = make_csv_columns(head_, layout_, comment_);
     for (const CsvColumn& column : table_.columns) {
       const bool is_compact = layout_.is_vbox && column.name == "time";
       readers_.emplace_back(layout_.decimal, missing_,

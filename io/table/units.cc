@@ -110,6 +110,7 @@ std::string normalize_unit(std::string_view unit) {
 }
 
 bool is_known_unit(std::string_view unit) {
+  if (unit.size() > kMaxUnitLength) return false;
   const std::string name = normalize_unit(unit);
   return std::any_of(list_units().begin(), list_units().end(),
                      [&](const UnitEntry& entry) { return entry.name == name; });
