@@ -103,18 +103,33 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
   return text + "# channels: " + join_names(names) + "\n";
 }
 
-/// Springs and dampers of the suspension, which wear: of a car, those of the axles.
-std::vector<std::string> list_wearing(const ModelTables& tables) {
+/// What may differ from the model's file: of a car the wear; of a rig its masses and rates.
+std::vector<std::string> list_free(const ModelTables& tables) {
   if (tables.model->has(kHasCar)) return list_wear_parameters(WearLocations::kByAxle);
   std::vector<std::string> names;
   for (const ListedParameter& listed : tables.parameters) {
-    const std::string& name = listed.parameter->name;
-    const bool is_rate = name.ends_with("stiffness") || name.ends_with("damping");
-    if (!listed.parameter->is_effect && is_rate && name.find("tire") == std::string::npos) {
-      names.push_back(name);
+    const std::string& unit = listed.parameter->unit;
+    const bool is_property = unit == "kg" || unit == "N/m" || unit == "N s/m";
+    if (!listed.parameter->is_effect && is_property && listed.value.value_or(0.0) > 0.0) {
+      names.push_back(listed.parameter->name);
     }
   }
   return names;
+}
+
+/// A mass sets the scale of all forces, which recorded motion alone does not show.
+std::string write_prior(const ModelTables& tables) {
+  constexpr double kSpread = 0.1;
+  if (tables.model->has(kHasCar)) return "";
+  for (const ListedParameter& listed : tables.parameters) {
+    const std::string& name = listed.parameter->name;
+    if (name != "mass" && name != "sprung_mass") continue;
+    const double value = listed.value.value_or(0.0);
+    if (!(value > 0.0)) return "";
+    return fmt::format("prior = {{ {} = [{}, {}] }}   # kg, 1 sigma: weigh it\n", name,
+                       format_number(value), format_significant(kSpread * value, 2));
+  }
+  return "";
 }
 
 std::string write_run(const std::string& file, const char* use, const ModelInfo& model,
@@ -163,7 +178,7 @@ std::string make_campaign_text(const std::vector<InspectedFile>& files, const fs
                      ": no column ascends from row to row, so none is the time");
   }
   std::string free;
-  for (const std::string& name : list_wearing(tables)) {
+  for (const std::string& name : list_free(tables)) {
     free += (free.empty() ? "" : ", ") + quote_toml(name);
   }
   return fmt::format(
@@ -171,8 +186,9 @@ std::string make_campaign_text(const std::vector<InspectedFile>& files, const fs
              "# Keys: docs/diagnosis.md.\n\nmodel = {}\n\n"
              "[columns]   # channel = the file's column; sign = -1 or unit = \"mm\" correct "
              "it\n{}\n"
-             "[fit]\nfree = [{}]\n",
-             quote_path(model, folder), write_columns(*tables.model, first), free) +
+             "[fit]\nfree = [{}]\n{}",
+             quote_path(model, folder), write_columns(*tables.model, first), free,
+             write_prior(tables)) +
          write_runs(files, *tables.model, folder);
 }
 

@@ -87,6 +87,10 @@ TEST_CASE("A campaign drafted by inspect shows its mistake in the check, and is 
   CHECK(json.get_child("findings").front().second.get<std::string>("kind") == "sign");
 
   std::string text = test::read_text(campaign);
+  // All masses and rates are free, with a mass for the scale of forces; no feedback, which is off.
+  CHECK_THAT(text, Contains("free = [\"sprung_mass\", \"unsprung_mass\", \"stiffness\", "
+                            "\"damping\", \"tire_stiffness\", \"tire_damping\"]\n"
+                            "prior = { sprung_mass = [2.45, 0.25] }"));
   const std::string column = "column = \"sprung_position\"";
   REQUIRE(text.find(column) != std::string::npos);
   text.insert(text.find(column) + column.size(), ", sign = -1");
