@@ -19,6 +19,44 @@ bool equals_ignoring_case(std::string_view a, std::string_view b) {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
+constexpr std::size_t kMaxNumberLength = 64;
+
+/// Marks between the thousands of a number; the last two are blanks that do not break a line.
+constexpr std::array<std::string_view, 6> kThousandsMarks = {",", ".",        "'",
+                                                             " ", "\xc2\xa0", "\xe2\x80\xaf"};
+
+bool are_digits(std::string_view text) {
+  return text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// "1,234.5", "-1.234.567" (with a decimal comma) or "1'234" with a decimal point and without its
+/// marks. Nothing where one mark alone could be a decimal sign, and for other texts.
+std::optional<std::string> remove_thousands(std::string_view cell, char decimal) {
+  const auto end = std::min(cell.find(decimal), cell.size());
+  const bool is_negative = cell.starts_with('-');
+  std::string_view whole = cell.substr(0, end);
+  if (is_negative) whole.remove_prefix(1);
+  for (const std::string_view mark : kThousandsMarks) {
+    auto at = whole.find(mark);
+    if (mark.front() == decimal || at == std::string_view::npos) continue;
+    if (at == 0 || at > 3 || !are_digits(whole.substr(0, at))) return std::nullopt;
+    std::string digits(whole.substr(0, at));
+    int marks = 0;
+    for (; at < whole.size(); at += mark.size() + 3, ++marks) {
+      const std::string_view group = whole.substr(std::min(at + mark.size(), whole.size()), 3);
+      if (!whole.substr(at).starts_with(mark) || group.size() != 3 || !are_digits(group)) {
+        return std::nullopt;
+      }
+      digits += group;
+    }
+    const bool may_be_decimal = marks == 1 && end == cell.size() && (mark == "," || mark == ".");
+    const std::string_view fraction = cell.substr(std::min(end + 1, cell.size()));
+    if (may_be_decimal || !are_digits(fraction)) return std::nullopt;
+    return (is_negative ? "-" : "") + digits + "." + std::string(fraction) + "0";
+  }
+  return std::nullopt;
+}
+
 constexpr double kMinute = 60.0, kHour = 3600.0, kDay = 86400.0;
 
 /// The number of one or two digits, below `limit`.
@@ -117,12 +155,11 @@ std::optional<CellClock> parse_time_of_day(std::string_view time) {
 
 std::optional<double> parse_cell_number(std::string_view cell, char decimal) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
-  std::array<char, 64> buffer;
+  if (cell.size() > kMaxNumberLength) return std::nullopt;
+  if (const auto grouped = remove_thousands(cell, decimal)) return parse_number<double>(*grouped);
+  std::array<char, kMaxNumberLength> buffer;
   if (decimal == ',') {
-    // A thousands separator would be misread.
-    if (cell.size() > buffer.size() || cell.find('.') != std::string_view::npos) {
-      return std::nullopt;
-    }
+    if (cell.find('.') != std::string_view::npos) return std::nullopt;
     std::replace_copy(cell.begin(), cell.end(), buffer.begin(), ',', '.');
     cell = {buffer.data(), cell.size()};
   }

@@ -8,7 +8,8 @@
 namespace strut {
 
 /// Returns the finite number that the cell holds, with `decimal` ('.' or ',') as decimal sign; a
-/// leading '+' is allowed. Nothing for other texts, infinities and NaN.
+/// leading '+' is allowed, and marks between thousands where they cannot be decimal signs:
+/// "1,234.5", "1'234", but not "1,234". Nothing for other texts, infinities and NaN.
 std::optional<double> parse_cell_number(std::string_view cell, char decimal);
 
 /// A clock time, with the date where the cell has one.

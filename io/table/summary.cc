@@ -46,6 +46,18 @@ bool ascends(const std::vector<double>& values) {
          std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
 
+/// What keeps a column that is named as a time from being one.
+std::string describe_no_clock(const std::vector<double>& times) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (std::isnan(times[i])) return fmt::format("no time: its value {} is missing", i + 1);
+    if (i > 0 && !(times[i] > times[i - 1])) {
+      return fmt::format("no time: its value {} is {:.9g} after {:.9g}", i + 1, times[i],
+                         times[i - 1]);
+    }
+  }
+  return "no time: fewer than two values";
+}
+
 /// The longest run of equal values at `extreme`.
 std::size_t find_longest_run(const std::vector<double>& values, double extreme) {
   std::size_t longest = 0, current = 0;
@@ -182,15 +194,19 @@ TableSummary summarize_table(const TableFile& file) {
   table.format = file.format();
   table.notes = file.notes();
   std::vector<std::size_t> ascending;
+  bool has_named_time = false;
   for (const std::string& name : file.names()) {
     std::vector<double> values;
     ColumnSummary column = summarize_column(file, name, values);
     const std::vector<double> times = cut_missing_end(values);
     const bool is_ascending = column.fault.empty() && ascends(times);
     const std::string unit = column.unit.empty() ? column.guessed_unit : column.unit;
-    if (is_ascending && (is_time_name(get_own_name(name)) || is_time_unit(unit))) {
+    const bool is_named_time = is_time_name(get_own_name(name));
+    has_named_time = has_named_time || is_named_time;
+    if (is_ascending && (is_named_time || is_time_unit(unit))) {
       make_clock(times, column);
     } else if (column.fault.empty()) {
+      if (is_named_time) column.remarks.push_back(describe_no_clock(times));
       add_remarks(values, column);
     }
     if (is_ascending) ascending.push_back(table.columns.size());
@@ -198,7 +214,7 @@ TableSummary summarize_table(const TableFile& file) {
   }
   const bool has_clock = std::any_of(table.columns.begin(), table.columns.end(),
                                      [](const ColumnSummary& column) { return column.is_clock; });
-  if (!has_clock && !ascending.empty()) {
+  if (!has_clock && !has_named_time && !ascending.empty()) {
     ColumnSummary& column = table.columns[ascending.front()];
     make_clock(cut_missing_end(file.read(column.name).values), column);
     column.remarks.emplace_back("taken for the time: it ascends");

@@ -40,8 +40,9 @@ struct TableSummary {
 };
 
 /// Summarizes every column. Clocks are columns of an ascending time: named so ("time", "t",
-/// "Zeit"), or with a unit of time; without any of these, the first column that ascends. Each other
-/// column belongs to the last clock before it in its group ("group/name"), or else to the first.
+/// "Zeit"), or with a unit of time; without any of these, the first column that ascends, unless
+/// another that does not is named as a time. Each other column belongs to the last clock before it
+/// in its group ("group/name"), or else to the first.
 TableSummary summarize_table(const TableFile& file);
 
 /// The intervals of a clock [s]; `times` ascends and has two values or more.

@@ -175,7 +175,7 @@ std::string make_campaign_text(const std::vector<InspectedFile>& files, const fs
                                      [](const ColumnSummary& column) { return column.is_clock; });
   if (!has_clock) {
     throw InputError(files.front().path.string() +
-                     ": no column ascends from row to row, so none is the time");
+                     ": no column is a time that ascends from row to row");
   }
   std::string free;
   for (const std::string& name : list_free(tables)) {

@@ -50,7 +50,22 @@ TEST_CASE("Cells are numbers with a point or a comma, clock times or missing", "
   CHECK(parse_cell_number("+1.5e-3", '.') == 1.5e-3);
   CHECK(parse_cell_number("1,5", ',') == 1.5);
   CHECK_FALSE(parse_cell_number("1,5", '.'));
-  CHECK_FALSE(parse_cell_number("1.234,5", ','));  // thousands
+  CHECK(parse_cell_number("1.234,5", ',') == 1234.5);
+  CHECK(parse_cell_number("-12,345,678", '.') == -12345678.0);
+  CHECK(parse_cell_number("+1,234.25", '.') == 1234.25);
+  CHECK(parse_cell_number("1'234'567.5", '.') == 1234567.5);
+  CHECK(parse_cell_number("1'234", '.') == 1234.0);
+  CHECK(parse_cell_number("12\xc2\xa0"
+                          "345,5",
+                          ',') == 12345.5);
+  // One mark may be a decimal sign; groups have three digits.
+  CHECK_FALSE(parse_cell_number("1,234", '.'));
+  CHECK_FALSE(parse_cell_number("1.234", ','));
+  for (const char* text : {"1234,567.5", "1,23.5", "1,2345.5", ",123.5", "1,234.5.6", "1,234.5e3",
+                           "1,,234.5", "1,234,", "1,234.5x", "x,234.5", "--1,234.5"}) {
+    CAPTURE(text);
+    CHECK_FALSE(parse_cell_number(text, '.'));
+  }
   CHECK_FALSE(parse_cell_number("inf", '.'));
   const auto read_time = [](const char* cell) { return parse_cell_clock(cell).value().time; };
   CHECK(read_time("01:02:03.25") == 3723.25);

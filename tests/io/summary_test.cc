@@ -54,6 +54,22 @@ TEST_CASE("Columns are summarized, with their clock and what is odd", "[io]") {
   CHECK_FALSE(table.columns[5].fault.empty());
 }
 
+TEST_CASE("A time that does not ascend is said to be none, and no other column takes its place",
+          "[io]") {
+  const TemporaryFolder folder;
+  const auto summarize = [&](const std::string& times) {
+    return summarize_table(
+        *open_table_file(folder.write("a.csv", "t,F\n" + times), MeasuredPart::kHistory));
+  };
+  const TableSummary back = summarize("0,1\n0.1,2\n0.05,3\n0.2,4\n");
+  CHECK_FALSE(back.columns[0].is_clock);
+  CHECK_FALSE(back.columns[1].is_clock);
+  REQUIRE(back.columns[0].remarks.size() == 1);
+  CHECK(back.columns[0].remarks[0] == "no time: its value 3 is 0.05 after 0.1");
+  CHECK(summarize("0,1\n,2\n0.2,4\n").columns[0].remarks.front() ==
+        "no time: its value 2 is missing");
+}
+
 TEST_CASE("Names that say time", "[io]") {
   for (const char* name : {"t", "Time", "TIME (2)", "t_s", "time_ms", "Zeit", "timestamp"}) {
     CHECK(is_time_name(name));
