@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
@@ -37,17 +38,36 @@ std::string write_comment(const ColumnSummary& column) {
   return text.empty() ? "" : "   # " + text;
 }
 
+/// Of each input the channel that drives it: itself, or else the lowest of its derivatives.
+std::set<std::string> list_driving(const ModelInfo& model,
+                                   const std::vector<ColumnMatch>& matches) {
+  std::set<std::string> driving;
+  for (const InputInfo& input : model.inputs) {
+    std::vector<std::string> names = {input.name};
+    for (const int derivative : {input.rate, input.second_rate}) {
+      if (derivative < 0) continue;
+      names.push_back(model.channels[static_cast<std::size_t>(derivative)].name);
+    }
+    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return std::any_of(matches.begin(), matches.end(),
+                         [&](const ColumnMatch& match) { return match.channel == name; });
+    });
+    if (found != names.end()) driving.insert(*found);
+  }
+  return driving;
+}
+
 struct ColumnLine {
   std::string channel, definition, comment;
 };
 
 ColumnLine write_column(const ModelInfo& model, const ColumnMatch& match, const TableSummary& table,
-                        int main_clock) {
+                        int main_clock, bool is_driving) {
   const ColumnSummary& column = table.columns[match.column];
   const auto channel = static_cast<std::size_t>(find_channel(model, match.channel));
   std::string text = fmt::format("column = {}{}", quote_toml(column.name),
                                  write_unit(column, model.channels[channel].unit));
-  if (find_input(model, match.channel) >= 0) text += ", role = \"input\"";
+  if (is_driving) text += ", role = \"input\"";
   if (column.clock >= 0 && column.clock != main_clock) {
     text += fmt::format(", clock = {}",
                         quote_toml(table.columns[static_cast<std::size_t>(column.clock)].name));
@@ -72,6 +92,7 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
                                   [](const ColumnSummary& column) { return column.is_clock; });
     if (any != table.columns.end()) clock = static_cast<int>(any - table.columns.begin());
   }
+  const std::set<std::string> driving = list_driving(model, matches);
   std::vector<ColumnLine> lines;
   if (clock >= 0) {
     const ColumnSummary& column = table.columns[static_cast<std::size_t>(clock)];
@@ -81,7 +102,8 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
          write_comment(column)});
   }
   for (const ColumnMatch& match : matches) {
-    if (match.channel != "time") lines.push_back(write_column(model, match, table, clock));
+    if (match.channel == "time") continue;
+    lines.push_back(write_column(model, match, table, clock, driving.count(match.channel) > 0));
   }
   std::size_t width = 0;
   for (const ColumnLine& line : lines) width = std::max(width, line.channel.size());

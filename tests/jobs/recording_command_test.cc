@@ -1,6 +1,8 @@
 // strut inspect, compare --check and identify --columns: a recording with names, units and mistakes
 // of its own.
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <string>
 
@@ -99,6 +101,28 @@ TEST_CASE("A campaign drafted by inspect shows its mistake in the check, and is 
   CHECK(right.code == 0);
   CHECK_THAT(right.out, Contains("2 runs: nothing looks wrong"));
   CHECK(run_program(check + " -o " + (folder / "out").string()).code == 2);
+}
+
+TEST_CASE(
+    "A drafted campaign lets the derivative of an input drive where the input was not recorded",
+    "[io]") {
+  const test::TemporaryFolder folder;
+  std::string rows;
+  for (int i = 0; i < 10; ++i) rows += fmt::format("{},{},{},2\n", 0.1 * i, 0.3 * i, 9 - i);
+  const auto draft = [&](const std::string& header) {
+    const std::string file = folder.write("a.csv", header + "\n" + rows).string();
+    const std::string campaign = (folder / "campaign.toml").string();
+    REQUIRE(run_program("inspect " + file + " --model " + kExamples +
+                        "/rigs/quarter_car.toml --force -o " + campaign)
+                .code == 0);
+    return test::read_text(campaign);
+  };
+  const std::string rate = draft("t,road_velocity,body acc [g],note");
+  CHECK_THAT(rate, Contains("{ column = \"road_velocity\", role = \"input\" }"));
+  CHECK_THAT(rate, Contains("sprung_acceleration = { column = \"body acc\" }"));
+  const std::string both = draft("t,road_velocity,road_position,note");
+  CHECK_THAT(both, Contains("{ column = \"road_position\", role = \"input\" }"));
+  CHECK_THAT(both, Contains("{ column = \"road_velocity\" }"));
 }
 
 TEST_CASE("identify reads a recording by the columns of a campaign", "[io]") {
