@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "base/error/input_error.h"
 #include "base/text/range.h"
@@ -72,17 +73,23 @@ std::vector<RunCurves> simulate_crossings(const MeasuredRun& run,
   std::vector<EffectSettings> effects;
   CasePreparer preparer;
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const Case c = make_case(run, unknowns, points[p], get_hit_time(unknowns, points[p], 0));
     try {
+      const Case c = make_case(run, unknowns, points[p], get_hit_time(unknowns, points[p], 0));
       cases.push_back(preparer.prepare(c));
+      prepared.push_back(p);
+      effects.push_back(c.vehicle.effects);
     } catch (const ModelError& e) {
       curves[p].failure = fmt::format("{}: {}", run.name, e.what());
-      continue;
     }
-    prepared.push_back(p);
-    effects.push_back(c.vehicle.effects);
   }
-  const std::vector<LaneRun> simulated = run_prepared(cases, options.integrate, plan);
+  std::vector<LaneRun> simulated;
+  try {
+    simulated = run_prepared(cases, options.integrate, plan);
+  } catch (const ModelError& e) {
+    for (const std::size_t p : prepared)
+      curves[p].failure = fmt::format("{}: {}", run.name, e.what());
+    return curves;
+  }
   for (std::size_t i = 0; i < cases.size(); ++i) {
     RunCurves& at = curves[prepared[i]];
     if (simulated[i].status() != RunStatus::kDone) {
@@ -144,9 +151,9 @@ RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unkno
 
 std::vector<RunCurves> simulate_points(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                                        const std::vector<std::vector<double>>& points) {
-  std::vector<int> compared;
-  for (const MeasuredChannel& c : run.channels) compared.push_back(c.channel);
-  return simulate_channels(run, unknowns, points, compared);
+  std::set<int> compared;
+  for (const MeasuredChannel& c : run.channels) compared.insert(c.channel);
+  return simulate_channels(run, unknowns, points, {compared.begin(), compared.end()});
 }
 
 }  // namespace strut

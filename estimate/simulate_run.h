@@ -9,8 +9,9 @@
 namespace strut {
 
 struct RunCurves {
-  std::string failure;                       // empty: simulated to its end
-  std::vector<std::vector<double>> channel;  // [channel of the model][time]; NaN: not simulated
+  std::string failure;  // empty: simulated to its end
+  /// [channel of the model][time]; NaN: not simulated; without times: not asked for.
+  std::vector<std::vector<double>> channel;
 };
 
 /// Simulates `run` with the unknowns that all runs share or that belong to run 0 set to `values`,
@@ -19,7 +20,7 @@ RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unkno
                        const std::vector<double>& values);
 
 /// simulate_run at each of several points, in the processor's lanes, with the run's compared
-/// channels only; the others stay empty.
+/// channels only. A point that fails affects no other; throws as simulate_run.
 std::vector<RunCurves> simulate_points(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                                        const std::vector<std::vector<double>>& points);
 

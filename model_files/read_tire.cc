@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <string_view>
@@ -256,6 +257,8 @@ ForceCurveSpec read_vertical_curve(const TirFile& file) {
       return line_error(file.path, table.line, fmt::format("[{}]: {}", kCurveSection, what));
     };
     if (!curve.empty()) throw refuse("a second table; allowed: one");
+    static const std::regex kColumns("\\s*pen\\s+fz\\s*", std::regex::icase);
+    if (!std::regex_match(table.columns, kColumns)) throw refuse("must have the columns {pen fz}");
     for (const std::vector<double>& row : table.rows) {
       if (row.size() != 2) throw refuse("must be rows of two numbers, deflection [m] and load [N]");
       curve.x.push_back(row[0]);

@@ -256,6 +256,12 @@ void read_tire_contact(const Table& table, VehicleSpec& vehicle) {
   tire.curve = read_tire_curve(table, "curve", "stiffness");
   if (tire.curve.empty()) tire.curve = data.vertical_curve;
   const double rate = tire.curve.empty() ? data.vertical_stiffness : calc_curve_rate(tire.curve);
+  const Range& allowed = find_parameter("tire_stiffness").allowed;
+  if (!allowed.contains(rate)) {
+    throw table.error(
+        table.has("curve") ? "curve" : "file",
+        fmt::format("tire_stiffness would be {}: {}", format_number(rate), allowed.describe()));
+  }
   tire.stiffness = read_or("stiffness", rate, "tire_stiffness");
   tire.damping = read_or("damping", data.vertical_damping, "tire_damping");
   tire.footprint = read_or("footprint", tire.footprint, "footprint");

@@ -19,8 +19,6 @@ bool equals_ignoring_case(std::string_view a, std::string_view b) {
                     [&](char x, char y) { return lower(x) == lower(y); });
 }
 
-constexpr std::size_t kMaxNumberLength = 64;
-
 /// Marks between the thousands of a number; the last two are blanks that do not break a line.
 constexpr std::array<std::string_view, 6> kThousandsMarks = {",", ".",        "'",
                                                              " ", "\xc2\xa0", "\xe2\x80\xaf"};
@@ -36,6 +34,7 @@ std::optional<std::string> remove_thousands(std::string_view cell, char decimal)
   const bool is_negative = cell.starts_with('-');
   std::string_view whole = cell.substr(0, end);
   if (is_negative) whole.remove_prefix(1);
+  if (whole.empty() || whole.front() < '1' || whole.front() > '9') return std::nullopt;
   for (const std::string_view mark : kThousandsMarks) {
     auto at = whole.find(mark);
     if (mark.front() == decimal || at == std::string_view::npos) continue;
@@ -155,17 +154,18 @@ std::optional<CellClock> parse_time_of_day(std::string_view time) {
 
 std::optional<double> parse_cell_number(std::string_view cell, char decimal) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
-  if (cell.size() > kMaxNumberLength) return std::nullopt;
-  if (const auto grouped = remove_thousands(cell, decimal)) return parse_number<double>(*grouped);
-  std::array<char, kMaxNumberLength> buffer;
+  std::array<char, 64> buffer;
+  std::string_view text = cell;
   if (decimal == ',') {
-    if (cell.find('.') != std::string_view::npos) return std::nullopt;
+    if (cell.size() > buffer.size()) return std::nullopt;
     std::replace_copy(cell.begin(), cell.end(), buffer.begin(), ',', '.');
-    cell = {buffer.data(), cell.size()};
+    text = {buffer.data(), cell.size()};
   }
-  const auto value = parse_number<double>(cell);
-  if (!value || !std::isfinite(*value)) return std::nullopt;
-  return value;
+  const bool has_mark = decimal == ',' && cell.find('.') != std::string_view::npos;
+  const auto value = has_mark ? std::nullopt : parse_number<double>(text);
+  if (value) return std::isfinite(*value) ? value : std::nullopt;
+  const auto grouped = remove_thousands(cell, decimal);
+  return grouped ? parse_number<double>(*grouped) : std::nullopt;
 }
 
 std::optional<CellClock> parse_cell_clock(std::string_view cell) {

@@ -60,7 +60,11 @@ class MatFile : public TableFile {
     if (file == nullptr) throw InputError(path.string() + ": damaged, or not a MATLAB file");
     for (std::size_t i = 0; i < structure.whole_count; ++i) {
       const std::unique_ptr<matvar_t, CloseMat> variable(Mat_VarReadNext(file.get()));
-      if (variable == nullptr) break;
+      if (variable == nullptr) {
+        notes_.push_back(fmt::format("{}: {} of {} variables cannot be read", path.string(),
+                                     structure.whole_count - i, structure.whole_count));
+        break;
+      }
       if (variable->name != nullptr) add(*variable, variable->name, 0);
     }
     if (columns_.empty()) {

@@ -20,10 +20,11 @@ using Bytes = std::span<const std::byte>;
 constexpr std::size_t kHeader = 128, kEndianMark = 126, kTag = 8;
 /// Deflate packs at most 1032 to 1.
 constexpr std::size_t kMaxPacking = 1040;
+constexpr std::size_t kMaxInflated = std::size_t{1} << 31U;
 constexpr int kMaxDepth = 32;
 
-enum Type : std::uint32_t { kMatrix = 14, kCompressed = 15 };
-enum Class : std::uint32_t { kCell = 1, kSparse = 5, kUint64 = 15 };
+enum Type : std::uint32_t { kInt8 = 1, kInt32 = 5, kUint32 = 6, kMatrix = 14, kCompressed = 15 };
+enum Class : std::uint32_t { kCell = 1, kStruct = 2, kObject = 3, kSparse = 5, kUint64 = 15 };
 
 struct Element {
   std::uint32_t type = 0;
@@ -41,6 +42,7 @@ class Checker {
       const std::uint32_t type = read_word(rest, 0);
       const std::size_t size = read_word(rest, 4);
       if (type != kMatrix && type != kCompressed) {
+        if (structure.whole_count > 0) break;
         throw refuse(fmt::format("an element of type {} is no variable", type));
       }
       rest = rest.subspan(kTag);
@@ -87,26 +89,51 @@ class Checker {
     return {first, bytes.subspan(kTag, size), std::min(kTag + (size + 7) / 8 * 8, bytes.size())};
   }
 
+  /// Takes the first element off `rest`, which must be of this type.
+  Bytes take(Bytes& rest, std::uint32_t type, const char* what) const {
+    const Element element = take_element(rest);
+    if (element.type != type) throw refuse(fmt::format("an array without {}", what));
+    rest = rest.subspan(element.length);
+    return element.body;
+  }
+
   void check_matrix(Bytes body, int depth) const {
     if (depth > kMaxDepth) throw refuse("arrays are nested too deeply");
     if (body.empty()) return;  // an empty cell
-    const Element flags = take_element(body);
-    if (flags.body.size() < 4) throw refuse("an array without flags");
-    const std::uint32_t array_class = read_word(flags.body, 0) & 0xffU;
-    const bool has_dimensions = array_class >= kCell && array_class <= kUint64;
-    Bytes rest = body.subspan(flags.length);
-    for (int i = 0; !rest.empty(); ++i) {
+    Bytes rest = body;
+    const Bytes flags = take(rest, kUint32, "flags");
+    if (flags.size() != 8) throw refuse("an array without flags");
+    const std::uint32_t array_class = read_word(flags, 0) & 0xffU;
+    if (array_class >= kCell && array_class <= kUint64) check_head(rest, array_class, body.size());
+    while (!rest.empty()) {
       const Element element = take_element(rest);
-      if (i == 0 && has_dimensions) check_dimensions(element.body, array_class, body.size());
       if (element.type == kMatrix) check_matrix(element.body, depth + 1);
       rest = rest.subspan(element.length);
     }
   }
 
-  /// Each value has a byte or more; sparse arrays store some of theirs.
-  void check_dimensions(Bytes dimensions, std::uint32_t array_class, std::size_t bytes) const {
+  /// Dimensions and name; of structs the names of fields, too. Each value has a byte or more, each
+  /// cell and each field of each struct a tag; sparse arrays store some of their values.
+  void check_head(Bytes& rest, std::uint32_t array_class, std::size_t bytes) const {
+    double least = count_values(take(rest, kInt32, "dimensions"));
+    take(rest, kInt8, "a name");
+    if (array_class == kObject) take(rest, kInt8, "a class");
+    if (array_class == kStruct || array_class == kObject) {
+      const Bytes length = take(rest, kInt32, "a length of field names");
+      const Bytes names = take(rest, kInt8, "field names");
+      const std::size_t each = length.size() == 4 ? read_word(length, 0) : 0;
+      if (each == 0) throw refuse("fields without a length of their names");
+      least *= static_cast<double>(kTag * (names.size() / each));
+    }
+    if (array_class == kCell) least *= static_cast<double>(kTag);
+    if (array_class != kSparse && least > static_cast<double>(bytes)) {
+      throw refuse(fmt::format("an array of at least {:g} bytes within {}", least, bytes));
+    }
+  }
+
+  double count_values(Bytes dimensions) const {
     constexpr std::size_t kMaxRank = 32;
-    if (dimensions.size() < 8 || dimensions.size() > 4 * kMaxRank) {
+    if (dimensions.size() < 8 || dimensions.size() > 4 * kMaxRank || dimensions.size() % 4 != 0) {
       throw refuse("an array with too few or too many dimensions");
     }
     double count = 1.0;
@@ -115,9 +142,7 @@ class Checker {
       if (dimension > INT32_MAX) throw refuse("an array with a negative dimension");
       count *= dimension;
     }
-    if (array_class != kSparse && count > static_cast<double>(bytes)) {
-      throw refuse(fmt::format("an array of {:g} values within {} bytes", count, bytes));
-    }
+    return count;
   }
 
   void check_compressed(Bytes packed) const {
@@ -125,7 +150,7 @@ class Checker {
     if (tag.size() < kTag) throw refuse("a compressed element cannot be read");
     const std::size_t size = read_word(tag, 4);
     if (read_word(tag, 0) != kMatrix) throw refuse("a compressed element is no array");
-    if (size / kMaxPacking > packed.size()) {
+    if (size / kMaxPacking > packed.size() || size > kMaxInflated) {
       throw refuse(fmt::format("{} bytes packed into {}", size, packed.size()));
     }
     const std::vector<std::byte> whole = inflate(packed, kTag + size);

@@ -49,7 +49,7 @@ bool ascends(const std::vector<double>& values) {
 /// What keeps a column that is named as a time from being one.
 std::string describe_no_clock(const std::vector<double>& times) {
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (std::isnan(times[i])) return fmt::format("no time: its value {} is missing", i + 1);
+    if (!std::isfinite(times[i])) return fmt::format("no time: its value {} is missing", i + 1);
     if (i > 0 && !(times[i] > times[i - 1])) {
       return fmt::format("no time: its value {} is {:.9g} after {:.9g}", i + 1, times[i],
                          times[i - 1]);

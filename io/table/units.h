@@ -18,7 +18,8 @@ std::string normalize_unit(std::string_view unit);
 
 /// Whether a unit converts to one of the SI units of channels, in any of its spellings.
 bool is_known_unit(std::string_view unit);
-/// Longer texts are no known unit, in whatever spelling.
+
+/// Longer texts are no known unit, in whatever spelling [bytes].
 inline constexpr std::size_t kMaxUnitLength = 64;
 
 /// The conversion from a file's `unit` to `si`, the unit of a channel ("m", "m/s^2", "N", "K",

@@ -130,10 +130,11 @@ std::vector<std::string> list_free(const ModelTables& tables) {
   if (tables.model->has(kHasCar)) return list_wear_parameters(WearLocations::kByAxle);
   std::vector<std::string> names;
   for (const ListedParameter& listed : tables.parameters) {
-    const std::string& unit = listed.parameter->unit;
-    const bool is_property = unit == "kg" || unit == "N/m" || unit == "N s/m";
+    const std::string& name = listed.parameter->name;
+    const bool is_property =
+        name.ends_with("mass") || name.ends_with("stiffness") || name.ends_with("damping");
     if (!listed.parameter->is_effect && is_property && listed.value.value_or(0.0) > 0.0) {
-      names.push_back(listed.parameter->name);
+      names.push_back(name);
     }
   }
   return names;
@@ -148,8 +149,9 @@ std::string write_prior(const ModelTables& tables) {
     if (name != "mass" && name != "sprung_mass") continue;
     const double value = listed.value.value_or(0.0);
     if (!(value > 0.0)) return "";
-    return fmt::format("prior = {{ {} = [{}, {}] }}   # kg, 1 sigma: weigh it\n", name,
-                       format_number(value), format_significant(kSpread * value, 2));
+    return fmt::format(
+        "prior = {{ {} = [{}, {}] }}   # kg, 1 sigma: weigh it, unless a force is recorded\n", name,
+        format_number(value), format_significant(kSpread * value, 2));
   }
   return "";
 }

@@ -12,12 +12,15 @@ namespace {
 /// Minimum change of the spring length per unit of a corner's coordinate.
 constexpr double kMinSpringRatio = 0.05;
 
+TireVertical<double> make_tire(const TireContactSpec& spec) {
+  return {spec.unloaded_radius, spec.stiffness, spec.damping, 0.0};
+}
+
 /// Height of a wheel center over flat ground under a load; the camber tilts the wheel's axis.
 double calc_center_height(const VehicleSpec& spec, const Vec3<double>& axis, double load) {
-  const TireVertical<double> tire = {spec.tire.unloaded_radius, spec.tire.stiffness,
-                                     spec.tire.damping, 0.0};
-  const double loaded_radius =
-      tire.radius - calc_static_deflection(tire, make_force_curve(spec.tire.curve).get(), load);
+  const double deflection =
+      calc_static_deflection(make_tire(spec.tire), make_force_curve(spec.tire.curve).get(), load);
+  const double loaded_radius = spec.tire.unloaded_radius - deflection;
   return loaded_radius * std::sqrt(1.0 - square(axis.z));
 }
 
@@ -143,7 +146,7 @@ void check_chassis_inertia(const Sym3<double>& j) {
 
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
   AssembledVehicle car{};
-  car.numbers.tire.fill({spec.tire.unloaded_radius, spec.tire.stiffness, spec.tire.damping, 0.0});
+  car.numbers.tire.fill(make_tire(spec.tire));
   car.numbers.pacejka = spec.pacejka;
   car.numbers.gravity = maneuver.gravity;
   car.numbers.imu = spec.imu_position;

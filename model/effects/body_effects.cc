@@ -121,13 +121,14 @@ EffectInfo make_speed_error() {
 }
 
 EffectInfo make_road_gain() {
-  return {EffectName::kRoadGain,
-          "the road moves the rig more than recorded",
-          "z_road (1 + e)",
-          "gain of the stand's displacement sensor; a spring of -e times the lowest stiffness from "
-          "the lowest mass to a fixed frame moves all alike",
-          kOnRoad,
-          {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.02, kHasGroundInput)}};
+  return {
+      EffectName::kRoadGain,
+      "the road moves the rig more than recorded",
+      "z_road (1 + e)",
+      "gain of the stand's displacement sensor; for e < 0 a spring and a damper from the lowest "
+      "mass to ground, of -e times the rates below it, give the same motion",
+      kOnRoad,
+      {make_switch("gain", "1", "e: relative error", -0.9, 3.0, 0.02, kHasGroundInput)}};
 }
 
 EffectInfo make_aerodynamic_lift() {

@@ -79,21 +79,22 @@ double calc_curve_rate(const ForceCurveSpec& spec) {
   return products / squares;
 }
 
-double calc_steepness(const ForceCurveSpec& spec) {
+double calc_peak_slope_ratio(const ForceCurveSpec& spec) {
   if (spec.empty()) return 1.0;
   double steepest = 0.0;
   for (std::size_t i = 1; i < spec.x.size(); ++i) {
     steepest =
         std::max(steepest, (spec.force[i] - spec.force[i - 1]) / (spec.x[i] - spec.x[i - 1]));
   }
-  return steepest / calc_curve_rate(spec);
+  constexpr double kCubicOverLine = 1.5;
+  return kCubicOverLine * steepest / calc_curve_rate(spec);
 }
 
 std::shared_ptr<const ForceCurve> make_force_curve(const ForceCurveSpec& spec) {
   if (spec.empty()) return nullptr;
   const std::vector<double> slopes = calc_slopes(spec);
   const auto rest = std::find(spec.x.begin(), spec.x.end(), 0.0) - spec.x.begin();
-  ForceCurve curve{make_signal("curve of force", spec.x, spec.force, slopes), calc_curve_rate(spec),
+  ForceCurve curve{make_signal("force curve", spec.x, spec.force, slopes), calc_curve_rate(spec),
                    slopes.front(), slopes.back(), slopes[static_cast<std::size_t>(rest)]};
   return std::make_shared<const ForceCurve>(std::move(curve));
 }

@@ -25,21 +25,23 @@ struct ForceCurveSpec {
 /// and both signs of speed have points.
 void validate_damper_curve(const ForceCurveSpec& spec);
 
-/// Throws ModelError unless the first point is (0, 0), and deflections and loads increase.
+/// Throws ModelError unless there are two points or more, the first is (0, 0), and deflections and
+/// loads increase.
 void validate_tire_curve(const ForceCurveSpec& spec);
 
 /// The rate of the straight line through the origin closest to the points [N s/m or N/m].
 double calc_curve_rate(const ForceCurveSpec& spec);
 
-/// The steepest slope between two points over the curve's own rate; 1 for no curve.
-double calc_steepness(const ForceCurveSpec& spec);
+/// An upper bound of the curve's slope over its own rate: a monotone cubic is at most 1.5 times as
+/// steep as the line between its ends; 1 for no curve.
+double calc_peak_slope_ratio(const ForceCurveSpec& spec);
 
 /// Rates in N s/m of a damper, N/m of a tire.
 struct ForceCurve {
   InputSignal force;             // N over x
   double rate;                   // c_0
   double low_slope, high_slope;  // of the lines beyond the ends
-  double rest_slope;             // at x = 0
+  double zero_slope;             // at x = 0
 };
 
 /// Null for no curve; requires a valid one.
@@ -53,7 +55,7 @@ T calc_rate_factor(const ForceCurve& curve, const T& x) {
                   T(curve.high_slope) * max(x - high, T(0.0));
   constexpr double kRest = 1e-9;  // m/s or m; the curve is a straight line within it
   const auto rests = abs(x) < T(kRest);
-  const T rate = select(rests, T(curve.rest_slope), force / select(rests, T(1.0), x));
+  const T rate = select(rests, T(curve.zero_slope), force / select(rests, T(1.0), x));
   return rate * T(1.0 / curve.rate);
 }
 

@@ -169,7 +169,7 @@ RigInfo make_quarter_car() {
   info.calc_fastest_mode = [](const RigSpec& spec) {
     const double feedback =
         std::abs(spec.deflection_feedback) + std::abs(spec.tire_deflection_feedback);
-    const double tire = spec.tire_stiffness * calc_steepness(spec.tire_curve);
+    const double tire = spec.tire_stiffness * calc_peak_slope_ratio(spec.tire_curve);
     return std::sqrt((spec.stiffness + tire + feedback) / spec.unsprung_mass);
   };
   return info;

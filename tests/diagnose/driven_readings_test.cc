@@ -43,6 +43,24 @@ test::CampaignText with_noise(double sigma) {
   return text;
 }
 
+TEST_CASE("Points of a rig in lanes have the bits of each by itself", "[property]") {
+  const CampaignData data = read_two_runs({}, with_noise(1e-6));
+  const MeasuredRun& run = data.runs[0];
+  const std::vector<Unknown> unknowns = {make_parameter({run}, "damping"),
+                                         make_parameter({run}, "tire_stiffness")};
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < 10; ++i) points.push_back({5.0 + i, 1000.0 + 60.0 * i});
+  const std::vector<RunCurves> together = simulate_points(run, unknowns, points);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const RunCurves alone = simulate_run(run, unknowns, points[p]);
+    for (const MeasuredChannel& c : run.channels) {
+      const auto at = static_cast<std::size_t>(c.channel);
+      CHECK(together[p].channel[at] == alone.channel[at]);
+    }
+  }
+  CHECK(together[0].channel != together[1].channel);
+}
+
 TEST_CASE("A fit recovers a rig's parameters from records of another integrator", "[reference]") {
   test::QuarterTruth truth;
   truth.start = {1e-3, -5e-4, 0.02, -0.01};

@@ -152,7 +152,10 @@ void write_recordings(const fs::path& work) {
       folder / "mat.seed",
       test::make_mat_file(
           test::make_mat_array("t", 4, 1, values) + test::make_mat_array("xy", 2, 2, values) +
-          test::make_mat_struct("run", "force", test::make_mat_array("", 1, 4, values))));
+          test::make_mat_struct("run", "force", test::make_mat_array("", 1, 4, values)) +
+          test::make_mat_struct_array("runs", 1, 8,
+                                      std::string("a\0\0\0\0\0\0\0b\0\0\0\0\0\0\0", 16)) +
+          test::pack_mat_element(test::make_mat_array("packed", 2, 2, values))));
 }
 
 /// Copies a file that will be overwritten, as a seed.

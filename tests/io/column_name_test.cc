@@ -61,8 +61,9 @@ TEST_CASE("Cells are numbers with a point or a comma, clock times or missing", "
   // One mark may be a decimal sign; groups have three digits.
   CHECK_FALSE(parse_cell_number("1,234", '.'));
   CHECK_FALSE(parse_cell_number("1.234", ','));
-  for (const char* text : {"1234,567.5", "1,23.5", "1,2345.5", ",123.5", "1,234.5.6", "1,234.5e3",
-                           "1,,234.5", "1,234,", "1,234.5x", "x,234.5", "--1,234.5"}) {
+  for (const char* text :
+       {"1234,567.5", "1,23.5", "1,2345.5", ",123.5", "1,234.5.6", "1,234.5e3", "1,,234.5",
+        "1,234,", "1,234.5x", "x,234.5", "--1,234.5", "0,123,456", "00 123"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_cell_number(text, '.'));
   }

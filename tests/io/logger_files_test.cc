@@ -126,7 +126,7 @@ TEST_CASE("Hundreds of lines may stand above the table", "[io]") {
   CHECK(read(text).column("F").values.size() == 20);
 }
 
-TEST_CASE("A line of too many names is refused without comparing each with each", "[io]") {
+TEST_CASE("A line of too many names is refused", "[io]") {
   std::string names = "time,F";
   for (int i = 0; i < 70000; ++i) names += ",x";
   CHECK_THROWS_WITH(read(names + "\n0.0,1.5\n0.1,2.5\n"), Contains("70002 columns; at most 16384"));

@@ -1,9 +1,6 @@
 #include "io/table/mat_file.h"
 
-#include <zlib.h>
-
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -18,6 +15,8 @@ using Catch::Matchers::Contains;
 using test::make_mat_array;
 using test::make_mat_file;
 using test::make_mat_struct;
+using test::make_mat_struct_array;
+using test::pack_mat_element;
 
 TEST_CASE("MATLAB files are read: vectors, matrices and structs", "[io]") {
   const test::TemporaryFolder folder;
@@ -61,13 +60,26 @@ TEST_CASE("A MATLAB file whose sizes lie is refused before it is read", "[io]") 
   CHECK(read(0, "M")->names() == std::vector<std::string>{"run.force"});
   const std::size_t name = run.find("run") - 4, rows = 160;
   REQUIRE(run.substr(rows, 4) == std::string{'\1', '\0', '\0', '\0'});
-  // 4 GB of name, 10^9 structs, a small element of 7 bytes, a matrix in a matrix's place of flags
+  // 4 GB of name, 10^9 structs, -1 structs, a small element of 7 bytes, other types
   CHECK_THROWS_WITH(read(name, "\x03" + std::string{'\0'} + "\xff\xff"), Contains("an element of"));
-  CHECK_THROWS_WITH(read(rows, std::string{'\1', '\0', '\0', 'Q'}), Contains("values within"));
+  CHECK_THROWS_WITH(read(rows, std::string{'\1', '\0', '\0', 'Q'}), Contains("bytes within"));
   CHECK_THROWS_WITH(read(rows, "\xff\xff\xff\xff"), Contains("negative dimension"));
   const std::size_t length = run.find(std::string{'\5', '\0', '\4', '\0'});
   CHECK_THROWS_WITH(read(length + 2, "\7"), Contains("more than four bytes"));
   CHECK_THROWS_WITH(read(128, "\x07"), Contains("type 7 is no variable"));
+  // matio reads flags, dimensions and name at fixed places.
+  CHECK_THROWS_WITH(read(136, "\x05"), Contains("without flags"));
+  CHECK_THROWS_WITH(read(140, "\x10"), Contains("without flags"));
+  CHECK_THROWS_WITH(read(152, "\x06"), Contains("without dimensions"));
+  CHECK_THROWS_WITH(read(name - 4, "\x02"), Contains("without a name"));
+  // 1000 structs of as many fields, in 10 kB, and names of no length
+  const std::string names(8000, 'x');
+  CHECK_THROWS_WITH(open_mat_file(folder.write(
+                        "m.mat", make_mat_file(make_mat_struct_array("s", 1000, 8, names)))),
+                    Contains("bytes within"));
+  CHECK_THROWS_WITH(
+      open_mat_file(folder.write("m.mat", make_mat_file(make_mat_struct_array("s", 1, 0, names)))),
+      Contains("without a length of their names"));
   CHECK_THROWS_WITH(read(128, "\x0f"), Contains("compressed element cannot be read"));
   std::string nested = make_mat_array("", 1, 1, {1.0});
   for (int i = 0; i < 40; ++i) nested = make_mat_struct("", "a", nested);
@@ -77,29 +89,19 @@ TEST_CASE("A MATLAB file whose sizes lie is refused before it is read", "[io]") 
 
 TEST_CASE("A compressed MATLAB file is read, and refused where its sizes lie", "[io]") {
   const test::TemporaryFolder folder;
-  const auto pack = [](const std::string& element) {
-    std::string packed(compressBound(element.size()), '\0');
-    uLongf size = packed.size();
-    REQUIRE(compress(reinterpret_cast<Bytef*>(packed.data()), &size,
-                     reinterpret_cast<const Bytef*>(element.data()), element.size()) == Z_OK);
-    const auto length = static_cast<std::uint32_t>(size);
-    std::string tag(8, '\0');
-    tag[0] = '\x0f';
-    std::memcpy(tag.data() + 4, &length, 4);
-    return make_mat_file(tag + packed.substr(0, size));
+  const auto open_packed = [&](const std::string& element) {
+    return open_mat_file(folder.write("m.mat", make_mat_file(pack_mat_element(element))));
   };
   const std::string array = make_mat_array("t", 3, 1, {0.0, 0.5, 1.0});
-  CHECK(open_mat_file(folder.write("m.mat", pack(array)))->read("t").values ==
-        std::vector<double>{0.0, 0.5, 1.0});
+  CHECK(open_packed(array)->read("t").values == std::vector<double>{0.0, 0.5, 1.0});
   std::string tall = array;
   tall.replace(32, 4, std::string{'\0', '\0', '\0', '\x20'});
-  CHECK_THROWS_WITH(open_mat_file(folder.write("m.mat", pack(tall))), Contains("values within"));
+  CHECK_THROWS_WITH(open_packed(tall), Contains("bytes within"));
   std::string long_one = array;
   long_one.replace(4, 4, "\xff\xff\xff\x7f");
-  CHECK_THROWS_WITH(open_mat_file(folder.write("m.mat", pack(long_one))), Contains("packed into"));
+  CHECK_THROWS_WITH(open_packed(long_one), Contains("packed into"));
   long_one.replace(4, 4, std::string{'\0', '\4', '\0', '\0'});
-  CHECK_THROWS_WITH(open_mat_file(folder.write("m.mat", pack(long_one))),
-                    Contains("cannot be read"));
+  CHECK_THROWS_WITH(open_packed(long_one), Contains("cannot be read"));
 }
 
 TEST_CASE("A MATLAB file that is cut off says what may be missing", "[io]") {

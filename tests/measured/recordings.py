@@ -2,7 +2,7 @@
 (docs/measured.md). Files: name in the campaign, name of the recording; the last one is held out.
 
 causes: each a tuple of names of which one must be claimed. plausible: what may be claimed with more than 0.8
-beside them, since an independent look at the recording confirms it. errors: of the extended model on the held-out
+beside them, since an independent look at the recording confirms it or shows that it cannot be told from the truth. errors: of the extended model on the held-out
 run, in % of the channel's standard deviation. sizes: what a claimed parameter must lie between. lost_motion: what
 play and both flanks of the friction must lie between [m].
 """

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "base/error/input_error.h"
@@ -231,6 +232,30 @@ TEST_CASE("Springs and dampers may differ from left to right", "[io]") {
   check_refused("damping = 1980.0                # [1]\nupper = [-0.02897",
                 "damping_left = -1\ndamping = 1980\nupper = [-0.02897",
                 "front_suspension.damper.damping_left = -1");
+}
+
+TEST_CASE("A car's tire may be a measured curve, of its own file or of the tire's", "[io]") {
+  const std::string name = "file = \"../tires/paper_sedan.tir\"";
+  const ChangedFile file(kSedan, name, name + "\ncurve = [[0, 0], [0.01, 1500], [0.03, 6500]]");
+  const TireContactSpec tire = read_vehicle(file.path()).tire;
+  CHECK(tire.curve.force == std::vector<double>{0.0, 1500.0, 6500.0});
+  CHECK(tire.stiffness == Approx((15.0 + 195.0) / 0.001));
+  const auto refuse = [&](const std::string& line, const std::string& message) {
+    const ChangedFile changed(kSedan, name, name + "\n" + line);
+    CHECK_THROWS_WITH(read_vehicle(changed.path()), Contains("tire.curve = ") && Contains(message));
+  };
+  refuse("curve = [[0, 0], [0.01, 2000]]\nstiffness = 200000", "must be one of the two");
+  refuse("curve = [[0, 0], [0.01, 2000], [0.02, 1000]]", "must increase");
+  // In millimeters
+  refuse("curve = [[0, 0], [10, 2000]]", "tire_stiffness would be 200");
+
+  const ChangedFile plain(kSedan, "[tire]", "[tire]");
+  const fs::path tir = plain.path().parent_path() / "../tires/paper_sedan.tir";
+  std::string text = test::read_text(tir);
+  text += "[DEFLECTION_LOAD_CURVE]\n{pen fz}\n0 0\n0.02 4400\n";
+  std::ofstream(tir) << text;
+  CHECK(read_vehicle(plain.path()).tire.stiffness == Approx(220000.0));
+  CHECK(read_vehicle(plain.path()).tire.curve.x == std::vector<double>{0.0, 0.02});
 }
 
 TEST_CASE("A damper may be a measured curve", "[io]") {

@@ -153,6 +153,8 @@ TEST_CASE("A wrong tire file is refused with key, value and range", "[io]") {
   check_curve("0 0\n0.01 2000 3\n", "two numbers");
   check_curve("0 0\n0.01 2000\n0.02 1000\n", "1000 N at 0.02 m after 2000 N");
   check_curve("0 0\n0.01 2000\n[DEFLECTION_LOAD_CURVE]\n{pen fz}\n0 0\n", "a second table");
+  check("[DIMENSION]", "[DEFLECTION_LOAD_CURVE]\n{fz pen}\n0 0\n2000 0.01\n[DIMENSION]",
+        "{pen fz}");
   check("[DIMENSION]", "[BOTTOMING_CURVE]\n{pen fz}\n0 0\n[DIMENSION]", "not modeled");
 }
 
