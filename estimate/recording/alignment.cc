@@ -445,7 +445,8 @@ Alignment align_recordings(const std::vector<MeasuredRun>& runs, const std::vect
     if (c.best.rho == 0.0) continue;
     alignment.channels.push_back(
         {search.channels()[i].run, search.channels()[i].channel, std::abs(c.best.rho),
-         c.best.factor, c.best.lag + delay, calc_rest(c.other_sign.rho) / calc_rest(c.best.rho),
+         c.best.factor, std::sqrt(all[i].energy / static_cast<double>(search.channels()[i].count)),
+         c.best.lag + delay, calc_rest(c.other_sign.rho) / calc_rest(c.best.rho),
          calc_rest(bare[i].correlation.rho_without_lag) / calc_rest(c.best.rho),
          search.channels()[i].period});
   }

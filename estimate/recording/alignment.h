@@ -26,6 +26,7 @@ struct ChannelAlignment {
   std::size_t run = 0, channel = 0;  // the latter in MeasuredRun::channels
   double correlation = 0.0;          // largest |rho|
   double factor = 1.0;               // with its sign
+  double motion = 0.0;               // standard deviation of the simulated channel [u]
   double lag = 0.0;                  // s; positive: the recording is late
   /// (1 - rho^2) for the best lag of the other sign over that of this sign, at least 1.
   double sign_ratio = 1.0;

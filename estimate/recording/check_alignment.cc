@@ -15,9 +15,11 @@
 namespace strut {
 namespace {
 
-/// Least correlation of channels that are compared, and of a single run that differs from the
-/// others.
+/// Least correlation of channels that are compared, and of one that few runs must judge.
 constexpr double kComparable = 0.6, kClear = 0.9;
+/// Least motion of a channel in a run, of that in the run in which it moves most: one-sided bumps
+/// alone roll a car.
+constexpr double kMoves = 0.1;
 constexpr double kMinSignRatio = 1.5;
 constexpr double kMaxFactor = 1.9;
 /// Factors of channels that are one: that of their input.
@@ -44,11 +46,23 @@ double calc_median(const std::vector<const ChannelAlignment*>& runs, const Value
 std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
                                       const Alignment& alignment) {
   std::map<int, ChannelSummary> channels;
-  std::map<int, std::size_t> measured;
+  std::map<int, std::size_t> measured, moved;
+  std::map<int, double> most;
+  const auto get_number = [&](const ChannelAlignment& a) {
+    return runs[a.run].channels[a.channel].channel;
+  };
   for (const ChannelAlignment& a : alignment.channels) {
-    const int number = runs[a.run].channels[a.channel].channel;
-    ++measured[number];
-    if (a.correlation < kComparable) continue;
+    ++measured[get_number(a)];
+    most[get_number(a)] = std::max(most[get_number(a)], a.motion);
+  }
+  const auto moves = [&](const ChannelAlignment& a) {
+    return a.motion >= kMoves * most[get_number(a)];
+  };
+  for (const ChannelAlignment& a : alignment.channels) moved[get_number(a)] += moves(a) ? 1 : 0;
+  for (const ChannelAlignment& a : alignment.channels) {
+    const int number = get_number(a);
+    const bool are_few = 2 * moved[number] <= measured[number];
+    if (!moves(a) || a.correlation < (are_few ? kClear : kComparable)) continue;
     channels[number].channel = number;
     channels[number].runs.push_back(&a);
   }
@@ -56,7 +70,7 @@ std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
   for (auto& [number, c] : channels) {
     // Of a motion that the model does not have, such as roll over a straight bump, single runs may
     // agree by chance.
-    if (2 * c.runs.size() <= measured[number]) continue;
+    if (2 * c.runs.size() <= moved[number]) continue;
     const auto negative = std::count_if(c.runs.begin(), c.runs.end(), [](const auto* run) {
       return run->factor < 0.0 && run->sign_ratio >= kMinSignRatio;
     });

@@ -48,11 +48,9 @@ std::vector<double> take_readings(const std::vector<double>& values) {
 }
 
 /// Number of readings on plateaus at `extreme` that cut off a motion: three samples or more, whose
-/// ends are so steep that a smooth peak between them would have been higher by several of the
-/// sensor's steps.
-std::size_t count_cut_off(const std::vector<double>& v, double extreme, double step) {
+/// ends are so steep that a smooth peak between them would have been higher by more than `missed`.
+std::size_t count_cut_off(const std::vector<double>& v, double extreme, double missed) {
   constexpr std::size_t kMinLength = 3;
-  constexpr double kMinSteps = 4.0;
   std::size_t count = 0;
   for (std::size_t i = 2; i + 2 < v.size();) {
     if (v[i] != extreme) {
@@ -66,7 +64,7 @@ std::size_t count_cut_off(const std::vector<double>& v, double extreme, double s
       // A parabola over the plateau with these slopes at its ends rises by slope length / 4.
       const double before = std::abs(v[i - 1] - v[i - 2]), behind = std::abs(v[end + 1] - v[end]);
       const double missing = 0.25 * std::min(before, behind) * static_cast<double>(length);
-      if (missing > kMinSteps * step) count += length;
+      if (missing > missed) count += length;
     }
     i = end;
   }
@@ -77,7 +75,10 @@ std::optional<RecordingFinding> check_saturation(const MeasuredRun& run, const M
                                                  double step) {
   const std::vector<double> v = take_readings(c.values);
   const auto [low, high] = std::minmax_element(v.begin(), v.end());
-  const std::size_t at_high = count_cut_off(v, *high, step), at_low = count_cut_off(v, *low, step);
+  constexpr double kClear = 4.0;  // several of the sensor's steps, and beyond its noise
+  const double missed = kClear * std::max(step, c.sigma);
+  const std::size_t at_high = count_cut_off(v, *high, missed),
+                    at_low = count_cut_off(v, *low, missed);
   const std::size_t count = at_high + at_low;
   if (count == 0) return std::nullopt;
   return RecordingFinding{FindingKind::kSaturation,
@@ -89,10 +90,11 @@ std::optional<RecordingFinding> check_saturation(const MeasuredRun& run, const M
                           "the sensor's range? cut the run's window"};
 }
 
+/// `spread`: the channel's in the run in which it moves most, since a quiet run is no fault of the
+/// sensor.
 std::optional<RecordingFinding> check_quantization(const MeasuredRun& run, const MeasuredChannel& c,
-                                                   double step) {
+                                                   double step, double spread) {
   constexpr double kCoarse = 0.1;
-  const double spread = calc_spread(c.values);
   if (!(step > kCoarse * spread)) return std::nullopt;
   return RecordingFinding{
       FindingKind::kQuantization,
@@ -255,13 +257,20 @@ std::vector<RecordingFinding> check_clocks(const std::vector<MeasuredRun>& runs)
 
 std::vector<RecordingFinding> check_sensors(const std::vector<MeasuredRun>& runs) {
   std::vector<RecordingFinding> all, findings;
+  std::map<int, double> spreads;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) {
+      spreads[c.channel] = std::max(spreads[c.channel], calc_spread(c.values));
+    }
+  }
   for (const MeasuredRun& run : runs) {
     for (const MeasuredChannel& c : run.channels) {
       const std::vector<double> readings = take_readings(c.values);
       if (readings.size() < 8) continue;
       const double step = find_step(readings);
-      for (auto finding : {check_saturation(run, c, step), check_quantization(run, c, step),
-                           check_mains(run, c)}) {
+      for (auto finding :
+           {check_saturation(run, c, step), check_quantization(run, c, step, spreads[c.channel]),
+            check_mains(run, c)}) {
         if (finding) all.push_back(*std::move(finding));
       }
     }

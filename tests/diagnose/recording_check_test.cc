@@ -8,6 +8,7 @@
 #include "diagnose/campaign/campaign_data.h"
 #include "estimate/recording/check.h"
 #include "estimate/recording/check_alignment.h"
+#include "estimate/recording/check_readings.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/test_car.h"
 
@@ -172,6 +173,29 @@ TEST_CASE("A sensor at its limit, coarse readings and mains are found", "[unit]"
   CHECK_THAT(mains[0].describe(), Contains("(and in 1 other runs)"));
 }
 
+TEST_CASE("A quiet run makes no sensor coarse, and equal readings within noise are no limit",
+          "[unit]") {
+  CampaignData data = read_worn(make_worn(0.7, 1.3));
+  const double step = 1e-5;
+  for (std::size_t r = 0; r < 2; ++r) {
+    for (double& v : data.runs[r].channels.front().values) {
+      v = step * std::round(v * (r == 0 ? 0.02 : 1.0) / step);
+    }
+  }
+  CHECK(check_sensors({data.runs[0]}).size() == 1);
+  CHECK(check_sensors(data.runs).empty());
+
+  MeasuredRun run = read_worn(make_worn(0.7, 1.3)).runs[0];
+  MeasuredChannel& channel = run.channels.front();
+  const auto peak = std::max_element(channel.values.begin() + 10, channel.values.end() - 10);
+  const double top = *peak + 5e-5;
+  for (std::ptrdiff_t i = -1; i <= 1; ++i) peak[i] = top;
+  channel.sigma = 2e-5;
+  CHECK(check_sensors({run}).empty());
+  channel.sigma = 1e-6;
+  CHECK(check_sensors({run}).size() == 1);
+}
+
 TEST_CASE("Gaps and jitter of a clock are found", "[unit]") {
   CampaignData data = read_worn(make_worn(0.7, 1.3));
   MeasuredRun& run = data.runs[0];
@@ -231,7 +255,8 @@ struct CarAlignment {
     const auto front = find_channel(car.info(), "front_left_suspension_deflection");
     const auto rear = find_channel(car.info(), "rear_left_suspension_deflection");
     runs.push_back({"drive.csv", car, {0.0, 0.01}, {{front, 1e-4, {}}, {rear, 1e-4, {}}}});
-    alignment.channels = {{0, 0, 0.95, 1.1, 0.0, 5.0, 1.0}, {0, 1, 0.95, 0.9, 0.0, 5.0, 1.0}};
+    alignment.channels = {{0, 0, 0.95, 1.1, 1.0, 0.0, 5.0, 1.0},
+                          {0, 1, 0.95, 0.9, 1.0, 0.0, 5.0, 1.0}};
   }
   bool is_clean() const { return check_alignment(runs, alignment).empty(); }
   Texts describe() const { return strut::describe(check_alignment(runs, alignment)); }
@@ -275,10 +300,17 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
   SECTION("a channel that agrees in one run of three") {
     for (const std::size_t run : {1U, 2U}) {
       car.runs.push_back(car.runs[0]);
-      car.alignment.channels.push_back({run, 0, 0.95, 1.1, 0.0, 5.0, 1.0});
-      car.alignment.channels.push_back({run, 1, 0.1, 1.0, 0.0, 1.0, 1.0});
+      car.alignment.channels.push_back({run, 0, 0.95, 1.1, 1.0, 0.0, 5.0, 1.0});
+      car.alignment.channels.push_back({run, 1, 0.1, 1.0, 1.0, 0.0, 1.0, 1.0});
     }
-    car.alignment.channels[1].factor = -3.0;
+    car.alignment.channels[1].factor = -2.0;
+    CHECK(car.is_clean());
+    // Such as roll, which one-sided bumps alone excite.
+    for (const std::size_t quiet : {3U, 5U}) car.alignment.channels[quiet].motion = 0.05;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection looks negated: sign = -1",
+                                  "rear_left_suspension_deflection is 2.0 times what the model "
+                                  "predicts: scale = 0.50?"});
+    car.alignment.channels[1].correlation = 0.85;
     CHECK(car.is_clean());
   }
   SECTION("swapped channels") {
