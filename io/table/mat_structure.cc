@@ -123,7 +123,8 @@ class Checker {
       const Bytes names = take(rest, kInt8, "field names");
       const std::size_t each = length.size() == 4 ? read_word(length, 0) : 0;
       if (each == 0) throw refuse("fields without a length of their names");
-      least *= static_cast<double>(kTag * (names.size() / each));
+      const std::size_t fields = names.size() / each;
+      least *= static_cast<double>(kTag * fields);
     }
     if (array_class == kCell) least *= static_cast<double>(kTag);
     if (array_class != kSparse && least > static_cast<double>(bytes)) {

@@ -48,8 +48,11 @@ TEST_CASE("Points of a rig in lanes have the bits of each by itself", "[property
   const MeasuredRun& run = data.runs[0];
   const std::vector<Unknown> unknowns = {make_parameter({run}, "damping"),
                                          make_parameter({run}, "tire_stiffness")};
-  std::vector<std::vector<double>> points;
-  for (int i = 0; i < 10; ++i) points.push_back({5.0 + i, 1000.0 + 60.0 * i});
+  std::vector<std::vector<double>> points(10);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto part = static_cast<double>(i);
+    points[i] = {5.0 + part, 1000.0 + 60.0 * part};
+  }
   const std::vector<RunCurves> together = simulate_points(run, unknowns, points);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const RunCurves alone = simulate_run(run, unknowns, points[p]);

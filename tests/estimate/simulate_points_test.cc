@@ -15,8 +15,11 @@ TEST_CASE(
   const MeasuredRun run = test::measure(base, base, {});
   const std::vector<Unknown> unknowns = {make_parameter({run}, "front_damping"),
                                          make_parameter({run}, "front_stiffness")};
-  std::vector<std::vector<double>> points;
-  for (int i = 0; i < 10; ++i) points.push_back({1500.0 + 40.0 * i, 36000.0 + 500.0 * i});
+  std::vector<std::vector<double>> points(10);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto part = static_cast<double>(i);
+    points[i] = {1500.0 + 40.0 * part, 36000.0 + 500.0 * part};
+  }
   points[4][1] = 100.0;  // springs that do not carry the car
   const std::vector<RunCurves> together = simulate_points(run, unknowns, points);
   REQUIRE(together.size() == points.size());
