@@ -99,7 +99,7 @@ class Checker {
 
   void check_matrix(Bytes body, int depth) const {
     if (depth > kMaxDepth) throw refuse("arrays are nested too deeply");
-    if (body.empty()) return;  // an empty cell
+    if (body.empty() && depth > 0) return;  // an empty cell
     Bytes rest = body;
     const Bytes flags = take(rest, kUint32, "flags");
     if (flags.size() != 8) throw refuse("an array without flags");

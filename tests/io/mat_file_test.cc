@@ -67,7 +67,8 @@ TEST_CASE("A MATLAB file whose sizes lie is refused before it is read", "[io]") 
   const std::size_t length = run.find(std::string{'\5', '\0', '\4', '\0'});
   CHECK_THROWS_WITH(read(length + 2, "\7"), Contains("more than four bytes"));
   CHECK_THROWS_WITH(read(128, "\x07"), Contains("type 7 is no variable"));
-  // matio reads flags, dimensions and name at fixed places.
+  // matio reads flags, dimensions and name at fixed places, whatever the size of the whole.
+  CHECK_THROWS_WITH(read(132, std::string(4, '\0')), Contains("an element is cut off"));
   CHECK_THROWS_WITH(read(136, "\x05"), Contains("without flags"));
   CHECK_THROWS_WITH(read(140, "\x10"), Contains("without flags"));
   CHECK_THROWS_WITH(read(152, "\x06"), Contains("without dimensions"));
