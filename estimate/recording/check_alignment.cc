@@ -17,8 +17,8 @@ namespace {
 
 /// Least correlation of channels that are compared, and of one that few runs must judge.
 constexpr double kComparable = 0.6, kClear = 0.9;
-/// Least motion of a channel in a run, of that in the run in which it moves most: one-sided bumps
-/// alone roll a car.
+/// A run judges a channel that moves at least this fraction of its motion in the run where it moves
+/// most: only one-sided bumps make a car roll.
 constexpr double kMoves = 0.1;
 constexpr double kMinSignRatio = 1.5;
 constexpr double kMaxFactor = 1.9;

@@ -46,7 +46,7 @@ bool ascends(const std::vector<double>& values) {
          std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
 
-/// What keeps a column that is named as a time from being one.
+/// Why a column named as a time cannot be the clock.
 std::string describe_no_clock(const std::vector<double>& times) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i])) return fmt::format("no time: its value {} is missing", i + 1);

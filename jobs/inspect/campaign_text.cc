@@ -38,7 +38,7 @@ std::string write_comment(const ColumnSummary& column) {
   return text.empty() ? "" : "   # " + text;
 }
 
-/// Of each input the channel that drives it: itself, or else the lowest of its derivatives.
+/// The recorded channels that drive the rig: each input, or its lowest recorded derivative.
 std::set<std::string> list_driving(const ModelInfo& model,
                                    const std::vector<ColumnMatch>& matches) {
   std::set<std::string> driving;
@@ -125,7 +125,7 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
   return text + "# channels: " + join_names(names) + "\n";
 }
 
-/// What may differ from the model's file: of a car the wear; of a rig its masses and rates.
+/// Parameters to fit: a car's wearing rates, or a rig's masses, stiffness and damping.
 std::vector<std::string> list_free(const ModelTables& tables) {
   if (tables.model->has(kHasCar)) return list_wear_parameters(WearLocations::kByAxle);
   std::vector<std::string> names;

@@ -305,7 +305,7 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
     }
     car.alignment.channels[1].factor = -2.0;
     CHECK(car.is_clean());
-    // Such as roll, which one-sided bumps alone excite.
+    // Only one-sided bumps make a car roll.
     for (const std::size_t quiet : {3U, 5U}) car.alignment.channels[quiet].motion = 0.05;
     CHECK(car.describe() == Texts{"rear_left_suspension_deflection looks negated: sign = -1",
                                   "rear_left_suspension_deflection is 2.0 times what the model "

@@ -9,6 +9,7 @@
 #include "model/error/model_error.h"
 #include "model/rig/rig_system.h"
 #include "tests/support/test_car.h"
+#include "tests/support/test_rig.h"
 #include "tests/support/test_run.h"
 
 namespace strut {
@@ -71,12 +72,7 @@ TEST_CASE("A strut on a stand gives the force of its curve, scaled by its rate",
 }
 
 TEST_CASE("A curve that is a straight line is the damper of its rate", "[reference]") {
-  RigSpec spec;
-  spec.sprung_mass = 250.0;
-  spec.unsprung_mass = 40.0;
-  spec.stiffness = 2e4;
-  spec.damping = 1500.0;
-  spec.tire_stiffness = 2e5;
+  const RigSpec spec = test::make_corner_rig(RigKind::kQuarterCar);
   RigSpec line = spec;
   line.damper_curve = {{-2.0, 0.0, 0.5, 3.0}, {-3000.0, 0.0, 750.0, 4500.0}};
   CHECK(calc_curve_rate(line.damper_curve) == Approx(1500.0));
@@ -123,20 +119,6 @@ TEST_CASE("Cars with different damper curves share no lanes", "[unit]") {
   CHECK(may_share_lanes(a, test::prepare(c), Closure::kTable));
 }
 
-/// A quarter car of gravity 9.81 m/s^2 whose tire leaves the road.
-RigSpec make_jumping_corner() {
-  RigSpec spec;
-  spec.sprung_mass = 250.0;
-  spec.unsprung_mass = 40.0;
-  spec.stiffness = 2e4;
-  spec.damping = 1500.0;
-  spec.tire_stiffness = 2e5;
-  spec.tire_damping = 200.0;
-  spec.unilateral_tire = true;
-  spec.gravity = 9.81;
-  return spec;
-}
-
 /// Points of k (d + q d^2) up to `end` [m], `count` intervals.
 ForceCurveSpec tabulate(double stiffness, double progression, double end, int count) {
   ForceCurveSpec curve;
@@ -149,12 +131,13 @@ ForceCurveSpec tabulate(double stiffness, double progression, double end, int co
 }
 
 TEST_CASE("A tire's curve is the law that it tabulates", "[reference]") {
-  RigSpec law = make_jumping_corner(), table = law;
+  RigSpec law = test::make_corner_rig(RigKind::kQuarterCar);
+  law.unilateral_tire = true;
+  RigSpec table = law;
   const double progression = GENERATE(0.0, 12.0);
   law.effects = {{"tire_progressive", "", {progression}}};
   table.tire_curve = tabulate(law.tire_stiffness, progression, 0.08, 80);
-  const double own_rate = calc_curve_rate(table.tire_curve);
-  table.tire_stiffness = own_rate;
+  table.tire_stiffness = calc_curve_rate(table.tire_curve);
   const std::vector<InputSignal> road = {make_bump("road_position", 0.08, 0.1, 0.1)};
   const auto run = [&](const RigSpec& spec) {
     return simulate_rig(spec, road, make_steps(5e-4), make_plan(1.0, 0.01));

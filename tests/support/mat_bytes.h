@@ -27,7 +27,7 @@ std::string make_element(std::uint32_t type, const std::vector<T>& values) {
   return bytes;
 }
 
-/// Of four bytes, which stand in the tag itself.
+/// An element of four bytes, stored within its tag.
 inline std::string make_small_element(std::uint32_t type, std::int32_t value) {
   const std::uint32_t tag = type | (4U << 16U);
   std::string bytes(8, '\0');
