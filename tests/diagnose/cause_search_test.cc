@@ -153,7 +153,7 @@ TEST_CASE("A right effect of the model file is left alone", "[unit]") {
 /// A damper on a crank: friction and damping behind a play, and a force that lags. Integrated by
 /// Euler's rule at a fortieth of the sampling interval.
 std::string record_series(double amplitude, double frequency, std::uint64_t seed) {
-  constexpr double kRate = 250.0, kDuration = 2.5, kPlay = 2e-3, kLag = 4e-3;
+  constexpr double kRate = 250.0, kDuration = 2.5, kPlay = 4e-3, kLag = 4e-3;
   constexpr int kSubsteps = 40;
   const double omega = 2.0 * std::numbers::pi * frequency, h = 1.0 / kRate / kSubsteps;
   double joint = 0.0, force = 0.0;
@@ -263,21 +263,21 @@ Selection find_friction_behind_play(const CampaignData& data) {
   Selection selection = select_causes(data, options);
   CHECK(has_cause(selection, {"joint_play"}));
   CHECK(has_cause(selection, {"strut_friction"}));
-  CHECK(get_fitted(selection, "joint_play") == Approx(2e-3).epsilon(tolerance(0.2)));
+  CHECK(get_fitted(selection, "joint_play") == Approx(4e-3).epsilon(tolerance(0.2)));
   CHECK(get_fitted(selection, "strut_friction_force") == Approx(400.0).epsilon(tolerance(0.05)));
   return selection;
 }
 
-/// Alone, a delay of 29 ms explains most; beside it neither law is found. The force's own lag of
-/// 4 ms is a twentieth of what the two leave.
-TEST_CASE("Friction behind a play is found though another effect explains more than each",
+/// Alone, friction and even a lag explain more than play does; with friction behind it, play
+/// explains most.
+TEST_CASE("Friction behind a play is found though another effect explains more than play",
           "[unit][slow]") {
   const TemporaryFolder folder;
   const Selection selection = find_friction_behind_play(read_series(folder));
   const SelectRound& first = selection.rounds.front();
   CHECK(first.pair_gain > first.candidates.front().gain);
   CHECK(first.candidates.front().gain < first.candidates[1].gain);
-  // Of the force's mean square the delay alone leaves a quarter.
+  // Of the force's mean square friction alone leaves a third.
   CHECK(selection.extended.fit.chi2 < 0.1 * selection.base.fit.chi2);
 }
 
