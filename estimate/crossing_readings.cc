@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "base/parallel/team.h"
 #include "base/text/format_number.h"
 #include "estimate/crossing_batch.h"
 #include "estimate/hit_time.h"
 #include "estimate/jump_difference.h"
+#include "estimate/road_response.h"
 #include "model/error/model_error.h"
 #include "model/longest_step.h"
 #include "model_files/parameters.h"
@@ -29,6 +31,8 @@ class CrossingReadings final : public ReadingModel {
   using ReadingModel::evaluate;
   std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
   std::vector<double> align(const std::vector<double>& values) override;
+  std::string linearize_road(const std::vector<double>& values, std::size_t run,
+                             const TakeColumns& take) override;
 
  private:
   // Choice of the compared readings and the simulated duration.
@@ -301,6 +305,49 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
     }
   }
   return evaluations;
+}
+
+std::string CrossingReadings::linearize_road(const std::vector<double>& values, std::size_t run,
+                                             const TakeColumns& take) {
+  Case setup;
+  std::string failure = try_setup(run, values, setup);
+  if (!failure.empty()) return failure;
+  RoadResponse response;
+  failure = simulate_road_response(runs_[run], setup, options_, preparers_[run], response);
+  if (!failure.empty()) return failure;
+  simulation_count_ += response.simulation_count;
+  const double hit_time = get_hit_time(unknowns_, values, run);
+  const auto read_all = [&](SampledRun sampled) {
+    sampled = read_sensors(setup, runs_[run], response.interval, std::move(sampled));
+    const auto count = static_cast<Eigen::Index>(begin_row(run + 1) - begin_row(run));
+    Eigen::VectorXd readings(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const ReadingPlace& place = readings_[begin_row(run) + static_cast<std::size_t>(i)];
+      readings(i) = read_curve(runs_[run], sampled, place, hit_time, response.interval).value /
+                    get_channel(place).sigma;
+    }
+    return readings;
+  };
+  const Eigen::VectorXd rest = read_all(response.rest);
+  constexpr std::size_t kAtOnce = 64;
+  for (std::size_t begin = 0; begin < response.pulses.size(); begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, response.pulses.size() - begin);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rest.size(), static_cast<Eigen::Index>(count));
+    share_items(options_.threads, count, [&](std::size_t k, int /*thread*/) {
+      const RoadPulse& pulse = response.pulses[begin + k];
+      if (pulse.change.empty()) return;
+      SampledRun sampled = response.rest;
+      for (std::size_t c = 0; c < sampled.size(); ++c) {
+        for (std::size_t i = 0; i < pulse.change[c].size(); ++i) {
+          sampled[c][pulse.first + i] += pulse.change[c][i];
+        }
+      }
+      columns.col(static_cast<Eigen::Index>(k)) =
+          (read_all(std::move(sampled)) - rest) / kRoadPulseHeight;
+    });
+    take(static_cast<Eigen::Index>(begin), columns);
+  }
+  return "";
 }
 
 /// Returns `values` unchanged if they cannot be simulated.

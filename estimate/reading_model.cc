@@ -64,6 +64,11 @@ void ReadingModel::finish() {
                   runs_.front().name, reading_count(), unknowns_.size()));
 }
 
+std::string ReadingModel::linearize_road(const std::vector<double>& /*values*/, std::size_t /*run*/,
+                                         const TakeColumns& /*take*/) {
+  return "";
+}
+
 Linearization ReadingModel::make_linearization(std::string failure) const {
   if (!failure.empty()) return {std::move(failure), {}, {}};
   return {"", Eigen::VectorXd::Zero(row_count()),

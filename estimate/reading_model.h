@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,6 +69,13 @@ class ReadingModel {
   Evaluation evaluate(const std::vector<double>& values) {
     return evaluate(std::vector<std::vector<double>>{values}).front();
   }
+  /// Derivatives of the readings' residuals by the coefficients of a run's rough tracks
+  /// (model/scenario/rough_track.h), left before right [1/m], where the model has a road; handed to
+  /// `take` some columns at a time, with the index of the first. Returns why the run cannot be
+  /// simulated, "" if it can.
+  using TakeColumns = std::function<void(Eigen::Index first, const Eigen::MatrixXd& columns)>;
+  virtual std::string linearize_road(const std::vector<double>& values, std::size_t run,
+                                     const TakeColumns& take);
   /// Returns `values` with unknowns improved that need no search, such as the hit times.
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 

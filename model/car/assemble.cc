@@ -188,7 +188,8 @@ Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
 }
 
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver) {
-  return car.numbers.geometry[kFrontLeft].wheel_center.x + maneuver.bump_distance;
+  return car.numbers.geometry[kFrontLeft].wheel_center.x + maneuver.bump_distance +
+         calc_lead(maneuver);
 }
 
 }  // namespace strut

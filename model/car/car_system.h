@@ -113,6 +113,7 @@ class CarSystem {
   /// it.
   Mask wants_fine_step(const T& /*t*/, const T* x, const T* /*dx*/, const T& coarse_step) const {
     const T& speed = x[StateIndex::kVelocity];
+    if (vehicle_.road.is_rough()) return !(speed < speed);
     const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;
     const T front = ahead + vehicle_.numbers.geometry[kFrontLeft].wheel_center.x;
     const T rear = ahead + vehicle_.numbers.geometry[kRearLeft].wheel_center.x;

@@ -60,8 +60,15 @@ enum class TireMode { kRolling, kFrictionless };
 template <class T>
 RoadPoint<T> find_road(const Vehicle<T>& vehicle, const T& world_x, int corner,
                        const Workspace<T>& ws) {
-  if (!vehicle.layout.on_bump[corner]) return {T(0.0), T(0.0)};
-  return calc_road_point(vehicle.road, world_x, ws.segment[corner]);
+  RoadPoint<T> point{T(0.0), T(0.0)};
+  if (vehicle.layout.on_bump[corner]) {
+    point = calc_road_point(vehicle.road, world_x, ws.segment[corner]);
+  }
+  const RoughTracks<T>& rough = vehicle.road.rough[corner % 2];
+  if (rough.is_rough) {
+    add_roughness(rough, world_x - vehicle.road.center, point.height, point.slope);
+  }
+  return point;
 }
 
 /// A wheel's motion, in chassis axes.

@@ -24,6 +24,9 @@ Case strip_to_mechanism(const Case& c) {
   key.maneuver.drive_reaction = neutral.drive_reaction;
   key.maneuver.bump_distance = neutral.bump_distance;
   key.maneuver.trim = neutral.trim;
+  key.maneuver.lead_time = neutral.lead_time;
+  key.maneuver.lead_speed = neutral.lead_speed;
+  key.maneuver.rough = neutral.rough;
   return key;
 }
 
@@ -66,8 +69,8 @@ void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
 State<double> trim(const Case& c, const Mechanism& mechanism, Vehicle<double> vehicle) {
   vehicle.layout.on_bump.fill(false);
   if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
-  return solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, c.maneuver.speed)
-      .state;
+  const double speed = c.maneuver.speed + c.maneuver.lead_speed;
+  return solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, speed).state;
 }
 
 }  // namespace
@@ -105,6 +108,11 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   prepared.start = trim(c, *mechanism_, vehicle);
   const Surface* surface = &mechanism_->surface;
   vehicle.road = make_road<double>(&surface, &prepared.bump_center);
+  prepared.rough = c.maneuver.rough;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const RoughTrack* track = &prepared.rough[side];
+    vehicle.road.rough[side] = make_rough_tracks<double>(&track);
+  }
   return prepared;
 }
 

@@ -63,6 +63,11 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
                      pack_lanes<VehicleParameters, T>(numbers.data()),
                      {},
                      make_road<T>(surfaces.data(), centers.data())};
+  for (std::size_t side = 0; side < 2; ++side) {
+    std::array<const RoughTrack*, kWidth> tracks;
+    for (std::size_t lane = 0; lane < kWidth; ++lane) tracks[lane] = &cases[lane]->rough[side];
+    vehicle.road.rough[side] = make_rough_tracks<T>(tracks.data());
+  }
   fill_strut_elements(vehicle, maps.data());
   return vehicle;
 }

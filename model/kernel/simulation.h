@@ -41,6 +41,7 @@ struct PreparedCase {
   double longest_step = std::numeric_limits<double>::infinity();  // s, that its effects need
   EffectSettings sensors{};  // effects of channels, for ReadOut; the simulation ignores them
   CornerForceMaps force_maps{};
+  std::array<RoughTrack, 2> rough{};  // left, right
 };
 
 /// Prepares cases; reuses the mechanism of the previous case where both share it (mechanism.h).

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/math/lanes.h"
+#include "model/scenario/rough_track.h"
 
 namespace strut {
 
@@ -95,6 +96,8 @@ struct Road {
   T first_segment = T(0.0);  // offset of the lane's first segment in `segments`, in doubles
   T last_segment = T(0.0);   // number of the lane's segments - 1
   T origin = T(0.0), inverse_cell = T(1.0), first_cell = T(0.0), last_cell = T(0.0);  // if only one
+  std::array<RoughTracks<T>, 2> rough;                                                // left, right
+  bool is_rough() const { return rough[0].is_rough || rough[1].is_rough; }
 };
 
 template <class T>
