@@ -115,7 +115,7 @@ double calc_left(const CampaignData& data, const WhitenedFit& fit) {
   NoiseSpectrum plain = fit.spectra.front();
   std::fill(plain.excess.begin(), plain.excess.end(), 1.0);
   const Whitener whitener(*model, {plain});
-  const Eigen::VectorXd left = whitener.apply(at.residual);
+  const Eigen::VectorXd left = whitener.apply_residual(at.residual);
   const auto count = static_cast<Eigen::Index>(whitener.whitened_count());
   return left.head(count).squaredNorm() / (static_cast<double>(count) * whitener.get_share(0));
 }
@@ -133,7 +133,7 @@ std::optional<CarBalance> calc_car_balance(const CampaignData& data, std::size_t
   spectra.front().level = kUnknownRoad;
   spectra.front().response_error = kResponseError;
   const WhitenedFit fit =
-      fit_whitened(one, {0}, spectra, start.unknowns, start.values, kStrutNames.size(), threads);
+      fit_whitened(one, {0}, {spectra}, start.unknowns, start.values, kStrutNames.size(), threads);
   CarBalance balance;
   for (std::size_t i = 0; i < kStrutNames.size(); ++i) {
     const Unknown& u = fit.fit.unknowns[i];

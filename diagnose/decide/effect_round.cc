@@ -274,9 +274,10 @@ double calc_threshold(const Evidence& evidence, const Score& score,
 }
 
 double calc_negligible(bool has_inputs, const SelectOptions& options, const Whitener& whitener) {
-  const double share = has_inputs ? options.negligible : options.negligible_car;
+  const bool is_known = has_inputs || !whitener.roads().empty();
+  const double share = is_known ? options.negligible : options.negligible_car;
   double power = share * static_cast<double>(whitener.whitened_count());
-  if (has_inputs) return power;
+  if (is_known) return power;
   for (std::size_t r = 0; r < whitener.spectra().size(); ++r) {
     const NoiseSpectrum& s = whitener.spectra()[r];
     double ratio = 0.0;  // of the road's power to the sensors', mean over channels
@@ -344,6 +345,7 @@ WhitenedFit adopt(const CampaignData& data, const WhitenedFit& now, const Candid
   WhitenedFit fit;
   fit.runs = now.runs;
   fit.spectra = now.spectra;
+  fit.roads = now.roads;
   fit.shared_count = e.shared_count;
   fit.is_dominated = now.is_dominated;
   fit.fit.unknowns = std::move(e.unknowns);

@@ -68,7 +68,7 @@ class MapSearch {
  public:
   MapSearch(const CampaignData& data, const WhitenedFit& base, const MapBasis& basis, double force,
             int threads)
-      : data_(data),
+      : data_(lay_roads(data, base.runs, base.roads)),
         basis_(basis),
         force_(force),
         threads_(threads),
@@ -113,7 +113,7 @@ class MapSearch {
     const auto model = make_reading_model(data_, fit.runs, unknowns, threads_);
     Linearization at = model->linearize(values);
     if (!at.failure.empty()) throw InputError(at.failure);
-    const Whitener whitener(*model, fit.spectra);
+    const Whitener whitener(*model, fit.spectra, fit.roads);
     const WhitenedModel whitened(*model, whitener);
     const Linearization seen = whitener.apply(at);
     if (!data_.has_inputs()) {
@@ -141,7 +141,8 @@ class MapSearch {
       factors_ = factors;
       now_.fit.values = values;
       moved_ = gained > kEnough;
-      if (!now_.is_dominated) count_excess(bench.whitener(), *residual, now_.spectra);
+      if (!now_.is_dominated && now_.roads.empty())
+        count_excess(bench.whitener(), *residual, now_.spectra);
       return;
     }
   }
@@ -176,10 +177,10 @@ class MapSearch {
     const auto model = make_reading_model(data_, now_.runs, std::move(unknowns), threads_);
     const Evaluation e = model->evaluate(values);
     if (!e.failure.empty()) return std::nullopt;
-    return whitener.apply(e.residual);
+    return whitener.apply_residual(e.residual);
   }
 
-  const CampaignData& data_;
+  CampaignData data_;  // with the fit's roads under its runs
   const MapBasis& basis_;
   double force_;
   int threads_;

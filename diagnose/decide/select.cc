@@ -76,7 +76,9 @@ class Selector {
       unknowns.push_back(std::move(u));
       values.push_back(baseline.fit.values[i]);
     }
-    return fit_whitened(data_, runs, chosen, unknowns, values, baseline.shared_count(),
+    const bool is_rough = !data_.has_inputs() && !all && chosen.front().level > 0.0;
+    const RunNoise noise{chosen, is_rough ? make_smooth_roads(data_, runs) : LatentRoads{}};
+    return fit_whitened(data_, runs, noise, unknowns, values, baseline.shared_count(),
                         options_.threads);
   }
 
@@ -237,14 +239,19 @@ class Selector {
     return is_replaced;
   }
 
+  /// That of the last fit: one level of the road for all that are compared.
+  RunNoise get_noise() const {
+    return {selection_.extended.spectra, selection_.extended.roads, true};
+  }
+
   void take_out(std::size_t i) {
     const ExtendedUnknowns e = remove(selection_.extended, selection_.causes[i]);
     const auto at = static_cast<std::ptrdiff_t>(i);
     selection_.causes.erase(selection_.causes.begin() + at);
     selection_.round_of.erase(selection_.round_of.begin() + at);
     selection_.gains.erase(selection_.gains.begin() + at);
-    selection_.extended = fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra,
-                                       e.unknowns, e.values, e.shared_count, options_.threads);
+    selection_.extended = fit_whitened(data_, selection_.extended.runs, get_noise(), e.unknowns,
+                                       e.values, e.shared_count, options_.threads);
     selection_.hold_out_after = judge(selection_.extended);
   }
 
@@ -255,8 +262,8 @@ class Selector {
   WhitenedFit fit_extended(const ExtendedUnknowns& e) const {
     constexpr std::array<double, 2> kSizes = {0.4, 2.5};
     const auto fit = [&](const std::vector<double>& start) {
-      return fit_whitened(data_, selection_.extended.runs, selection_.extended.spectra, e.unknowns,
-                          start, e.shared_count, options_.threads);
+      return fit_whitened(data_, selection_.extended.runs, get_noise(), e.unknowns, start,
+                          e.shared_count, options_.threads);
     };
     WhitenedFit best = fit(e.values);
     if (!data_.has_inputs() || !best.is_dominated) return best;

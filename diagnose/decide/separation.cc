@@ -105,7 +105,7 @@ double bound_chi2_between(const CampaignData& one, const NoiseSpectrum& noise,
   if (!comparison) return kNan;
   const Evaluation at = comparison->model->evaluate(comparison->values);
   if (!at.failure.empty()) return kNan;
-  return Whitener(*comparison->model, {noise}).apply(at.residual).squaredNorm();
+  return Whitener(*comparison->model, {noise}).apply_residual(at.residual).squaredNorm();
 }
 
 double calc_chi2_between(const CampaignData& one, const NoiseSpectrum& noise, const Rivals& rivals,

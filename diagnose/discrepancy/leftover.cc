@@ -50,7 +50,8 @@ std::vector<Cell> list_numbers(const CampaignData& data, const TestBench& bench,
   std::vector<std::vector<double>> allowed(bench.run_count());  // by run and band
   for (std::size_t r = 0; r < allowed.size(); ++r) {
     for (std::size_t b = 0; b < kNoiseBands.size(); ++b) {
-      const double road = data.has_inputs() ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
+      const bool is_noise = !data.has_inputs() && whitener.roads().empty();
+      const double road = !is_noise ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
       allowed[r].push_back(1.0 + options.noise_tolerance + options.road_tolerance * road);
     }
   }

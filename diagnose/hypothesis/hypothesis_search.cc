@@ -128,7 +128,7 @@ class Search {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < there.size(); ++i) {
       if (!there[i].failure.empty()) continue;
-      const Eigen::VectorXd residual = ground_.whitener.apply(there[i].residual);
+      const Eigen::VectorXd residual = ground_.whitener.apply_residual(there[i].residual);
       const Eigen::VectorXd slope = ground_.jacobian.transpose() * residual;
       const double chi2 = residual.squaredNorm() - slope.dot(ground_.regular_normal.solve(slope));
       if (!(chi2 < least)) continue;
@@ -153,7 +153,7 @@ class Search {
     const Evaluation e = model_.evaluate(get_point(x_));
     fit_.failure = e.failure;
     if (!e.failure.empty()) return false;
-    residual_ = ground_.whitener.apply(e.residual);
+    residual_ = ground_.whitener.apply_residual(e.residual);
     chi2_ = residual_.squaredNorm() + calc_shape_chi2(x_);
     return true;
   }
@@ -200,7 +200,8 @@ class Search {
     for (Index j = 0; j < m_; ++j) {
       const auto at = static_cast<std::size_t>(j);
       if (!sides[at].failure.empty()) continue;
-      columns.col(j) = (ground_.whitener.apply(sides[at].residual) - residual_) / widths[at];
+      columns.col(j) =
+          (ground_.whitener.apply_residual(sides[at].residual) - residual_) / widths[at];
     }
     return columns;
   }
@@ -311,7 +312,7 @@ class Search {
     Eigen::VectorXd residual;
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (!there[i].failure.empty()) continue;
-      Eigen::VectorXd whitened = ground_.whitener.apply(there[i].residual);
+      Eigen::VectorXd whitened = ground_.whitener.apply_residual(there[i].residual);
       const double chi2 = whitened.squaredNorm() + calc_shape_chi2(x_ + steps[i]);
       if (!(chi2 < least)) continue;
       best = i;

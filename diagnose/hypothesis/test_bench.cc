@@ -35,7 +35,7 @@ Eigen::MatrixXd eliminate(const Eigen::MatrixXd& products, Index begin, Index co
 }  // namespace
 
 TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threads)
-    : data_(data),
+    : data_(lay_roads(data, fit.runs, fit.roads)),
       runs_(fit.runs),
       unknowns_(fit.fit.unknowns),
       values_(fit.fit.values),
@@ -43,7 +43,7 @@ TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threa
       effects_on_(list_effects_on(data, fit.shared())),
       threads_(threads) {
   const auto model = make_reading_model(data_, runs_, unknowns_, threads_);
-  whitener_ = std::make_unique<Whitener>(*model, fit.spectra);
+  whitener_ = std::make_unique<Whitener>(*model, fit.spectra, fit.roads);
   const WhitenedModel whitened(*model, *whitener_);
   std::shared_ptr<const Linearization> given = fit.linearization;
   if (!given) given = std::make_shared<const Linearization>(model->linearize(values_));
@@ -81,7 +81,7 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Unknown>& added,
     for (std::size_t i = begin; i < end; ++i) {
       const Evaluation& e = evaluations[i - begin];
       if (!e.failure.empty()) continue;  // no such size: a column of zeros is no hypothesis
-      columns.col(as_index(i)) = whitener_->apply(e.residual) - residual_;
+      columns.col(as_index(i)) = whitener_->apply_residual(e.residual) - residual_;
     }
   }
   simulations_ += model->simulation_count();

@@ -54,7 +54,7 @@ std::optional<double> ChordSearch::step(const Whitener& whitener, const Eigen::V
   }
   Evaluation there = model_.evaluate(tried);
   if (!there.failure.empty()) return std::nullopt;
-  Eigen::VectorXd residual = whitener.apply(there.residual);
+  Eigen::VectorXd residual = whitener.apply_residual(there.residual);
   const double gained = at.residual.squaredNorm() - residual.squaredNorm();
   if (!(gained > 0.0)) return 0.0;
   values_ = std::move(tried);
@@ -70,7 +70,7 @@ void ChordSearch::search(const Whitener& whitener) {
   Linearization at;
   NormalEquations normal;
   const auto weigh = [&] {
-    at.residual = whitener.apply(residual_);
+    at.residual = whitener.apply_residual(residual_);
     at.jacobian = whitener.apply(at_->jacobian);
     normal = calc_normal_equations(whitened, at);
   };

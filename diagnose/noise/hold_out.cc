@@ -25,9 +25,16 @@ void check_finite(const CampaignData& data, const HoldOutRun& run) {
 HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, int threads)
     : data_(data), threads_(threads), runs_(data.list_runs(RunUse::kHoldOut)) {
   noise_.resize(runs_.size());
+  roads_.resize(runs_.size());
   const SharedValues shared = base.shared();
   share_items(threads, runs_.size(), [&](std::size_t i, int /*thread*/) {
     noise_[i] = make_spectrum_of_run(data, runs_[i], base.spectra, shared);
+    if (base.roads.empty()) return;
+    const CampaignData one = pin_run(data, runs_[i], shared);
+    const std::vector<Unknown> own = make_run_unknowns(one, {0}, shared.unknowns);
+    const WhitenedFit first = fit_whitened(one, {0}, {{noise_[i]}}, own, list_starts(own), 0, 1);
+    const RunNoise noise{{noise_[i]}, make_smooth_roads(one, {0}), true};
+    roads_[i] = fit_whitened(one, {0}, noise, own, first.fit.values, 0, 1).roads;
   });
 }
 
@@ -48,9 +55,9 @@ std::vector<HoldOutRun> HoldOutJudge::judge(const SharedValues& shared) const {
 }
 
 HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) const {
-  const CampaignData one = pin_run(data_, runs_[i], shared);
+  const CampaignData one = lay_roads(pin_run(data_, runs_[i], shared), {0}, roads_[i]);
   const auto model = make_reading_model(one, {0}, make_run_unknowns(one, {0}, shared.unknowns));
-  const Whitener whitener(*model, {noise_[i]});
+  const Whitener whitener(*model, {noise_[i]}, roads_[i]);
   WhitenedModel whitened(*model, whitener);
   const FitResult fit = fit_readings(whitened);
   HoldOutRun run;

@@ -22,8 +22,8 @@ struct HoldOutRun {
 class HoldOutJudge {
  public:
   /// Sets the noise of the held-out runs to that of `base`, with the excess of its bands averaged
-  /// over the fitted runs. `data` must outlive it. Throws InputError where a run cannot be
-  /// simulated with `base`.
+  /// over the fitted runs, and estimates their roads where those of `base` are estimated. `data`
+  /// must outlive it. Throws InputError where a run cannot be simulated with `base`.
   HoldOutJudge(const CampaignData& data, const WhitenedFit& base, int threads);
 
   /// Evaluates each held-out run at these shared values; only its own unknowns are fitted to it.
@@ -40,6 +40,7 @@ class HoldOutJudge {
   int threads_;
   std::vector<std::size_t> runs_;
   std::vector<NoiseSpectrum> noise_;
+  std::vector<LatentRoads> roads_;  // of each; empty where the road is noise
 };
 
 }  // namespace strut

@@ -18,7 +18,7 @@ ChannelSpectra calc_residual_spectra(const ReadingModel& model, const Eigen::Vec
   const std::vector<NoiseSpectrum> noise = spectra;
   for (NoiseSpectrum& s : spectra) s.common.clear();
   const Whitener whitener(model, std::move(spectra));
-  const Eigen::VectorXd whitened = whitener.apply(residual);
+  const Eigen::VectorXd whitened = whitener.apply_residual(residual);
   ChannelSpectra list;
   std::size_t run = noise.size();
   for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {

@@ -12,6 +12,7 @@
 
 #include "base/error/input_error.h"
 #include "base/math/all_finite.h"
+#include "diagnose/noise/road_density.h"
 #include "estimate/run_prepared.h"
 #include "estimate/simulate_run.h"
 
@@ -149,13 +150,6 @@ Eigen::MatrixXcd make_wheel_source(const std::vector<Spectrum>& response, double
     }
   }
   return source;
-}
-
-/// How alike two tracks of an isotropic road are, as far as it is relied upon (NoiseSpectrum).
-double calc_track_coherence(double wave_number, double track) {
-  constexpr double kTrusted = 0.9;
-  const double x = 2.0 * kPi * wave_number * track;
-  return x < 1e-6 ? kTrusted : kTrusted * x * std::cyl_bessel_k(1.0, std::min(x, 50.0));
 }
 
 /// Responses to the road by track and axle.

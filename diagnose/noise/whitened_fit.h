@@ -14,6 +14,7 @@ inline constexpr double kDominated = 5.0;
 struct WhitenedFit {
   std::vector<std::size_t> runs;
   std::vector<NoiseSpectrum> spectra;
+  LatentRoads roads;  // under the runs, where the road is rough; else empty
   std::size_t shared_count = 0;
   FitResult fit;  // the shared unknowns first, then each run's own
   /// The linearization of a car at the fit, not whitened; null for a rig.
@@ -27,11 +28,20 @@ struct WhitenedFit {
 /// Measures the spectra of the runs, with the roughness from the residual of `baseline`.
 std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline);
 
-/// Fits `unknowns` (those that all runs share first) from `start`. A car is fitted a second time,
-/// with the excess of the first fit's residual over noise, by band, added to the noise.
+/// The noise of some runs. With `roads`, these are unknowns of the runs, from which the search
+/// starts; without them, a road is noise with the spectra's density.
+struct RunNoise {
+  std::vector<NoiseSpectrum> spectra;
+  LatentRoads roads{};
+  bool is_level_known = false;  // else the roads found say at which level they are
+};
+
+/// Fits `unknowns` (those that all runs share first) from `start`, and the roads; these are noise
+/// again where the car cannot be simulated on what it seems to need. A car without
+/// them is fitted a second time, with the excess of the first fit's residual over noise, by band,
+/// added to the noise.
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
-                         const std::vector<NoiseSpectrum>& spectra,
-                         const std::vector<Unknown>& unknowns, const std::vector<double>& start,
-                         std::size_t shared_count, int threads);
+                         const RunNoise& noise, const std::vector<Unknown>& unknowns,
+                         const std::vector<double>& start, std::size_t shared_count, int threads);
 
 }  // namespace strut

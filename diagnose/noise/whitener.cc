@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
 
-/// Over sigma^2.
-Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index frequency) {
+/// Over sigma^2; by the sensors alone or with what all channels have in common.
+Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index frequency,
+                                 bool of_sensors) {
   const auto channels = static_cast<Eigen::Index>(spectrum.sigma.size());
   Eigen::MatrixXcd covariance = Eigen::MatrixXcd::Identity(channels, channels);
   const auto at = static_cast<std::size_t>(frequency);
@@ -26,7 +27,7 @@ Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index fre
     covariance.diagonal()(static_cast<Eigen::Index>(c)) +=
         calc_color(spectrum.color[c], hertz, spectrum.samples, spectrum.interval);
   }
-  if (at >= spectrum.common.size()) return covariance;
+  if (of_sensors || at >= spectrum.common.size()) return covariance;
   const Eigen::VectorXd sigma = Eigen::Map<const Eigen::VectorXd>(spectrum.sigma.data(), channels);
   const Eigen::VectorXd scale = std::sqrt(spectrum.level) * sigma.cwiseInverse();
   const Eigen::MatrixXcd common = scale.asDiagonal() * spectrum.common[at] * scale.asDiagonal();
@@ -38,31 +39,37 @@ Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index fre
 
 }  // namespace
 
-Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra,
+Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra, LatentRoads roads,
                    const WhitenerOptions& options)
-    : spectra_(std::move(spectra)), reading_count_(model.reading_count()) {
+    : spectra_(std::move(spectra)),
+      roads_(std::move(roads)),
+      reading_count_(model.reading_count()) {
   for (std::size_t r = 0; r < spectra_.size(); ++r) {
     const NoiseSpectrum& spectrum = spectra_[r];
     const std::size_t channels = spectrum.sigma.size();
     Run run;
-    run.fade = make_fade(spectrum.samples, spectrum.fades);
+    const bool fades = spectrum.fades && !has_road(r);
+    const double highest = has_road(r) ? options.highest_of_road : options.highest;
+    run.fade = make_fade(spectrum.samples, fades);
     run.rows.assign(channels, std::vector<std::size_t>(spectrum.samples, kMissing));
     double power = 0.0;
     for (std::size_t k = 0; k < reading_count_; ++k) {
       const ReadingPlace& place = model.readings()[k];
-      if (place.run != r || place.time >= spectrum.samples) continue;
-      run.rows[place.channel][place.time] = k;
+      if (place.run != r) continue;
+      if (run.count++ == 0) run.begin = k;
+      if (place.time >= spectrum.samples) continue;
+      run.rows[place.channel][place.time] = k - run.begin;
       power += run.fade[place.time] * run.fade[place.time];
     }
     run.share = power / static_cast<double>(channels * spectrum.samples);
     run_begin_.push_back(places_.size());
     const double step = 1.0 / (static_cast<double>(spectrum.samples) * spectrum.interval);
-    if (spectrum.fades) run.first = static_cast<Eigen::Index>(std::ceil(options.lowest / step));
+    if (fades) run.first = static_cast<Eigen::Index>(std::ceil(options.lowest / step));
     for (auto k = static_cast<std::size_t>(run.first); k <= spectrum.samples / 2; ++k) {
-      if (step * static_cast<double>(k) > options.highest) break;
+      if (step * static_cast<double>(k) > highest) break;
       const double excess = spectrum.excess[find_noise_band(step * static_cast<double>(k))];
       const Eigen::LLT<Eigen::MatrixXcd> factor(
-          excess * calc_covariance(spectrum, static_cast<Eigen::Index>(k)));
+          excess * calc_covariance(spectrum, static_cast<Eigen::Index>(k), has_road(r)));
       run.factor.emplace_back(factor.matrixL());
       const bool is_real = k == 0 || 2 * k == spectrum.samples;
       for (std::size_t c = 0; c < channels; ++c) {
@@ -71,6 +78,9 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
         run.log_determinant += parts * std::log(run.factor.back()(at, at).real());
         places_.insert(places_.end(), static_cast<std::size_t>(parts), {r, k, c});
       }
+    }
+    if (has_road(r) && roads_[r]->factor.size() > 0) {
+      run.log_determinant += roads_[r]->factor.diagonal().array().log().sum();
     }
     STRUT_CHECK(std::isfinite(run.log_determinant), "noise of finite covariance");
     runs_.push_back(std::move(run));
@@ -98,7 +108,7 @@ double Whitener::calc_log_likelihood(const Eigen::VectorXd& whitened, std::size_
   return -0.5 * whitened.segment(begin, count).squaredNorm() - runs_[run].log_determinant;
 }
 
-void Whitener::apply_run(std::size_t r, const Eigen::VectorXd& column,
+void Whitener::apply_run(std::size_t r, const Eigen::Ref<const Eigen::VectorXd>& column,
                          Eigen::Ref<Eigen::VectorXd> out) const {
   const Run& run = runs_[r];
   const std::size_t channels = run.rows.size(), count = run.fade.size();
@@ -145,33 +155,75 @@ void Whitener::apply_run(std::size_t r, const Eigen::VectorXd& column,
   }
 }
 
+Eigen::MatrixXd Whitener::whiten_run(std::size_t r, const Eigen::MatrixXd& columns) const {
+  const auto count = static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(count, columns.cols());
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    if (!columns.col(i).isZero(0.0)) apply_run(r, columns.col(i), out.col(i));
+  }
+  return out;
+}
+
+Eigen::VectorXd Whitener::apply_sensors(std::size_t r, const Eigen::VectorXd& residual) const {
+  const auto begin = static_cast<Eigen::Index>(runs_[r].begin);
+  const auto count = static_cast<Eigen::Index>(runs_[r].count);
+  return whiten_run(r, residual.segment(begin, count));
+}
+
+void Whitener::remove_roads(Eigen::MatrixXd& whitened) const {
+  for (std::size_t r = 0; r < roads_.size(); ++r) {
+    if (!has_road(r) || roads_[r]->response.size() == 0) continue;
+    const LatentRoad& road = *roads_[r];
+    auto of_run = whitened.middleRows(static_cast<Eigen::Index>(run_begin_[r]),
+                                      static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]));
+    Eigen::MatrixXd along = road.response.transpose() * of_run;
+    road.factor.triangularView<Eigen::Lower>().solveInPlace(along);
+    Eigen::MatrixXd upper = road.factor.transpose();
+    upper.diagonal().array() += 1.0;
+    upper.triangularView<Eigen::Upper>().solveInPlace(along);
+    of_run.noalias() -= road.response * along;
+  }
+}
+
 Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns) const {
   const auto readings = static_cast<Eigen::Index>(reading_count_);
   const auto whitened = static_cast<Eigen::Index>(places_.size());
   const Eigen::Index priors = columns.rows() - readings;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(whitened + priors, columns.cols());
-  out.bottomRows(priors) = columns.bottomRows(priors);
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    const Eigen::VectorXd column = columns.col(i);
-    for (std::size_t r = 0; r < runs_.size(); ++r) {
-      const bool is_there = std::any_of(
-          runs_[r].rows.begin(), runs_[r].rows.end(), [&](const std::vector<std::size_t>& rows) {
-            return std::any_of(rows.begin(), rows.end(), [&](std::size_t row) {
-              return row != kMissing && column(static_cast<Eigen::Index>(row)) != 0.0;
-            });
-          });
-      if (!is_there) continue;
-      const auto begin = static_cast<Eigen::Index>(run_begin_[r]);
-      const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
-      apply_run(r, column, out.col(i).segment(begin, count));
-    }
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const auto begin = static_cast<Eigen::Index>(run_begin_[r]);
+    const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
+    out.middleRows(begin, count) = whiten_run(
+        r, Eigen::MatrixXd(columns.middleRows(static_cast<Eigen::Index>(runs_[r].begin),
+                                              static_cast<Eigen::Index>(runs_[r].count))));
   }
+  remove_roads(out);
+  out.bottomRows(priors) = columns.bottomRows(priors);
   STRUT_CHECK(out.allFinite(), "finite residuals and derivatives");
   return out;
 }
 
+Eigen::VectorXd Whitener::apply_residual(const Eigen::VectorXd& residual) const {
+  Eigen::MatrixXd out(static_cast<Eigen::Index>(places_.size()), 1);
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const auto begin = static_cast<Eigen::Index>(run_begin_[r]);
+    const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
+    auto of_run = out.col(0).segment(begin, count);
+    of_run = apply_sensors(r, residual);
+    if (has_road(r) && roads_[r]->response.size() > 0) {
+      of_run -= roads_[r]->response * roads_[r]->weights;
+    }
+  }
+  remove_roads(out);
+  const Eigen::Index priors = residual.size() - static_cast<Eigen::Index>(reading_count_);
+  Eigen::VectorXd all(out.rows() + priors);
+  all << out.col(0), residual.tail(priors);
+  STRUT_CHECK(all.allFinite(), "finite residuals and derivatives");
+  return all;
+}
+
 Linearization Whitener::apply(const Linearization& at) const {
-  return {"", apply(at.residual), apply(at.jacobian)};
+  return {"", apply_residual(at.residual), apply(at.jacobian)};
 }
 
 WhitenedModel::WhitenedModel(ReadingModel& model, const Whitener& whitener)
@@ -192,7 +244,7 @@ std::vector<Evaluation> WhitenedModel::evaluate(const std::vector<std::vector<do
   std::vector<Evaluation> evaluations = model_.evaluate(points);
   simulation_count_ = model_.simulation_count();
   for (Evaluation& e : evaluations) {
-    if (e.failure.empty()) e.residual = whitener_.apply(e.residual);
+    if (e.failure.empty()) e.residual = whitener_.apply_residual(e.residual);
   }
   return evaluations;
 }
@@ -250,8 +302,8 @@ Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectr
         at[i].response_error = roughness.response_error;
         if (i != r) at[i].samples = 2;  // of the others nothing is asked
       }
-      const Whitener whitener(model, at, felt);
-      const double likelihood = whitener.calc_log_likelihood(whitener.apply(residual), r);
+      const Whitener whitener(model, at, {}, felt);
+      const double likelihood = whitener.calc_log_likelihood(whitener.apply_residual(residual), r);
       if (likelihood <= most[r]) continue;
       most[r] = likelihood;
       best[r] = roughness;

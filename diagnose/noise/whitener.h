@@ -6,13 +6,17 @@
 //
 // Joint motion of the channels that roughness can cause has a small weight; motion that it cannot
 // cause has the full weight of the sensors (Whittle's likelihood, P. Whittle, J. R. Stat. Soc. B 15
-// (1953)).
+// (1953)). Where a run's road is an unknown of its own (latent_road.h), C_k has the sensors alone,
+// and the road's part is taken out of the numbers of the run together:
+//
+//   w - H X H' w
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
 #include "base/math/eigen_abi.h"
+#include "diagnose/noise/latent_road.h"
 #include "diagnose/noise/noise_spectrum.h"
 #include "estimate/reading_model.h"
 
@@ -23,16 +27,26 @@ struct WhitenerOptions {
   double highest = 100.0;
   /// Hz; lower frequencies are ignored in tapered runs, where they are offset, not motion.
   double lowest = 0.6;
+  /// Hz; the highest where the road is a run's unknown: shorter waves than its tracks hold.
+  double highest_of_road = 40.0;
 };
 
 class Whitener {
  public:
-  /// Whitens the readings of `model`; its priors stay as they are.
-  Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra,
+  /// Whitens the readings of `model`; its priors stay as they are. `roads`: those in the model's
+  /// runs; empty where no run has one. Without a response, they are left to the sensors.
+  Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra, LatentRoads roads = {},
            const WhitenerOptions& options = {});
 
   /// Columns of readings, in units of each channel's sigma, then priors -> whitened, then priors.
+  /// Of differences and derivatives; for residuals, see apply_residual.
   Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
+  /// The residuals, about the road whose weights are zero, its prior mean.
+  Eigen::VectorXd apply_residual(const Eigen::VectorXd& residual) const;
+  /// Columns of one run's readings, by its sensors alone.
+  Eigen::MatrixXd whiten_run(std::size_t run, const Eigen::MatrixXd& columns_of_run) const;
+  /// Residuals whitened by the sensors alone, with the road as it is in the model's run.
+  Eigen::VectorXd apply_sensors(std::size_t run, const Eigen::VectorXd& residual) const;
   /// Whitens a linearization without failure.
   Linearization apply(const Linearization& at) const;
 
@@ -47,6 +61,7 @@ class Whitener {
   /// are missing.
   double get_share(std::size_t run) const { return runs_[run].share; }
   const std::vector<NoiseSpectrum>& spectra() const { return spectra_; }
+  const LatentRoads& roads() const { return roads_; }
 
   /// Whitened image of a disturbance of 1 sigma in one channel at one frequency: C_k^-1 e.
   Eigen::VectorXcd get_sensor_direction(const ReadingPlace& place, std::size_t channel) const;
@@ -59,17 +74,21 @@ class Whitener {
 
  private:
   struct Run {
-    std::vector<std::vector<std::size_t>> rows;  // [channel][sample]: the reading; kMissing
+    std::size_t begin = 0, count = 0;            // readings
+    std::vector<std::vector<std::size_t>> rows;  // [channel][sample]: from `begin`; kMissing
     std::vector<double> fade;
     double share = 1.0;                    // mean square of the taper, 0 at missing readings
     Eigen::Index first = 0;                // lowest frequency
     std::vector<Eigen::MatrixXcd> factor;  // [frequency - first]: C_k, lower
     double log_determinant = 0.0;
   };
-  void apply_run(std::size_t run, const Eigen::VectorXd& column,
+  void apply_run(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& column,
                  Eigen::Ref<Eigen::VectorXd> out) const;
+  bool has_road(std::size_t run) const { return !roads_.empty() && roads_[run] != nullptr; }
+  void remove_roads(Eigen::MatrixXd& whitened) const;
 
   std::vector<NoiseSpectrum> spectra_;
+  LatentRoads roads_;
   std::vector<Run> runs_;
   std::size_t reading_count_ = 0;
   std::vector<ReadingPlace> places_;

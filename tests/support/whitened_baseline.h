@@ -7,7 +7,7 @@ namespace strut::test {
 
 inline WhitenedFit fit_whitened_baseline(const CampaignData& data) {
   const Baseline baseline = calibrate_baseline(data);
-  return fit_whitened(data, baseline.runs, measure_noise(data, baseline), baseline.fit.unknowns,
+  return fit_whitened(data, baseline.runs, {measure_noise(data, baseline)}, baseline.fit.unknowns,
                       baseline.fit.values, baseline.shared_count(), 1);
 }
 

@@ -1,0 +1,197 @@
+#include "diagnose/noise/latent_road.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/error/check.h"
+#include "base/error/input_error.h"
+#include "diagnose/noise/road_density.h"
+#include "estimate/linearize_options.h"
+#include "estimate/run_prepared.h"
+#include "model/car/state.h"
+
+namespace strut {
+namespace {
+
+using Index = Eigen::Index;
+
+/// m, of the tracks before the rear wheels' first place and behind the front wheels' last.
+constexpr double kMargin = 0.5;
+/// Coefficients a second of driving: twice the highest frequency that the tracks hold.
+constexpr double kPerSecond = 120.0;
+
+/// Covariance of the increments over `spacing` of the tracks' half sum (`sign` 1) or half
+/// difference (-1), `lag` increments apart, at G0 = 1 m^3.
+Eigen::VectorXd calc_increment_covariance(Index count, double spacing, double width, double sign) {
+  constexpr int kSteps = 4096;
+  const double highest = 0.5 / spacing, step = highest / kSteps;
+  std::vector<double> density(kSteps);
+  for (int k = 0; k < kSteps; ++k) {
+    const double n = step * (k + 0.5), x = std::numbers::pi * n * spacing;
+    const double blur = spacing * std::sin(x) / x;
+    density[static_cast<std::size_t>(k)] =
+        calc_slope_density(n) * blur * blur * 0.5 * (1.0 + sign * calc_track_coherence(n, width));
+  }
+  Eigen::VectorXd covariance(count);
+  for (Index lag = 0; lag < count; ++lag) {
+    double sum = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+      sum +=
+          density[static_cast<std::size_t>(k)] *
+          std::cos(2.0 * std::numbers::pi * step * (k + 0.5) * spacing * static_cast<double>(lag));
+    }
+    covariance(lag) = 2.0 * step * sum;
+  }
+  return covariance;
+}
+
+/// Lower factor of the covariance of heights whose increments have this covariance.
+Eigen::MatrixXd factor_heights(const Eigen::VectorXd& increments) {
+  constexpr double kRounding = 1e-9;
+  const Index count = increments.size();
+  Eigen::MatrixXd covariance(count, count);
+  for (Index i = 0; i < count; ++i) {
+    for (Index j = 0; j < count; ++j) covariance(i, j) = increments(std::abs(i - j));
+  }
+  covariance.diagonal().array() *= 1.0 + kRounding;
+  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+  STRUT_CHECK(llt.info() == Eigen::Success, "a road's covariance is positive definite");
+  Eigen::MatrixXd heights = llt.matrixL();
+  for (Index i = 1; i < count; ++i) heights.row(i) += heights.row(i - 1);
+  return heights;
+}
+
+void set_tracks(LatentRoad& road, double level) {
+  const Eigen::VectorXd coefficients = std::sqrt(level) * road.prior->apply(road.weights);
+  const Index count = coefficients.size() / 2;
+  for (std::size_t track = 0; track < 2; ++track) {
+    const auto from = coefficients.begin() + static_cast<Index>(track) * count;
+    road.tracks[track].coefficients.assign(from, from + count);
+  }
+}
+
+/// By how much a car is faster before its lead time, by its torque and its resistance.
+double calc_lead_speed(Case c) {
+  c.vehicle.effects.clear();
+  c.vehicle.force_maps.clear();
+  c.maneuver.road = RoadSpec{};
+  c.maneuver.road.shape = BumpShape::kNone;
+  c.maneuver.duration = kRoadLead;
+  SamplePlan plan;
+  plan.snapshot = false;
+  CasePreparer preparer;
+  const std::vector<LaneRun> runs =
+      run_prepared({preparer.prepare(c)}, make_fit_integration(), plan);
+  if (runs.front().status() != RunStatus::kDone) {
+    throw InputError("the car cannot be simulated on a level road");
+  }
+  return c.maneuver.speed -
+         runs.front().results->get_final_state(StateIndex::kVelocity, runs.front().lane);
+}
+
+std::shared_ptr<const LatentRoad> make_smooth_road(const MeasuredRun& run) {
+  const Case& c = run.setup.car();
+  const ManeuverSpec& m = c.maneuver;
+  const auto& [front, rear] = c.vehicle.suspension;
+  const double start = -m.bump_distance - kRoadLead * m.speed;  // of the front wheels
+  const double way = m.speed * std::min(m.duration, run.times.back() + 0.1);
+  LatentRoad road;
+  road.lead_speed = calc_lead_speed(c);
+  const double spacing = m.speed / kPerSecond;
+  const double begin = start - c.vehicle.whole.wheelbase() - kMargin;
+  const double end = start + kRoadLead * m.speed + way + kMargin;
+  const auto count = static_cast<Index>(std::ceil((end - begin) / spacing));
+  road.tracks.fill({begin, spacing, std::vector<double>(static_cast<std::size_t>(count), 0.0)});
+  road.weights = Eigen::VectorXd::Zero(2 * count);
+  road.prior = std::make_shared<const RoadPrior>(
+      make_road_prior(count, spacing, front.wheel_center_y + rear.wheel_center_y));
+  return std::make_shared<const LatentRoad>(std::move(road));
+}
+
+}  // namespace
+
+Eigen::VectorXd RoadPrior::apply(const Eigen::VectorXd& weights) const {
+  const Index count = sum.rows();
+  const Eigen::VectorXd common = sum.triangularView<Eigen::Lower>() * weights.head(count);
+  const Eigen::VectorXd across = difference.triangularView<Eigen::Lower>() * weights.tail(count);
+  Eigen::VectorXd coefficients(2 * count);
+  coefficients << common + across, common - across;
+  return coefficients;
+}
+
+Eigen::MatrixXd RoadPrior::apply_transposed(const Eigen::MatrixXd& derivatives) const {
+  const Index count = sum.rows();
+  Eigen::MatrixXd out(derivatives.rows(), 2 * count);
+  out.leftCols(count).noalias() = (derivatives.leftCols(count) + derivatives.rightCols(count)) *
+                                  sum.triangularView<Eigen::Lower>();
+  out.rightCols(count).noalias() = (derivatives.leftCols(count) - derivatives.rightCols(count)) *
+                                   difference.triangularView<Eigen::Lower>();
+  return out;
+}
+
+RoadPrior make_road_prior(Index count, double spacing, double width) {
+  return {factor_heights(calc_increment_covariance(count, spacing, width, 1.0)),
+          factor_heights(calc_increment_covariance(count, spacing, width, -1.0))};
+}
+
+LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::size_t>& runs) {
+  LatentRoads roads;
+  roads.reserve(runs.size());
+  for (const std::size_t run : runs) roads.push_back(make_smooth_road(data.runs[run]));
+  return roads;
+}
+
+CampaignData lay_roads(CampaignData data, const std::vector<std::size_t>& runs,
+                       const LatentRoads& roads) {
+  for (std::size_t i = 0; i < roads.size(); ++i) {
+    MeasuredRun& run = data.runs[runs[i]];
+    ManeuverSpec& maneuver = run.setup.car().maneuver;
+    if (maneuver.lead_time == 0.0) {
+      maneuver.lead_time = kRoadLead;
+      maneuver.lead_speed = roads[i]->lead_speed;
+      maneuver.duration += kRoadLead;
+      for (double& t : run.times) t += kRoadLead;
+    }
+    maneuver.rough = roads[i]->tracks;
+  }
+  return data;
+}
+
+std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response) {
+  auto out = std::make_shared<LatentRoad>(road);
+  const Index count = response.cols();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(count, count);
+  information.selfadjointView<Eigen::Lower>().rankUpdate(response.transpose());
+  const Eigen::LLT<Eigen::MatrixXd> llt(information);
+  STRUT_CHECK(llt.info() == Eigen::Success, "a road's response is finite");
+  out->response = std::move(response);
+  out->factor = llt.matrixL();
+  return out;
+}
+
+std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::VectorXd weights,
+                                            double level) {
+  auto out = std::make_shared<LatentRoad>(road);
+  out->weights = std::move(weights);
+  set_tracks(*out, level);
+  return out;
+}
+
+Eigen::VectorXd solve_weights(const LatentRoad& road, const Eigen::VectorXd& residual) {
+  Eigen::VectorXd weights = road.response.transpose() * (road.response * road.weights - residual);
+  road.factor.triangularView<Eigen::Lower>().solveInPlace(weights);
+  road.factor.transpose().triangularView<Eigen::Upper>().solveInPlace(weights);
+  return weights;
+}
+
+double count_determined(const LatentRoad& road) {
+  const Index count = road.weights.size();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(count, count);
+  road.factor.triangularView<Eigen::Lower>().solveInPlace(inverse);
+  return static_cast<double>(count) - inverse.squaredNorm();
+}
+
+}  // namespace strut

@@ -1,0 +1,78 @@
+// The road's roughness as an unknown of each run of a car: heights of two tracks, which the rear
+// wheels follow as the front ones did.
+//
+//   y = f(theta, u) + e,  u = sqrt(G0) P w,  w ~ N(0, 1)
+//
+// u: coefficients of both tracks (model/scenario/rough_track.h). P: the increments of their sum and
+// their difference along the road are stationary, with the density
+//
+//   2 pi^2 n0^2 G0 (1 +- gamma(n)),  n0 = 0.1 1/m
+//
+// of ISO 8608 and the coherence gamma of an isotropic road (noise_spectrum.h). The estimate of the
+// road is in the simulation, and readings are linear about it: what roughness moves while a wheel
+// is in the air or on the bump is not what it moves on level ground.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "base/math/eigen_abi.h"
+#include "diagnose/campaign/campaign_data.h"
+
+namespace strut {
+
+/// P: lower factors of the covariances of the half sum and the half difference of the tracks'
+/// coefficients at G0 = 1 m^3; left is their sum, right their difference.
+struct RoadPrior {
+  Eigen::MatrixXd sum, difference;
+
+  /// Coefficients, left before right, of weights of the sum before those of the difference.
+  Eigen::VectorXd apply(const Eigen::VectorXd& weights) const;
+  /// Derivatives by the weights of what has these derivatives by the coefficients.
+  Eigen::MatrixXd apply_transposed(const Eigen::MatrixXd& derivatives) const;
+};
+
+struct LatentRoad {
+  std::array<RoughTrack, 2> tracks;  // the estimate
+  Eigen::VectorXd weights;           // w of the estimate
+  double lead_speed = 0.0;  // m/s, by how much the car is faster at the begin of its lead time
+  std::shared_ptr<const RoadPrior> prior{};
+  /// Derivative H by w of the readings, whitened by the sensors' noise; rows as in Whitener. Empty:
+  /// not known yet.
+  Eigen::MatrixXd response{};
+  /// Lower L with L L' = 1 + H' H. (1 + L')^-1 L^-1 = X makes 1 - H X H' a root of the inverse of
+  /// the readings' covariance 1 + H H'.
+  Eigen::MatrixXd factor{};
+};
+using LatentRoads = std::vector<std::shared_ptr<const LatentRoad>>;  // by run of a fit
+
+/// `count` coefficients of each track, `spacing` [m] apart, of tracks `width` [m] apart.
+RoadPrior make_road_prior(Eigen::Index count, double spacing, double width);
+
+/// Smooth roads under `runs`. These start kRoadLead earlier, since the car still moves by what it
+/// met before the record.
+LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::size_t>& runs);
+inline constexpr double kRoadLead = 1.0;  // s
+
+/// The campaign with these roads under `runs`, whose clocks begin kRoadLead later.
+CampaignData lay_roads(CampaignData data, const std::vector<std::size_t>& runs,
+                       const LatentRoads& roads);
+
+/// The road with the response, and the factor of it.
+std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response);
+
+/// The road at other weights, its response as it was. `level`: G0 [m^3].
+std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::VectorXd weights,
+                                            double level);
+
+/// The most likely weights of the linear model. `residual`: whitened by the sensors' noise, of the
+/// model with the road.
+Eigen::VectorXd solve_weights(const LatentRoad& road, const Eigen::VectorXd& residual);
+
+/// How many of the weights the readings determine: trace of H'H (1 + H'H)^-1.
+double count_determined(const LatentRoad& road);
+
+}  // namespace strut

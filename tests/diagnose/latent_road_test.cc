@@ -1,0 +1,146 @@
+// The road as an unknown against dense linear algebra, and against roads drawn at a known level.
+#include "diagnose/noise/latent_road.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "diagnose/noise/whitener.h"
+#include "tests/support/campaign_files.h"
+#include "tests/support/tolerance.h"
+
+namespace strut {
+namespace {
+
+using test::tolerance;
+
+constexpr std::size_t kSamples = 60, kChannels = 2;
+constexpr Eigen::Index kWeights = 8;
+
+/// Readings of two channels, none of which the unknown moves.
+class IdleModel : public ReadingModel {
+ public:
+  explicit IdleModel(std::size_t runs) : ReadingModel({Unknown{}}) {
+    unknowns_.front().name = "idle";
+    for (std::size_t r = 0; r < runs; ++r) {
+      channels_.push_back({0, 1});
+      for (std::size_t t = 0; t < kSamples; ++t) {
+        for (std::size_t c = 0; c < kChannels; ++c) readings_.push_back({r, t, c});
+      }
+    }
+  }
+  Linearization linearize(const std::vector<double>& /*values*/) override { return {}; }
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& /*points*/) override {
+    return {};
+  }
+};
+
+NoiseSpectrum make_white() {
+  NoiseSpectrum s;
+  s.samples = kSamples;
+  s.interval = 0.02;  // the highest frequency is 25 Hz
+  s.sigma = {1.0, 1.0};
+  return s;
+}
+
+Eigen::MatrixXd draw(std::uint64_t seed, Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd out(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < columns; ++j) {
+      out(i, j) = test::calc_test_normal(seed, static_cast<std::uint64_t>(i),
+                                         static_cast<std::uint64_t>(j));
+    }
+  }
+  return out;
+}
+
+constexpr Eigen::Index kReadings = static_cast<Eigen::Index>(kSamples * kChannels);
+
+std::shared_ptr<const LatentRoad> make_road(std::uint64_t seed) {
+  LatentRoad road;
+  road.weights = draw(seed + 1, kWeights, 1);
+  return set_response(road, 0.7 * draw(seed, kReadings, kWeights));
+}
+
+/// All of a road's part that whitening takes out, as a matrix.
+struct WhitenedRun {
+  IdleModel model{1};
+  std::shared_ptr<const LatentRoad> road = make_road(5);
+  Whitener plain{model, {make_white()}}, whitener{model, {make_white()}, {road}};
+  /// From readings to sensors' numbers: orthogonal.
+  Eigen::MatrixXd rotation = plain.apply(Eigen::MatrixXd::Identity(kReadings, kReadings));
+  Eigen::MatrixXd response = road->response;
+};
+
+TEST_CASE("Readings over an unknown road are whitened by a root of their inverse covariance",
+          "[unit]") {
+  const WhitenedRun run;
+  REQUIRE((run.rotation * run.rotation.transpose()).isIdentity(tolerance(1e-12)));
+  const Eigen::MatrixXd root = run.whitener.apply(run.rotation.transpose());
+  const Eigen::MatrixXd covariance =
+      Eigen::MatrixXd::Identity(kReadings, kReadings) + run.response * run.response.transpose();
+  CHECK((root * covariance * root.transpose()).isIdentity(tolerance(1e-10)));
+  const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+  const double half = llt.matrixLLT().diagonal().array().log().sum();
+  CHECK(run.whitener.get_log_determinant(0) - run.plain.get_log_determinant(0) ==
+        Approx(half).epsilon(tolerance(1e-10)));
+}
+
+TEST_CASE("Residuals of a model with a road are whitened about the road's prior mean", "[unit]") {
+  const WhitenedRun run;
+  const Eigen::VectorXd readings = draw(9, kReadings, 1);
+  const Eigen::VectorXd sensors = run.rotation * readings;
+  const Eigen::VectorXd whitened = run.whitener.apply_residual(readings);
+  const Eigen::VectorXd about = sensors - run.response * run.road->weights;
+  const Eigen::MatrixXd covariance =
+      Eigen::MatrixXd::Identity(kReadings, kReadings) + run.response * run.response.transpose();
+  CHECK(whitened.squaredNorm() ==
+        Approx(about.dot(covariance.llt().solve(about))).epsilon(tolerance(1e-10)));
+  CHECK((run.whitener.apply_sensors(0, readings) - sensors).norm() < tolerance(1e-12));
+}
+
+TEST_CASE("The weights of a road are those of ridge regression", "[unit]") {
+  const WhitenedRun run;
+  const Eigen::VectorXd here = draw(9, kReadings, 1);
+  const Eigen::VectorXd weights = solve_weights(*run.road, here);
+  // The gradient of |here + H (w - w0)|^2 + |w|^2.
+  const Eigen::VectorXd gradient =
+      run.response.transpose() * (here + run.response * (weights - run.road->weights)) + weights;
+  CHECK(gradient.norm() < tolerance(1e-10));
+  const Eigen::MatrixXd gram = run.response.transpose() * run.response;
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(kWeights, kWeights) + gram;
+  CHECK(count_determined(*run.road) ==
+        Approx((gram * all.inverse()).trace()).epsilon(tolerance(1e-10)));
+}
+
+/// Of the increments of a track with white slope: the density of the slope, 2 pi^2 n0^2, times the
+/// integral of sinc^2 up to the highest wave number, 0.7737 of the whole.
+TEST_CASE("A road's prior has the density of ISO 8608 in either track", "[unit]") {
+  constexpr double kSpacing = 0.05, kWidth = 1.5;
+  constexpr Eigen::Index kCount = 200;
+  const RoadPrior prior = make_road_prior(kCount, kSpacing, kWidth);
+  Eigen::MatrixXd factor(2 * kCount, 2 * kCount);
+  for (Eigen::Index i = 0; i < 2 * kCount; ++i) {
+    factor.col(i) = prior.apply(Eigen::VectorXd::Unit(2 * kCount, i));
+  }
+  const double expected = 2.0 * std::numbers::pi * std::numbers::pi * 0.01 * kSpacing * 0.7737;
+  for (const Eigen::Index i : {10, 150, 210, 399}) {
+    const Eigen::VectorXd increment = (factor.row(i) - factor.row(i - 1)).transpose();
+    CHECK(increment.squaredNorm() == Approx(expected).epsilon(tolerance(1e-3)));
+  }
+  // Long waves lift both tracks alike: 10 m are many times their distance.
+  const Eigen::VectorXd left = (factor.row(199) - factor.row(0)).transpose();
+  const Eigen::VectorXd right = (factor.row(399) - factor.row(200)).transpose();
+  const double coherence = left.dot(right) / (left.norm() * right.norm());
+  CHECK(coherence > 0.6);
+  CHECK(coherence < 0.9);
+  // The transposed derivative is that of the coefficients.
+  const Eigen::MatrixXd derivatives = draw(3, 4, 2 * kCount);
+  CHECK((prior.apply_transposed(derivatives) - derivatives * factor).norm() < tolerance(1e-10));
+}
+
+}  // namespace
+}  // namespace strut
