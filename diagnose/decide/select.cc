@@ -76,10 +76,15 @@ class Selector {
       unknowns.push_back(std::move(u));
       values.push_back(baseline.fit.values[i]);
     }
+    const auto fit = [&](const RunNoise& noise, const std::vector<double>& start) {
+      return fit_whitened(data_, runs, noise, unknowns, start, baseline.shared_count(),
+                          options_.threads);
+    };
+    WhitenedFit first = fit({chosen}, values);
+    // A road would take what a car that is far off lacks.
     const bool is_rough = !data_.has_inputs() && !all && chosen.front().level > 0.0;
-    const RunNoise noise{chosen, is_rough ? make_smooth_roads(data_, runs) : LatentRoads{}};
-    return fit_whitened(data_, runs, noise, unknowns, values, baseline.shared_count(),
-                        options_.threads);
+    if (!is_rough || first.is_dominated) return first;
+    return fit({chosen, make_smooth_roads(data_, runs)}, first.fit.values);
   }
 
   void tell(const std::string& what) const {

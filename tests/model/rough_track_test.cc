@@ -51,8 +51,8 @@ TEST_CASE("Lanes with different tracks have the heights of each by itself", "[pr
   using T = NativeLanes;
   const RoughTrack line = make_line(0.3), wave{0.2, 0.25, {1e-3, -2e-3, 4e-3}}, smooth;
   const RoughTrack* const choice[] = {&line, &smooth, &wave};
-  std::vector<const RoughTrack*> tracks;
-  for (int lane = 0; lane < kLaneCount<T>; ++lane) tracks.push_back(choice[lane % 3]);
+  std::vector<const RoughTrack*> tracks(static_cast<std::size_t>(kLaneCount<T>));
+  for (std::size_t lane = 0; lane < tracks.size(); ++lane) tracks[lane] = choice[lane % 3];
   const RoughTracks<T> together = make_rough_tracks<T>(tracks.data());
   CHECK(together.is_rough);
   for (const double x : {-1.2, 0.0, 0.41, 0.9, 2.0}) {
