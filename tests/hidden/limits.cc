@@ -89,9 +89,10 @@ int calc_bound(const Gate& gate, const Cell& cell) {
 }
 
 std::vector<QuantityLimit> make_quantity_limits(const Score& score) {
+  constexpr int kLeast = 5;  // more than the parameters of a single car
   std::vector<QuantityLimit> made;
   for (const Quantity& q : list_quantities(score)) {
-    if (q.count == 0) continue;
+    if (q.count < kLeast) continue;
     const double bound = q.at_least ? q.value / kAllowed : kAllowed * q.value + q.slack;
     made.push_back({q.name, q.at_least, q.value == 0.0 ? q.target : bound, q.count, q.value});
   }
