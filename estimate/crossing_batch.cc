@@ -18,24 +18,8 @@
 namespace strut {
 namespace {
 
-/// Channels that any of the runs compares.
-std::vector<int> list_recorded(const std::vector<MeasuredRun>& runs) {
-  std::set<int> channels;
-  for (const MeasuredRun& run : runs) {
-    for (const MeasuredChannel& c : run.channels) channels.insert(c.channel);
-  }
-  return {channels.begin(), channels.end()};
-}
-
 bool is_sensor(const EffectSetting& setting) {
   return (find_effect(setting.effect)->places & kOnChannel) != 0;
-}
-
-SampledRun get_channels(const MeasuredRun& run, const LaneRun& result) {
-  SampledRun sampled;
-  sampled.reserve(run.channels.size());
-  for (const MeasuredChannel& c : run.channels) sampled.push_back(result.get_series(c.channel));
-  return sampled;
 }
 
 std::string explain_failure(const std::string& run, const LaneRun& result) {
@@ -109,6 +93,21 @@ void run_tasks(const std::vector<MeasuredRun>& runs, const std::vector<CrossingT
 }
 
 }  // namespace
+
+std::vector<int> list_recorded(const std::vector<MeasuredRun>& runs) {
+  std::set<int> channels;
+  for (const MeasuredRun& run : runs) {
+    for (const MeasuredChannel& c : run.channels) channels.insert(c.channel);
+  }
+  return {channels.begin(), channels.end()};
+}
+
+SampledRun get_channels(const MeasuredRun& run, const LaneRun& result) {
+  SampledRun sampled;
+  sampled.reserve(run.channels.size());
+  for (const MeasuredChannel& c : run.channels) sampled.push_back(result.get_series(c.channel));
+  return sampled;
+}
 
 std::vector<CrossingResult> simulate_crossings(const std::vector<MeasuredRun>& runs,
                                                const std::vector<CrossingTask>& tasks,

@@ -8,6 +8,7 @@
 
 #include "estimate/linearize_options.h"
 #include "estimate/measured_run.h"
+#include "estimate/run_prepared.h"
 #include "model/car/case.h"
 
 namespace strut {
@@ -37,6 +38,12 @@ std::vector<CrossingResult> simulate_crossings(const std::vector<MeasuredRun>& r
                                                const std::vector<CrossingTask>& tasks,
                                                const LinearizeOptions& options,
                                                std::vector<CasePreparer>& preparers);
+
+/// Lists the channels that any of the runs compares, ascending.
+std::vector<int> list_recorded(const std::vector<MeasuredRun>& runs);
+
+/// Returns the compared channels of a run from its simulation.
+SampledRun get_channels(const MeasuredRun& run, const LaneRun& result);
 
 /// Returns the car without the effects of its sensors.
 Case remove_sensors(Case c);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "estimate/run_prepared.h"
@@ -35,9 +34,7 @@ class Simulator {
     options_.integrate.options.step.coarse_step = 0.0;
     plan_.interval = kInterval;
     plan_.snapshot = false;
-    std::set<int> channels;
-    for (const MeasuredChannel& c : run.channels) channels.insert(c.channel);
-    plan_.recorded = {channels.begin(), channels.end()};
+    plan_.recorded = list_recorded({run});
     sections_ = static_cast<std::size_t>(
         std::ceil(base_.duration / (kInterval * static_cast<double>(kSection))));
   }
@@ -75,23 +72,23 @@ class Simulator {
     const std::vector<LaneRun> runs =
         run_prepared(cases, options_.integrate, plan_, options_.threads);
     response.simulation_count += static_cast<long>(runs.size());
+    SampledRun rest;
     std::size_t at = 0;
     for (std::size_t k = 0; k < order.size(); ++k, ++at) {
-      if (at == rests[k]) ++at;
-      for (const std::size_t one : {rests[k], at}) {
-        failure = explain(runs[one]);
+      if (at == rests[k]) {
+        failure = explain(runs[at]);
         if (!failure.empty()) return failure;
+        rest = get_channels(run_, runs[at++]);
       }
+      failure = explain(runs[at]);
+      if (!failure.empty()) return failure;
       RoadPulse& pulse = response.pulses[order[k]];
       pulse.first = begins[order[k]] * kSection;
-      for (const MeasuredChannel& c : run_.channels) {
-        std::vector<double> change = runs[at].get_series(c.channel);
-        const std::vector<double> rest = runs[rests[k]].get_series(c.channel);
-        const std::size_t count =
-            std::min(change.size(), response.rest.front().size() - pulse.first);
-        change.resize(count);
-        for (std::size_t i = 0; i < count; ++i) change[i] -= rest[i];
-        pulse.change.push_back(std::move(change));
+      pulse.change = get_channels(run_, runs[at]);
+      for (std::size_t c = 0; c < pulse.change.size(); ++c) {
+        std::vector<double>& change = pulse.change[c];
+        change.resize(std::min(change.size(), response.rest[c].size() - pulse.first));
+        for (std::size_t i = 0; i < change.size(); ++i) change[i] -= rest[c][i];
       }
     }
     return "";
@@ -114,8 +111,9 @@ class Simulator {
             runs.front().results->get_final_state(static_cast<int>(i), runs.front().lane);
       }
       starts_.push_back(section.start);
-      for (std::size_t c = 0; c < run_.channels.size(); ++c) {
-        const std::vector<double> part = runs.front().get_series(run_.channels[c].channel);
+      const SampledRun sampled = get_channels(run_, runs.front());
+      for (std::size_t c = 0; c < sampled.size(); ++c) {
+        const std::vector<double>& part = sampled[c];
         const bool is_last = s + 1 == sections_;
         response.rest[c].insert(
             response.rest[c].end(), part.begin(),

@@ -1,4 +1,4 @@
-// What small changes of a rough road do to a car: a simulation for each coefficient of its tracks
+// Responses of a car to small changes of a rough road: one simulation per coefficient of the tracks
 // (model/scenario/rough_track.h), from shortly before the front wheels meet it.
 #pragma once
 

@@ -28,9 +28,7 @@ std::vector<TimeWindow> make_axle_windows(const MeasuredRun& run) {
   const double half = 0.5 * m.road.length + kFootprint;
   const double front = m.bump_distance;
   const double rear = front + run.setup.car().vehicle.whole.wheelbase();
-  const auto time = [&](double way) {
-    return std::clamp(way / m.speed + m.lead_time, first, last);
-  };
+  const auto time = [&](double way) { return std::clamp(way / m.speed, first, last); };
   const double leave = std::min(time(front + half), time(rear - half));
   return {{"approach", first, time(front - half)},
           {"front axle", time(front - half), leave},

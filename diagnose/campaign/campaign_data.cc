@@ -430,10 +430,15 @@ bool meets_bump(const CampaignData& data, std::size_t run) {
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads) {
+  return make_reading_model(select(data.runs, runs), std::move(unknowns), threads);
+}
+
+std::unique_ptr<ReadingModel> make_reading_model(std::vector<MeasuredRun> runs,
+                                                 std::vector<Unknown> unknowns, int threads) {
   LinearizeOptions options;
   options.rate = 1000.0;  // enough at the sensors and speeds of campaigns
   options.threads = threads;
-  return make_readings(select(data.runs, runs), std::move(unknowns), options);
+  return make_readings(std::move(runs), std::move(unknowns), options);
 }
 
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,

@@ -65,6 +65,9 @@ std::vector<Unknown> make_run_unknowns(const CampaignData& data,
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads = 1);
+/// The same for runs that were changed since they were read.
+std::unique_ptr<ReadingModel> make_reading_model(std::vector<MeasuredRun> runs,
+                                                 std::vector<Unknown> unknowns, int threads = 1);
 
 /// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
 /// ModelError as make_signal does.

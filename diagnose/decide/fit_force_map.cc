@@ -68,7 +68,7 @@ class MapSearch {
  public:
   MapSearch(const CampaignData& data, const WhitenedFit& base, const MapBasis& basis, double force,
             int threads)
-      : data_(lay_roads(data, base.runs, base.roads)),
+      : data_(data),
         basis_(basis),
         force_(force),
         threads_(threads),
@@ -110,7 +110,7 @@ class MapSearch {
     unknowns.insert(unknowns.begin() + shared, own.begin(), own.end());
     values.insert(values.begin() + shared, found.data(), found.data() + found.size());
     fit.shared_count += own.size();
-    const auto model = make_reading_model(data_, fit.runs, unknowns, threads_);
+    const auto model = make_reading_model(data_, fit.runs, fit.roads, unknowns, threads_);
     Linearization at = model->linearize(values);
     if (!at.failure.empty()) throw InputError(at.failure);
     const Whitener whitener(*model, fit.spectra, fit.roads);
@@ -141,8 +141,9 @@ class MapSearch {
       factors_ = factors;
       now_.fit.values = values;
       moved_ = gained > kEnough;
-      if (!now_.is_dominated && now_.roads.empty())
+      if (!now_.is_dominated && now_.roads.empty()) {
         count_excess(bench.whitener(), *residual, now_.spectra);
+      }
       return;
     }
   }
@@ -174,13 +175,14 @@ class MapSearch {
     auto map = std::make_shared<const ForceMap>(add_shapes(basis_, factors));
     unknowns.push_back(make_map_unknown("force_map", std::move(map), {}));
     values.push_back(1.0);
-    const auto model = make_reading_model(data_, now_.runs, std::move(unknowns), threads_);
+    const auto model =
+        make_reading_model(data_, now_.runs, now_.roads, std::move(unknowns), threads_);
     const Evaluation e = model->evaluate(values);
     if (!e.failure.empty()) return std::nullopt;
     return whitener.apply_residual(e.residual);
   }
 
-  CampaignData data_;  // with the fit's roads under its runs
+  const CampaignData& data_;
   const MapBasis& basis_;
   double force_;
   int threads_;

@@ -47,11 +47,11 @@ std::vector<FrequencyBand> list_bands(const Whitener& whitener) {
 std::vector<Cell> list_numbers(const CampaignData& data, const TestBench& bench,
                                const LeftoverOptions& options) {
   const Whitener& whitener = bench.whitener();
+  const bool is_road_noise = !data.has_inputs() && whitener.roads().empty();
   std::vector<std::vector<double>> allowed(bench.run_count());  // by run and band
   for (std::size_t r = 0; r < allowed.size(); ++r) {
     for (std::size_t b = 0; b < kNoiseBands.size(); ++b) {
-      const bool is_noise = !data.has_inputs() && whitener.roads().empty();
-      const double road = !is_noise ? 0.0 : calc_road_ratio(whitener.spectra()[r], b);
+      const double road = is_road_noise ? calc_road_ratio(whitener.spectra()[r], b) : 0.0;
       allowed[r].push_back(1.0 + options.noise_tolerance + options.road_tolerance * road);
     }
   }

@@ -35,15 +35,16 @@ Eigen::MatrixXd eliminate(const Eigen::MatrixXd& products, Index begin, Index co
 }  // namespace
 
 TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threads)
-    : data_(lay_roads(data, fit.runs, fit.roads)),
+    : data_(data),
       runs_(fit.runs),
+      roads_(fit.roads),
       unknowns_(fit.fit.unknowns),
       values_(fit.fit.values),
       shared_count_(fit.shared_count),
       effects_on_(list_effects_on(data, fit.shared())),
       threads_(threads) {
-  const auto model = make_reading_model(data_, runs_, unknowns_, threads_);
-  whitener_ = std::make_unique<Whitener>(*model, fit.spectra, fit.roads);
+  const auto model = make_reading_model(data_, runs_, roads_, unknowns_, threads_);
+  whitener_ = std::make_unique<Whitener>(*model, fit.spectra, roads_);
   const WhitenedModel whitened(*model, *whitener_);
   std::shared_ptr<const Linearization> given = fit.linearization;
   if (!given) given = std::make_shared<const Linearization>(model->linearize(values_));
@@ -63,7 +64,7 @@ std::unique_ptr<ReadingModel> TestBench::make_model(const std::vector<Unknown>& 
                                                     int threads) const {
   std::vector<Unknown> all = unknowns_;
   all.insert(all.end(), added.begin(), added.end());
-  return make_reading_model(data_, runs_, std::move(all), threads);
+  return make_reading_model(data_, runs_, roads_, std::move(all), threads);
 }
 
 Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Unknown>& added,

@@ -16,7 +16,7 @@ namespace strut {
 
 class TestBench {
  public:
-  /// Linearizes about a fit. Throws InputError where the model cannot be
+  /// Linearizes about a fit. `data` must outlive it. Throws InputError where the model cannot be
   /// simulated there.
   TestBench(const CampaignData& data, const WhitenedFit& fit, int threads);
 
@@ -52,8 +52,9 @@ class TestBench {
  private:
   std::unique_ptr<ReadingModel> make_model(const std::vector<Unknown>& added, int threads) const;
 
-  CampaignData data_;  // with the fit's roads under its runs
+  const CampaignData& data_;
   std::vector<std::size_t> runs_;
+  LatentRoads roads_;
   std::vector<Unknown> unknowns_;
   std::vector<double> values_;
   std::size_t shared_count_;

@@ -55,8 +55,9 @@ std::vector<HoldOutRun> HoldOutJudge::judge(const SharedValues& shared) const {
 }
 
 HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) const {
-  const CampaignData one = lay_roads(pin_run(data_, runs_[i], shared), {0}, roads_[i]);
-  const auto model = make_reading_model(one, {0}, make_run_unknowns(one, {0}, shared.unknowns));
+  const CampaignData one = pin_run(data_, runs_[i], shared);
+  const auto model =
+      make_reading_model(one, {0}, roads_[i], make_run_unknowns(one, {0}, shared.unknowns));
   const Whitener whitener(*model, {noise_[i]}, roads_[i]);
   WhitenedModel whitened(*model, whitener);
   const FitResult fit = fit_readings(whitened);

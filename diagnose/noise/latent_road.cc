@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "base/error/check.h"
-#include "base/error/input_error.h"
 #include "diagnose/noise/road_density.h"
-#include "estimate/linearize_options.h"
-#include "estimate/run_prepared.h"
+#include "diagnose/noise/smooth_road.h"
 #include "model/car/state.h"
 
 namespace strut {
@@ -30,10 +28,10 @@ Eigen::VectorXd calc_increment_covariance(Index count, double spacing, double wi
   const double highest = 0.5 / spacing, step = highest / kSteps;
   std::vector<double> density(kSteps);
   for (int k = 0; k < kSteps; ++k) {
-    const double n = step * (k + 0.5), x = std::numbers::pi * n * spacing;
-    const double blur = spacing * std::sin(x) / x;
+    const double n = step * (k + 0.5);
+    const double rise = 2.0 * std::sin(std::numbers::pi * n * spacing);  // of a wave of height 1
     density[static_cast<std::size_t>(k)] =
-        calc_slope_density(n) * blur * blur * 0.5 * (1.0 + sign * calc_track_coherence(n, width));
+        calc_height_density(n) * rise * rise * 0.5 * (1.0 + sign * calc_track_coherence(n, width));
   }
   Eigen::VectorXd covariance(count);
   for (Index lag = 0; lag < count; ++lag) {
@@ -82,14 +80,17 @@ double calc_lead_speed(Case c) {
   c.maneuver.duration = kRoadLead;
   SamplePlan plan;
   plan.snapshot = false;
-  CasePreparer preparer;
-  const std::vector<LaneRun> runs =
-      run_prepared({preparer.prepare(c)}, make_fit_integration(), plan);
-  if (runs.front().status() != RunStatus::kDone) {
-    throw InputError("the car cannot be simulated on a level road");
-  }
-  return c.maneuver.speed -
-         runs.front().results->get_final_state(StateIndex::kVelocity, runs.front().lane);
+  const LaneRun run = simulate_smooth_road(c, plan);
+  return c.maneuver.speed - run.results->get_final_state(StateIndex::kVelocity, run.lane);
+}
+
+void lay_road(const LatentRoad& road, MeasuredRun& run) {
+  ManeuverSpec& maneuver = run.setup.car().maneuver;
+  maneuver.lead_time = kRoadLead;
+  maneuver.lead_speed = road.lead_speed;
+  maneuver.duration += kRoadLead;
+  maneuver.rough = road.tracks;
+  for (double& t : run.times) t += kRoadLead;
 }
 
 std::shared_ptr<const LatentRoad> make_smooth_road(const MeasuredRun& run) {
@@ -144,20 +145,18 @@ LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::s
   return roads;
 }
 
-CampaignData lay_roads(CampaignData data, const std::vector<std::size_t>& runs,
-                       const LatentRoads& roads) {
-  for (std::size_t i = 0; i < roads.size(); ++i) {
-    MeasuredRun& run = data.runs[runs[i]];
-    ManeuverSpec& maneuver = run.setup.car().maneuver;
-    if (maneuver.lead_time == 0.0) {
-      maneuver.lead_time = kRoadLead;
-      maneuver.lead_speed = roads[i]->lead_speed;
-      maneuver.duration += kRoadLead;
-      for (double& t : run.times) t += kRoadLead;
-    }
-    maneuver.rough = roads[i]->tracks;
+std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
+                                                 const std::vector<std::size_t>& runs,
+                                                 const LatentRoads& roads,
+                                                 std::vector<Unknown> unknowns, int threads) {
+  if (roads.empty()) return make_reading_model(data, runs, std::move(unknowns), threads);
+  std::vector<MeasuredRun> laid;
+  laid.reserve(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    laid.push_back(data.runs[runs[i]]);
+    lay_road(*roads[i], laid.back());
   }
-  return data;
+  return make_reading_model(std::move(laid), std::move(unknowns), threads);
 }
 
 std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response) {

@@ -57,9 +57,12 @@ RoadPrior make_road_prior(Eigen::Index count, double spacing, double width);
 LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::size_t>& runs);
 inline constexpr double kRoadLead = 1.0;  // s
 
-/// The campaign with these roads under `runs`, whose clocks begin kRoadLead later.
-CampaignData lay_roads(CampaignData data, const std::vector<std::size_t>& runs,
-                       const LatentRoads& roads);
+/// The readings of `runs` against their simulation on these roads, one per run, with clocks that
+/// begin kRoadLead later; without roads, against that of the campaign.
+std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
+                                                 const std::vector<std::size_t>& runs,
+                                                 const LatentRoads& roads,
+                                                 std::vector<Unknown> unknowns, int threads = 1);
 
 /// The road with the response, and the factor of it.
 std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response);
@@ -72,7 +75,8 @@ std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::Vecto
 /// model with the road.
 Eigen::VectorXd solve_weights(const LatentRoad& road, const Eigen::VectorXd& residual);
 
-/// How many of the weights the readings determine: trace of H'H (1 + H'H)^-1.
+/// Returns the effective number of weights that the readings determine: trace of
+/// H'H (1 + H'H)^-1.
 double count_determined(const LatentRoad& road);
 
 }  // namespace strut

@@ -13,7 +13,7 @@
 #include "base/error/input_error.h"
 #include "base/math/all_finite.h"
 #include "diagnose/noise/road_density.h"
-#include "estimate/run_prepared.h"
+#include "diagnose/noise/smooth_road.h"
 #include "estimate/simulate_run.h"
 
 namespace strut {
@@ -87,15 +87,10 @@ std::vector<std::vector<double>> simulate_pulse(Case c, const NoiseSpectrum& s,
   SamplePlan plan;
   plan.interval = s.interval;
   plan.snapshot = false;
-  CasePreparer preparer;
-  const std::vector<LaneRun> runs =
-      run_prepared({preparer.prepare(c)}, make_fit_integration(), plan);
-  if (runs.front().status() != RunStatus::kDone) {
-    throw InputError("the car cannot be simulated on a level road");
-  }
+  const LaneRun run = simulate_smooth_road(c, plan);
   std::vector<std::vector<double>> responses;
   responses.reserve(channels.size());
-  for (const MeasuredChannel& m : channels) responses.push_back(runs.front().get_series(m.channel));
+  for (const MeasuredChannel& m : channels) responses.push_back(run.get_series(m.channel));
   return responses;
 }
 
@@ -140,8 +135,8 @@ Eigen::MatrixXcd make_wheel_source(const std::vector<Spectrum>& response, double
         static_cast<double>(f) * rate / static_cast<double>(kFiner * s.samples);
     if (frequency > kHighest) break;
     const double n = std::max(frequency / speed, 1.0 / kLongestWave);
-    // Two-sided density over time of a road with G0 = 1 m^3; n0 = 0.1 1/m.
-    const double density = 0.5 * 0.01 / (n * n) / speed;
+    // Over time.
+    const double density = calc_height_density(n) / speed;
     const double per_height = s.interval / (kPulseHeight * calc_pulse_transform(frequency));
     const double amplitude = per_height * std::sqrt(density * rate);
     for (std::size_t k = 0; k < response.size(); ++k) {

@@ -6,10 +6,7 @@
 
 namespace strut {
 
-double calc_slope_density(double /*wave_number*/) {
-  constexpr double kReference = 0.1;  // 1/m
-  return 2.0 * std::numbers::pi * std::numbers::pi * kReference * kReference;
-}
+double calc_height_density(double wave_number) { return 0.5 * 0.01 / (wave_number * wave_number); }
 
 double calc_track_coherence(double wave_number, double width) {
   constexpr double kTrusted = 0.9;

@@ -3,12 +3,13 @@
 
 namespace strut {
 
-/// Two-sided density of a track's slope for G0 = 1 m^3, n0 = 0.1 1/m: white [1/m].
-double calc_slope_density(double wave_number);
+/// Returns the two-sided density of a track's height for G0 = 1 m^3 [m^3]: (n / n0)^-2 / 2,
+/// n0 = 0.1 1/m (ISO 8608).
+double calc_height_density(double wave_number);
 
-/// How alike two tracks of an isotropic road are, `width` [m] apart: x K_1(x), x = 2 pi n width
-/// (C. J. Dodds, J. D. Robson, J. Sound Vib. 31 (1973)), reduced to kTrustedCoherence of it, since
-/// no road is isotropic.
+/// Returns the coherence of two tracks `width` [m] apart: 0.9 times that of an isotropic road,
+/// x K_1(x), x = 2 pi n width (C. J. Dodds, J. D. Robson, J. Sound Vib. 31 (1973)), since no real
+/// road is isotropic.
 double calc_track_coherence(double wave_number, double width);
 
 }  // namespace strut

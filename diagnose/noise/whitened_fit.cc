@@ -171,11 +171,11 @@ class RoadSearch {
   /// Returns false where the car cannot be simulated on the road that it seems to need.
   bool run() {
     constexpr int kMostSteps = 12;
-    // Of chi2: events that readings pass make it uneven by about so much, spread over thousands of
-    // weights.
+    // Predicted decrease of chi2 below which the search ends. Contact events that pass a reading
+    // make chi2 discontinuous by about as much.
     constexpr double kNear = 30.0;
-    // Of chi2, and of what a step promises: a road's derivatives are kept while it falls by less
-    // than the former and by more than the latter.
+    // The derivatives by the road are kept after a step whose predicted decrease is below kSmall
+    // of chi2 and that achieves more than kEnough of it.
     constexpr double kSmall = 0.05, kEnough = 0.25;
     bool is_new = true;
     int steps = 0;
@@ -205,8 +205,7 @@ class RoadSearch {
   };
 
   void make_model() {
-    laid_ = lay_roads(data_, result_.runs, result_.roads);
-    model_ = make_reading_model(laid_, result_.runs, unknowns_, threads_);
+    model_ = make_reading_model(data_, result_.runs, result_.roads, unknowns_, threads_);
   }
 
   /// Sets the response of the roads where they and the car are; false where these cannot be
@@ -375,7 +374,6 @@ class RoadSearch {
   std::vector<double> values_;
   int level_steps_, threads_;
   WhitenedFit& result_;
-  CampaignData laid_;
   std::unique_ptr<ReadingModel> model_;
 };
 
@@ -411,8 +409,7 @@ WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t
     result.spectra = noise.spectra;
     result.roads.clear();
   }
-  const auto model =
-      make_reading_model(lay_roads(data, runs, result.roads), runs, unknowns, threads);
+  const auto model = make_reading_model(data, runs, result.roads, unknowns, threads);
   if (data.has_inputs()) {
     fit_driven(*model, start, result);
   } else if (result.roads.empty()) {

@@ -39,7 +39,7 @@ class Whitener {
            const WhitenerOptions& options = {});
 
   /// Columns of readings, in units of each channel's sigma, then priors -> whitened, then priors.
-  /// Of differences and derivatives; for residuals, see apply_residual.
+  /// For differences of readings and derivatives; see apply_residual for residuals.
   Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
   /// The residuals, about the road whose weights are zero, its prior mean.
   Eigen::VectorXd apply_residual(const Eigen::VectorXd& residual) const;
