@@ -85,9 +85,14 @@ double fit_chi2(const Detector& detector, const VectorXd& readings, const FaultS
   columns.leftCols(nuisances) = detector.jacobian();
   if (has_fault) columns.col(nuisances) = detector.calc_deviation({fault});
   const Eigen::HouseholderQR<MatrixXd> qr(columns);
+  // Starts at the truth: the smallest faults do not grow in proportion to their magnitudes.
   VectorXd x = VectorXd::Zero(columns.cols()), residual = readings;
+  if (has_fault) {
+    x[nuisances] = 1.0;
+    residual -= columns.col(nuisances);
+  }
   constexpr double kConverged = 0.01;
-  double chi2 = readings.squaredNorm();
+  double chi2 = residual.squaredNorm();
   for (int step = 0; step < 4; ++step) {
     x += qr.solve(residual);
     FaultSetting scaled = fault;
