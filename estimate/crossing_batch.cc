@@ -125,6 +125,10 @@ std::vector<CrossingResult> simulate_crossings(const std::vector<MeasuredRun>& r
   return results;
 }
 
+bool has_sensors(const Case& c) {
+  return std::any_of(c.vehicle.effects.begin(), c.vehicle.effects.end(), is_sensor);
+}
+
 Case remove_sensors(Case c) {
   std::erase_if(c.vehicle.effects, is_sensor);
   return c;

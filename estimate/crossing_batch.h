@@ -45,6 +45,9 @@ std::vector<int> list_recorded(const std::vector<MeasuredRun>& runs);
 /// Returns the compared channels of a run from its simulation.
 SampledRun get_channels(const MeasuredRun& run, const LaneRun& result);
 
+/// Whether any sensor has effects.
+bool has_sensors(const Case& c);
+
 /// Returns the car without the effects of its sensors.
 Case remove_sensors(Case c);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -57,6 +58,10 @@ class CrossingReadings final : public ReadingModel {
   void fill_column(const RunVariant& upper, const RunVariant& lower, const SampledRun& base,
                    const SampledRun& above_run, const SampledRun& below_run,
                    const std::vector<double>& values, Linearization& out) const;
+
+  /// From a run's samples, channel by channel, to its readings.
+  using ReadingMap = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  ReadingMap make_reading_map(std::size_t run, const RoadResponse& response, double hit_time) const;
 
   double interval() const { return 1.0 / options_.rate; }
 
@@ -307,6 +312,29 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
   return evaluations;
 }
 
+CrossingReadings::ReadingMap CrossingReadings::make_reading_map(std::size_t run,
+                                                                const RoadResponse& response,
+                                                                double hit_time) const {
+  const std::size_t rows = begin_row(run + 1) - begin_row(run);
+  ReadingMap map(static_cast<Eigen::Index>(rows), response.derivatives.rows());
+  map.reserve(Eigen::VectorXi::Constant(map.rows(), kCurveSamples));
+  for (std::size_t row = 0; row < rows; ++row) {
+    const ReadingPlace& place = readings_[begin_row(run) + row];
+    const double at = (runs_[run].times[place.time] + hit_time) / response.interval;
+    const double index = std::floor(at);
+    const std::size_t first = static_cast<std::size_t>(index) - kCurveMargin;
+    for (std::size_t i = first; i < first + kCurveSamples; ++i) {
+      const auto get = [&](std::size_t sample) { return sample == i ? 1.0 : 0.0; };
+      const double weight =
+          interpolate_curve(get, first + kCurveMargin, at - index, response.interval).value;
+      const auto sample = static_cast<Eigen::Index>(place.channel) * response.samples +
+                          static_cast<Eigen::Index>(i);
+      map.insert(static_cast<Eigen::Index>(row), sample) = weight / get_channel(place).sigma;
+    }
+  }
+  return map;
+}
+
 std::string CrossingReadings::linearize_road(const std::vector<double>& values, std::size_t run,
                                              const TakeColumns& take) {
   Case setup;
@@ -316,36 +344,11 @@ std::string CrossingReadings::linearize_road(const std::vector<double>& values, 
   failure = simulate_road_response(runs_[run], setup, options_, preparers_[run], response);
   if (!failure.empty()) return failure;
   simulation_count_ += response.simulation_count;
-  const double hit_time = get_hit_time(unknowns_, values, run);
-  const auto read_all = [&](SampledRun sampled) {
-    sampled = read_sensors(setup, runs_[run], response.interval, std::move(sampled));
-    const auto count = static_cast<Eigen::Index>(begin_row(run + 1) - begin_row(run));
-    Eigen::VectorXd readings(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const ReadingPlace& place = readings_[begin_row(run) + static_cast<std::size_t>(i)];
-      readings(i) = read_curve(runs_[run], sampled, place, hit_time, response.interval).value /
-                    get_channel(place).sigma;
-    }
-    return readings;
-  };
-  const Eigen::VectorXd rest = read_all(response.rest);
-  constexpr std::size_t kAtOnce = 64;
-  for (std::size_t begin = 0; begin < response.pulses.size(); begin += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, response.pulses.size() - begin);
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rest.size(), static_cast<Eigen::Index>(count));
-    share_items(options_.threads, count, [&](std::size_t k, int /*thread*/) {
-      const RoadPulse& pulse = response.pulses[begin + k];
-      if (pulse.change.empty()) return;
-      SampledRun sampled = response.rest;
-      for (std::size_t c = 0; c < sampled.size(); ++c) {
-        for (std::size_t i = 0; i < pulse.change[c].size(); ++i) {
-          sampled[c][pulse.first + i] += pulse.change[c][i];
-        }
-      }
-      columns.col(static_cast<Eigen::Index>(k)) =
-          (read_all(std::move(sampled)) - rest) / kRoadPulseHeight;
-    });
-    take(static_cast<Eigen::Index>(begin), columns);
+  const ReadingMap map = make_reading_map(run, response, get_hit_time(unknowns_, values, run));
+  constexpr Eigen::Index kAtOnce = 64;
+  const Eigen::Index count = response.derivatives.cols();
+  for (Eigen::Index begin = 0; begin < count; begin += kAtOnce) {
+    take(begin, map * response.derivatives.middleCols(begin, std::min(kAtOnce, count - begin)));
   }
   return "";
 }

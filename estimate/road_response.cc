@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "base/parallel/team.h"
 #include "estimate/run_prepared.h"
 #include "model/error/model_error.h"
 
@@ -14,14 +16,33 @@ namespace {
 
 constexpr double kInterval = 4e-3;  // s, between samples: a tenth of the period of 25 Hz
 constexpr double kStep = 4e-3;      // s
-/// Samples of a section, at whose ends the car's state is known.
-constexpr std::size_t kSection = 60;
-/// s, before the front wheels meet a coefficient, since the car's speed is not quite constant.
-constexpr double kBefore = 0.1;
+/// Samples of a section. Each section costs a simulation for every state and for every coefficient
+/// under a wheel; in a longer one, wheels meet more.
+constexpr std::size_t kSection = 10;
+constexpr double kLength = kInterval * static_cast<double>(kSection);  // s, of a section
+/// m, by which a wheel may leave its place along the car as it swings and the chassis pitches.
+constexpr double kPlay = 0.05;
+constexpr double kChange = 1e-6;  // of a state, in its SI unit
+constexpr double kHeight = 2e-5;  // m, of a coefficient's change
 
-/// A coefficient of a track.
-struct Place {
-  std::size_t track, number;
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Coefficients of a track: [begin, end).
+struct Range {
+  Index begin = 0, end = 0;
+};
+
+/// A section of the run over the road as it is.
+struct Section {
+  State<double> start;
+  SampledRun samples{};           // kSection + 1 of each channel
+  std::array<Range, 2> tracks{};  // by track, all coefficients from the rear wheel to the front
+  struct Place {
+    std::size_t track;
+    Index number;
+  };
+  std::vector<Place> met{};  // coefficients under a wheel
 };
 
 class Simulator {
@@ -35,117 +56,208 @@ class Simulator {
     plan_.interval = kInterval;
     plan_.snapshot = false;
     plan_.recorded = list_recorded({run});
-    sections_ = static_cast<std::size_t>(
-        std::ceil(base_.duration / (kInterval * static_cast<double>(kSection))));
+    section_count_ = static_cast<std::size_t>(std::ceil(base_.duration / kLength));
+    base_.duration = kLength;
+    for (const RoughTrack& track : setup.maneuver.rough) {
+      columns_.push_back(columns_.back() + static_cast<Index>(track.coefficients.size()));
+    }
   }
 
   std::string run(RoadResponse& response) {
-    response.interval = kInterval;
-    std::string failure = drive(response);
+    std::string failure = drive();
     if (!failure.empty()) return failure;
-    for (std::size_t track = 0; track < setup_.maneuver.rough.size(); ++track) {
-      const std::size_t count = setup_.maneuver.rough[track].coefficients.size();
-      for (std::size_t i = 0; i < count; ++i) places_.push_back({track, i});
-    }
-    response.pulses.resize(places_.size());
-    std::vector<std::size_t> order, begins;  // the latter: the section in which each begins
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      begins.push_back(find_begin(places_[k]));
-      if (begins[k] < sections_) order.push_back(k);
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return begins[a] < begins[b]; });
-    std::vector<PreparedCase> cases;
-    std::vector<std::size_t> rests;  // by number in `order`: the case without a pulse
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::size_t begin = begins[order[k]];
-      if (k == 0 || begin != begins[order[k - 1]]) {
-        rests.push_back(cases.size());
-        cases.push_back(make_case(begin));
-      } else {
-        rests.push_back(rests.back());
-      }
-      cases.push_back(make_case(begin));
-      const Place& place = places_[order[k]];
-      cases.back().rough[place.track].coefficients[place.number] += kRoadPulseHeight;
-    }
-    const std::vector<LaneRun> runs =
-        run_prepared(cases, options_.integrate, plan_, options_.threads);
-    response.simulation_count += static_cast<long>(runs.size());
-    SampledRun rest;
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < order.size(); ++k, ++at) {
-      if (at == rests[k]) {
-        failure = explain(runs[at]);
+    response.interval = kInterval;
+    response.samples = static_cast<Index>(section_count_ * kSection + 1);
+    response.derivatives = MatrixXd::Zero(
+        static_cast<Index>(run_.channels.size()) * response.samples, columns_.back());
+    constexpr std::size_t kAtOnce = 16;
+    MatrixXd states = MatrixXd::Zero(state_count_, columns_.back());
+    std::size_t simulated = 0;
+    for (std::size_t begin = 0; begin < section_count_; begin += kAtOnce) {
+      const std::size_t end = std::min(begin + kAtOnce, section_count_);
+      std::vector<PreparedCase> cases;
+      for (std::size_t s = begin; s < end; ++s) add_changed(sections_[s], cases);
+      const std::vector<LaneRun> runs =
+          run_prepared(cases, options_.integrate, plan_, options_.threads);
+      simulated += runs.size();
+      for (const LaneRun& r : runs) {
+        failure = explain(r);
         if (!failure.empty()) return failure;
-        rest = get_channels(run_, runs[at++]);
       }
-      failure = explain(runs[at]);
-      if (!failure.empty()) return failure;
-      RoadPulse& pulse = response.pulses[order[k]];
-      pulse.first = begins[order[k]] * kSection;
-      pulse.change = get_channels(run_, runs[at]);
-      for (std::size_t c = 0; c < pulse.change.size(); ++c) {
-        std::vector<double>& change = pulse.change[c];
-        change.resize(std::min(change.size(), response.rest[c].size() - pulse.first));
-        for (std::size_t i = 0; i < change.size(); ++i) change[i] -= rest[c][i];
+      const LaneRun* of_section = runs.data();
+      for (std::size_t s = begin; s < end; ++s) {
+        pass_section(s, of_section, states, response.derivatives);
+        of_section += count_changed(sections_[s]);
       }
     }
+    if (has_sensors(setup_)) apply_sensors(response.derivatives);
+    response.simulation_count = static_cast<long>(1 + simulated / section_count_);
     return "";
   }
 
  private:
-  /// The whole run without a pulse, section by section.
-  std::string drive(RoadResponse& response) {
-    response.rest.resize(run_.channels.size());
-    starts_ = {base_.start};
-    for (std::size_t s = 0; s < sections_; ++s) {
-      PreparedCase section = base_;
-      section.start = starts_.back();
-      section.duration = kInterval * static_cast<double>(kSection);
-      const std::vector<LaneRun> runs = run_prepared({section}, options_.integrate, plan_);
+  /// The whole run over the road as it is, section by section.
+  std::string drive() {
+    State<double> start = base_.start;
+    for (std::size_t s = 0; s < section_count_; ++s) {
+      Section section{start};
+      find_coefficients(section);
+      const std::vector<LaneRun> runs =
+          run_prepared({make_case(section)}, options_.integrate, plan_);
       std::string failure = explain(runs.front());
       if (!failure.empty()) return failure;
-      for (std::size_t i = 0; i < section.start.size(); ++i) {
-        section.start[i] =
-            runs.front().results->get_final_state(static_cast<int>(i), runs.front().lane);
-      }
-      starts_.push_back(section.start);
-      const SampledRun sampled = get_channels(run_, runs.front());
-      for (std::size_t c = 0; c < sampled.size(); ++c) {
-        const std::vector<double>& part = sampled[c];
-        const bool is_last = s + 1 == sections_;
-        response.rest[c].insert(
-            response.rest[c].end(), part.begin(),
-            part.begin() + static_cast<std::ptrdiff_t>(is_last ? part.size() : kSection));
-      }
+      const LaneResults& results = *runs.front().results;
+      state_count_ = static_cast<Index>(results.final_state.size()) / results.lanes;
+      section.samples = get_channels(run_, runs.front());
+      start = get_final_state(runs.front());
+      sections_.push_back(std::move(section));
     }
-    response.simulation_count += 1;
+    sections_.push_back({start});
     return "";
   }
 
-  /// The section in which a coefficient's simulation begins; the number of all where no wheel meets
-  /// it.
-  std::size_t find_begin(const Place& place) const {
-    const ManeuverSpec& m = setup_.maneuver;
-    const RoughTrack& track = m.rough[place.track];
-    const double front = -m.bump_distance - calc_lead(m);
-    const double rear = front - setup_.vehicle.whole.wheelbase();
-    const double begin = track.begin + track.spacing * static_cast<double>(place.number);
-    const double meets = (begin - front) / m.speed;
-    const double leaves = (begin + 4.0 * track.spacing - rear) / m.speed;
-    if (leaves + kBefore < 0.0 || meets > base_.duration + kBefore) return sections_;
-    const double length = kInterval * static_cast<double>(kSection);
-    return std::min(static_cast<std::size_t>(std::max(0.0, (meets - kBefore) / length)), sections_);
+  /// Of section `s`, without what is the next one's first.
+  std::size_t count_samples(std::size_t s) const {
+    return kSection + (s + 1 == section_count_ ? 1 : 0);
   }
 
-  /// To the end of the run: road that is long beside the car moves it by many coefficients
-  /// together, of whose last motion nothing may be missing.
-  PreparedCase make_case(std::size_t begin) const {
+  /// What may be under the wheels from the begin of a section to its end.
+  void find_coefficients(Section& section) const {
+    const ManeuverSpec& m = setup_.maneuver;
+    const double front = -m.bump_distance - calc_lead(m) + section.start[StateIndex::kPosition] -
+                         base_.start[StateIndex::kPosition];
+    const double rear = front - setup_.vehicle.whole.wheelbase();
+    constexpr double kFaster = 1.2;
+    const double way = kFaster * std::abs(section.start[StateIndex::kVelocity]) * kLength;
+    for (std::size_t track = 0; track < 2; ++track) {
+      const Range behind = find_under(m.rough[track], rear - kPlay, rear + way + kPlay);
+      const Range ahead = find_under(m.rough[track], front - kPlay, front + way + kPlay);
+      section.tracks[track] = {behind.begin, ahead.end};
+      for (Index i = behind.begin; i < ahead.end; ++i) {
+        if (i < behind.end || i >= ahead.begin) section.met.push_back({track, i});
+      }
+    }
+  }
+
+  /// The coefficients whose splines reach between two places [m] from the bump's center.
+  static Range find_under(const RoughTrack& track, double from, double to) {
+    constexpr double kSupport = 4.0;
+    const auto find = [&](double number) {
+      const auto count = static_cast<double>(track.coefficients.size());
+      return static_cast<Index>(std::clamp(number, 0.0, count));
+    };
+    return {find(std::floor((from - track.begin) / track.spacing) - kSupport + 1.0),
+            find(std::ceil((to - track.begin) / track.spacing))};
+  }
+
+  PreparedCase make_case(const Section& section) const {
     PreparedCase c = base_;
-    c.start = starts_[begin];
-    c.duration = kInterval * static_cast<double>(kSection * (sections_ - begin));
+    c.start = section.start;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const RoughTrack& track = base_.rough[side];
+      const auto [begin, end] = section.tracks[side];
+      c.rough[side] = {track.begin + track.spacing * static_cast<double>(begin),
+                       track.spacing,
+                       {track.coefficients.begin() + begin, track.coefficients.begin() + end}};
+    }
     return c;
+  }
+
+  /// A case for each state, then one for each coefficient under a wheel.
+  void add_changed(const Section& section, std::vector<PreparedCase>& cases) const {
+    const PreparedCase rest = make_case(section);
+    cases.insert(cases.end(), count_changed(section), rest);
+    PreparedCase* c = cases.data() + (cases.size() - count_changed(section));
+    for (Index i = 0; i < state_count_; ++i) (c++)->start[static_cast<std::size_t>(i)] += kChange;
+    for (const auto& [track, number] : section.met) {
+      const Index at = number - section.tracks[track].begin;
+      (c++)->rough[track].coefficients[static_cast<std::size_t>(at)] += kHeight;
+    }
+  }
+
+  std::size_t count_changed(const Section& section) const {
+    return static_cast<std::size_t>(state_count_) + section.met.size();
+  }
+
+  /// From the derivatives of the states at a section's begin to those of its samples and of the
+  /// states at its end.
+  void pass_section(std::size_t s, const LaneRun* changed, MatrixXd& states,
+                    MatrixXd& derivatives) const {
+    const Section& section = sections_[s];
+    const State<double>& end = sections_[s + 1].start;
+    const auto samples = static_cast<Index>(count_samples(s));
+    const auto channels = static_cast<Index>(section.samples.size());
+    // By what is changed, of all samples, channel by channel, and of the states at the end.
+    MatrixXd by_changed(channels * samples + state_count_,
+                        static_cast<Index>(count_changed(section)));
+    for (Index k = 0; k < by_changed.cols(); ++k) {
+      const SampledRun sampled = get_channels(run_, changed[k]);
+      const State<double> final_state = get_final_state(changed[k]);
+      Index row = 0;
+      for (std::size_t c = 0; c < sampled.size(); ++c) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(samples); ++i) {
+          by_changed(row++, k) = sampled[c][i] - section.samples[c][i];
+        }
+      }
+      for (std::size_t i = 0; row < by_changed.rows(); ++i) {
+        by_changed(row++, k) = final_state[i] - end[i];
+      }
+    }
+    by_changed.leftCols(state_count_) /= kChange;
+    by_changed.rightCols(by_changed.cols() - state_count_) /= kHeight;
+    for (std::size_t track = 0; track < 2; ++track) {
+      // No wheel has met what comes behind.
+      const Index first = columns_[track], count = section.tracks[track].end;
+      MatrixXd after = by_changed.leftCols(state_count_) * states.middleCols(first, count);
+      Index k = state_count_;
+      for (const Section::Place& place : section.met) {
+        if (place.track == track) after.col(place.number) += by_changed.col(k);
+        ++k;
+      }
+      for (Index c = 0; c < channels; ++c) {
+        const Index begin = c * (derivatives.rows() / channels) + static_cast<Index>(s * kSection);
+        derivatives.block(begin, first, samples, count) = after.middleRows(c * samples, samples);
+      }
+      states.middleCols(first, count) = after.bottomRows(state_count_);
+    }
+  }
+
+  /// From derivatives of the true values to those of what sensors with effects read.
+  void apply_sensors(MatrixXd& derivatives) const {
+    SampledRun truth(run_.channels.size());
+    for (std::size_t s = 0; s < section_count_; ++s) {
+      for (std::size_t c = 0; c < truth.size(); ++c) {
+        const auto from = sections_[s].samples[c].begin();
+        truth[c].insert(truth[c].end(), from, from + static_cast<std::ptrdiff_t>(count_samples(s)));
+      }
+    }
+    const SampledRun rest = read_sensors(setup_, run_, kInterval, truth);
+    share_items(options_.threads, static_cast<std::size_t>(derivatives.cols()),
+                [&](std::size_t k, int) {
+                  auto column = derivatives.col(static_cast<Index>(k));
+                  SampledRun sampled = truth;
+                  Index row = 0;
+                  for (std::vector<double>& channel : sampled) {
+                    for (double& value : channel) value += kHeight * column(row++);
+                  }
+                  sampled = read_sensors(setup_, run_, kInterval, std::move(sampled));
+                  row = 0;
+                  for (std::size_t c = 0; c < sampled.size(); ++c) {
+                    for (std::size_t i = 0; i < sampled[c].size(); ++i) {
+                      column(row++) = (sampled[c][i] - rest[c][i]) / kHeight;
+                    }
+                  }
+                });
+  }
+
+  /// Zero beyond the states that the car has.
+  State<double> get_final_state(const LaneRun& result) const {
+    State<double> state{};
+    for (Index i = 0; i < state_count_; ++i) {
+      state[static_cast<std::size_t>(i)] =
+          result.results->get_final_state(static_cast<int>(i), result.lane);
+    }
+    return state;
   }
 
   std::string explain(const LaneRun& result) const {
@@ -159,9 +271,10 @@ class Simulator {
   LinearizeOptions options_;
   PreparedCase base_;
   SamplePlan plan_;
-  std::size_t sections_ = 0;
-  std::vector<State<double>> starts_;  // at the begin of each section
-  std::vector<Place> places_;          // of the coefficients
+  std::size_t section_count_ = 0;
+  std::vector<Section> sections_;  // and one behind the last, for its start
+  Index state_count_ = 0;
+  std::vector<Index> columns_ = {0};  // the first of each track, and the number of all
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Parts of a Cholesky factorization, compiled once per instruction set (cholesky_isa.cc) and chosen
-// at run time.
+// Normal matrices and parts of their Cholesky factorization, compiled once per instruction set
+// (cholesky_isa.cc) and chosen at run time.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,11 @@ namespace strut {
 struct CholeskyKernel {
   const char* isa;  // "baseline", "avx2", "avx512"
 
+  /// h += a' a, lower triangle, with a of rows x n.
+  void (*add_normal)(const double* a, std::size_t rows, std::size_t n, double* h);
+  /// b = a L with L of n x n, lower triangle; a and b of rows x n, apart.
+  void (*multiply_lower)(const double* a, const double* l, std::size_t rows, std::size_t n,
+                         double* b);
   /// Factors A = L L' in place, lower triangle by columns with leading dimension `lead`; returns
   /// false if A is not positive definite.
   bool (*factor_diagonal)(double* a, std::size_t n, std::size_t lead);

@@ -1,5 +1,5 @@
-// Parts of a Cholesky factorization for one instruction set: compiled once for each, with STRUT_ISA
-// defined as its name.
+// Normal matrices and their Cholesky factorization for one instruction set: compiled once for each,
+// with STRUT_ISA defined as its name.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
@@ -15,6 +15,17 @@ using strut::ConstColumnMap;
 using strut::map_columns;
 using strut::Stride;
 using strut::to_index;
+
+void add_normal(const double* a, std::size_t rows, std::size_t n, double* h) {
+  map_columns(h, n, n, n)
+      .selfadjointView<Eigen::Lower>()
+      .rankUpdate(map_columns(a, rows, n, rows).transpose());
+}
+
+void multiply_lower(const double* a, const double* l, std::size_t rows, std::size_t n, double* b) {
+  map_columns(b, rows, n, rows).noalias() =
+      map_columns(a, rows, n, rows) * map_columns(l, n, n, n).triangularView<Eigen::Lower>();
+}
 
 bool factor_diagonal(double* a, std::size_t n, std::size_t lead) {
   Eigen::Ref<ColumnMatrix, 0, Stride> in_place(map_columns(a, n, n, lead));
@@ -55,5 +66,6 @@ extern "C" strut::CholeskyKernel STRUT_ISA_NAME(strut_cholesky_)() {
   // Eigen splits its sums by the cache sizes. With those of the processor, results would differ
   // between machines of one instruction set.
   Eigen::setCpuCacheSizes(32 * 1024, 512 * 1024, 4 * 1024 * 1024);
-  return {STRUT_ISA_STRING, &factor_diagonal, &solve_panel, &update_panel, &solve};
+  return {STRUT_ISA_STRING, &add_normal,   &multiply_lower, &factor_diagonal,
+          &solve_panel,     &update_panel, &solve};
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error/check.h"
+#include "base/least_squares/cholesky.h"
 #include "diagnose/noise/road_density.h"
 #include "diagnose/noise/smooth_road.h"
 #include "model/car/state.h"
@@ -19,7 +20,7 @@ using Index = Eigen::Index;
 /// m, of the tracks before the rear wheels' first place and behind the front wheels' last.
 constexpr double kMargin = 0.5;
 /// Coefficients a second of driving: twice the highest frequency that the tracks hold.
-constexpr double kPerSecond = 120.0;
+constexpr double kPerSecond = 100.0;
 
 /// Covariance of the increments over `spacing` of the tracks' half sum (`sign` 1) or half
 /// difference (-1), `lag` increments apart, at G0 = 1 m^3.
@@ -126,10 +127,14 @@ Eigen::VectorXd RoadPrior::apply(const Eigen::VectorXd& weights) const {
 Eigen::MatrixXd RoadPrior::apply_transposed(const Eigen::MatrixXd& derivatives) const {
   const Index count = sum.rows();
   Eigen::MatrixXd out(derivatives.rows(), 2 * count);
-  out.leftCols(count).noalias() = (derivatives.leftCols(count) + derivatives.rightCols(count)) *
-                                  sum.triangularView<Eigen::Lower>();
-  out.rightCols(count).noalias() = (derivatives.leftCols(count) - derivatives.rightCols(count)) *
-                                   difference.triangularView<Eigen::Lower>();
+  const auto multiply = [&](const Eigen::MatrixXd& of_tracks, const Eigen::MatrixXd& lower,
+                            Index at) {
+    get_cholesky_kernel().multiply_lower(
+        of_tracks.data(), lower.data(), static_cast<std::size_t>(of_tracks.rows()),
+        static_cast<std::size_t>(count), out.data() + at * out.rows());
+  };
+  multiply(derivatives.leftCols(count) + derivatives.rightCols(count), sum, 0);
+  multiply(derivatives.leftCols(count) - derivatives.rightCols(count), difference, count);
   return out;
 }
 
@@ -160,14 +165,17 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
 }
 
 std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response) {
+  const CholeskyKernel& kernel = get_cholesky_kernel();
+  const auto count = static_cast<std::size_t>(response.cols());
   auto out = std::make_shared<LatentRoad>(road);
-  const Index count = response.cols();
-  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(count, count);
-  information.selfadjointView<Eigen::Lower>().rankUpdate(response.transpose());
-  const Eigen::LLT<Eigen::MatrixXd> llt(information);
-  STRUT_CHECK(llt.info() == Eigen::Success, "a road's response is finite");
+  out->factor = Eigen::MatrixXd::Identity(response.cols(), response.cols());
+  kernel.add_normal(response.data(), static_cast<std::size_t>(response.rows()), count,
+                    out->factor.data());
+  const bool is_finite = kernel.factor_diagonal(out->factor.data(), count, count);
+  STRUT_CHECK(is_finite, "a road's response is finite");
+  out->raised = out->factor;
+  out->raised.diagonal().array() += 1.0;
   out->response = std::move(response);
-  out->factor = llt.matrixL();
   return out;
 }
 
@@ -187,10 +195,10 @@ Eigen::VectorXd solve_weights(const LatentRoad& road, const Eigen::VectorXd& res
 }
 
 double count_determined(const LatentRoad& road) {
-  const Index count = road.weights.size();
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(count, count);
-  road.factor.triangularView<Eigen::Lower>().solveInPlace(inverse);
-  return static_cast<double>(count) - inverse.squaredNorm();
+  const auto n = static_cast<std::size_t>(road.weights.size());
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(road.weights.size(), road.weights.size());
+  get_cholesky_kernel().solve_panel(road.factor.data(), n, inverse.data(), n, n);
+  return static_cast<double>(n) - inverse.squaredNorm();
 }
 
 }  // namespace strut

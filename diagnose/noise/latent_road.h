@@ -43,9 +43,9 @@ struct LatentRoad {
   /// Derivative H by w of the readings, whitened by the sensors' noise; rows as in Whitener. Empty:
   /// not known yet.
   Eigen::MatrixXd response{};
-  /// Lower L with L L' = 1 + H' H. (1 + L')^-1 L^-1 = X makes 1 - H X H' a root of the inverse of
-  /// the readings' covariance 1 + H H'.
-  Eigen::MatrixXd factor{};
+  /// Lower L with L L' = 1 + H' H, and L + 1. (1 + L')^-1 L^-1 = X makes 1 - H X H' a root of the
+  /// inverse of the readings' covariance 1 + H H'.
+  Eigen::MatrixXd factor{}, raised{};
 };
 using LatentRoads = std::vector<std::shared_ptr<const LatentRoad>>;  // by run of a fit
 

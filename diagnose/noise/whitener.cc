@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error/check.h"
+#include "base/parallel/team.h"
 
 namespace strut {
 namespace {
@@ -155,12 +156,14 @@ void Whitener::apply_run(std::size_t r, const Eigen::Ref<const Eigen::VectorXd>&
   }
 }
 
-Eigen::MatrixXd Whitener::whiten_run(std::size_t r, const Eigen::MatrixXd& columns) const {
+Eigen::MatrixXd Whitener::whiten_run(std::size_t r, const Eigen::MatrixXd& columns,
+                                     int threads) const {
   const auto count = static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(count, columns.cols());
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+  share_items(threads, static_cast<std::size_t>(columns.cols()), [&](std::size_t k, int) {
+    const auto i = static_cast<Eigen::Index>(k);
     if (!columns.col(i).isZero(0.0)) apply_run(r, columns.col(i), out.col(i));
-  }
+  });
   return out;
 }
 
@@ -178,9 +181,7 @@ void Whitener::remove_roads(Eigen::MatrixXd& whitened) const {
                                       static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]));
     Eigen::MatrixXd along = road.response.transpose() * of_run;
     road.factor.triangularView<Eigen::Lower>().solveInPlace(along);
-    Eigen::MatrixXd upper = road.factor.transpose();
-    upper.diagonal().array() += 1.0;
-    upper.triangularView<Eigen::Upper>().solveInPlace(along);
+    road.raised.transpose().triangularView<Eigen::Upper>().solveInPlace(along);
     of_run.noalias() -= road.response * along;
   }
 }

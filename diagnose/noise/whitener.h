@@ -28,7 +28,7 @@ struct WhitenerOptions {
   /// Hz; lower frequencies are ignored in tapered runs, where they are offset, not motion.
   double lowest = 0.6;
   /// Hz; the highest where the road is a run's unknown: shorter waves than its tracks hold.
-  double highest_of_road = 40.0;
+  double highest_of_road = 33.0;
 };
 
 class Whitener {
@@ -44,7 +44,8 @@ class Whitener {
   /// The residuals, about the road whose weights are zero, its prior mean.
   Eigen::VectorXd apply_residual(const Eigen::VectorXd& residual) const;
   /// Columns of one run's readings, by its sensors alone.
-  Eigen::MatrixXd whiten_run(std::size_t run, const Eigen::MatrixXd& columns_of_run) const;
+  Eigen::MatrixXd whiten_run(std::size_t run, const Eigen::MatrixXd& columns_of_run,
+                             int threads = 1) const;
   /// Residuals whitened by the sensors alone, with the road as it is in the model's run.
   Eigen::VectorXd apply_sensors(std::size_t run, const Eigen::VectorXd& residual) const;
   /// Whitens a linearization without failure.

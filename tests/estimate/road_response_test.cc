@@ -26,7 +26,11 @@ Case make_rough_case() {
 }
 
 TEST_CASE("Derivatives by a road are those of whole runs over it", "[unit]") {
-  const Case known = make_rough_case();
+  Case known = make_rough_case();
+  // Without effects, with one that adds states, and with a sensor that reads late.
+  known.vehicle.effects = GENERATE(
+      EffectSettings{}, EffectSettings{{"damper_hysteresis", "rear", {3e-3}}},
+      EffectSettings{{"sensor_lowpass", "imu_acceleration_z", {5e-3}}});
   const MeasuredRun run = test::measure(known, known, {});
   std::vector<Unknown> unknowns = {make_parameter({run}, "front_damping")};
   const std::vector<double> values = list_starts(unknowns);

@@ -295,6 +295,30 @@ Numbers make_positive_definite(std::size_t n) {
   return h;
 }
 
+TEST_CASE("Normal matrices and products with lower triangles are sums on any instruction set",
+          "[unit]") {
+  const std::size_t rows = 37, n = 19;
+  const Numbers a = test::make_uniform(rows * n, 22), l = test::make_uniform(n * n, 23);
+  for (const CholeskyKernel& kernel : list_cholesky_kernels()) {
+    CAPTURE(kernel.isa);
+    Numbers h(n * n, 1.0), b(rows * n, 0.0);
+    kernel.add_normal(a.data(), rows, n, h.data());
+    kernel.multiply_lower(a.data(), l.data(), rows, n, b.data());
+    for (std::size_t c = 0; c < n; ++c) {
+      for (std::size_t r = 0; r < n; ++r) {
+        double sum = 1.0;  // above the diagonal, as before
+        for (std::size_t k = 0; r >= c && k < rows; ++k) sum += a[r * rows + k] * a[c * rows + k];
+        CHECK(std::fabs(h[c * n + r] - sum) < tolerance(1e-13));
+      }
+      for (std::size_t r = 0; r < rows; ++r) {
+        double sum = 0.0;
+        for (std::size_t k = c; k < n; ++k) sum += a[k * rows + r] * l[c * n + k];
+        CHECK(std::fabs(b[c * rows + r] - sum) < tolerance(1e-13));
+      }
+    }
+  }
+}
+
 TEST_CASE("A damped system is solved, with the same bits on any number of threads",
           "[unit][threads]") {
   for (const std::size_t n : {1, 95, 96, 97, 250}) {

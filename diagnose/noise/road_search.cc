@@ -1,0 +1,279 @@
+#include "diagnose/noise/road_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/error/input_error.h"
+#include "base/parallel/team.h"
+#include "estimate/fisher.h"
+
+namespace strut {
+namespace {
+
+class RoadSearch {
+ public:
+  RoadSearch(const CampaignData& data, const std::vector<Unknown>& unknowns,
+             std::vector<double> start, bool is_level_known, int threads, WhitenedFit& result)
+      : data_(data),
+        unknowns_(unknowns),
+        values_(std::move(start)),
+        level_steps_(is_level_known ? kLevelSteps : 0),
+        threads_(threads),
+        result_(result) {
+    for (NoiseSpectrum& s : result.spectra) s.excess.assign(s.excess.size(), 1.0);
+  }
+
+  /// Returns false where the car cannot be simulated on the road that it seems to need.
+  bool run() {
+    constexpr int kMostSteps = 12;
+    // Predicted decrease of chi2 below which the search ends. Contact events that pass a reading
+    // make chi2 discontinuous by about as much.
+    constexpr double kNear = 30.0;
+    // The derivatives by the road are kept after a step whose predicted decrease is below kSmall
+    // of chi2 and that achieves more than kEnough of it.
+    constexpr double kSmall = 0.05, kEnough = 0.25;
+    bool is_new = true;
+    int steps = 0;
+    while (steps < kMostSteps) {
+      make_model();
+      const bool was_new = is_new;
+      const std::optional<Move> proposed = propose(is_new);
+      if (!proposed) return false;
+      const Move& move = *proposed;
+      const double gained = take(move, 0.0);
+      ++steps;
+      if (move.promised < kNear) break;
+      const bool is_enough = gained > kEnough * move.promised;
+      if (!is_enough && was_new && steps > 1) break;
+      is_new = !is_enough || move.promised > kSmall * move.cost;
+      if (level_steps_++ < kLevelSteps) measure_level(move);
+    }
+    settle(kNear);
+    describe(steps);
+    return true;
+  }
+
+ private:
+  struct Move {
+    std::vector<double> values;            // of the unknowns
+    std::vector<Eigen::VectorXd> weights;  // of the roads, by run
+    double cost = 0.0, promised = 0.0;     // chi2 here; by how much it is to fall
+    double distance = 0.0;                 // largest change of what runs share, in its sigmas
+  };
+
+  void make_model() {
+    model_ = make_reading_model(data_, result_.runs, result_.roads, unknowns_, threads_);
+  }
+
+  /// Sets the response of the roads where they and the car are; false where these cannot be
+  /// simulated.
+  bool renew_responses(const Whitener& sensors) {
+    const std::size_t runs = result_.runs.size();
+    std::vector<Eigen::MatrixXd> columns(runs);
+    for (std::size_t r = 0; r < runs; ++r) {
+      columns[r].resize(
+          static_cast<Eigen::Index>(sensors.run_begin()[r + 1] - sensors.run_begin()[r]),
+          result_.roads[r]->weights.size());
+      const auto take = [&](Eigen::Index first, const Eigen::MatrixXd& part) {
+        columns[r].middleCols(first, part.cols()) = sensors.whiten_run(r, part, threads_);
+      };
+      if (!model_->linearize_road(values_, r, take).empty()) return false;
+    }
+    const double scale = std::sqrt(result_.spectra.front().level);
+    share_items(threads_, runs, [&](std::size_t r, int) {
+      const LatentRoad& road = *result_.roads[r];
+      result_.roads[r] = set_response(road, scale * road.prior->apply_transposed(columns[r]));
+    });
+    return true;
+  }
+
+  /// Where the search stands.
+  const Linearization& linearize() {
+    if (!here_) {
+      here_ = std::make_shared<const Linearization>(model_->linearize(values_));
+      if (!here_->failure.empty()) throw InputError(here_->failure);
+    }
+    return *here_;
+  }
+
+  std::optional<Move> propose(bool is_new) {
+    const Whitener sensors(*model_, result_.spectra, result_.roads);
+    if (is_new && !renew_responses(sensors)) return std::nullopt;
+    const Linearization& at = linearize();
+    const Whitener whitener(*model_, result_.spectra, result_.roads);
+    const WhitenedModel whitened(*model_, whitener);
+    const NormalEquations normal = calc_normal_equations(whitened, whitener.apply(at));
+    const NormalEquations free = free_unknowns(normal, list_held(normal.gradient));
+    const Eigen::MatrixXd covariance = invert_information(free.information).covariance;
+    const Eigen::VectorXd change = -(covariance * free.gradient);
+    Move move;
+    move.distance = calc_distance(covariance, change);
+    move.values = values_;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const Unknown& u = unknowns_[i];
+      move.values[i] =
+          std::clamp(values_[i] + u.scale * change(static_cast<Eigen::Index>(i)), u.low, u.high);
+    }
+    const Eigen::VectorXd moved = at.residual + at.jacobian * change;
+    move.cost = calc_prior_cost(at.residual);
+    double after = calc_prior_cost(moved);
+    for (std::size_t r = 0; r < result_.runs.size(); ++r) {
+      const LatentRoad& road = *result_.roads[r];
+      const Eigen::VectorXd there = sensors.apply_sensors(r, moved);
+      Eigen::VectorXd weights = solve_weights(road, there);
+      move.cost += sensors.apply_sensors(r, at.residual).squaredNorm() + road.weights.squaredNorm();
+      after +=
+          (there + road.response * (weights - road.weights)).squaredNorm() + weights.squaredNorm();
+      move.weights.push_back(std::move(weights));
+    }
+    move.promised = move.cost - after;
+    return move;
+  }
+
+  /// Of a change, the largest of what the runs share, in standard deviations.
+  double calc_distance(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& change) const {
+    double most = 0.0;
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(result_.shared_count); ++i) {
+      if (covariance(i, i) > 0.0) {
+        most = std::max(most, std::abs(change(i)) / std::sqrt(covariance(i, i)));
+      }
+    }
+    return most;
+  }
+
+  double calc_prior_cost(const Eigen::VectorXd& residual) const {
+    const auto readings = static_cast<Eigen::Index>(model_->reading_count());
+    return residual.tail(residual.size() - readings).squaredNorm();
+  }
+
+  /// Unknowns on a bound, with a descent direction beyond it.
+  std::vector<bool> list_held(const Eigen::VectorXd& gradient) const {
+    std::vector<bool> held;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      const double slope = gradient(static_cast<Eigen::Index>(i));
+      const bool is_low = values_[i] <= unknowns_[i].low && slope > 0.0;
+      held.push_back(is_low || (values_[i] >= unknowns_[i].high && slope < 0.0));
+    }
+    return held;
+  }
+
+  /// chi2 of readings, priors and roads; infinite where a run cannot be simulated.
+  double calc_cost(const std::vector<double>& values) {
+    make_model();
+    const Evaluation there = model_->evaluate(values);
+    if (!there.failure.empty()) return std::numeric_limits<double>::infinity();
+    const Whitener sensors(*model_, result_.spectra, result_.roads);
+    double cost = calc_prior_cost(there.residual);
+    for (std::size_t r = 0; r < result_.roads.size(); ++r) {
+      cost += sensors.apply_sensors(r, there.residual).squaredNorm() +
+              result_.roads[r]->weights.squaredNorm();
+    }
+    return cost;
+  }
+
+  /// Moves car and roads as far as that lowers chi2, or raises it by less than `uneven`; returns by
+  /// how much it falls.
+  double take(const Move& move, double uneven) {
+    const double level = result_.spectra.front().level;
+    const LatentRoads before = result_.roads;
+    for (const double share : {1.0, 0.3, 0.1, 0.03}) {
+      std::vector<double> values = values_;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] += share * (move.values[i] - values[i]);
+      }
+      for (std::size_t r = 0; r < before.size(); ++r) {
+        const Eigen::VectorXd& from = before[r]->weights;
+        result_.roads[r] = move_road(*before[r], from + share * (move.weights[r] - from), level);
+      }
+      const double gained = move.cost - calc_cost(values);
+      if (!(gained > -uneven)) continue;
+      here_.reset();
+      values_ = std::move(values);
+      return gained;
+    }
+    result_.roads = before;
+    return 0.0;
+  }
+
+  /// Steps between events: these stop a search that is to descend where the linear model, which
+  /// sees all readings, wants what the runs share elsewhere.
+  void settle(double uneven) {
+    if (result_.shared_count == 0) return;
+    constexpr int kMost = 2;
+    constexpr double kNear = 0.05;
+    for (int i = 0; i < kMost; ++i) {
+      make_model();
+      const std::optional<Move> move = propose(false);
+      if (!move || move->distance < kNear) break;
+      take(*move, uneven);
+    }
+  }
+
+  /// The level at which the roads found are most likely: a step to the fixed point of
+  /// |w|^2 = number of weights that the readings determine (D. J. C. MacKay, Neural Computation 4
+  /// (1992)).
+  void measure_level(const Move& move) {
+    std::vector<double> determined(result_.roads.size());
+    share_items(threads_, determined.size(),
+                [&](std::size_t r, int) { determined[r] = count_determined(*result_.roads[r]); });
+    double sum = 0.0, count = 0.0;
+    for (std::size_t r = 0; r < determined.size(); ++r) {
+      sum += move.weights[r].squaredNorm();
+      count += determined[r];
+    }
+    constexpr double kMost = 4.0;  // far from the minimum, a road takes what the car should
+    const double factor = std::clamp(sum / count, 1.0 / kMost, kMost);
+    for (NoiseSpectrum& s : result_.spectra) s.level *= factor;
+    share_items(threads_, determined.size(), [&](std::size_t r, int) {
+      const LatentRoad& road = *result_.roads[r];
+      result_.roads[r] = move_road(*set_response(road, std::sqrt(factor) * road.response),
+                                   road.weights / std::sqrt(factor), result_.spectra.front().level);
+    });
+  }
+
+  /// The fit where the search ended. Events that readings pass leave single runs' clocks and speeds
+  /// some standard deviations beside what the linear model wants; what all runs share has converged
+  /// where that wants no more of it.
+  void describe(int steps) {
+    make_model();
+    const Whitener whitener(*model_, result_.spectra, result_.roads);
+    const WhitenedModel whitened(*model_, whitener);
+    const Linearization at = whitener.apply(linearize());
+    result_.linearization = here_;
+    result_.is_dominated =
+        at.residual.squaredNorm() > kDominated * static_cast<double>(at.residual.size());
+    std::vector<bool> at_bound;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      at_bound.push_back(values_[i] <= unknowns_[i].low || values_[i] >= unknowns_[i].high);
+    }
+    result_.fit = describe_fit(whitened, at, values_, at_bound, true);
+    const NormalEquations free =
+        free_unknowns(calc_normal_equations(whitened, at), result_.fit.at_bound);
+    const Eigen::MatrixXd covariance = invert_information(free.information).covariance;
+    result_.fit.distance = calc_distance(covariance, covariance * free.gradient);
+    result_.fit.converged = result_.fit.distance < kKinkTolerance;
+    result_.fit.iterations = steps;
+  }
+
+  static constexpr int kLevelSteps = 4;
+  const CampaignData& data_;
+  const std::vector<Unknown>& unknowns_;
+  std::vector<double> values_;
+  int level_steps_, threads_;
+  WhitenedFit& result_;
+  std::unique_ptr<ReadingModel> model_;
+  std::shared_ptr<const Linearization> here_;  // null: not known yet
+};
+
+}  // namespace
+
+bool search_roads(const CampaignData& data, const std::vector<Unknown>& unknowns,
+                  std::vector<double> start, bool is_level_known, int threads,
+                  WhitenedFit& result) {
+  return RoadSearch(data, unknowns, std::move(start), is_level_known, threads, result).run();
+}
+
+}  // namespace strut
