@@ -321,12 +321,13 @@ CrossingReadings::ReadingMap CrossingReadings::make_reading_map(std::size_t run,
   for (std::size_t row = 0; row < rows; ++row) {
     const ReadingPlace& place = readings_[begin_row(run) + row];
     const double at = (runs_[run].times[place.time] + hit_time) / response.interval;
-    const double index = std::floor(at);
-    const std::size_t first = static_cast<std::size_t>(index) - kCurveMargin;
+    const auto samples = static_cast<std::size_t>(response.samples);
+    const std::size_t index = static_cast<std::size_t>(at);
+    const std::size_t first =
+        std::min(index - std::min(index, kCurveMargin), samples - kCurveSamples);
     for (std::size_t i = first; i < first + kCurveSamples; ++i) {
       const auto get = [&](std::size_t sample) { return sample == i ? 1.0 : 0.0; };
-      const double weight =
-          interpolate_curve(get, first + kCurveMargin, at - index, response.interval).value;
+      const double weight = interpolate_samples(get, samples, at);
       const auto sample = static_cast<Eigen::Index>(place.channel) * response.samples +
                           static_cast<Eigen::Index>(i);
       map.insert(static_cast<Eigen::Index>(row), sample) = weight / get_channel(place).sigma;

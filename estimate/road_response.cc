@@ -8,13 +8,14 @@
 #include <utility>
 
 #include "base/parallel/team.h"
+#include "estimate/jump_difference.h"
 #include "estimate/run_prepared.h"
 #include "model/error/model_error.h"
 
 namespace strut {
 namespace {
 
-constexpr double kInterval = 4e-3;  // s, between samples: a tenth of the period of 25 Hz
+constexpr double kInterval = 4e-3;  // s, between samples: eight in a period of 31 Hz
 constexpr double kStep = 4e-3;      // s
 /// Samples of a section. Each section costs a simulation for every state and for every coefficient
 /// under a wheel; in a longer one, wheels meet more.
@@ -27,6 +28,7 @@ constexpr double kHeight = 2e-5;  // m, of a coefficient's change
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 /// Coefficients of a track: [begin, end).
 struct Range {
@@ -51,6 +53,7 @@ class Simulator {
             CasePreparer& preparer)
       : run_(run), setup_(setup), options_(options) {
     base_ = preparer.prepare(remove_sensors(setup));
+    options_.integrate.solver = Solver::kLanes;  // whose cases take their tracks as they are
     options_.integrate.options.step.step = kStep;
     options_.integrate.options.step.coarse_step = 0.0;
     plan_.interval = kInterval;
@@ -124,8 +127,7 @@ class Simulator {
   /// What may be under the wheels from the begin of a section to its end.
   void find_coefficients(Section& section) const {
     const ManeuverSpec& m = setup_.maneuver;
-    const double front = -m.bump_distance - calc_lead(m) + section.start[StateIndex::kPosition] -
-                         base_.start[StateIndex::kPosition];
+    const double front = -m.bump_distance - calc_lead(m) + section.start[StateIndex::kPosition];
     const double rear = front - setup_.vehicle.whole.wheelbase();
     constexpr double kFaster = 1.2;
     const double way = kFaster * std::abs(section.start[StateIndex::kVelocity]) * kLength;
@@ -163,12 +165,15 @@ class Simulator {
     return c;
   }
 
-  /// A case for each state, then one for each coefficient under a wheel.
+  /// Two cases for each state, up and down, then one for each coefficient under a wheel.
   void add_changed(const Section& section, std::vector<PreparedCase>& cases) const {
-    const PreparedCase rest = make_case(section);
-    cases.insert(cases.end(), count_changed(section), rest);
-    PreparedCase* c = cases.data() + (cases.size() - count_changed(section));
-    for (Index i = 0; i < state_count_; ++i) (c++)->start[static_cast<std::size_t>(i)] += kChange;
+    const std::size_t begin = cases.size();
+    cases.insert(cases.end(), count_changed(section), make_case(section));
+    PreparedCase* c = cases.data() + begin;
+    for (Index i = 0; i < state_count_; ++i) {
+      (c++)->start[static_cast<std::size_t>(i)] += kChange;
+      (c++)->start[static_cast<std::size_t>(i)] -= kChange;
+    }
     for (const auto& [track, number] : section.met) {
       const Index at = number - section.tracks[track].begin;
       (c++)->rough[track].coefficients[static_cast<std::size_t>(at)] += kHeight;
@@ -176,7 +181,42 @@ class Simulator {
   }
 
   std::size_t count_changed(const Section& section) const {
-    return static_cast<std::size_t>(state_count_) + section.met.size();
+    return 2 * static_cast<std::size_t>(state_count_) + section.met.size();
+  }
+
+  /// By how much samples, channel by channel, and the states at a section's end differ from those
+  /// of the road as it is.
+  VectorXd calc_change(std::size_t s, const LaneRun& changed) const {
+    const Section& section = sections_[s];
+    const SampledRun sampled = get_channels(run_, changed);
+    const State<double> end = get_final_state(changed);
+    const std::size_t samples = count_samples(s);
+    VectorXd change(static_cast<Index>(sampled.size() * samples) + state_count_);
+    Index row = 0;
+    for (std::size_t c = 0; c < sampled.size(); ++c) {
+      for (std::size_t i = 0; i < samples; ++i) {
+        change(row++) = sampled[c][i] - section.samples[c][i];
+      }
+    }
+    for (std::size_t i = 0; row < change.size(); ++i) {
+      change(row++) = end[i] - sections_[s + 1].start[i];
+    }
+    return change;
+  }
+
+  /// The derivative by a state. A wheel that lands as a sample is taken makes that one jump: then
+  /// by the side without it.
+  VectorXd calc_by_state(std::size_t s, const LaneRun* up_and_down) const {
+    const VectorXd up = calc_change(s, up_and_down[0]), down = calc_change(s, up_and_down[1]);
+    const auto samples = static_cast<Index>(count_samples(s));
+    VectorXd derivative(up.size());
+    for (Index row = 0; row < up.size(); ++row) {
+      const auto channel = static_cast<std::size_t>(row / samples);
+      const double unit = channel < run_.channels.size() ? run_.channels[channel].sigma : 1.0;
+      derivative(row) =
+          unit * calc_jump_free_difference(-down(row) / unit, up(row) / unit) / (2.0 * kChange);
+    }
+    return derivative;
   }
 
   /// From the derivatives of the states at a section's begin to those of its samples and of the
@@ -184,35 +224,23 @@ class Simulator {
   void pass_section(std::size_t s, const LaneRun* changed, MatrixXd& states,
                     MatrixXd& derivatives) const {
     const Section& section = sections_[s];
-    const State<double>& end = sections_[s + 1].start;
     const auto samples = static_cast<Index>(count_samples(s));
     const auto channels = static_cast<Index>(section.samples.size());
-    // By what is changed, of all samples, channel by channel, and of the states at the end.
-    MatrixXd by_changed(channels * samples + state_count_,
-                        static_cast<Index>(count_changed(section)));
-    for (Index k = 0; k < by_changed.cols(); ++k) {
-      const SampledRun sampled = get_channels(run_, changed[k]);
-      const State<double> final_state = get_final_state(changed[k]);
-      Index row = 0;
-      for (std::size_t c = 0; c < sampled.size(); ++c) {
-        for (std::size_t i = 0; i < static_cast<std::size_t>(samples); ++i) {
-          by_changed(row++, k) = sampled[c][i] - section.samples[c][i];
-        }
-      }
-      for (std::size_t i = 0; row < by_changed.rows(); ++i) {
-        by_changed(row++, k) = final_state[i] - end[i];
-      }
+    const auto met = static_cast<Index>(section.met.size());
+    // Of all samples, channel by channel, and of the states at the end.
+    MatrixXd by_states(channels * samples + state_count_, state_count_);
+    MatrixXd by_met(by_states.rows(), met);
+    for (Index i = 0; i < state_count_; ++i) by_states.col(i) = calc_by_state(s, changed + 2 * i);
+    for (Index i = 0; i < met; ++i) {
+      by_met.col(i) = calc_change(s, changed[2 * state_count_ + i]) / kHeight;
     }
-    by_changed.leftCols(state_count_) /= kChange;
-    by_changed.rightCols(by_changed.cols() - state_count_) /= kHeight;
     for (std::size_t track = 0; track < 2; ++track) {
       // No wheel has met what comes behind.
       const Index first = columns_[track], count = section.tracks[track].end;
-      MatrixXd after = by_changed.leftCols(state_count_) * states.middleCols(first, count);
-      Index k = state_count_;
-      for (const Section::Place& place : section.met) {
-        if (place.track == track) after.col(place.number) += by_changed.col(k);
-        ++k;
+      MatrixXd after = by_states * states.middleCols(first, count);
+      for (Index i = 0; i < met; ++i) {
+        const Section::Place& place = section.met[static_cast<std::size_t>(i)];
+        if (place.track == track) after.col(place.number) += by_met.col(i);
       }
       for (Index c = 0; c < channels; ++c) {
         const Index begin = c * (derivatives.rows() / channels) + static_cast<Index>(s * kSection);
@@ -222,29 +250,25 @@ class Simulator {
     }
   }
 
-  /// From derivatives of the true values to those of what sensors with effects read.
+  /// From derivatives of the true values to those of what the sensors read, which is linear in them
+  /// but for their bias.
   void apply_sensors(MatrixXd& derivatives) const {
-    SampledRun truth(run_.channels.size());
-    for (std::size_t s = 0; s < section_count_; ++s) {
-      for (std::size_t c = 0; c < truth.size(); ++c) {
-        const auto from = sections_[s].samples[c].begin();
-        truth[c].insert(truth[c].end(), from, from + static_cast<std::ptrdiff_t>(count_samples(s)));
-      }
-    }
-    const SampledRun rest = read_sensors(setup_, run_, kInterval, truth);
+    const auto samples = static_cast<std::size_t>(derivatives.rows()) / run_.channels.size();
+    const SampledRun zero(run_.channels.size(), std::vector<double>(samples, 0.0));
+    const SampledRun bias = read_sensors(setup_, run_, kInterval, zero);
     share_items(options_.threads, static_cast<std::size_t>(derivatives.cols()),
                 [&](std::size_t k, int) {
                   auto column = derivatives.col(static_cast<Index>(k));
-                  SampledRun sampled = truth;
+                  SampledRun sampled = zero;
                   Index row = 0;
                   for (std::vector<double>& channel : sampled) {
-                    for (double& value : channel) value += kHeight * column(row++);
+                    for (double& value : channel) value = column(row++);
                   }
                   sampled = read_sensors(setup_, run_, kInterval, std::move(sampled));
                   row = 0;
                   for (std::size_t c = 0; c < sampled.size(); ++c) {
-                    for (std::size_t i = 0; i < sampled[c].size(); ++i) {
-                      column(row++) = (sampled[c][i] - rest[c][i]) / kHeight;
+                    for (std::size_t i = 0; i < samples; ++i) {
+                      column(row++) = sampled[c][i] - bias[c][i];
                     }
                   }
                 });

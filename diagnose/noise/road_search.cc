@@ -31,7 +31,7 @@ class RoadSearch {
     constexpr int kMostSteps = 12;
     // Predicted decrease of chi2 below which the search ends. Contact events that pass a reading
     // make chi2 discontinuous by about as much.
-    constexpr double kNear = 30.0;
+    constexpr double kUneven = 30.0;
     // The derivatives by the road are kept after a step whose predicted decrease is below kSmall
     // of chi2 and that achieves more than kEnough of it.
     constexpr double kSmall = 0.05, kEnough = 0.25;
@@ -43,15 +43,15 @@ class RoadSearch {
       const std::optional<Move> proposed = propose(is_new);
       if (!proposed) return false;
       const Move& move = *proposed;
-      const double gained = take(move, 0.0);
+      const double gained = take(move, 0.0).value_or(0.0);
       ++steps;
-      if (move.promised < kNear) break;
+      if (move.promised < kUneven) break;
       const bool is_enough = gained > kEnough * move.promised;
       if (!is_enough && was_new && steps > 1) break;
       is_new = !is_enough || move.promised > kSmall * move.cost;
       if (level_steps_++ < kLevelSteps) measure_level(move);
     }
-    settle(kNear);
+    settle(kUneven);
     describe(steps);
     return true;
   }
@@ -175,8 +175,8 @@ class RoadSearch {
   }
 
   /// Moves car and roads as far as that lowers chi2, or raises it by less than `uneven`; returns by
-  /// how much it falls.
-  double take(const Move& move, double uneven) {
+  /// how much it falls, or nothing where they stay.
+  std::optional<double> take(const Move& move, double uneven) {
     const double level = result_.spectra.front().level;
     const LatentRoads before = result_.roads;
     for (const double share : {1.0, 0.3, 0.1, 0.03}) {
@@ -195,7 +195,8 @@ class RoadSearch {
       return gained;
     }
     result_.roads = before;
-    return 0.0;
+    make_model();
+    return std::nullopt;
   }
 
   /// Steps between events: these stop a search that is to descend where the linear model, which
@@ -203,12 +204,11 @@ class RoadSearch {
   void settle(double uneven) {
     if (result_.shared_count == 0) return;
     constexpr int kMost = 2;
-    constexpr double kNear = 0.05;
+    constexpr double kNearSigmas = 0.05;
     for (int i = 0; i < kMost; ++i) {
       make_model();
       const std::optional<Move> move = propose(false);
-      if (!move || move->distance < kNear) break;
-      take(*move, uneven);
+      if (!move || move->distance < kNearSigmas || !take(*move, uneven)) break;
     }
   }
 

@@ -43,8 +43,8 @@ std::shared_ptr<const Mechanism> make_mechanism(const Case& c, const Case& key,
   mechanism->vehicle = key.vehicle;
   mechanism->maneuver = key.maneuver;
   mechanism->car = assemble_vehicle(c.vehicle, c.maneuver);
-  const bool same_vehicle = other && other->vehicle == key.vehicle;
-  mechanism->tables = same_vehicle ? other->tables : tabulate_corners(mechanism->car);
+  const bool has_tables = other && have_equal_tables(*other, *mechanism);
+  mechanism->tables = has_tables ? other->tables : tabulate_corners(mechanism->car);
   mechanism->surface =
       other && shares_surface(*other, key) ? other->surface : make_surface(c.vehicle, c.maneuver);
   return mechanism;

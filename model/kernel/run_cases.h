@@ -72,11 +72,6 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   return vehicle;
 }
 
-/// Whether two mechanisms have the same tables: the roads under them may differ.
-inline bool share_tables(const Mechanism& a, const Mechanism& b) {
-  return &a == &b || a.vehicle == b.vehicle;
-}
-
 template <class T, class Closure>
 LaneResults run_system(const Vehicle<T>& vehicle, const Closure& closure, const T& trigger,
                        const std::array<T, StateIndex::kCount>& start,
@@ -98,11 +93,11 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
   const Vehicle<T> vehicle = pack_vehicle<T>(cases);
   State<T> start;
   T trigger(0.0);
-  bool one_table = true;
+  bool equal_tables = true;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     for (std::size_t i = 0; i < start.size(); ++i) set_lane(start[i], lane, cases[lane]->start[i]);
     set_lane(trigger, lane, cases[lane]->trigger_x);
-    one_table = one_table && share_tables(*cases[0]->mechanism, *cases[lane]->mechanism);
+    equal_tables = equal_tables && have_equal_tables(*cases[0]->mechanism, *cases[lane]->mechanism);
   }
   SamplePlan all = plan;
   all.duration = cases[0]->duration;
@@ -111,7 +106,7 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
     return run_system<T>(vehicle, NewtonClosure<T>{&vehicle.layout, &vehicle.numbers}, trigger,
                          start, options, all);
   }
-  if (one_table) {
+  if (equal_tables) {
     return run_system<T>(vehicle, TableClosure<T, double>{&cases[0]->mechanism->tables}, trigger,
                          start, options, all);
   }

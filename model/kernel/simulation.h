@@ -30,6 +30,12 @@ struct Mechanism {
   Surface surface;
 };
 
+/// Whether two mechanisms have the same tables, which gravity enters by the car's trim; the roads
+/// may differ.
+inline bool have_equal_tables(const Mechanism& a, const Mechanism& b) {
+  return &a == &b || (a.vehicle == b.vehicle && a.maneuver.gravity == b.maneuver.gravity);
+}
+
 /// A case ready to run: its parameters, its trimmed start, its mechanism.
 struct PreparedCase {
   std::shared_ptr<const Mechanism> mechanism;

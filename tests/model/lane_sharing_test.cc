@@ -55,6 +55,20 @@ TEST_CASE("A tire with aligning torque keeps it beside one without", "[unit][pro
   CHECK(std::abs(alone.final_state[yaw] - other.final_state[yaw]) > 1e-6);
 }
 
+TEST_CASE("A car under weaker gravity keeps its own linkage beside another", "[unit]") {
+  Case weak = make_short_case();
+  weak.maneuver.gravity = 5.0;
+  CasePreparer preparer;
+  const PreparedCase a = preparer.prepare(make_short_case()), b = preparer.prepare(weak);
+  const IntegrateOptions options = make_options(Closure::kTable);
+  const LaneResults both = run_pair(a, b, options);
+  const LaneResults alone = list_kernels().back().run_scalar(test::prepare(weak), options, {});
+  for (int i = 0; i < StateIndex::kCountWithoutRelaxation; ++i) {
+    CAPTURE(i);
+    CHECK(both.get_final_state(i, 1) == Approx(alone.get_final_state(i)).margin(tolerance(1e-9)));
+  }
+}
+
 TEST_CASE("Cases that may not share lanes are refused", "[unit]") {
   const PreparedCase base = test::prepare(make_short_case());
   Case longer = make_short_case();
