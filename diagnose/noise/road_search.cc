@@ -203,7 +203,7 @@ class RoadSearch {
   /// sees all readings, wants what the runs share elsewhere.
   void settle(double uneven) {
     if (result_.shared_count == 0) return;
-    constexpr int kMost = 2;
+    constexpr int kMost = 5;
     constexpr double kNearSigmas = 0.05;
     for (int i = 0; i < kMost; ++i) {
       make_model();
