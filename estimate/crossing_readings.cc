@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "base/error/input_error.h"
-#include "base/parallel/team.h"
 #include "base/text/format_number.h"
 #include "estimate/crossing_batch.h"
 #include "estimate/hit_time.h"
@@ -59,7 +58,7 @@ class CrossingReadings final : public ReadingModel {
                    const SampledRun& above_run, const SampledRun& below_run,
                    const std::vector<double>& values, Linearization& out) const;
 
-  /// From a run's samples, channel by channel, to its readings.
+  /// Linear map from a run's samples, channel by channel, to its readings.
   using ReadingMap = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   ReadingMap make_reading_map(std::size_t run, const RoadResponse& response, double hit_time) const;
 
@@ -316,12 +315,12 @@ CrossingReadings::ReadingMap CrossingReadings::make_reading_map(std::size_t run,
                                                                 const RoadResponse& response,
                                                                 double hit_time) const {
   const std::size_t rows = begin_row(run + 1) - begin_row(run);
+  const auto samples = static_cast<std::size_t>(response.samples);
   ReadingMap map(static_cast<Eigen::Index>(rows), response.derivatives.rows());
   map.reserve(Eigen::VectorXi::Constant(map.rows(), kCurveSamples));
   for (std::size_t row = 0; row < rows; ++row) {
     const ReadingPlace& place = readings_[begin_row(run) + row];
     const double at = (runs_[run].times[place.time] + hit_time) / response.interval;
-    const auto samples = static_cast<std::size_t>(response.samples);
     const std::size_t index = static_cast<std::size_t>(at);
     const std::size_t first =
         std::min(index - std::min(index, kCurveMargin), samples - kCurveSamples);

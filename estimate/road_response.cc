@@ -53,7 +53,7 @@ class Simulator {
             CasePreparer& preparer)
       : run_(run), setup_(setup), options_(options) {
     base_ = preparer.prepare(remove_sensors(setup));
-    options_.integrate.solver = Solver::kLanes;  // whose cases take their tracks as they are
+    options_.integrate.solver = Solver::kLanes;  // CVODE ignores PreparedCase::rough
     options_.integrate.options.step.step = kStep;
     options_.integrate.options.step.coarse_step = 0.0;
     plan_.interval = kInterval;
@@ -119,12 +119,12 @@ class Simulator {
     return "";
   }
 
-  /// Of section `s`, without what is the next one's first.
+  /// Number of samples of section `s`. The sample at its end belongs to the next section, if any.
   std::size_t count_samples(std::size_t s) const {
     return kSection + (s + 1 == section_count_ ? 1 : 0);
   }
 
-  /// What may be under the wheels from the begin of a section to its end.
+  /// Sets the coefficients that the wheels may meet during a section.
   void find_coefficients(Section& section) const {
     const ManeuverSpec& m = setup_.maneuver;
     const double front = -m.bump_distance - calc_lead(m) + section.start[StateIndex::kPosition];
@@ -184,8 +184,8 @@ class Simulator {
     return 2 * static_cast<std::size_t>(state_count_) + section.met.size();
   }
 
-  /// By how much samples, channel by channel, and the states at a section's end differ from those
-  /// of the road as it is.
+  /// Differences of a changed section from the one over the road as it is: samples, channel by
+  /// channel, then the states at its end.
   VectorXd calc_change(std::size_t s, const LaneRun& changed) const {
     const Section& section = sections_[s];
     const SampledRun sampled = get_channels(run_, changed);
@@ -219,15 +219,15 @@ class Simulator {
     return derivative;
   }
 
-  /// From the derivatives of the states at a section's begin to those of its samples and of the
-  /// states at its end.
+  /// Propagates the derivatives through a section. `states`: of the states at its begin, then at
+  /// its end; sets the rows of its samples in `derivatives`.
   void pass_section(std::size_t s, const LaneRun* changed, MatrixXd& states,
                     MatrixXd& derivatives) const {
     const Section& section = sections_[s];
     const auto samples = static_cast<Index>(count_samples(s));
     const auto channels = static_cast<Index>(section.samples.size());
     const auto met = static_cast<Index>(section.met.size());
-    // Of all samples, channel by channel, and of the states at the end.
+    // Rows: the samples, channel by channel, then the states at the end.
     MatrixXd by_states(channels * samples + state_count_, state_count_);
     MatrixXd by_met(by_states.rows(), met);
     for (Index i = 0; i < state_count_; ++i) by_states.col(i) = calc_by_state(s, changed + 2 * i);
@@ -235,7 +235,7 @@ class Simulator {
       by_met.col(i) = calc_change(s, changed[2 * state_count_ + i]) / kHeight;
     }
     for (std::size_t track = 0; track < 2; ++track) {
-      // No wheel has met what comes behind.
+      // The wheels have met no coefficient beyond the section's last.
       const Index first = columns_[track], count = section.tracks[track].end;
       MatrixXd after = by_states * states.middleCols(first, count);
       for (Index i = 0; i < met; ++i) {
@@ -250,8 +250,8 @@ class Simulator {
     }
   }
 
-  /// From derivatives of the true values to those of what the sensors read, which is linear in them
-  /// but for their bias.
+  /// Replaces derivatives of the true values by those of the sensors' readings, which are a linear
+  /// function of the true values plus a bias.
   void apply_sensors(MatrixXd& derivatives) const {
     const auto samples = static_cast<std::size_t>(derivatives.rows()) / run_.channels.size();
     const SampledRun zero(run_.channels.size(), std::vector<double>(samples, 0.0));
@@ -296,7 +296,7 @@ class Simulator {
   PreparedCase base_;
   SamplePlan plan_;
   std::size_t section_count_ = 0;
-  std::vector<Section> sections_;  // and one behind the last, for its start
+  std::vector<Section> sections_;  // the last only holds the state at the run's end
   Index state_count_ = 0;
   std::vector<Index> columns_ = {0};  // the first of each track, and the number of all
 };

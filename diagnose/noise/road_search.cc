@@ -37,8 +37,8 @@ class RoadSearch {
     constexpr double kSmall = 0.05, kEnough = 0.25;
     bool is_new = true;
     int steps = 0;
+    make_model();
     while (steps < kMostSteps) {
-      make_model();
       const bool was_new = is_new;
       const std::optional<Move> proposed = propose(is_new);
       if (!proposed) return false;
@@ -61,9 +61,10 @@ class RoadSearch {
     std::vector<double> values;            // of the unknowns
     std::vector<Eigen::VectorXd> weights;  // of the roads, by run
     double cost = 0.0, promised = 0.0;     // chi2 here; by how much it is to fall
-    double distance = 0.0;                 // largest change of what runs share, in its sigmas
+    double distance = 0.0;                 // largest change of a shared unknown, as calc_distance
   };
 
+  /// Sets the model of the roads as they are now.
   void make_model() {
     model_ = make_reading_model(data_, result_.runs, result_.roads, unknowns_, threads_);
   }
@@ -90,7 +91,7 @@ class RoadSearch {
     return true;
   }
 
-  /// Where the search stands.
+  /// The linearization at the current values and roads.
   const Linearization& linearize() {
     if (!here_) {
       here_ = std::make_shared<const Linearization>(model_->linearize(values_));
@@ -133,7 +134,7 @@ class RoadSearch {
     return move;
   }
 
-  /// Of a change, the largest of what the runs share, in standard deviations.
+  /// The largest change of an unknown that all runs share, in its standard deviations.
   double calc_distance(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& change) const {
     double most = 0.0;
     for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(result_.shared_count); ++i) {
@@ -199,14 +200,14 @@ class RoadSearch {
     return std::nullopt;
   }
 
-  /// Steps between events: these stop a search that is to descend where the linear model, which
-  /// sees all readings, wants what the runs share elsewhere.
+  /// Takes full steps of the linear model, even if chi2 rises a little: contact events make chi2
+  /// uneven, so that a search which only descends ends before it reaches the minimum of all
+  /// readings.
   void settle(double uneven) {
     if (result_.shared_count == 0) return;
     constexpr int kMost = 5;
     constexpr double kNearSigmas = 0.05;
     for (int i = 0; i < kMost; ++i) {
-      make_model();
       const std::optional<Move> move = propose(false);
       if (!move || move->distance < kNearSigmas || !take(*move, uneven)) break;
     }
@@ -232,13 +233,13 @@ class RoadSearch {
       result_.roads[r] = move_road(*set_response(road, std::sqrt(factor) * road.response),
                                    road.weights / std::sqrt(factor), result_.spectra.front().level);
     });
+    make_model();
   }
 
   /// The fit where the search ended. Events that readings pass leave single runs' clocks and speeds
   /// some standard deviations beside what the linear model wants; what all runs share has converged
   /// where that wants no more of it.
   void describe(int steps) {
-    make_model();
     const Whitener whitener(*model_, result_.spectra, result_.roads);
     const WhitenedModel whitened(*model_, whitener);
     const Linearization at = whitener.apply(linearize());
