@@ -31,9 +31,23 @@ constexpr double kMinLagRatio = 1.3;
 struct ChannelSummary {
   int channel = 0;  // in ModelInfo::channels
   std::vector<const ChannelAlignment*> runs;
-  double factor = 1.0, lag = 0.0, lag_ratio = 1.0, correlation = 0.0;  // medians
+  std::vector<double> lags;      // s, of the runs
+  std::vector<double> own_lags;  // without what the other channels of a run share
+  double factor = 1.0, lag = 0.0, own_lag = 0.0, lag_ratio = 1.0, correlation = 0.0;  // medians
   bool is_negative = false;
 };
+
+/// The lag [s] that the other channels of the run have in common: an event or a speed that is not
+/// quite as stated shifts them all. 0 where few others could tell.
+double calc_shared_lag(const Alignment& alignment, const ChannelAlignment& of) {
+  constexpr std::size_t kLeastOthers = 4;
+  std::vector<double> lags;
+  for (const ChannelAlignment& a : alignment.channels) {
+    const bool is_other = a.run == of.run && a.channel != of.channel;
+    if (is_other && a.correlation >= kComparable) lags.push_back(a.lag);
+  }
+  return lags.size() < kLeastOthers ? 0.0 : calc_quantile(lags, 0.5);
+}
 
 template <class Value>
 double calc_median(const std::vector<const ChannelAlignment*>& runs, const Value& get) {
@@ -65,6 +79,10 @@ std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
     if (!moves(a) || a.correlation < (are_few ? kClear : kComparable)) continue;
     channels[number].channel = number;
     channels[number].runs.push_back(&a);
+    channels[number].lags.push_back(a.lag);
+    // Many runs agree about a sensor's lag whatever shifts one of them.
+    const double shared = are_few ? calc_shared_lag(alignment, a) : 0.0;
+    channels[number].own_lags.push_back(a.lag - shared);
   }
   std::vector<ChannelSummary> list;
   for (auto& [number, c] : channels) {
@@ -76,7 +94,8 @@ std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
     });
     c.is_negative = 2 * static_cast<std::size_t>(negative) > c.runs.size();
     c.factor = calc_median(c.runs, [](const auto& run) { return std::abs(run.factor); });
-    c.lag = calc_median(c.runs, [](const auto& run) { return run.lag; });
+    c.lag = calc_quantile(c.lags, 0.5);
+    c.own_lag = calc_quantile(c.own_lags, 0.5);
     c.lag_ratio = calc_median(c.runs, [](const auto& run) { return run.lag_ratio; });
     c.correlation = calc_median(c.runs, [](const auto& run) { return run.correlation; });
     list.push_back(std::move(c));
@@ -146,18 +165,22 @@ bool add_common_sign(const std::vector<MeasuredRun>& runs,
   return true;
 }
 
-/// Whether a run's lag may be the phase of a motion that repeats itself.
-bool is_phase(const ChannelAlignment& run) {
+/// Whether a lag may be the phase of a motion that repeats itself after `period`.
+bool is_phase(double lag, double period) {
   constexpr double kMaxPart = 0.125;
-  return run.period > 0.0 && std::abs(run.lag) > kMaxPart * run.period;
+  return period > 0.0 && std::abs(lag) > kMaxPart * period;
 }
 
-bool has_lag(const ChannelSummary& c, double least) {
-  const auto same = std::count_if(c.runs.begin(), c.runs.end(), [&](const auto* run) {
-    return run->lag * c.lag > 0.0 && std::abs(run->lag) > 0.5 * std::abs(c.lag) && !is_phase(*run);
-  });
-  return std::abs(c.lag) >= least && c.lag_ratio >= kMinLagRatio &&
-         2 * static_cast<std::size_t>(same) > c.runs.size();
+/// Whether most runs of a channel agree that it has this lag: `lags` of the runs, `median` of
+/// these.
+bool has_lag(const ChannelSummary& c, const std::vector<double>& lags, double median,
+             double least) {
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < lags.size(); ++i) {
+    same += lags[i] * median > 0.0 && std::abs(lags[i]) > 0.5 * std::abs(median) &&
+            !is_phase(lags[i], c.runs[i]->period);
+  }
+  return std::abs(median) >= least && c.lag_ratio >= kMinLagRatio && 2 * same > lags.size();
 }
 
 /// Lags of all channels are one of the clock; others are those of single sensors.
@@ -171,7 +194,7 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
   const bool all_late =
       channels.size() > 1 &&
       std::all_of(channels.begin(), channels.end(), [&](const ChannelSummary& c) {
-        return has_lag(c, 0.5 * kMaxCommonLag) && std::abs(c.lag - common) < kMaxLag;
+        return has_lag(c, c.lags, c.lag, 0.5 * kMaxCommonLag) && std::abs(c.lag - common) < kMaxLag;
       });
   if (all_late && std::abs(common) >= kMaxCommonLag) {
     findings.push_back({FindingKind::kLag, "", "", common,
@@ -181,11 +204,12 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
     return;
   }
   for (const ChannelSummary& c : channels) {
-    if (!has_lag(c, channels.size() > 1 ? kMaxLag : kMaxCommonLag)) continue;
-    findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, c.lag,
-                        fmt::format("is {}", describe_lag(c.lag)),
+    const double least = channels.size() > 1 ? kMaxLag : kMaxCommonLag;
+    if (!has_lag(c, c.own_lags, c.own_lag, least)) continue;
+    findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, c.own_lag,
+                        fmt::format("is {}", describe_lag(c.own_lag)),
                         fmt::format("delay = {}, if its clock is another; or a filter?",
-                                    format_significant(c.lag, 2))});
+                                    format_significant(c.own_lag, 2))});
   }
 }
 

@@ -313,6 +313,31 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
     car.alignment.channels[1].correlation = 0.85;
     CHECK(car.is_clean());
   }
+  SECTION("a channel that moves in one run only, which is late as a whole") {
+    // Four more channels and two more runs; the second channel moves in the first run only.
+    const ModelInfo& info = car.runs[0].setup.info();
+    for (const char* name : {"front_right_suspension_deflection", "imu_rate_y",
+                             "rear_right_suspension_deflection", "imu_acceleration_z"}) {
+      car.runs[0].channels.push_back({find_channel(info, name), 1e-4, {}});
+    }
+    car.runs.resize(3, car.runs[0]);
+    car.alignment.channels.clear();
+    for (std::size_t run = 0; run < 3; ++run) {
+      for (std::size_t channel = 0; channel < 6; ++channel) {
+        const double lag = run == 0 ? 0.015 + 0.002 * static_cast<double>(channel) : 0.001;
+        car.alignment.channels.push_back({run, channel, 0.95, 1.0, 1.0, lag, 5.0, 2.0});
+      }
+    }
+    for (const std::size_t quiet : {7U, 13U}) car.alignment.channels[quiet].motion = 0.01;
+    CHECK(car.is_clean());
+    car.alignment.channels[1].lag = 0.041;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 20 ms late: delay = 0.020, "
+                                  "if its clock is another; or a filter?"});
+    // All runs are late: the clock's lag is told once, that of this channel with it.
+    for (ChannelAlignment& a : car.alignment.channels) a.lag = 0.02;
+    CHECK(car.describe() ==
+          Texts{"all channels are 20 ms late: offset of time, or hit_time of the runs"});
+  }
   SECTION("swapped channels") {
     car.alignment.swaps = {{0, 0, 1, 1.0}};
     CHECK(car.is_clean());
