@@ -18,9 +18,7 @@
 namespace strut {
 namespace {
 
-bool is_sensor(const EffectSetting& setting) {
-  return (find_effect(setting.effect)->places & kOnChannel) != 0;
-}
+bool is_sensor(const EffectSetting& setting) { return is_of_sensors(*find_effect(setting.effect)); }
 
 std::string explain_failure(const std::string& run, const LaneRun& result) {
   return fmt::format(

@@ -11,18 +11,26 @@
 
 namespace strut {
 
+/// How a file's column was read.
+struct ColumnReading {
+  double to_si = 1.0;  // SI value of 1 in the column
+  double delay = 0.0;  // s, by which the column was taken to be late
+};
+
 /// The readings of one sensor.
 struct MeasuredChannel {
   int channel = 0;             // index in ModelInfo::channels
   double sigma = 0.0;          // standard deviation of its white noise, in the channel's unit
   std::vector<double> values;  // one reading per time
+  ColumnReading reading{};
 };
 
-/// The noise of a recorded input.
+/// The noise of a recorded input, and its column.
 struct InputNoise {
   double sigma = 0.0;       // standard deviation per sample, in the unit of what was recorded
   double half_width = 0.0;  // of the local cubics that smoothed it [s]; 0: not smoothed
   int derivative = 0;       // time derivative of the input that was recorded
+  ColumnReading reading{};
 };
 
 struct MeasuredRun {

@@ -35,7 +35,7 @@ void print_failures(const Comparison& comparison) {
   if (comparison.baseline.is_fitted && !comparison.baseline.fit.converged) {
     print_error(
         fmt::format("the calibration has not converged: its minimum is {} standard deviations away",
-                    format_rounded(comparison.baseline.fit.distance)));
+                    format_significant(comparison.baseline.fit.distance, 2)));
   }
   for (const RunComparison& run : comparison.runs) {
     for (const ModelComparison* model : {&run.nominal, &run.calibrated}) {
@@ -92,13 +92,13 @@ int run_compare(const Arguments& arguments) {
   if (arguments.is_on("check") && arguments.has("output")) {
     throw arguments.usage_error("--check writes no folder: give it or --output, not both");
   }
-  const CampaignData data = read_campaign_data(arguments.only_operand());
+  CampaignData data = read_campaign_data(arguments.only_operand());
   if (arguments.is_on("check")) return run_check(arguments, data);
   const CompareFolder folder = find_compare_folder(arguments, data);
   print_notes(data.notes);
   const int threads = find_threads(arguments);
   print_detail(fmt::format("{} runs, {} threads", data.run_count(), threads));
-  check_before_fit(data, threads);
+  const std::size_t mistakes = check_before_fit(data, threads);
   const Comparison comparison = [&] {
     const Stage stage("calibration and comparison");
     const ProgressLine line(fmt::format("calibrating, then comparing {} runs", data.run_count()));
@@ -123,10 +123,12 @@ int run_compare(const Arguments& arguments) {
     }
     std::cout << make_verdict_text(data, comparison) << "\n" << folder.report().string() << "\n";
   }
-  if (comparison.is_adequate()) {
-    suggest_page(folder.report().string());
+  if (mistakes > 0) {
+    suggest_correction(mistakes, arguments.only_operand());
   } else {
-    suggest_next({"strut", "diagnose", arguments.only_operand(), "-o", "diagnosis"});
+    suggest_next(
+        {"strut", "diagnose", arguments.only_operand(), "-o", "diagnosis"},
+        comparison.is_adequate() ? "all readings together show less than one channel's noise" : "");
   }
   return is_whole(comparison) ? kExitDone : kExitNegative;
 }

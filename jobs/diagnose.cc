@@ -7,6 +7,7 @@
 #include <mutex>
 #include <system_error>
 
+#include "base/error/input_error.h"
 #include "io/file/atomic_file.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/clock.h"
@@ -57,8 +58,7 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
 void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
                        const CampaignData& data, const Diagnosis& diagnosis) {
   if (diagnosis.is_extended() && data.has_inputs()) {
-    suggest_next({"strut", "simulate", folder.extended_model().string(), "MANEUVER.toml", "-o",
-                  "extended.csv"});
+    suggest_page(folder.report().string());
   } else if (diagnosis.is_extended()) {
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
                  fmt::format("with vehicle = \"{}\"", folder.extended_model().string()));
@@ -92,11 +92,18 @@ Arguments describe_diagnose() {
 }
 
 int run_diagnose(const Arguments& arguments) {
-  const CampaignData data = read_campaign_data(arguments.only_operand());
+  CampaignData data = read_campaign_data(arguments.only_operand());
   const DiagnoseFolder folder = find_diagnose_folder(arguments, data);
   print_notes(data.notes);
-  check_before_fit(data, find_threads(arguments));
-  const Diagnosis diagnosis = diagnose(data, find_threads(arguments));
+  const std::size_t mistakes = check_before_fit(data, find_threads(arguments));
+  const Diagnosis diagnosis = [&] {
+    try {
+      return diagnose(data, find_threads(arguments));
+    } catch (const InputError&) {
+      if (mistakes > 0) suggest_correction(mistakes, arguments.only_operand());
+      throw;
+    }
+  }();
   print_notes(diagnosis.notes);
   const std::string json = format_json(make_verdict_json(data, diagnosis)) + "\n";
   {
@@ -114,7 +121,11 @@ int run_diagnose(const Arguments& arguments) {
   } else {
     std::cout << make_diagnose_text(data, diagnosis) << "\n" << folder.report().string() << "\n";
   }
-  suggest_next_step(arguments, folder, data, diagnosis);
+  if (mistakes > 0) {
+    suggest_correction(mistakes, arguments.only_operand());
+  } else {
+    suggest_next_step(arguments, folder, data, diagnosis);
+  }
   return diagnosis.is_whole ? kExitDone : kExitNegative;
 }
 

@@ -1,12 +1,17 @@
 #include "jobs/inspect.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
+#include "base/text/nearest_name.h"
 #include "io/file/atomic_file.h"
 #include "io/format/json.h"
 #include "io/store/measurement.h"
 #include "jobs/cli/command.h"
+#include "jobs/cli/lists.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/inspect/campaign_text.h"
@@ -16,6 +21,28 @@ namespace strut {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The files of --hold-out, which are among those inspected.
+std::vector<fs::path> read_held_out(const Arguments& arguments) {
+  if (arguments.has("hold-out") && !arguments.has("output")) {
+    throw arguments.usage_error("--hold-out is for the campaign of -o");
+  }
+  const std::vector<std::string>& files = arguments.positional();
+  std::vector<fs::path> held_out;
+  if (arguments.has("hold-out")) {
+    for (const std::string& name : split_list(arguments.text("hold-out"))) {
+      if (std::find(files.begin(), files.end(), name) == files.end()) {
+        throw arguments.usage_error("--hold-out: " + name + " is not among the files");
+      }
+      held_out.emplace_back(name);
+    }
+  }
+  return held_out;
+}
+
+}  // namespace
+
 Arguments describe_inspect() {
   Arguments arguments(
       "strut inspect FILE... [OPTIONS]",
@@ -23,13 +50,16 @@ Arguments describe_inspect() {
       "gaps of the clock, and what is odd. Reads CSV and other text of any dialect, HDF5 and\n"
       "MATLAB. With --model and -o, writes a campaign to begin with: each channel of the model "
       "with\n"
-      "the column whose name and unit fit, the last file held out.",
+      "the column whose name and unit fit, the last file held out, or those of --hold-out.",
       "  strut inspect drive.csv\n"
       "  strut inspect run1.csv run2.csv --model rig.toml -o campaign.toml");
   arguments.add_operands(ArgumentValue::file("FILE", {"csv", "txt", "h5", "hdf5", "mat"}));
   arguments.add_option("model", ArgumentValue::file("MODEL", {"toml"}),
                        "file of the vehicle or rig, for the campaign");
   arguments.add_option("output,o", ArgumentValue::file("FILE", {"toml"}), "campaign to write");
+  arguments.add_option("hold-out",
+                       ArgumentValue::file("FILES", {"csv", "txt", "h5", "hdf5", "mat"}),
+                       "files that the campaign holds out, with commas between them");
   arguments.add_switch("force", "replace an existing FILE");
   arguments.add_switch("json", "print JSON");
   return arguments;
@@ -41,6 +71,7 @@ int run_inspect(const Arguments& arguments) {
   if (arguments.has("model") != arguments.has("output")) {
     throw arguments.usage_error("--model and -o belong together: the campaign is for that model");
   }
+  const std::vector<fs::path> held_out = read_held_out(arguments);
   fs::path output;
   if (arguments.has("output")) {
     std::vector<std::string> inputs = names;
@@ -67,8 +98,13 @@ int run_inspect(const Arguments& arguments) {
         "writes a campaign to begin with");
     return kExitDone;
   }
-  write_text_file(output, make_campaign_text(files, arguments.text("model"),
-                                             fs::absolute(output).parent_path()));
+  const BegunCampaign campaign =
+      begin_campaign(files, arguments.text("model"), fs::absolute(output).parent_path(), held_out);
+  write_text_file(output, campaign.text);
+  if (!campaign.unassigned.empty()) {
+    print_note(fmt::format("no channel was found for {}: assign what you need in {}",
+                           join_names(campaign.unassigned), output.string()));
+  }
   suggest_next({"strut", "compare", output.string(), "--check"}, "after a look at the file");
   return kExitDone;
 }

@@ -51,6 +51,7 @@ std::string describe_places(const EffectInfo& effect) {
   add(kOnBody, "body");
   add(kOnRoad, "road");
   add(kOnChannel, "channel");
+  add(kOnChannels, "none");
   return text;
 }
 

@@ -25,10 +25,10 @@ std::string describe_sensor_findings(const FitResult& fit) {
   std::string large;
   for (const SensorFinding& f : list_sensor_findings(fit)) {
     if (std::abs(f.value) < kLarge * f.tolerance) continue;
-    large += fmt::format("{}{} {}{}", large.empty() ? "" : ", ", f.name, format_rounded(f.value),
-                         f.unit == "1" ? "" : " " + f.unit);
+    large += fmt::format("{}{} {}{}", large.empty() ? "" : ", ", f.name,
+                         format_significant(f.value, 2), f.unit == "1" ? "" : " " + f.unit);
   }
-  return large.empty() ? "" : "errors of sensors at two tolerances or more: " + large;
+  return large.empty() ? "" : "errors of sensors of two tolerances or more: " + large;
 }
 
 }  // namespace strut

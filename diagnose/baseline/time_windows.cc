@@ -17,7 +17,7 @@ std::vector<TimeWindow> make_segments(const MeasuredRun& run) {
     const double from = run.times.back() * i / kSegments;
     const double to =
         i + 1 == kSegments ? run.times.back() + 1.0 : run.times.back() * (i + 1) / kSegments;
-    windows.push_back({fmt::format("segment {}", i + 1), from, to});
+    windows.push_back({fmt::format("segment {} of {}", i + 1, kSegments), from, to});
   }
   return windows;
 }

@@ -98,6 +98,7 @@ MeasuredColumn take_column(std::size_t at, const std::vector<double>& values,
 struct TimedColumn {
   std::size_t at = 0;  // index in Campaign::columns
   std::vector<double> values;
+  double to_si = 1.0;  // ColumnReading::to_si
 };
 
 /// Adds the columns of `clock` with their values at `times`, those of the campaign's clock: all of
@@ -113,13 +114,14 @@ void add_columns(const Campaign& campaign, const Measurement& file, const std::s
     std::vector<double> values(raw->values.begin(),
                                raw->values.begin() + static_cast<std::ptrdiff_t>(own_times.size()));
     for (double& value : values) value = conversion.convert(value);  // NaN stays NaN
+    const double to_si = conversion.factor * conversion.unit.factor;
     if (c.clock.empty() && c.delay == 0.0) {
-      columns.push_back({i, std::move(values)});
+      columns.push_back({i, std::move(values), to_si});
       continue;
     }
     std::vector<double> own = own_times;
     for (double& t : own) t -= c.delay;
-    columns.push_back({i, move_to_clock(own, values, times, c.role == ColumnRole::kInput)});
+    columns.push_back({i, move_to_clock(own, values, times, c.role == ColumnRole::kInput), to_si});
   }
 }
 
@@ -221,7 +223,8 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
   for (const TimedColumn& timed : columns) {
     const CampaignColumn& c = campaign.columns[timed.at];
     table.columns.push_back(take_column(timed.at, timed.values, rows));
-    const MeasuredColumn& column = table.columns.back();
+    MeasuredColumn& column = table.columns.back();
+    column.to_si = timed.to_si;
     if (c.role == ColumnRole::kOutput) check_varies(table.name, c, column);
     if (column.missing == 0 || !c.clock.empty() || c.delay != 0.0) continue;
     table.notes.push_back(fmt::format("{}: {}: {} of {} samples are missing", table.name, c.channel,

@@ -31,7 +31,10 @@ bool is_decided_by_inputs(const ChannelAdequacy& adequacy) {
   ChannelAdequacy sensor = adequacy;
   sensor.floor.sigma *= std::sqrt(std::max(0.0, 1.0 - adequacy.floor.common_fraction));
   sensor.floor.common_fraction = 0.0;
-  return adequacy.is_adequate() && !sensor.is_adequate();
+  constexpr double kNotable =
+      0.05;  // of the variance; less decides nothing that is not on the edge
+  return adequacy.floor.common_fraction > kNotable && adequacy.is_adequate() &&
+         !sensor.is_adequate();
 }
 
 }  // namespace
@@ -47,10 +50,10 @@ std::vector<std::string> describe_deciding_noise(
     for (const ChannelComparison& c : models[run]->channels) {
       if (!is_decided_by_inputs(c.adequacy) || !noted.insert(c.channel).second) continue;
       notes.push_back(fmt::format(
-          "{} in {} agrees with the model only by the estimated noise of the inputs, {}, which is "
-          "{:.0f} % of its noise's variance; if you know that noise, state it: noise = SIGMA",
-          data.info(c.channel).name, name_run(data, run), join_names(inputs),
-          100.0 * c.adequacy.floor.common_fraction));
+          "{} in {} agrees with the model only if {:.0f} % of its noise's variance come from the "
+          "inputs, whose noise is estimated: {}; if you know it, state it: noise = SIGMA",
+          data.info(c.channel).name, name_run(data, run), 100.0 * c.adequacy.floor.common_fraction,
+          join_names(inputs)));
     }
   }
   return notes;

@@ -95,7 +95,7 @@ void check_convergence(const WhitenedFit& fit, const std::string& name, Diagnosi
   if (fit.fit.converged) return;
   diagnosis.notes.push_back(fmt::format(
       "the fit of the {} model has not converged: its minimum is {} standard deviations away", name,
-      format_rounded(fit.fit.distance)));
+      format_significant(fit.fit.distance, 2)));
 }
 
 /// Notes and `is_whole`: fits that have not converged, runs that could not be simulated.

@@ -69,7 +69,7 @@ std::string describe_improvement(const Diagnosis& diagnosis) {
   const std::string change = describe_change(diagnosis);
   // The readings of all channels together show what no channel shows alone.
   if (!improvement.explained || *improvement.explained < kVisible) {
-    return fmt::format("{} makes the held-out runs exp({:.3g}) times as likely.", change,
+    return fmt::format("{} raises the log-likelihood of the held-out runs by {:.3g}.", change,
                        improvement.log_odds);
   }
   return fmt::format("{} removes {} of the excess error on the held-out runs.", change,

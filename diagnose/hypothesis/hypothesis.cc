@@ -130,6 +130,12 @@ bool is_compared(const CampaignData& data, const std::string& channel) {
   return false;
 }
 
+bool are_several_compared(const CampaignData& data) {
+  const std::vector<std::size_t> runs = data.list_runs(RunUse::kFit);
+  return std::any_of(runs.begin(), runs.end(),
+                     [&](std::size_t r) { return data.channels(r).size() > 1; });
+}
+
 std::vector<std::vector<double>> make_beginnings(
     const std::vector<const EffectParameter*>& parameters, const SearchStarts& chosen) {
   std::vector<std::vector<double>> beginnings;
@@ -252,6 +258,8 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       const OnAt on = find_on(model_effects, effect.name, place);
       if (on == OnAt::kOverlapping) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;
+      // Of a single channel it is sensor_delay.
+      if ((effect.places & kOnChannels) != 0 && !are_several_compared(data)) continue;
       const auto found = motions.find(find_axle(place));
       const StrutMotion motion = found == motions.end() ? StrutMotion{} : found->second;
       Hypothesis h{effect.name, place, {}, {}, EffectChange::kAdded, {}};

@@ -113,20 +113,40 @@ RecordingFinding make_sign(const std::string& channel) {
   return {FindingKind::kSign, "", channel, -1.0, "looks negated", "sign = -1"};
 }
 
-RecordingFinding make_factor(const ChannelInfo& info, double factor) {
-  const std::string unit = guess_unit(info.unit, factor);
+/// For readings that are `factor` times what they should be: the unit that explains it, or a scale.
+std::string advise_scale(const std::string& si, const ColumnReading& reading, double factor) {
+  const std::string unit = guess_unit(si, factor / std::abs(reading.to_si));
+  return unit.empty() ? fmt::format("scale = {}?", format_significant(1.0 / factor, 3))
+                      : fmt::format("unit = \"{}\"?", unit);
+}
+
+/// The column of a channel in the first run that has it, and of an input.
+ColumnReading get_reading(const std::vector<MeasuredRun>& runs, const ChannelSummary& c) {
+  const ChannelAlignment& first = *c.runs.front();
+  return runs[first.run].channels[first.channel].reading;
+}
+ColumnReading get_input_reading(const std::vector<MeasuredRun>& runs, std::size_t input) {
+  const std::vector<InputNoise>& inputs = runs.front().input_noise;
+  return input < inputs.size() ? inputs[input].reading : ColumnReading{};
+}
+
+RecordingFinding make_factor(const ChannelInfo& info, const ColumnReading& reading, double factor) {
   return {FindingKind::kFactor,
           "",
           info.name,
           factor,
           fmt::format("is {} times what the model predicts", format_significant(factor, 2)),
-          unit.empty() ? fmt::format("scale = {}?", format_significant(1.0 / factor, 2))
-                       : fmt::format("unit = \"{}\"?", unit)};
+          advise_scale(info.unit, reading, factor)};
 }
 
 std::string describe_lag(double lag) {
   return fmt::format("{} ms {}", format_significant(1e3 * std::abs(lag), 2),
                      lag > 0.0 ? "late" : "early");
+}
+
+/// `lag`: what is left with the column as it was read.
+std::string advise_delay(const ColumnReading& reading, double lag) {
+  return fmt::format("delay = {}", format_significant(reading.delay + lag, 3));
 }
 
 /// Where all channels have one factor, it is that of the input.
@@ -143,13 +163,11 @@ bool add_common_factor(const std::vector<MeasuredRun>& runs,
     return false;
   }
   const InputInfo& input = info.inputs.front();
-  findings.push_back(
-      {FindingKind::kFactor, "", input.name, 1.0 / low->factor,
-       fmt::format("is {} times what the channels that it drives suggest",
-                   format_significant(1.0 / low->factor, 2)),
-       guess_unit(input.unit, 1.0 / low->factor).empty()
-           ? fmt::format("scale = {}?", format_significant(low->factor, 2))
-           : fmt::format("unit = \"{}\"?", guess_unit(input.unit, 1.0 / low->factor))});
+  const double factor = 1.0 / low->factor;
+  findings.push_back({FindingKind::kFactor, "", input.name, factor,
+                      fmt::format("is {} times what the channels that it drives suggest",
+                                  format_significant(factor, 2)),
+                      advise_scale(input.unit, get_input_reading(runs, 0), factor)});
   return true;
 }
 
@@ -197,10 +215,15 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
         return has_lag(c, c.lags, c.lag, 0.5 * kMaxCommonLag) && std::abs(c.lag - common) < kMaxLag;
       });
   if (all_late && std::abs(common) >= kMaxCommonLag) {
-    findings.push_back({FindingKind::kLag, "", "", common,
-                        fmt::format("all channels are {}", describe_lag(common)),
-                        is_driven ? fmt::format("is the input {}?", describe_lag(-common))
-                                  : "offset of time, or hit_time of the runs"});
+    const std::string what = fmt::format("all channels are {}", describe_lag(common));
+    if (is_driven) {
+      const std::string& input = runs.front().setup.info().inputs.front().name;
+      findings.push_back({FindingKind::kLag, "", "", common, what + " against " + input,
+                          advise_delay(get_input_reading(runs, 0), -common) + " of " + input});
+    } else {
+      findings.push_back(
+          {FindingKind::kLag, "", "", common, what, "offset of time, or hit_time of the runs"});
+    }
     return;
   }
   for (const ChannelSummary& c : channels) {
@@ -208,8 +231,8 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
     if (!has_lag(c, c.own_lags, c.own_lag, least)) continue;
     findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, c.own_lag,
                         fmt::format("is {}", describe_lag(c.own_lag)),
-                        fmt::format("delay = {}, if its clock is another; or a filter?",
-                                    format_significant(c.own_lag, 2))});
+                        advise_delay(get_reading(runs, c), c.own_lag) +
+                            " if another clock recorded it; or is it filtered?"});
   }
 }
 
@@ -295,7 +318,9 @@ std::vector<RecordingFinding> check_alignment(const std::vector<MeasuredRun>& ru
   for (const ChannelSummary& c : channels) {
     const ChannelInfo& info = get_info(runs, c.channel);
     if (c.is_negative && !common_sign) findings.push_back(make_sign(info.name));
-    if (is_large(c.factor) && !common_factor) findings.push_back(make_factor(info, c.factor));
+    if (is_large(c.factor) && !common_factor) {
+      findings.push_back(make_factor(info, get_reading(runs, c), c.factor));
+    }
     add_single_signs(runs, c, findings);
   }
   add_lags(runs, channels, findings);

@@ -140,7 +140,7 @@ std::string guess_unit(const std::string& si, double ratio) {
     nearest = distance;
     best = entry.name;
   }
-  return best == si ? "" : best;
+  return best;
 }
 
 }  // namespace strut

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/error/input_error.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
@@ -30,12 +32,25 @@ void report_findings(const std::vector<RecordingFinding>& findings) {
   for (const RecordingFinding& finding : findings) print_note(finding.describe());
 }
 
-void check_before_fit(const CampaignData& data, int threads) {
+std::size_t check_before_fit(CampaignData& data, int threads) {
   const std::vector<RecordingFinding> findings = check_campaign(data, threads);
   for (const RecordingFinding& finding : findings) {
     if (is_copied_hold_out(data, finding)) throw InputError(finding.describe());
+    data.notes.push_back("check of the recordings: " + finding.describe());
   }
   report_findings(findings);
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(),
+                    [](const RecordingFinding& finding) { return finding.is_mistake(); }));
+}
+
+void suggest_correction(std::size_t mistakes, const std::string& campaign) {
+  print_note(fmt::format(
+      "the check of the recordings found {} (above): correct {} first; until then this result is "
+      "about {}, too",
+      mistakes == 1 ? "a mistake" : fmt::format("{} mistakes", mistakes),
+      mistakes == 1 ? "it" : "them", mistakes == 1 ? "it" : "them"));
+  suggest_next({"strut", "compare", campaign, "--check"}, "until nothing looks wrong");
 }
 
 Json make_check_json(const CampaignData& data, const std::vector<RecordingFinding>& findings) {

@@ -2,6 +2,7 @@
 // step of `compare` and `diagnose`.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "diagnose/campaign/campaign_data.h"
@@ -16,9 +17,13 @@ std::vector<RecordingFinding> check_campaign(const CampaignData& data, int threa
 /// Prints each finding as a note.
 void report_findings(const std::vector<RecordingFinding>& findings);
 
-/// Checks all runs and prints what it finds. Throws InputError where a run is a copy of another: a
-/// held-out run would then judge nothing.
-void check_before_fit(const CampaignData& data, int threads);
+/// Checks all runs, prints what it finds and adds it to the notes of `data`. Returns how many
+/// mistakes it found. Throws InputError where a held-out run is a copy of one for fitting: it would
+/// judge nothing.
+std::size_t check_before_fit(CampaignData& data, int threads);
+
+/// After a result in spite of such mistakes: says that they come first, and what to call.
+void suggest_correction(std::size_t mistakes, const std::string& campaign);
 
 /// {"runs":, "findings": [{"kind": "sign", "run":, "channel":, "size":, "what":, "advice":}]}
 Json make_check_json(const CampaignData& data, const std::vector<RecordingFinding>& findings);

@@ -58,7 +58,7 @@ void add_positions(const std::vector<CausePosition>& positions, ReportTable& tab
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const CausePosition& p = positions[i];
     const std::string number = are_several ? fmt::format(" {}", i + 1) : "";
-    const std::string other = are_several ? "or, for" + number : "not distinguished";
+    const std::string other = are_several ? "instead of" + number : "not distinguished";
     table.rows.push_back(make_cause_row(p.get_cause(), "cause" + number));
     for (std::size_t k = 0; k < p.close; ++k) {
       if (k != p.chosen) table.rows.push_back(make_cause_row(p.candidates[k], other));
@@ -75,7 +75,7 @@ std::vector<std::string> make_improvement_notes(const Improvement& improvement) 
                     100.0 * *improvement.explained));
   } else {
     notes.emplace_back(
-        "No single channel exceeded its noise before: only the likelihood shows the improvement.");
+        "No single channel exceeded its noise before; all readings together show the improvement.");
   }
   notes.push_back(fmt::format("Log-likelihood per held-out sample: {} -> {}",
                               format_significant(improvement.log_likelihood_before),
@@ -149,7 +149,7 @@ std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis, std::size
   }
   if (shown < runners_up.size()) {
     table.notes.push_back(
-        fmt::format("{} more runners-up are in verdict.json", runners_up.size() - shown));
+        fmt::format("runners-up in verdict.json only: {}", runners_up.size() - shown));
   }
   if (table.rows.empty() && verdict.unknown_share == 0.0) return {};
   if (verdict.positions.size() < 2) {

@@ -32,8 +32,12 @@ std::string write_unit(const ColumnSummary& column, const std::string& si) {
   return fmt::format(", unit = {}", quote_toml(unit));
 }
 
-std::string write_comment(const ColumnSummary& column) {
+/// `si`: in which a column without a unit is read; "": not said.
+std::string write_comment(const ColumnSummary& column, const std::string& si = "") {
   std::string text = column.unit.empty() ? "" : "in " + column.unit;
+  if (column.unit.empty() && column.guessed_unit.empty() && !si.empty()) {
+    text = "no unit in the file: read in " + si;
+  }
   for (const std::string& remark : column.remarks) text += (text.empty() ? "" : "; ") + remark;
   return text.empty() ? "" : "   # " + text;
 }
@@ -73,10 +77,13 @@ ColumnLine write_column(const ModelInfo& model, const ColumnMatch& match, const 
                         quote_toml(table.columns[static_cast<std::size_t>(column.clock)].name));
   }
   return {match.channel, "{ " + text + " }",
-          write_comment(column) + (match.is_sure ? "" : "   # a guess: check it")};
+          write_comment(column, model.channels[channel].unit) +
+              (match.is_sure ? "" : "   # a guess: check it")};
 }
 
-std::string write_columns(const ModelInfo& model, const TableSummary& table) {
+/// Adds the columns that match no channel to `unassigned`.
+std::string write_columns(const ModelInfo& model, const TableSummary& table,
+                          std::vector<std::string>& unassigned) {
   const std::vector<ColumnMatch> matches = match_columns(model, table);
   // The fastest clock of the matched columns; the others move to it.
   int clock = -1;
@@ -117,12 +124,14 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table) {
                          std::any_of(matches.begin(), matches.end(),
                                      [&](const ColumnMatch& match) { return match.column == k; });
     if (is_used || column.is_clock) continue;
+    unassigned.push_back(column.name);
     text += fmt::format("# CHANNEL = {{ column = {} }}{}\n", quote_toml(column.name),
                         column.fault.empty() ? write_comment(column) : "   # text");
   }
   std::vector<std::string> names;
   for (const ChannelInfo& channel : model.channels) names.push_back(channel.name);
-  return text + "# channels: " + join_names(names) + "\n";
+  const char* how = unassigned.empty() ? "" : "# CHANNEL: the channel that this column measures\n";
+  return text + how + "# channels: " + join_names(names) + "\n";
 }
 
 /// Parameters to fit: a car's wearing rates, or a rig's masses, stiffness and damping.
@@ -150,8 +159,9 @@ std::string write_prior(const ModelTables& tables) {
     const double value = listed.value.value_or(0.0);
     if (!(value > 0.0)) return "";
     return fmt::format(
-        "prior = {{ {} = [{}, {}] }}   # kg, 1 sigma: weigh it, unless a force is recorded\n", name,
-        format_number(value), format_significant(kSpread * value, 2));
+        "prior = {{ {} = [{}, {}] }}   # kg, standard deviation: weigh it, unless a force is "
+        "recorded\n",
+        name, format_number(value), format_significant(kSpread * value, 2));
   }
   return "";
 }
@@ -166,12 +176,14 @@ std::string write_run(const std::string& file, const char* use, const ModelInfo&
 }
 
 std::string write_runs(const std::vector<InspectedFile>& files, const ModelInfo& model,
-                       const fs::path& folder) {
+                       const fs::path& folder, const std::vector<fs::path>& held_out) {
   std::string text;
   if (files.size() > 1) {
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      text += write_run(quote_path(files[i].path, folder),
-                        i + 1 < files.size() ? "fit" : "hold_out", model);
+    for (const InspectedFile& file : files) {
+      const bool is_held_out = held_out.empty() ? &file == &files.back()
+                                                : std::find(held_out.begin(), held_out.end(),
+                                                            file.path) != held_out.end();
+      text += write_run(quote_path(file.path, folder), is_held_out ? "hold_out" : "fit", model);
     }
     return text;
   }
@@ -191,8 +203,8 @@ std::string write_runs(const std::vector<InspectedFile>& files, const ModelInfo&
 
 }  // namespace
 
-std::string make_campaign_text(const std::vector<InspectedFile>& files, const fs::path& model,
-                               const fs::path& folder) {
+BegunCampaign begin_campaign(const std::vector<InspectedFile>& files, const fs::path& model,
+                             const fs::path& folder, const std::vector<fs::path>& held_out) {
   const ModelTables tables = make_model_tables(model.string());
   const TableSummary& first = files.front().table;
   const bool has_clock = std::any_of(first.columns.begin(), first.columns.end(),
@@ -201,19 +213,24 @@ std::string make_campaign_text(const std::vector<InspectedFile>& files, const fs
     throw InputError(files.front().path.string() +
                      ": no column is a time that ascends from row to row");
   }
+  if (!held_out.empty() && held_out.size() >= files.size()) {
+    throw InputError("--hold-out: no file is left for fitting");
+  }
   std::string free;
   for (const std::string& name : list_free(tables)) {
     free += (free.empty() ? "" : ", ") + quote_toml(name);
   }
-  return fmt::format(
-             "# Begun by strut inspect; check it with strut compare CAMPAIGN.toml --check.\n"
-             "# Keys: docs/diagnosis.md.\n\nmodel = {}\n\n"
-             "[columns]   # channel = the file's column; sign = -1 or unit = \"mm\" correct "
-             "it\n{}\n"
-             "[fit]\nfree = [{}]\n{}",
-             quote_path(model, folder), write_columns(*tables.model, first), free,
-             write_prior(tables)) +
-         write_runs(files, *tables.model, folder);
+  BegunCampaign campaign;
+  const std::string columns = write_columns(*tables.model, first, campaign.unassigned);
+  campaign.text =
+      fmt::format(
+          "# Begun by strut inspect; check it with strut compare CAMPAIGN.toml --check.\n"
+          "# Keys: docs/diagnosis.md.\n\nmodel = {}\n\n"
+          "[columns]   # channel = the file's column; sign = -1 or unit = \"mm\" correct it\n{}\n"
+          "[fit]\nfree = [{}]\n{}",
+          quote_path(model, folder), columns, free, write_prior(tables)) +
+      write_runs(files, *tables.model, folder, held_out);
+  return campaign;
 }
 
 }  // namespace strut

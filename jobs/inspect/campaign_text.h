@@ -14,12 +14,19 @@ struct InspectedFile {
   TableSummary table;
 };
 
-/// Returns the text of a campaign that will stand in `folder`: the columns of the first file that
-/// match channels of the model (jobs/inspect/match_columns.h) with their units, those that do not
-/// as comments, the last file held out; one file is divided into two windows. Throws InputError
-/// where the file has no clock, or the model's file cannot be read.
-std::string make_campaign_text(const std::vector<InspectedFile>& files,
-                               const std::filesystem::path& model,
-                               const std::filesystem::path& folder);
+struct BegunCampaign {
+  std::string text;
+  std::vector<std::string> unassigned;  // columns of the first file that no channel got
+};
+
+/// Begins a campaign that will stand in `folder`: the columns of the first file that match channels
+/// of the model (jobs/inspect/match_columns.h) with their units, those that do not as comments, and
+/// the files of `held_out` held out, the last one where there are none; one file is divided into
+/// two windows. Throws InputError where the file has no clock, the model's file cannot be read, or
+/// no file is left for fitting.
+BegunCampaign begin_campaign(const std::vector<InspectedFile>& files,
+                             const std::filesystem::path& model,
+                             const std::filesystem::path& folder,
+                             const std::vector<std::filesystem::path>& held_out = {});
 
 }  // namespace strut

@@ -50,9 +50,15 @@ const std::map<std::string, std::vector<std::string>>& list_synonyms() {
       {"beschl", {"acceleration"}},
       {"geschw", {"velocity"}},
       {"plate", {"road"}},
+      {"platte", {"road"}},
       {"ground", {"road"}},
       {"wheel", {"unsprung", "wheel"}},
       {"axle", {"unsprung"}},
+      {"fahrbahn", {"road"}},
+      {"strasse", {"road"}},
+      {"rad", {"unsprung", "wheel"}},
+      {"achse", {"unsprung"}},
+      {"aufbau", {"body", "sprung"}},
       {"tyre", {"tire"}}};
   return synonyms;
 }

@@ -18,11 +18,12 @@ namespace strut {
 /// Kinds of places in a car where an effect may act; bits of a set. A rig has one place of each
 /// kind.
 enum EffectPlaces : unsigned {
-  kOnAxle = 1,     // "front", "rear": both corners, unless a corner has a setting of its own
-  kOnCorner = 2,   // "front_left", ...
-  kOnBody = 4,     // "body"
-  kOnRoad = 8,     // "road": the maneuver
-  kOnChannel = 16  // the channel a sensor reads
+  kOnAxle = 1,      // "front", "rear": both corners, unless a corner has a setting of its own
+  kOnCorner = 2,    // "front_left", ...
+  kOnBody = 4,      // "body"
+  kOnRoad = 8,      // "road": the maneuver
+  kOnChannel = 16,  // the channel a sensor reads
+  kOnChannels = 32  // all channels together: the recorder that has one clock for them
 };
 
 struct EffectParameter {
@@ -45,6 +46,11 @@ struct EffectInfo {
   unsigned places;  // EffectPlaces
   std::vector<EffectParameter> parameters;
 };
+
+/// Whether it changes readings only, not the motion.
+inline bool is_of_sensors(const EffectInfo& effect) {
+  return (effect.places & (kOnChannel | kOnChannels)) != 0;
+}
 
 /// All effects in the order of the documentation.
 const std::vector<EffectInfo>& list_effects();

@@ -37,6 +37,7 @@ struct EffectName {
   static constexpr const char* kSensorGain = "sensor_gain";
   static constexpr const char* kSensorBias = "sensor_bias";
   static constexpr const char* kSensorDelay = "sensor_delay";
+  static constexpr const char* kClockOffset = "clock_offset";
   static constexpr const char* kSensorLowpass = "sensor_lowpass";
   static constexpr const char* kSensorPosition = "sensor_position";
 };

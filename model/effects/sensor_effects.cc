@@ -32,6 +32,20 @@ EffectInfo make_sensor_delay() {
                        0.03, 2e-3)}};
 }
 
+EffectInfo make_clock_offset() {
+  EffectInfo offset = {
+      EffectName::kClockOffset,
+      "the recorder of the channels is late against that of the inputs: two loggers, a late "
+      "trigger",
+      "y(t - tau) for every channel",
+      "5 to 100 ms between recorders that one trigger or an operator starts",
+      kOnChannels,
+      {make_switch("offset", "s", "tau: time by which all channels are late; < 0: early", -0.03,
+                   0.03, 2e-3)}};
+  offset.parameters[0].without = kHasCar;
+  return offset;
+}
+
 EffectInfo make_sensor_lowpass() {
   return {EffectName::kSensorLowpass,
           "the sensor or its amplifier smooths what it reads",
@@ -55,8 +69,8 @@ EffectInfo make_sensor_position() {
 }  // namespace
 
 std::vector<EffectInfo> make_sensor_effects() {
-  return {make_sensor_gain(), make_sensor_bias(), make_sensor_delay(), make_sensor_lowpass(),
-          make_sensor_position()};
+  return {make_sensor_gain(),  make_sensor_bias(),    make_sensor_delay(),
+          make_clock_offset(), make_sensor_lowpass(), make_sensor_position()};
 }
 
 }  // namespace strut

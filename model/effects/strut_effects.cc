@@ -40,8 +40,8 @@ EffectInfo make_damper_hysteresis() {
 EffectInfo make_damper_leak() {
   return {EffectName::kDamperLeak,
           "a damper short of oil loses stroke: after each reversal it gives no force until it has "
-          "moved that far; joint_play in another size: only the strut's dry friction, which still "
-          "acts, tells the two apart, and where both are on, their lengths add",
+          "moved that far, while the strut's dry friction still acts; without such friction it is "
+          "joint_play under another name; where both are on, stroke and play add up",
           "F = f(w), du/dt = v - w, w = r (u - clamp(u, -s / 2, s / 2)), "
           "r^2 = (1 / 1 ms)^2 + (0.5 m/s / s)^2",
           "dead zone in series with the damper, behind it a contact that yields within 1 ms "
@@ -115,19 +115,19 @@ EffectInfo make_top_mount_compliance() {
 }
 
 EffectInfo make_joint_play() {
-  return {EffectName::kJointPlay,
-          "a worn joint between damper and body or wheel: after a reversal the damper stands until "
-          "the rod has crossed the play; damper_leak in another size: only the strut's dry "
-          "friction, which is behind the joint, tells the two apart, and where both are on, their "
-          "lengths add",
-          "F = f(w), du/dt = v - w, w = r (u - clamp(u, -p / 2, p / 2)), "
-          "r^2 = (1 / 1 ms)^2 + (0.5 m/s / p)^2",
-          "dead zone in series with the damper, behind it a contact that yields within 1 ms, at "
-          "most by p at 0.5 m/s (stiffness c r of a linear damper); worn joints 0.1 to 1 mm; "
-          "clearance with contact spring: Flores et al., Kinematics and Dynamics of Multibody "
-          "Systems with Imperfect Joints, 2008",
-          kOnStrut,
-          {make_switch("play", "m", "p: lost motion from stop to stop", 0.0, 0.02, 3e-4)}};
+  return {
+      EffectName::kJointPlay,
+      "a worn joint between damper and body or wheel: after a reversal the damper stands until "
+      "the rod has crossed the play, and so does the strut's dry friction; without such friction "
+      "it is damper_leak under another name; where both are on, stroke and play add up",
+      "F = f(w), du/dt = v - w, w = r (u - clamp(u, -p / 2, p / 2)), "
+      "r^2 = (1 / 1 ms)^2 + (0.5 m/s / p)^2",
+      "dead zone in series with the damper, behind it a contact that yields within 1 ms, at "
+      "most by p at 0.5 m/s (stiffness c r of a linear damper); worn joints 0.1 to 1 mm; "
+      "clearance with contact spring: Flores et al., Kinematics and Dynamics of Multibody "
+      "Systems with Imperfect Joints, 2008",
+      kOnStrut,
+      {make_switch("play", "m", "p: lost motion from stop to stop", 0.0, 0.02, 3e-4)}};
 }
 
 EffectInfo make_gas_force() {

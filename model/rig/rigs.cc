@@ -84,9 +84,8 @@ RigSpec take_strut(const RigSpec& rig) {
   stand.kind = RigKind::kStrutRig;
   std::erase_if(stand.effects, [&](const EffectSetting& setting) {
     const EffectInfo& effect = *find_effect(setting.effect);
-    return (effect.places & kOnChannel) != 0 ||
-           list_effect_parameters(effect, get_rig_info(rig.kind)) !=
-               list_effect_parameters(effect, get_rig_info(stand.kind));
+    return is_of_sensors(effect) || list_effect_parameters(effect, get_rig_info(rig.kind)) !=
+                                        list_effect_parameters(effect, get_rig_info(stand.kind));
   });
   return stand;
 }

@@ -17,10 +17,11 @@ struct SensorEffect {
   const char* name;
   double ChannelSensor::*value;
 };
-constexpr std::array<SensorEffect, 4> kSensorEffects = {
+constexpr std::array<SensorEffect, 5> kSensorEffects = {
     {{EffectName::kSensorGain, &ChannelSensor::gain},
      {EffectName::kSensorBias, &ChannelSensor::bias},
      {EffectName::kSensorDelay, &ChannelSensor::delay},
+     {EffectName::kClockOffset, &ChannelSensor::delay},
      {EffectName::kSensorLowpass, &ChannelSensor::time}}};
 
 const SensorEffect* find_sensor_effect(const std::string& name) {
@@ -65,9 +66,10 @@ EffectSettings list_sensor_settings(const EffectSettings& settings) {
 ChannelSensor find_sensor(const EffectSettings& settings, const std::string& channel) {
   ChannelSensor sensor;
   for (const EffectSetting& setting : settings) {
-    if (setting.place != channel) continue;
+    const bool is_clock = setting.effect == EffectName::kClockOffset;
+    if (!is_clock && setting.place != channel) continue;
     const SensorEffect* effect = find_sensor_effect(setting.effect);
-    if (effect != nullptr) sensor.*(effect->value) = setting.values.at(0);
+    if (effect != nullptr) sensor.*(effect->value) += setting.values.at(0);
   }
   return sensor;
 }

@@ -18,7 +18,7 @@ namespace strut {
 struct ChannelSensor {
   double gain = 0.0;   // e, sensor_gain
   double bias = 0.0;   // b, sensor_bias, unit of the channel
-  double delay = 0.0;  // tau, sensor_delay, s; < 0: early
+  double delay = 0.0;  // tau, sensor_delay and clock_offset, s; < 0: early
   double time = 0.0;   // T, sensor_lowpass, s
 
   /// Whether a reading depends on the channel at other instants.

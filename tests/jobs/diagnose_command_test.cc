@@ -133,7 +133,7 @@ TEST_CASE("verdict.json has the keys that scripts rely on", "[io]") {
   // An error at more than two tolerances is told.
   CHECK_THAT(
       make_diagnose_text(data, make_named(data)),
-      Contains("errors of sensors at two tolerances or more: " + channel + "_gain_error 0.0025"));
+      Contains("errors of sensors of two tolerances or more: " + channel + "_gain_error 0.0025"));
 }
 
 TEST_CASE("A verdict without causes names no extended model", "[io]") {
@@ -189,7 +189,7 @@ TEST_CASE("Where several causes act, each has its own probability of being none 
   using Rows = std::vector<std::vector<std::string>>;
   CHECK(list_unknown() == Rows{{"", "0.010"}});
   diagnosis.verdict.positions.push_back(second);
-  CHECK(list_unknown() == Rows{{"or, for 1", "0.010"}, {"or, for 2", "0.270"}});
+  CHECK(list_unknown() == Rows{{"instead of 1", "0.010"}, {"instead of 2", "0.270"}});
   const ChartPanel panel = make_cause_charts(diagnosis).front().panels.front();
   CHECK(panel.series.back().y == std::vector<double>{0.01, 0.27});
   CHECK(panel.x.categories.back() == "none, for cause 2");

@@ -398,7 +398,7 @@ TEST_CASE("Effects of the left are those of the right in the mirror", "[unit][pr
 EffectSettings list_ordinary() {
   EffectSettings settings;
   for (const EffectInfo& effect : list_effects()) {
-    if (list_effect_parameters(effect, kCar).empty() || (effect.places & kOnChannel) != 0) continue;
+    if (list_effect_parameters(effect, kCar).empty() || is_of_sensors(effect)) continue;
     EffectSetting setting{effect.name, list_effect_places(effect, kCar).front(), {}};
     for (const EffectParameter* p : list_effect_parameters(effect, kCar)) {
       setting.values.push_back(p->typical);

@@ -26,14 +26,14 @@ const ModelInfo& kCar = get_car_info();
 
 /// The names of interface and users' files.
 const std::set<std::string> kNames = {
-    "damper_asymmetry",     "damper_blow_off",  "damper_hysteresis",  "damper_leak",
-    "damper_fade",          "strut_friction",   "progressive_spring", "bump_stop",
-    "top_mount_compliance", "gas_force",        "anti_roll_bar",      "payload",
-    "center_of_mass_shift", "pitch_inertia",    "unsprung_mass",      "tire_stiffness",
-    "tire_progressive",     "tire_damping",     "tire_enveloping",    "wheel_runout",
-    "bump_height",          "bump_length",      "speed_error",        "road_gain",
-    "sensor_gain",          "sensor_bias",      "sensor_delay",       "sensor_lowpass",
-    "sensor_position",      "aerodynamic_lift", "joint_play"};
+    "damper_asymmetry",     "damper_blow_off", "damper_hysteresis",  "damper_leak",
+    "damper_fade",          "strut_friction",  "progressive_spring", "bump_stop",
+    "top_mount_compliance", "gas_force",       "anti_roll_bar",      "payload",
+    "center_of_mass_shift", "pitch_inertia",   "unsprung_mass",      "tire_stiffness",
+    "tire_progressive",     "tire_damping",    "tire_enveloping",    "wheel_runout",
+    "bump_height",          "bump_length",     "speed_error",        "road_gain",
+    "sensor_gain",          "sensor_bias",     "sensor_delay",       "sensor_lowpass",
+    "clock_offset",         "sensor_position", "aerodynamic_lift",   "joint_play"};
 
 TEST_CASE("The catalogue holds each effect once, with a unit, a range and a source", "[unit]") {
   std::set<std::string> names;

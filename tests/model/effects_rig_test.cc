@@ -428,7 +428,7 @@ std::vector<EffectSetting> list_ordinary(RigKind kind) {
   std::vector<EffectSetting> settings;
   for (const EffectInfo& effect : list_effects()) {
     const auto parameters = list_effect_parameters(effect, get_rig_info(kind));
-    if (parameters.empty() || (effect.places & kOnChannel) != 0) continue;
+    if (parameters.empty() || is_of_sensors(effect)) continue;
     EffectSetting setting{effect.name, "", {}};
     for (const EffectParameter* p : parameters) setting.values.push_back(p->typical);
     if (effect.name == "bump_stop") setting.values[1] = 0.002;  // within this road's reach
