@@ -58,6 +58,14 @@ TEST_CASE("An effect can be excluded at one of its places", "[unit]") {
   CHECK_FALSE(contains(data.campaign.effects.exclude, "sensor_gain", "unsprung_position"));
 }
 
+TEST_CASE("A late recorder is a hypothesis where it delays several channels", "[unit]") {
+  CampaignData data = read_with_effects("");
+  CHECK(is_listed(data, "clock_offset"));
+  for (MeasuredRun& run : data.runs) run.channels.resize(1);
+  CHECK_FALSE(is_listed(data, "clock_offset"));
+  CHECK(is_listed(data, "sensor_delay"));
+}
+
 TEST_CASE("An effect known to be present is fitted by the baseline", "[reference]") {
   test::QuarterTruth truth;
   truth.friction = 0.6;

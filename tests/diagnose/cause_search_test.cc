@@ -36,7 +36,7 @@ QuarterTruth make_corner() {
 }
 
 CampaignData read_corner(const TemporaryFolder& folder, const QuarterTruth& truth,
-                         const std::string& effect = "") {
+                         const std::string& effect = "", const std::string& road = "") {
   test::write_record(folder, "a.csv", test::record_quarter_car(truth));
   QuarterTruth second = truth;
   second.amplitude *= 0.7;
@@ -52,6 +52,7 @@ CampaignData read_corner(const TemporaryFolder& folder, const QuarterTruth& trut
   text.unsprung = "{ column = \"unsprung\", noise = 2e-4 }";
   text.sprung = "{ column = \"sprung\", noise = 2e-4 }";
   text.fit = "free = [\"stiffness\", \"damping\", \"tire_stiffness\"]\n";
+  if (!road.empty()) text.road = road;
   return read_campaign_data(test::write_campaign(folder, text));
 }
 
@@ -141,6 +142,24 @@ TEST_CASE("An effect of the model file with a wrong size is changed, not removed
   REQUIRE(force != fit.unknowns.end());
   CHECK(fit.values[static_cast<std::size_t>(force - fit.unknowns.begin())] ==
         Approx(kFriction).margin(tolerance(4.0)));
+}
+
+TEST_CASE("A late recorder is one cause, not one for every sensor", "[unit]") {
+  constexpr double kLate = 0.004;  // s
+  QuarterTruth truth = make_corner();
+  truth.friction = 0.0;
+  const TemporaryFolder folder;
+  // The road's column is taken to be late, so that all channels are.
+  const CampaignData data =
+      read_corner(folder, truth, "", "{ column = \"road\", role = \"input\", delay = 0.004 }");
+  const Selection selection = select_causes(data, {});
+  REQUIRE(selection.causes.size() == 1);
+  CHECK(selection.causes[0].effect == "clock_offset");
+  const FitResult& fit = selection.extended.fit;
+  const std::size_t at = selection.extended.shared_count - 1;
+  REQUIRE(fit.unknowns[at].name == "clock_offset");
+  CHECK(std::abs(fit.values[at] - kLate) < tolerance(4.0 * fit.widened.sigma[at]));
+  CHECK(fit.widened.sigma[at] < 2e-4);
 }
 
 TEST_CASE("A right effect of the model file is left alone", "[unit]") {

@@ -273,6 +273,22 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
     CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 2.0 times what the model "
                                   "predicts: scale = 0.500?"});
   }
+  SECTION("a factor of a column that is read in another unit than it is in") {
+    car.runs[0].channels[1].reading.to_si = 1e-3;
+    rear.factor = 0.0394;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 0.039 times what the model "
+                                  "predicts: unit = \"in\"?"});
+    rear.factor = 0.001;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 0.0010 times what the model "
+                                  "predicts: unit = \"m\"?"});
+  }
+  SECTION("a lag of a column that is taken to be late already") {
+    car.runs[0].channels[1].reading.delay = 0.03;
+    rear.lag = 0.02;
+    rear.lag_ratio = 2.0;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 20 ms late: delay = 0.0500 "
+                                  "if another clock recorded it; or is it filtered?"});
+  }
   SECTION("a sign that the data hardly tell") {
     rear.factor = -0.9;
     rear.sign_ratio = 1.2;

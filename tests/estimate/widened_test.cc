@@ -1,6 +1,7 @@
 // Standard errors widened by residuals larger than noise, in closed form.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <random>
 
 #include "estimate/fit.h"
 #include "tests/support/linear_model.h"
@@ -46,6 +47,42 @@ TEST_CASE("The prior of a force map is in units of the residual", "[unit]") {
   const FitResult fit = fit_constant(3.0, UnknownKind::kForceMap);
   CHECK(fit.widened.sigma[0] ==
         Approx(calc_sigma(50.0 / 9.0, 25.0 / 9.0)).epsilon(tolerance(1e-9)));
+}
+
+/// A slope fitted to readings most of whose information is in the first tenth.
+struct SlopeFits {
+  double spread = 0.0, stated = 0.0;  // of the estimates; root mean square of the widened sigma
+};
+
+SlopeFits fit_slopes(double noise_of_first) {
+  constexpr int kFits = 400, kCount = 1000, kFirst = 100;
+  std::mt19937 random(20261128);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Constant(kCount, 1, 0.1);
+  matrix.topRows(kFirst).setOnes();
+  SlopeFits fits;
+  for (int i = 0; i < kFits; ++i) {
+    Eigen::VectorXd offset(kCount);
+    for (int k = 0; k < kCount; ++k)
+      offset(k) = (k < kFirst ? noise_of_first : 1.0) * normal(random);
+    test::LinearModel model({test::make_plain_unknown("slope")}, matrix, offset);
+    const double slope = -matrix.col(0).dot(offset) / matrix.col(0).squaredNorm();
+    const FitResult fit = describe_fit(model, model.linearize({slope}), {slope}, {false}, false);
+    fits.spread += slope * slope / kFits;
+    fits.stated += fit.widened.sigma[0] * fit.widened.sigma[0] / kFits;
+  }
+  return {std::sqrt(fits.spread), std::sqrt(fits.stated)};
+}
+
+TEST_CASE("A residual that is larger where an unknown is decided widens its standard error",
+          "[statistical]") {
+  // Of 400 fits, whose spread is known within 3.5 %. By chi2 alone, 0.4 of it would be stated.
+  const SlopeFits uneven = fit_slopes(4.0);
+  CHECK(uneven.stated > 0.9 * uneven.spread);
+  CHECK(uneven.stated < 1.1 * uneven.spread);
+  const SlopeFits even = fit_slopes(1.0);
+  CHECK(even.stated == Approx(1.0 / std::sqrt(109.0)).epsilon(0.01));
+  CHECK(even.stated == Approx(even.spread).epsilon(0.1));
 }
 
 }  // namespace

@@ -84,6 +84,12 @@ TEST_CASE("A campaign drafted by inspect shows its mistake in the check, and is 
   const test::Outcome wrong = run_program(check);
   CHECK(wrong.code == 1);
   CHECK_THAT(wrong.out, Contains("sprung_position looks negated: sign = -1"));
+  const test::Outcome compared =
+      run_program("compare " + campaign + " -o " + (folder / "wrong").string());
+  CHECK_THAT(compared.messages, Contains("found a mistake (above): correct it first") &&
+                                    Contains("next: strut compare " + campaign + " --check"));
+  CHECK_THAT(test::read_text(folder / "wrong/compare.json"),
+             Contains("check of the recordings: sprung_position looks negated"));
   const auto json = test::parse_json(run_program(check + " --json").out);
   REQUIRE(json.get_child("findings").size() == 1);
   CHECK(json.get_child("findings").front().second.get<std::string>("kind") == "sign");
@@ -123,6 +129,31 @@ TEST_CASE(
   const std::string both = draft("t,road_velocity,road_position,note");
   CHECK_THAT(both, Contains("{ column = \"road_position\", role = \"input\" }"));
   CHECK_THAT(both, Contains("{ column = \"road_velocity\" }"));
+}
+
+TEST_CASE("A drafted campaign holds out what is asked for and says what is left to assign",
+          "[io]") {
+  const test::TemporaryFolder folder;
+  std::string rows = "t,road_position,Aufbau,quality\n";
+  for (int i = 0; i < 10; ++i) rows += fmt::format("{},{},{},2\n", 0.1 * i, 0.3 * i, 9 - i);
+  const std::string first = folder.write("a.csv", rows).string(),
+                    second = folder.write("b.csv", rows).string();
+  const std::string campaign = (folder / "campaign.toml").string();
+  const std::string draft = "inspect " + first + " " + second + " --model " + kExamples +
+                            "/rigs/quarter_car.toml --force -o " + campaign + " --hold-out ";
+  const test::Outcome outcome = run_program(draft + first);
+  REQUIRE(outcome.code == 0);
+  CHECK_THAT(outcome.messages, Contains("no channel was found for quality"));
+  const std::string text = test::read_text(campaign);
+  CHECK_THAT(text,
+             Contains("file = \"a.csv\"\nuse  = \"hold_out\"") &&
+                 Contains("file = \"b.csv\"\nuse  = \"fit\"") &&
+                 Contains("sprung_position = { column = \"Aufbau\" }   # no unit in the file: "
+                          "read in m   # a guess") &&
+                 Contains("# CHANNEL = { column = \"quality\" }"));
+  CHECK(run_program(draft + "c.csv").code == 2);
+  CHECK_THAT(run_program(draft + first + "," + second).messages, Contains("no file is left"));
+  CHECK(run_program("inspect " + first + " --hold-out " + first).code == 2);
 }
 
 TEST_CASE("identify reads a recording by the columns of a campaign", "[io]") {

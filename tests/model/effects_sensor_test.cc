@@ -56,6 +56,15 @@ TEST_CASE("A late sensor reads what was", "[unit][reference][effects]") {
   CHECK(y.front() == (late > 0.0 ? 0.0 : y.front()));  // nothing before the first sample
 }
 
+TEST_CASE("A late recorder delays every channel, beside its sensor", "[unit][effects]") {
+  const EffectSettings late = {{"clock_offset", "", {2e-3}}};
+  CHECK(read(late) == read({{"sensor_delay", "imu_rate_y", {2e-3}}}));
+  const EffectSettings both = {{"clock_offset", "", {2e-3}},
+                               {"sensor_delay", "imu_rate_y", {1e-3}}};
+  CHECK(find_sensor(both, "imu_rate_y").delay == Approx(3e-3));
+  CHECK(find_sensor(both, "force").delay == 2e-3);
+}
+
 TEST_CASE("A slow sensor is a first-order filter", "[unit][reference][effects]") {
   const double slow = 8e-3, ratio = kW * slow;
   const std::vector<double> y = read({{"sensor_lowpass", "imu_rate_y", {slow}}});
