@@ -94,6 +94,14 @@ def check_sizes(verdict):
         check(found and low <= found[0] <= high, f"{effect} {parameter} between {low} and {high}: {found}")
 
 
+def check_intervals(verdict):
+    """Sizes that are known from elsewhere lie in the stated intervals."""
+    for (effect, parameter), known in recording.get("known", {}).items():
+        found = [c["parameters"][parameter]["ci95"] for c in verdict["causes"] if c["effect"] == effect]
+        check(found and found[0][0] <= known <= found[0][1],
+              f"{effect} {parameter} holds {known}: {found}")
+
+
 def check_lost_motion(verdict):
     low, high = recording["lost_motion"]
     found = {c["effect"]: c["parameters"] for c in verdict["causes"]}
@@ -114,5 +122,6 @@ if "of_static_law" in recording:
     check_static_law(verdict)
 check_errors(verdict)
 check_sizes(verdict)
+check_intervals(verdict)
 if "lost_motion" in recording:
     check_lost_motion(verdict)

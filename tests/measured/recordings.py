@@ -48,12 +48,14 @@ RECORDINGS = {
         "plausible": [("damper_blow_off",), ("damper_hysteresis", "top_mount_compliance", "sensor_lowpass")],
         "errors": {"force": 4.0},
         "sizes": {("damper_asymmetry", "asymmetry"): (0.26, 0.318)},
+        "known": {("damper_asymmetry", "asymmetry"): 0.289},
     },
     "mr_damper_0A": make_mr_damper("0A", {("strut_friction", "force"): (110, 150)}, 11.5, 0.87),
     "mr_damper_0.5A": make_mr_damper("0x5A", {("strut_friction", "force"): (600, 740)}, 10.2, 0.82),
     "friction_damper_20lb": make_friction_damper(
         20, {("strut_friction", "force"): (3700, 4500)}, 30.0, 0.6,
-        causes=[("strut_friction",), ("joint_play",)], lost_motion=(0.004, 0.007)),
+        causes=[("strut_friction",), ("joint_play",)], lost_motion=(0.004, 0.007),
+        known={("strut_friction", "force"): 4100.0}),
     "friction_damper_70lb": make_friction_damper(
         70, {("strut_friction", "force"): (8800, 12000)}, 25.0, 0.6),
     "quarter_car_steps": make_quarter_car(
