@@ -136,8 +136,8 @@ SampledRun read_sensors(const Case& setup, const MeasuredRun& run, double interv
                         SampledRun sampled) {
   for (std::size_t c = 0; c < sampled.size(); ++c) {
     const auto channel = static_cast<std::size_t>(run.channels[c].channel);
-    sampled[c] = read_sensor(setup.vehicle.effects, run.setup.info().channels[channel].name,
-                             interval, std::move(sampled[c]));
+    sampled[c] = read_sensor(setup.vehicle.effects, run.setup.info().channels[channel], interval,
+                             std::move(sampled[c]));
   }
   return sampled;
 }

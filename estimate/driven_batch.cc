@@ -131,7 +131,7 @@ DrivenResult::DrivenResult(const DrivenTask& task, const LaneResults& results, i
   const RigSpec& rig = task.variant.rig;
   for (std::size_t i = 0; i < results.recorded.size(); ++i) {
     const auto channel = static_cast<std::size_t>(results.recorded[i]);
-    history_.push_back(read_sensor(rig.effects, get_rig_info(rig.kind).channels[channel].name,
+    history_.push_back(read_sensor(rig.effects, get_rig_info(rig.kind).channels[channel],
                                    sampling_.interval,
                                    results.get_history(static_cast<int>(i), lane)));
   }

@@ -9,6 +9,7 @@
 #include "base/least_squares/levenberg_marquardt.h"
 #include "estimate/fisher.h"
 #include "estimate/readings.h"
+#include "estimate/uneven_residual.h"
 
 namespace strut {
 namespace {
@@ -236,31 +237,6 @@ std::vector<ChannelFit> describe_channels(const ReadingModel& model,
   return fits;
 }
 
-/// By how much each unknown's standard deviation grows where the residual is larger in the readings
-/// that decide it than on average (FitResult::widened). `information`: of readings and priors, with
-/// residuals as large as `misfit` times their noise.
-Eigen::VectorXd calc_growth(const Linearization& at, Eigen::Index reading_count,
-                            const Eigen::MatrixXd& information, double misfit) {
-  constexpr double kMargin = 2.0;  // in standard deviations of a mean of squares
-  const Eigen::MatrixXd covariance = invert_information(information).covariance;
-  const Eigen::MatrixXd jacobian = at.jacobian.topRows(reading_count) / std::sqrt(misfit);
-  const Eigen::VectorXd squares = at.residual.head(reading_count).array().square() / misfit;
-  const Eigen::MatrixXd influence = jacobian * covariance;
-  // Without what the fit has taken out of them.
-  const Eigen::VectorXd left =
-      (1.0 - influence.cwiseProduct(jacobian).rowwise().sum().array()).max(0.0);
-  Eigen::VectorXd growth = Eigen::VectorXd::Ones(information.rows());
-  for (Eigen::Index i = 0; i < growth.size(); ++i) {
-    const Eigen::VectorXd weights = influence.col(i).array().square();
-    const double expected = weights.dot(left), of_readings = weights.sum();
-    if (!(expected > 0.0) || !(covariance(i, i) > 0.0)) continue;
-    const double noise = std::sqrt(2.0) * weights.norm() / of_readings;
-    const double excess = weights.dot(squares) / expected - 1.0 - kMargin * noise;
-    if (excess > 0.0) growth(i) = std::sqrt(1.0 + excess * of_readings / covariance(i, i));
-  }
-  return growth;
-}
-
 Uncertainty calc_widened(const ReadingModel& model, const Linearization& at,
                          const NormalEquations& normal, const FitResult& result) {
   const double misfit = std::max(1.0, result.chi2_per_degree());
@@ -271,10 +247,17 @@ Uncertainty calc_widened(const ReadingModel& model, const Linearization& at,
     if (result.unknowns[i].kind == UnknownKind::kForceMap) priors(k, k) /= misfit;
   }
   const Eigen::MatrixXd information = (normal.information - normal.of_priors) / misfit + priors;
+  Uncertainty widened = calc_uncertainty(information, result.unknowns);
+  if (result.degrees <= 0) return widened;
+  // The directions that nothing identifies stay those of the readings.
   const Eigen::VectorXd growth =
-      calc_growth(at, static_cast<Eigen::Index>(model.reading_count()), information, misfit);
-  const auto shrink = growth.cwiseInverse().asDiagonal();
-  return calc_uncertainty(shrink * information * shrink, result.unknowns);
+      calc_growth(model, at, invert_information(information).covariance, priors, misfit);
+  widened.covariance = growth.asDiagonal() * widened.covariance * growth.asDiagonal();
+  for (std::size_t i = 0; i < result.unknowns.size(); ++i) {
+    widened.sigma[i] *= growth(static_cast<Eigen::Index>(i));
+    widened.identifiable[i] = is_identifiable(widened.sigma[i], result.unknowns[i]);
+  }
+  return widened;
 }
 
 }  // namespace

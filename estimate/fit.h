@@ -48,15 +48,8 @@ struct FitResult {
   std::vector<bool> at_bound;  // held by a bound
   Uncertainty uncertainty;     // at `values`
   /// The uncertainty for noise as large as the residuals: the weight of the readings is divided by
-  /// m = max(1, chi2 / degrees), that of the priors unchanged. Where a form is wrong, the residual
-  /// is largest in the readings that decide an unknown; with the influence g_ki of reading k on
-  /// unknown i (a column of J C) and its leverage h_k, the readings' part of its variance grows by
-  ///
-  ///   max(1, sum_k g_ki^2 r_k^2 / (m sum_k g_ki^2 (1 - h_k)) - margin)
-  ///
-  /// the covariance for residuals of unequal size (H. White, Econometrica 48 (1980)), with the
-  /// margin that equal ones need to keep theirs. It counts in whitened readings, whose residuals
-  /// are independent; a residual that repeats in every cycle is in a few of their frequencies.
+  /// max(1, chi2 / degrees), that of the priors unchanged; wider where the residual stands in the
+  /// readings that decide an unknown (uneven_residual.h).
   Uncertainty widened;
   double chi2 = 0.0;  // of readings and priors
   long degrees = 0;   // of freedom: number of readings and priors less the rank

@@ -13,8 +13,9 @@ namespace strut {
 
 /// How a file's column was read.
 struct ColumnReading {
-  double to_si = 1.0;  // SI value of 1 in the column
-  double delay = 0.0;  // s, by which the column was taken to be late
+  double unit = 1.0;   // SI value of the unit in which it was read
+  double scale = 1.0;  // by which it was multiplied besides, without its sign
+  double delay = 0.0;  // s, by which it was taken to be late
 };
 
 /// The readings of one sensor.

@@ -137,14 +137,6 @@ void ReadingModel::fill_priors(const std::vector<double>& values, Linearization&
   }
 }
 
-namespace {
-
-/// Rows of the readings of one run, and the unknowns they depend on.
-struct RunBlock {
-  Eigen::Index begin = 0, count = 0;
-  std::vector<Eigen::Index> unknowns;
-};
-
 std::vector<RunBlock> list_blocks(const ReadingModel& model) {
   std::vector<RunBlock> blocks;
   const std::vector<ReadingPlace>& readings = model.readings();
@@ -172,8 +164,6 @@ Eigen::MatrixXd get_block(const Eigen::MatrixXd& jacobian, const RunBlock& block
   }
   return part;
 }
-
-}  // namespace
 
 NormalEquations calc_normal_equations(const ReadingModel& model, const Linearization& at) {
   const auto readings = static_cast<Eigen::Index>(model.reading_count());

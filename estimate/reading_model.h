@@ -76,6 +76,9 @@ class ReadingModel {
   using TakeColumns = std::function<void(Eigen::Index first, const Eigen::MatrixXd& columns)>;
   virtual std::string linearize_road(const std::vector<double>& values, std::size_t run,
                                      const TakeColumns& take);
+  /// Whether the residuals are independent, so that their squares tell how large the noise is where
+  /// an unknown is decided; those of successive samples are not.
+  virtual bool has_independent_residuals() const { return false; }
   /// Returns `values` with unknowns improved that need no search, such as the hit times.
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 
@@ -160,6 +163,15 @@ void ReadingModel::add_readings(std::size_t run, const IsInside& is_inside) {
   }
   begin_.push_back(readings_.size());
 }
+
+/// Rows of the readings of one run, and the unknowns they depend on.
+struct RunBlock {
+  Eigen::Index begin = 0, count = 0;
+  std::vector<Eigen::Index> unknowns;
+};
+std::vector<RunBlock> list_blocks(const ReadingModel& model);
+/// A block's rows of the Jacobian, by the block's unknowns.
+Eigen::MatrixXd get_block(const Eigen::MatrixXd& jacobian, const RunBlock& block);
 
 /// J'J and J'r of a linearization. Readings depend only on their own run's unknowns and the shared
 /// ones, which saves most of the work.

@@ -16,6 +16,7 @@
 #include "estimate/sampled_curve.h"
 #include "estimate/sensor_error.h"
 #include "model/channel/car_channels.h"
+#include "model/effects/catalogue.h"
 #include "model/error/model_error.h"
 #include "model/sensor/sensors.h"
 #include "model_files/parameters.h"
@@ -34,7 +35,7 @@ void read_history(const LaneRun& simulated, const EffectSettings& effects,
     const auto c = static_cast<std::size_t>(channel);
     curves.channel[c].assign(times.size(), kNan);
     const std::vector<double> series =
-        read_sensor(effects, list_car_channels()[c].name, step, simulated.get_series(channel));
+        read_sensor(effects, list_car_channels()[c], step, simulated.get_series(channel));
     for (std::size_t t = 0; t < times.size(); ++t) {
       const double at = (times[t] + hit_time) / step, index = std::floor(at);
       if (index < static_cast<double>(kCurveMargin)) continue;
@@ -147,6 +148,15 @@ RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unkno
   std::vector<int> all(run.setup.info().channels.size());
   std::iota(all.begin(), all.end(), 0);
   return std::move(simulate_channels(run, unknowns, {values}, all).front());
+}
+
+RunCurves simulate_motion(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                          const std::vector<double>& values) {
+  MeasuredRun ideal = set_unknowns(run, unknowns, values);
+  std::erase_if(ideal.setup.effects(), [](const EffectSetting& setting) {
+    return is_of_sensors(*find_effect(setting.effect));
+  });
+  return simulate_run(ideal, {}, {});
 }
 
 std::vector<RunCurves> simulate_points(const MeasuredRun& run, const std::vector<Unknown>& unknowns,

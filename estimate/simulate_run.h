@@ -19,6 +19,10 @@ struct RunCurves {
 RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                        const std::vector<double>& values);
 
+/// simulate_run with ideal sensors: the motion itself, not what sensors read of it.
+RunCurves simulate_motion(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
+                          const std::vector<double>& values);
+
 /// simulate_run at each of several points, in the processor's lanes, with the run's compared
 /// channels only. A point that fails affects no other; throws as simulate_run.
 std::vector<RunCurves> simulate_points(const MeasuredRun& run, const std::vector<Unknown>& unknowns,

@@ -56,12 +56,14 @@ Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     result.sigma.push_back(inverse.free[i] ? kInfinity : std::sqrt(result.covariance(at, at)));
-    result.identifiable.push_back(result.sigma[i] <= unknowns[i].scale * (1.0 + 1e-6));
+    result.identifiable.push_back(is_identifiable(result.sigma[i], unknowns[i]));
   }
   result.null_directions = find_null_directions(information);
   result.rank = static_cast<int>(unknowns.size() - result.null_directions.size());
   return result;
 }
+
+bool is_identifiable(double sigma, const Unknown& u) { return sigma <= u.scale * (1.0 + 1e-6); }
 
 std::string describe_direction(const NullDirection& direction,
                                const std::vector<Unknown>& unknowns) {

@@ -33,6 +33,9 @@ struct Uncertainty {
 Uncertainty calc_uncertainty(const Eigen::MatrixXd& information,
                              const std::vector<Unknown>& unknowns);
 
+/// Whether a standard error is at most the unknown's scale.
+bool is_identifiable(double sigma, const Unknown& u);
+
 /// "front_stiffness - 0.98 rear_stiffness": the components above 0.1.
 std::string describe_direction(const NullDirection& direction,
                                const std::vector<Unknown>& unknowns);

@@ -126,9 +126,10 @@ int run_compare(const Arguments& arguments) {
   if (mistakes > 0) {
     suggest_correction(mistakes, arguments.only_operand());
   } else {
-    suggest_next(
-        {"strut", "diagnose", arguments.only_operand(), "-o", "diagnosis"},
-        comparison.is_adequate() ? "all readings together show less than one channel's noise" : "");
+    suggest_next({"strut", "diagnose", arguments.only_operand(), "-o", "diagnosis"},
+                 comparison.is_adequate()
+                     ? "it also finds errors smaller than the noise of one channel"
+                     : "");
   }
   return is_whole(comparison) ? kExitDone : kExitNegative;
 }

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 #include "base/text/nearest_name.h"
 #include "io/file/atomic_file.h"
@@ -23,20 +23,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The files of --hold-out, which are among those inspected.
-std::vector<fs::path> read_held_out(const Arguments& arguments) {
-  if (arguments.has("hold-out") && !arguments.has("output")) {
-    throw arguments.usage_error("--hold-out is for the campaign of -o");
+/// The files of --hold-out, which are among those inspected and leave some of them.
+std::set<fs::path> read_held_out(const Arguments& arguments) {
+  if (!arguments.has("hold-out")) return {};
+  if (!arguments.has("output")) throw arguments.usage_error("--hold-out is for the campaign of -o");
+  const auto list_whole = [](const std::vector<std::string>& names) {
+    std::set<fs::path> paths;
+    for (const std::string& name : names) paths.insert(fs::weakly_canonical(name));
+    return paths;
+  };
+  const std::vector<std::string> names = split_list(arguments.text("hold-out"));
+  if (names.empty()) throw arguments.usage_error("--hold-out: empty; allowed: files");
+  const std::set<fs::path> files = list_whole(arguments.positional());
+  std::set<fs::path> held_out = list_whole(names);
+  for (const fs::path& path : held_out) {
+    if (files.count(path) > 0) continue;
+    throw arguments.usage_error("--hold-out: " + path.filename().string() +
+                                " is not among the files");
   }
-  const std::vector<std::string>& files = arguments.positional();
-  std::vector<fs::path> held_out;
-  if (arguments.has("hold-out")) {
-    for (const std::string& name : split_list(arguments.text("hold-out"))) {
-      if (std::find(files.begin(), files.end(), name) == files.end()) {
-        throw arguments.usage_error("--hold-out: " + name + " is not among the files");
-      }
-      held_out.emplace_back(name);
-    }
+  if (held_out.size() == files.size()) {
+    throw arguments.usage_error("--hold-out: no file is left for fitting");
   }
   return held_out;
 }
@@ -71,7 +77,7 @@ int run_inspect(const Arguments& arguments) {
   if (arguments.has("model") != arguments.has("output")) {
     throw arguments.usage_error("--model and -o belong together: the campaign is for that model");
   }
-  const std::vector<fs::path> held_out = read_held_out(arguments);
+  const std::set<fs::path> held_out = read_held_out(arguments);
   fs::path output;
   if (arguments.has("output")) {
     std::vector<std::string> inputs = names;

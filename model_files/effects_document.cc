@@ -51,8 +51,7 @@ std::string describe_places(const EffectInfo& effect) {
   add(kOnBody, "body");
   add(kOnRoad, "road");
   add(kOnChannel, "channel");
-  add(kOnChannels, "none");
-  return text;
+  return text.empty() ? "Not in a car, whose hit_time is its clock" : "Place in a car: " + text;
 }
 
 std::string describe_models(const EffectParameter& parameter) {
@@ -67,7 +66,7 @@ void write_effect(const EffectInfo& effect, std::ostream& out) {
   out << "## `" << effect.name << "`\n\n"
       << effect.description << ".\n\n"
       << "    " << effect.equation << "\n\n"
-      << "Place in a car: " << describe_places(effect) << ". Source: " << effect.source << ".\n\n"
+      << describe_places(effect) << ". Source: " << effect.source << ".\n\n"
       << "| parameter | unit | meaning | neutral | range | ordinary | in |\n"
       << "|---|---|---|---|---|---|---|\n";
   for (const EffectParameter& p : effect.parameters) {

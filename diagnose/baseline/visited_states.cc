@@ -47,7 +47,7 @@ std::vector<VisitedStates> list_visited_states(const CampaignData& data,
   const std::size_t stride = 1 + samples / kMaxSamples;
   std::vector<VisitedStates> states;
   for (const std::size_t r : runs) {
-    const RunCurves curves = simulate_run(data.runs[r], shared.unknowns, shared.values);
+    const RunCurves curves = simulate_motion(data.runs[r], shared.unknowns, shared.values);
     if (!curves.failure.empty()) continue;
     for (const StrutInfo& strut : data.model().struts) {
       VisitedStates& s = find_place(states, strut.place);

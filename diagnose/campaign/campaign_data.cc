@@ -87,10 +87,8 @@ std::vector<MeasuredChannel> make_channels(const CampaignData& data, const Measu
   for (const MeasuredColumn& column : table.columns) {
     const CampaignColumn& c = data.campaign.columns[column.at];
     if (c.role != ColumnRole::kOutput) continue;
-    channels.push_back({find_channel(data.model(), c.channel),
-                        data.noise[column.at].sigma,
-                        column.values,
-                        {column.to_si, c.delay}});
+    channels.push_back({find_channel(data.model(), c.channel), data.noise[column.at].sigma,
+                        column.values, column.reading});
   }
   if (channels.empty()) {
     throw InputError(table.name + ": the file has none of the campaign's channels to compare");
@@ -118,7 +116,7 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
     values.push_back(gain * (column.values[i] - bias));
   }
   noise.derivative = c.input.derivative;
-  noise.reading = {column.to_si, c.delay};
+  noise.reading = column.reading;
   noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
   // Masses smooth their inputs; a strut's force follows the velocity itself.
   const bool smooths = !data.model().masses.empty();

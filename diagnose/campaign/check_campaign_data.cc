@@ -107,15 +107,16 @@ void check_rate(CampaignData& data, std::size_t r) {
   }
 }
 
-/// The message of a suspected unit. `to_si`: SI value of 1 in the column, as it is read;
-/// `comparison`: the plausible spread or the model's.
-std::string suspect_unit(const MeasuredTable& table, const CampaignColumn& c, double to_si,
-                         double spread, double expected, const std::string& comparison) {
-  const std::string guess = guess_unit(c.si, spread / expected / std::abs(to_si));
+/// The message of a suspected unit. `comparison`: the plausible spread or the model's.
+std::string suspect_unit(const MeasuredTable& table, const CampaignColumn& c,
+                         const ColumnReading& reading, double spread, double expected,
+                         const std::string& comparison) {
+  const std::string guess =
+      reading.scale == 1.0 ? guess_unit(c.si, spread / expected / reading.unit) : "";
   std::string text = fmt::format(
       "{}: {} (column '{}', read in {}) has a standard deviation of {} {}, {}: is its "
       "unit wrong, perhaps by a factor of 1000?",
-      table.name, c.channel, c.column, c.unit.empty() ? c.si : c.unit, format_rounded(spread), c.si,
+      table.name, c.channel, c.column, name_unit(c.si, reading.unit), format_rounded(spread), c.si,
       comparison);
   if (!guess.empty()) text += fmt::format(" If so, give unit = \"{}\"", guess);
   return text;
@@ -130,7 +131,7 @@ void check_plausible(const CampaignData& data, std::size_t r) {
       if (spread >= plausible.low && spread <= plausible.high) continue;
       const bool high = spread > plausible.high;
       throw InputError(suspect_unit(
-          data.tables[r], c, column.to_si, spread, high ? 1e-3 * spread : 1e3 * spread,
+          data.tables[r], c, column.reading, spread, high ? 1e-3 * spread : 1e3 * spread,
           high ? fmt::format("above the plausible {} {}", format_rounded(plausible.high), c.si)
                : fmt::format("below the plausible {} {}", format_rounded(plausible.low), c.si)));
     }
@@ -165,7 +166,7 @@ void check_units(const CampaignData& data, std::size_t r) {
     for (const CampaignColumn& c : data.campaign.columns) {
       if (c.channel != data.info(channel.channel).name) continue;
       throw InputError(suspect_unit(
-          data.tables[r], c, channel.reading.to_si, measured, simulated,
+          data.tables[r], c, channel.reading, measured, simulated,
           fmt::format("that of the nominal model is {} {}", format_rounded(simulated), c.si)));
     }
   }

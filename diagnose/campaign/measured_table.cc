@@ -98,7 +98,7 @@ MeasuredColumn take_column(std::size_t at, const std::vector<double>& values,
 struct TimedColumn {
   std::size_t at = 0;  // index in Campaign::columns
   std::vector<double> values;
-  double to_si = 1.0;  // ColumnReading::to_si
+  ColumnReading reading{};
 };
 
 /// Adds the columns of `clock` with their values at `times`, those of the campaign's clock: all of
@@ -114,14 +114,15 @@ void add_columns(const Campaign& campaign, const Measurement& file, const std::s
     std::vector<double> values(raw->values.begin(),
                                raw->values.begin() + static_cast<std::ptrdiff_t>(own_times.size()));
     for (double& value : values) value = conversion.convert(value);  // NaN stays NaN
-    const double to_si = conversion.factor * conversion.unit.factor;
+    const ColumnReading reading{conversion.unit.factor, std::abs(conversion.factor), c.delay};
     if (c.clock.empty() && c.delay == 0.0) {
-      columns.push_back({i, std::move(values), to_si});
+      columns.push_back({i, std::move(values), reading});
       continue;
     }
     std::vector<double> own = own_times;
     for (double& t : own) t -= c.delay;
-    columns.push_back({i, move_to_clock(own, values, times, c.role == ColumnRole::kInput), to_si});
+    columns.push_back(
+        {i, move_to_clock(own, values, times, c.role == ColumnRole::kInput), reading});
   }
 }
 
@@ -224,7 +225,7 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
     const CampaignColumn& c = campaign.columns[timed.at];
     table.columns.push_back(take_column(timed.at, timed.values, rows));
     MeasuredColumn& column = table.columns.back();
-    column.to_si = timed.to_si;
+    column.reading = timed.reading;
     if (c.role == ColumnRole::kOutput) check_varies(table.name, c, column);
     if (column.missing == 0 || !c.clock.empty() || c.delay != 0.0) continue;
     table.notes.push_back(fmt::format("{}: {}: {} of {} samples are missing", table.name, c.channel,

@@ -13,7 +13,7 @@ struct MeasuredColumn {
   std::size_t at = 0;          // index in Campaign::columns
   std::vector<double> values;  // SI; NaN: missing
   std::size_t missing = 0;
-  double to_si = 1.0;  // ColumnReading::to_si
+  ColumnReading reading{};
 };
 
 struct MeasuredTable {

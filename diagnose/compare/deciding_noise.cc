@@ -28,11 +28,10 @@ std::vector<std::string> list_estimated_inputs(const CampaignData& data, std::si
 
 /// Whether the residual is within the noise only because of what is not the sensor's own.
 bool is_decided_by_inputs(const ChannelAdequacy& adequacy) {
+  constexpr double kNotable = 0.05;  // of the variance
   ChannelAdequacy sensor = adequacy;
   sensor.floor.sigma *= std::sqrt(std::max(0.0, 1.0 - adequacy.floor.common_fraction));
   sensor.floor.common_fraction = 0.0;
-  constexpr double kNotable =
-      0.05;  // of the variance; less decides nothing that is not on the edge
   return adequacy.floor.common_fraction > kNotable && adequacy.is_adequate() &&
          !sensor.is_adequate();
 }
@@ -50,7 +49,7 @@ std::vector<std::string> describe_deciding_noise(
     for (const ChannelComparison& c : models[run]->channels) {
       if (!is_decided_by_inputs(c.adequacy) || !noted.insert(c.channel).second) continue;
       notes.push_back(fmt::format(
-          "{} in {} agrees with the model only if {:.0f} % of its noise's variance come from the "
+          "{} in {} agrees with the model only if {:.0f} % of its noise's variance comes from the "
           "inputs, whose noise is estimated: {}; if you know it, state it: noise = SIGMA",
           data.info(c.channel).name, name_run(data, run), 100.0 * c.adequacy.floor.common_fraction,
           join_names(inputs)));

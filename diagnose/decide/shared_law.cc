@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/math/normal.h"
-#include "model/effects/catalogue.h"
 
 namespace strut {
 namespace {
@@ -70,12 +69,7 @@ std::vector<std::pair<std::string, Slopes>> calc_secants(const CampaignData& dat
                                                          const SharedValues& shared) {
   std::vector<StrutMotionForce> motions;
   for (const std::size_t r : runs) {
-    // The strut's motion, not what sensors read of it.
-    MeasuredRun run = set_unknowns(data.runs[r], shared.unknowns, shared.values);
-    std::erase_if(run.setup.effects(), [](const EffectSetting& setting) {
-      return is_of_sensors(*find_effect(setting.effect));
-    });
-    const RunCurves curves = simulate_run(run, {}, {});
+    const RunCurves curves = simulate_motion(data.runs[r], shared.unknowns, shared.values);
     if (!curves.failure.empty()) continue;
     for (const StrutInfo& strut : data.model().struts) {
       auto found = std::find_if(motions.begin(), motions.end(),

@@ -40,7 +40,7 @@ std::map<std::string, StrutMotion> measure_motion(const CampaignData& data,
   std::map<std::string, StrutMotion> motions;
   double runs = 0.0;
   for (const std::size_t r : data.list_runs(RunUse::kFit)) {
-    const RunCurves curves = simulate_run(data.runs[r], shared.unknowns, shared.values);
+    const RunCurves curves = simulate_motion(data.runs[r], shared.unknowns, shared.values);
     if (!curves.failure.empty()) continue;
     ++runs;
     for (const StateCurve& state : list_states(data, curves)) {
@@ -130,7 +130,7 @@ bool is_compared(const CampaignData& data, const std::string& channel) {
   return false;
 }
 
-bool are_several_compared(const CampaignData& data) {
+bool has_run_with_several_channels(const CampaignData& data) {
   const std::vector<std::size_t> runs = data.list_runs(RunUse::kFit);
   return std::any_of(runs.begin(), runs.end(),
                      [&](std::size_t r) { return data.channels(r).size() > 1; });
@@ -259,7 +259,7 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       if (on == OnAt::kOverlapping) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;
       // Of a single channel it is sensor_delay.
-      if ((effect.places & kOnChannels) != 0 && !are_several_compared(data)) continue;
+      if ((effect.places & kOnChannels) != 0 && !has_run_with_several_channels(data)) continue;
       const auto found = motions.find(find_axle(place));
       const StrutMotion motion = found == motions.end() ? StrutMotion{} : found->second;
       Hypothesis h{effect.name, place, {}, {}, EffectChange::kAdded, {}};

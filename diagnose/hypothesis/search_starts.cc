@@ -132,6 +132,10 @@ const Rules& list_rules() {
                     [](Motion) -> Starts {
                       return {{{"delay", 5e-4}}};
                     }},
+                   {EffectName::kClockOffset,
+                    [](Motion) -> Starts {
+                      return {{{"offset", 5e-4}}};
+                    }},
                    {EffectName::kSensorLowpass, [](Motion) -> Starts {
                       return {{{"time", 5e-4}}};
                     }}});

@@ -106,6 +106,7 @@ class WhitenedModel : public ReadingModel {
   using ReadingModel::evaluate;
   std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
   std::vector<double> align(const std::vector<double>& values) override;
+  bool has_independent_residuals() const override { return true; }
 
  private:
   ReadingModel& model_;

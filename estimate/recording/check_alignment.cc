@@ -37,16 +37,17 @@ struct ChannelSummary {
   bool is_negative = false;
 };
 
-/// The lag [s] that the other channels of the run have in common: an event or a speed that is not
-/// quite as stated shifts them all. 0 where few others could tell.
-double calc_shared_lag(const Alignment& alignment, const ChannelAlignment& of) {
-  constexpr std::size_t kLeastOthers = 4;
+/// The lag [s] that the other channels of the run that move have in common: an event or a speed
+/// that is not quite as stated shifts them all. 0 where few others could tell.
+template <class Moves>
+double calc_shared_lag(const Alignment& alignment, const ChannelAlignment& of, const Moves& moves) {
+  constexpr std::size_t kMinOthers = 4;
   std::vector<double> lags;
   for (const ChannelAlignment& a : alignment.channels) {
     const bool is_other = a.run == of.run && a.channel != of.channel;
-    if (is_other && a.correlation >= kComparable) lags.push_back(a.lag);
+    if (is_other && moves(a) && a.correlation >= kComparable) lags.push_back(a.lag);
   }
-  return lags.size() < kLeastOthers ? 0.0 : calc_quantile(lags, 0.5);
+  return lags.size() < kMinOthers ? 0.0 : calc_quantile(lags, 0.5);
 }
 
 template <class Value>
@@ -81,7 +82,7 @@ std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
     channels[number].runs.push_back(&a);
     channels[number].lags.push_back(a.lag);
     // Many runs agree about a sensor's lag whatever shifts one of them.
-    const double shared = are_few ? calc_shared_lag(alignment, a) : 0.0;
+    const double shared = are_few ? calc_shared_lag(alignment, a, moves) : 0.0;
     channels[number].own_lags.push_back(a.lag - shared);
   }
   std::vector<ChannelSummary> list;
@@ -115,19 +116,38 @@ RecordingFinding make_sign(const std::string& channel) {
 
 /// For readings that are `factor` times what they should be: the unit that explains it, or a scale.
 std::string advise_scale(const std::string& si, const ColumnReading& reading, double factor) {
-  const std::string unit = guess_unit(si, factor / std::abs(reading.to_si));
-  return unit.empty() ? fmt::format("scale = {}?", format_significant(1.0 / factor, 3))
+  const std::string unit = reading.scale == 1.0 ? guess_unit(si, factor / reading.unit) : "";
+  return unit.empty() ? fmt::format("scale = {}?", format_significant(reading.scale / factor, 3))
                       : fmt::format("unit = \"{}\"?", unit);
 }
 
-/// The column of a channel in the first run that has it, and of an input.
+/// The column of a channel in the first run that has it.
 ColumnReading get_reading(const std::vector<MeasuredRun>& runs, const ChannelSummary& c) {
   const ChannelAlignment& first = *c.runs.front();
   return runs[first.run].channels[first.channel].reading;
 }
-ColumnReading get_input_reading(const std::vector<MeasuredRun>& runs, std::size_t input) {
-  const std::vector<InputNoise>& inputs = runs.front().input_noise;
-  return input < inputs.size() ? inputs[input].reading : ColumnReading{};
+
+/// What was recorded of the first input: itself or a time derivative.
+struct InputColumn {
+  std::string name, unit;
+  ColumnReading reading{};
+};
+
+InputColumn find_input_column(const std::vector<MeasuredRun>& runs) {
+  const ModelInfo& info = runs.front().setup.info();
+  const InputInfo& input = info.inputs.front();
+  InputColumn column{input.name, input.unit};
+  const std::vector<InputSignal>& signals = runs.front().setup.rig().inputs;
+  const std::vector<InputNoise>& noise = runs.front().input_noise;
+  for (std::size_t i = 0; i < std::min(signals.size(), noise.size()); ++i) {
+    if (signals[i].channel != input.name) continue;
+    column.reading = noise[i].reading;
+    if (noise[i].derivative == 0) continue;
+    const int channel = noise[i].derivative == 1 ? input.rate : input.second_rate;
+    column.name = info.channels[static_cast<std::size_t>(channel)].name;
+    column.unit = info.channels[static_cast<std::size_t>(channel)].unit;
+  }
+  return column;
 }
 
 RecordingFinding make_factor(const ChannelInfo& info, const ColumnReading& reading, double factor) {
@@ -162,12 +182,12 @@ bool add_common_factor(const std::vector<MeasuredRun>& runs,
       high->factor > kSameFactor * low->factor) {
     return false;
   }
-  const InputInfo& input = info.inputs.front();
+  const InputColumn input = find_input_column(runs);
   const double factor = 1.0 / low->factor;
   findings.push_back({FindingKind::kFactor, "", input.name, factor,
                       fmt::format("is {} times what the channels that it drives suggest",
                                   format_significant(factor, 2)),
-                      advise_scale(input.unit, get_input_reading(runs, 0), factor)});
+                      advise_scale(input.unit, input.reading, factor)});
   return true;
 }
 
@@ -179,7 +199,7 @@ bool add_common_sign(const std::vector<MeasuredRun>& runs,
   const bool all = std::all_of(channels.begin(), channels.end(),
                                [](const ChannelSummary& c) { return c.is_negative; });
   if (channels.size() < 2 || info.inputs.empty() || !all) return false;
-  findings.push_back(make_sign(info.inputs.front().name));
+  findings.push_back(make_sign(find_input_column(runs).name));
   return true;
 }
 
@@ -196,7 +216,7 @@ bool has_lag(const ChannelSummary& c, const std::vector<double>& lags, double me
   std::size_t same = 0;
   for (std::size_t i = 0; i < lags.size(); ++i) {
     same += lags[i] * median > 0.0 && std::abs(lags[i]) > 0.5 * std::abs(median) &&
-            !is_phase(lags[i], c.runs[i]->period);
+            !is_phase(lags[i], c.runs[i]->period) && !is_phase(c.lags[i], c.runs[i]->period);
   }
   return std::abs(median) >= least && c.lag_ratio >= kMinLagRatio && 2 * same > lags.size();
 }
@@ -217,9 +237,9 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
   if (all_late && std::abs(common) >= kMaxCommonLag) {
     const std::string what = fmt::format("all channels are {}", describe_lag(common));
     if (is_driven) {
-      const std::string& input = runs.front().setup.info().inputs.front().name;
-      findings.push_back({FindingKind::kLag, "", "", common, what + " against " + input,
-                          advise_delay(get_input_reading(runs, 0), -common) + " of " + input});
+      const InputColumn input = find_input_column(runs);
+      findings.push_back({FindingKind::kLag, "", "", common, what + " against " + input.name,
+                          advise_delay(input.reading, -common) + " of " + input.name});
     } else {
       findings.push_back(
           {FindingKind::kLag, "", "", common, what, "offset of time, or hit_time of the runs"});

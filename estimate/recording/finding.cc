@@ -9,4 +9,24 @@ std::string RecordingFinding::describe() const {
   return advice.empty() ? text : text + ": " + advice;
 }
 
+bool RecordingFinding::is_mistake() const {
+  switch (kind) {
+    case FindingKind::kSign:
+    case FindingKind::kFactor:
+    case FindingKind::kSwapped:
+    case FindingKind::kStranger:
+      return true;
+    case FindingKind::kLag:
+      return channel.empty();
+    case FindingKind::kDroppedSamples:
+    case FindingKind::kUnevenClock:
+    case FindingKind::kSaturation:
+    case FindingKind::kQuantization:
+    case FindingKind::kMains:
+    case FindingKind::kCopy:
+      return false;
+  }
+  return false;
+}
+
 }  // namespace strut

@@ -51,9 +51,9 @@ struct RecordingFinding {
   /// kCopy: numbers of the two runs, whose files may have one name.
   std::array<std::size_t, 2> copies{};
 
-  /// Whether it is a mistake of the campaign's columns, clock or start values, which is corrected
-  /// there; others are of the sensors.
-  bool is_mistake() const { return kind <= FindingKind::kStranger; }
+  /// Whether it is corrected in the campaign: in its columns, clock or start values. The lag of one
+  /// channel may also be its filter, and the rest is of the sensors.
+  bool is_mistake() const;
   /// "drive.csv: front_left_deflection looks negated: sign = -1"
   std::string describe() const;
 };

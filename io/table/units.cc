@@ -129,6 +129,15 @@ UnitScale find_unit_scale(std::string_view given, const std::string& si) {
                                join_names(allowed), suggest_name(unit, allowed)));
 }
 
+std::string name_unit(const std::string& si, double factor) {
+  constexpr double kRounding = 1e-12;
+  for (const UnitEntry& entry : list_units()) {
+    if (entry.si == si && std::abs(entry.scale.factor / factor - 1.0) < kRounding)
+      return entry.name;
+  }
+  return fmt::format("{:g} {}", factor, si);
+}
+
 std::string guess_unit(const std::string& si, double ratio) {
   constexpr double kWithin = 1.0 / 3.0;
   std::string best;

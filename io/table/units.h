@@ -26,6 +26,9 @@ inline constexpr std::size_t kMaxUnitLength = 64;
 /// ...). An empty unit is SI. Throws InputError with the allowed units and the nearest.
 UnitScale find_unit_scale(std::string_view unit, const std::string& si);
 
+/// The unit of this SI value: "mm" for m and 1e-3; "0.5 m" where none is.
+std::string name_unit(const std::string& si, double factor);
+
 /// The unit whose numbers are `ratio` times those in SI, within a third: "mm" for m and 1000, "m"
 /// for m and 1; "" if there is none.
 std::string guess_unit(const std::string& si, double ratio);

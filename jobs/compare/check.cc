@@ -45,11 +45,12 @@ std::size_t check_before_fit(CampaignData& data, int threads) {
 }
 
 void suggest_correction(std::size_t mistakes, const std::string& campaign) {
-  print_note(fmt::format(
-      "the check of the recordings found {} (above): correct {} first; until then this result is "
-      "about {}, too",
-      mistakes == 1 ? "a mistake" : fmt::format("{} mistakes", mistakes),
-      mistakes == 1 ? "it" : "them", mistakes == 1 ? "it" : "them"));
+  print_note(mistakes == 1
+                 ? std::string("the check of the recordings found a mistake (above), which "
+                               "affects everything else: correct it first")
+                 : fmt::format("the check of the recordings found {} mistakes (above), "
+                               "which affect everything else: correct them first",
+                               mistakes));
   suggest_next({"strut", "compare", campaign, "--check"}, "until nothing looks wrong");
 }
 

@@ -22,7 +22,8 @@ void report_findings(const std::vector<RecordingFinding>& findings);
 /// judge nothing.
 std::size_t check_before_fit(CampaignData& data, int threads);
 
-/// After a result in spite of such mistakes: says that they come first, and what to call.
+/// After a result or an error in spite of such mistakes: says that they come first, and what to
+/// call.
 void suggest_correction(std::size_t mistakes, const std::string& campaign);
 
 /// {"runs":, "findings": [{"kind": "sign", "run":, "channel":, "size":, "what":, "advice":}]}

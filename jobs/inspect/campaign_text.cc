@@ -124,7 +124,7 @@ std::string write_columns(const ModelInfo& model, const TableSummary& table,
                          std::any_of(matches.begin(), matches.end(),
                                      [&](const ColumnMatch& match) { return match.column == k; });
     if (is_used || column.is_clock) continue;
-    unassigned.push_back(column.name);
+    if (column.fault.empty()) unassigned.push_back(column.name);
     text += fmt::format("# CHANNEL = {{ column = {} }}{}\n", quote_toml(column.name),
                         column.fault.empty() ? write_comment(column) : "   # text");
   }
@@ -176,13 +176,13 @@ std::string write_run(const std::string& file, const char* use, const ModelInfo&
 }
 
 std::string write_runs(const std::vector<InspectedFile>& files, const ModelInfo& model,
-                       const fs::path& folder, const std::vector<fs::path>& held_out) {
+                       const fs::path& folder, const std::set<fs::path>& held_out) {
   std::string text;
   if (files.size() > 1) {
     for (const InspectedFile& file : files) {
-      const bool is_held_out = held_out.empty() ? &file == &files.back()
-                                                : std::find(held_out.begin(), held_out.end(),
-                                                            file.path) != held_out.end();
+      const bool is_held_out = held_out.empty()
+                                   ? &file == &files.back()
+                                   : held_out.count(fs::weakly_canonical(file.path)) > 0;
       text += write_run(quote_path(file.path, folder), is_held_out ? "hold_out" : "fit", model);
     }
     return text;
@@ -204,7 +204,7 @@ std::string write_runs(const std::vector<InspectedFile>& files, const ModelInfo&
 }  // namespace
 
 BegunCampaign begin_campaign(const std::vector<InspectedFile>& files, const fs::path& model,
-                             const fs::path& folder, const std::vector<fs::path>& held_out) {
+                             const fs::path& folder, const std::set<fs::path>& held_out) {
   const ModelTables tables = make_model_tables(model.string());
   const TableSummary& first = files.front().table;
   const bool has_clock = std::any_of(first.columns.begin(), first.columns.end(),
@@ -212,9 +212,6 @@ BegunCampaign begin_campaign(const std::vector<InspectedFile>& files, const fs::
   if (!has_clock) {
     throw InputError(files.front().path.string() +
                      ": no column is a time that ascends from row to row");
-  }
-  if (!held_out.empty() && held_out.size() >= files.size()) {
-    throw InputError("--hold-out: no file is left for fitting");
   }
   std::string free;
   for (const std::string& name : list_free(tables)) {

@@ -16,14 +16,14 @@
 namespace strut {
 
 /// Kinds of places in a car where an effect may act; bits of a set. A rig has one place of each
-/// kind.
+/// kind, without a name, but for channels.
 enum EffectPlaces : unsigned {
   kOnAxle = 1,      // "front", "rear": both corners, unless a corner has a setting of its own
   kOnCorner = 2,    // "front_left", ...
   kOnBody = 4,      // "body"
   kOnRoad = 8,      // "road": the maneuver
   kOnChannel = 16,  // the channel a sensor reads
-  kOnChannels = 32  // all channels together: the recorder that has one clock for them
+  kOnChannels = 32  // all channels of a rig together, on one clock
 };
 
 struct EffectParameter {

@@ -40,8 +40,8 @@ EffectInfo make_clock_offset() {
       "y(t - tau) for every channel",
       "5 to 100 ms between recorders that one trigger or an operator starts",
       kOnChannels,
-      {make_switch("offset", "s", "tau: time by which all channels are late; < 0: early", -0.03,
-                   0.03, 2e-3)}};
+      {make_switch("offset", "s", "tau: time by which all channels are late; < 0: early", -0.1, 0.1,
+                   5e-3)}};
   offset.parameters[0].without = kHasCar;
   return offset;
 }

@@ -324,11 +324,21 @@ RigInfo make_guided_mass() {
   return info;
 }
 
+/// Marks time, and the inputs with their derivatives.
+RigInfo mark_given(RigInfo info) {
+  for (ChannelInfo& channel : info.channels) {
+    channel.is_given =
+        channel.name == "time" || find_input_derivative(info, channel.name).input >= 0;
+  }
+  return info;
+}
+
 }  // namespace
 
 const std::vector<RigInfo>& list_rigs() {
-  static const std::vector<RigInfo> rigs = {make_quarter_car(), make_strut_rig(),
-                                            make_single_mass(), make_guided_mass()};
+  static const std::vector<RigInfo> rigs = {
+      mark_given(make_quarter_car()), mark_given(make_strut_rig()), mark_given(make_single_mass()),
+      mark_given(make_guided_mass())};
   return rigs;
 }
 

@@ -57,7 +57,7 @@ ReadOut::ReadOut(const std::vector<ChannelInfo>& channels,
                  const std::vector<const EffectSettings*>& effects) {
   for (std::size_t lane = 0; lane < effects.size(); ++lane) {
     for (std::size_t c = 0; c < channels.size() && !effects[lane]->empty(); ++c) {
-      const ChannelSensor sensor = find_sensor(*effects[lane], channels[c].name);
+      const ChannelSensor sensor = find_sensor(*effects[lane], channels[c]);
       if (!sensor.is_on()) continue;
       readings_.push_back({to_int(lane), to_int(c), sensor});
       has_memory_ = has_memory_ || sensor.has_memory();

@@ -63,11 +63,11 @@ EffectSettings list_sensor_settings(const EffectSettings& settings) {
   return found;
 }
 
-ChannelSensor find_sensor(const EffectSettings& settings, const std::string& channel) {
+ChannelSensor find_sensor(const EffectSettings& settings, const ChannelInfo& channel) {
   ChannelSensor sensor;
   for (const EffectSetting& setting : settings) {
     const bool is_clock = setting.effect == EffectName::kClockOffset;
-    if (!is_clock && setting.place != channel) continue;
+    if (is_clock ? channel.is_given : setting.place != channel.name) continue;
     const SensorEffect* effect = find_sensor_effect(setting.effect);
     if (effect != nullptr) sensor.*(effect->value) += setting.values.at(0);
   }
@@ -93,7 +93,7 @@ std::vector<double> read_sensor(const ChannelSensor& sensor, double interval,
   return readings;
 }
 
-std::vector<double> read_sensor(const EffectSettings& settings, const std::string& channel,
+std::vector<double> read_sensor(const EffectSettings& settings, const ChannelInfo& channel,
                                 double interval, std::vector<double> samples) {
   const ChannelSensor sensor = find_sensor(settings, channel);
   if (!sensor.is_on()) return samples;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "model/channel/channel_info.h"
 #include "model/effects/setting.h"
 
 namespace strut {
@@ -30,8 +31,9 @@ struct ChannelSensor {
 /// The settings that act on channels.
 EffectSettings list_sensor_settings(const EffectSettings& settings);
 
-/// The sensor of a channel by the effects of a model of any kind.
-ChannelSensor find_sensor(const EffectSettings& settings, const std::string& channel);
+/// The sensor of a channel by the effects of a model of any kind; clock_offset delays those that
+/// are not given.
+ChannelSensor find_sensor(const EffectSettings& settings, const ChannelInfo& channel);
 
 /// Readings at `times` [s] of a channel sampled every `interval` [s] from t = 0; NaN throughout
 /// where a sample is not finite.
@@ -39,7 +41,7 @@ std::vector<double> read_sensor(const ChannelSensor& sensor, double interval,
                                 std::vector<double> samples, const std::vector<double>& times);
 
 /// Readings at the sample times; the samples, bit for bit, where no effect acts on `channel`.
-std::vector<double> read_sensor(const EffectSettings& settings, const std::string& channel,
+std::vector<double> read_sensor(const EffectSettings& settings, const ChannelInfo& channel,
                                 double interval, std::vector<double> samples);
 
 }  // namespace strut

@@ -274,13 +274,18 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
                                   "predicts: scale = 0.500?"});
   }
   SECTION("a factor of a column that is read in another unit than it is in") {
-    car.runs[0].channels[1].reading.to_si = 1e-3;
+    car.runs[0].channels[1].reading.unit = 1e-3;
     rear.factor = 0.0394;
     CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 0.039 times what the model "
                                   "predicts: unit = \"in\"?"});
     rear.factor = 0.001;
     CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 0.0010 times what the model "
                                   "predicts: unit = \"m\"?"});
+    // A scale of the campaign's own stays, so the advice is all of it.
+    car.runs[0].channels[1].reading.scale = 2.0;
+    rear.factor = 0.25;
+    CHECK(car.describe() == Texts{"rear_left_suspension_deflection is 0.25 times what the model "
+                                  "predicts: scale = 8.00?"});
   }
   SECTION("a lag of a column that is taken to be late already") {
     car.runs[0].channels[1].reading.delay = 0.03;

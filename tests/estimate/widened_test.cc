@@ -85,5 +85,56 @@ TEST_CASE("A residual that is larger where an unknown is decided widens its stan
   CHECK(even.stated == Approx(even.spread).epsilon(0.1));
 }
 
+TEST_CASE("A prior bounds the standard error that an uneven residual widens", "[unit]") {
+  Unknown u = test::make_plain_unknown("offset");
+  u.prior = {0.0, 1.0};
+  // 40 readings that decide it, with residuals six times as large as the other 1960.
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2000, 1);
+  Eigen::VectorXd offset = Eigen::VectorXd::Ones(2000);
+  for (int k = 0; k < 40; ++k) {
+    matrix(k, 0) = 0.05;
+    offset(k) = k % 2 == 0 ? 6.0 : -6.0;
+  }
+  test::LinearModel model({u}, matrix, offset);
+  const FitResult fit = describe_fit(model, model.linearize({0.0}), {0.0}, {false}, false);
+  CHECK(fit.widened.sigma[0] == Approx(1.0).epsilon(tolerance(1e-9)));
+  CHECK(fit.widened.null_directions.empty());
+}
+
+TEST_CASE("A reading that one unknown follows alone widens nothing", "[unit]") {
+  // The first unknown has a reading of its own, from which the search stopped a little away.
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(1001, 2);
+  matrix(0, 0) = 1e4;
+  matrix.bottomRows(1000).col(1).setOnes();
+  Eigen::VectorXd offset(1001);
+  for (int k = 0; k < 1001; ++k) offset(k) = k % 2 == 0 ? 1.0 : -1.0;
+  offset(0) = 0.05;
+  test::LinearModel model({test::make_plain_unknown("own"), test::make_plain_unknown("shared")},
+                          matrix, offset);
+  const FitResult fit =
+      describe_fit(model, model.linearize({0.0, 0.0}), {0.0, 0.0}, {false, false}, false);
+  CHECK(fit.widened.sigma[0] == Approx(1e-4).epsilon(1e-2));
+}
+
+TEST_CASE("What the readings do not identify stays a ratio where one residual is uneven",
+          "[unit]") {
+  // Only the sum of two unknowns is read; a third, beside them, is decided by large residuals.
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(1000, 3);
+  matrix.leftCols(2).bottomRows(900).setOnes();
+  matrix.col(2).head(100).setOnes();
+  Eigen::VectorXd offset(1000);
+  for (int k = 0; k < 1000; ++k) offset(k) = (k % 2 == 0 ? 1.0 : -1.0) * (k < 100 ? 5.0 : 1.0);
+  test::LinearModel model(
+      {test::make_plain_unknown("a"), test::make_plain_unknown("b"), test::make_plain_unknown("c")},
+      matrix, offset);
+  const FitResult fit = describe_fit(model, model.linearize({0.0, 0.0, 0.0}), {0.0, 0.0, 0.0},
+                                     {false, false, false}, false);
+  REQUIRE(fit.widened.null_directions.size() == 1);
+  const std::vector<double>& parts = fit.widened.null_directions[0].parts;
+  CHECK(parts[0] == Approx(-parts[1]).epsilon(tolerance(1e-9)));
+  CHECK(std::abs(parts[2]) < tolerance(1e-9));
+  CHECK(fit.widened.sigma[2] > 2.0 * fit.uncertainty.sigma[2]);
+}
+
 }  // namespace
 }  // namespace strut

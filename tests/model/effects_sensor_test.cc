@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/model.h"
 #include "model/sensor/sensors.h"
 #include "tests/support/test_car.h"
 
@@ -12,6 +13,8 @@ namespace {
 using test::tolerance;
 
 constexpr double kStep = 1e-3, kW = 2.0 * 3.14159265358979323846 * 5.0;
+
+const ChannelInfo kRate{"imu_rate_y", "rad/s", ""}, kForce{"force", "N", ""};
 
 std::vector<double> make_times() {
   std::vector<double> times;
@@ -27,7 +30,7 @@ std::vector<double> make_sine() {
 }
 
 std::vector<double> read(const EffectSettings& settings) {
-  return read_sensor(settings, "imu_rate_y", kStep, make_sine());
+  return read_sensor(settings, kRate, kStep, make_sine());
 }
 
 TEST_CASE("A sensor without effects reads the channel bit for bit", "[unit][effects]") {
@@ -61,8 +64,18 @@ TEST_CASE("A late recorder delays every channel, beside its sensor", "[unit][eff
   CHECK(read(late) == read({{"sensor_delay", "imu_rate_y", {2e-3}}}));
   const EffectSettings both = {{"clock_offset", "", {2e-3}},
                                {"sensor_delay", "imu_rate_y", {1e-3}}};
-  CHECK(find_sensor(both, "imu_rate_y").delay == Approx(3e-3));
-  CHECK(find_sensor(both, "force").delay == 2e-3);
+  CHECK(find_sensor(both, kRate).delay == Approx(3e-3));
+  CHECK(find_sensor(both, kForce).delay == 2e-3);
+  // Time and inputs are of the other recorder.
+  for (const ModelInfo* model : list_models()) {
+    for (const ChannelInfo& channel : model->channels) {
+      if (model->has(kHasCar)) continue;
+      INFO(model->name << " " << channel.name);
+      const bool is_given =
+          channel.name == "time" || find_input_derivative(*model, channel.name).input >= 0;
+      CHECK(find_sensor(late, channel).delay == (is_given ? 0.0 : 2e-3));
+    }
+  }
 }
 
 TEST_CASE("A slow sensor is a first-order filter", "[unit][reference][effects]") {
@@ -81,16 +94,16 @@ TEST_CASE("A slow sensor is a first-order filter", "[unit][reference][effects]")
 TEST_CASE("A sensor far slower than its samples still settles", "[unit][effects]") {
   const double slow = GENERATE(1e-9, 1e-4, 0.4);
   const std::vector<double> y =
-      read_sensor({{"sensor_lowpass", "force", {slow}}}, "force", 1.0, std::vector<double>(9, 3.5));
+      read_sensor({{"sensor_lowpass", "force", {slow}}}, kForce, 1.0, std::vector<double>(9, 3.5));
   for (const double reading : y) CHECK(reading == Approx(3.5).epsilon(1e-14));
 }
 
 TEST_CASE("What is not finite has no reading, one sample stands for all", "[unit][effects]") {
   const EffectSettings late = {{"sensor_delay", "force", {1e-3}}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const double y : read_sensor(late, "force", kStep, {1.0, nan, 2.0})) CHECK(std::isnan(y));
-  CHECK(read_sensor(late, "force", kStep, {4.0}) == std::vector<double>{4.0});
-  CHECK(read_sensor(late, "force", kStep, {}).empty());
+  for (const double y : read_sensor(late, kForce, kStep, {1.0, nan, 2.0})) CHECK(std::isnan(y));
+  CHECK(read_sensor(late, kForce, kStep, {4.0}) == std::vector<double>{4.0});
+  CHECK(read_sensor(late, kForce, kStep, {}).empty());
 }
 
 }  // namespace

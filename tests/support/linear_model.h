@@ -29,6 +29,7 @@ class LinearModel : public ReadingModel {
     fill_priors(values, at);
     return at;
   }
+  bool has_independent_residuals() const override { return true; }
   using ReadingModel::evaluate;
   std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override {
     std::vector<Evaluation> evaluations;
