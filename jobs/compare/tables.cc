@@ -186,9 +186,7 @@ std::vector<ModelCurves> list_model_curves(const RunComparison& run) {
 
 std::string make_verdict_text(const CampaignData& data, const Comparison& comparison) {
   if (comparison.is_adequate()) {
-    return "Adequate: the calibrated model agrees with every channel within its noise. Smaller "
-           "errors "
-           "than that are found by all readings together: strut diagnose.";
+    return "Adequate: the calibrated model agrees with every channel within its noise.";
   }
   const Misfit& worst = *find_worst(comparison.misfits);
   if (!worst.failure.empty()) return "Not adequate: " + describe_misfit(data, worst) + ".";
