@@ -54,15 +54,13 @@ void write_extended_model(const DiagnoseFolder& folder, const CampaignData& data
   }
 }
 
-/// Suggests to continue with the extended model or, without one, with more measurements.
+/// Suggests a sweep of the extended car, the page, or more measurements.
 void suggest_next_step(const Arguments& arguments, const DiagnoseFolder& folder,
                        const CampaignData& data, const Diagnosis& diagnosis) {
-  if (diagnosis.is_extended() && data.has_inputs()) {
-    suggest_page(folder.report().string());
-  } else if (diagnosis.is_extended()) {
+  if (diagnosis.is_extended() && !data.has_inputs()) {
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},
                  fmt::format("with vehicle = \"{}\"", folder.extended_model().string()));
-  } else if (diagnosis.verdict.kind == VerdictKind::kAdequate ||
+  } else if (diagnosis.is_extended() || diagnosis.verdict.kind == VerdictKind::kAdequate ||
              diagnosis.next_measurement.empty()) {
     suggest_page(folder.report().string());
   } else {

@@ -106,9 +106,9 @@ double Table::checked_number(const std::string& key, const void* node, const Ran
   if (!as_node(node).is_number()) throw wrong_type(key, node, "a number");
   const double value = as_node(node).value<double>().value_or(std::nan(""));
   if (range.contains(value)) return value;
-  const std::string allowed =
-      std::isfinite(value) ? range.describe() : "must be a finite number; " + range.describe();
-  throw value_error(key, node, allowed);
+  const std::string allowed = range.describe();
+  const bool is_said = std::isfinite(value) || allowed.starts_with("must be a finite number");
+  throw value_error(key, node, (is_said ? "" : "must be a finite number; ") + allowed);
 }
 
 bool Table::has(const std::string& key) const { return find(key) != nullptr; }
