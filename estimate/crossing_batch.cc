@@ -18,8 +18,6 @@
 namespace strut {
 namespace {
 
-bool is_sensor(const EffectSetting& setting) { return is_of_sensors(*find_effect(setting.effect)); }
-
 std::string explain_failure(const std::string& run, const LaneRun& result) {
   return fmt::format(
       "{}: the simulation ends at t = {} s: {}", run,
@@ -124,11 +122,11 @@ std::vector<CrossingResult> simulate_crossings(const std::vector<MeasuredRun>& r
 }
 
 bool has_sensors(const Case& c) {
-  return std::any_of(c.vehicle.effects.begin(), c.vehicle.effects.end(), is_sensor);
+  return std::any_of(c.vehicle.effects.begin(), c.vehicle.effects.end(), is_sensor_setting);
 }
 
 Case remove_sensors(Case c) {
-  std::erase_if(c.vehicle.effects, is_sensor);
+  std::erase_if(c.vehicle.effects, is_sensor_setting);
   return c;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
+#include "io/table/units.h"
 
 namespace strut {
 namespace {
@@ -51,6 +52,10 @@ void check_channel(const MeasuredRun& run, const MeasuredChannel& c) {
 }
 
 }  // namespace
+
+std::string ColumnReading::guess_true_unit(const std::string& si, double factor) const {
+  return scale == 1.0 ? guess_unit(si, factor / unit) : "";
+}
 
 void cut_window(MeasuredRun& run, double from, double to) {
   std::size_t kept = 0;

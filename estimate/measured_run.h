@@ -11,11 +11,16 @@
 
 namespace strut {
 
-/// How a file's column was read.
+/// How the numbers of a file's column became readings.
 struct ColumnReading {
   double unit = 1.0;   // SI value of the unit in which it was read
   double scale = 1.0;  // by which it was multiplied besides, without its sign
   double delay = 0.0;  // s, by which it was taken to be late
+
+  /// The unit that the column must have where its readings are `factor` times what they should be;
+  /// "" if there is none, or if a scale was given, which would act beside it. `si`: of the
+  /// readings.
+  std::string guess_true_unit(const std::string& si, double factor) const;
 };
 
 /// The readings of one sensor.

@@ -153,9 +153,7 @@ RunCurves simulate_run(const MeasuredRun& run, const std::vector<Unknown>& unkno
 RunCurves simulate_motion(const MeasuredRun& run, const std::vector<Unknown>& unknowns,
                           const std::vector<double>& values) {
   MeasuredRun ideal = set_unknowns(run, unknowns, values);
-  std::erase_if(ideal.setup.effects(), [](const EffectSetting& setting) {
-    return is_of_sensors(*find_effect(setting.effect));
-  });
+  std::erase_if(ideal.setup.effects(), is_sensor_setting);
   return simulate_run(ideal, {}, {});
 }
 

@@ -9,7 +9,7 @@ Eigen::VectorXd calc_growth(const ReadingModel& model, const Linearization& at,
                             const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& of_priors,
                             double misfit) {
   constexpr double kMargin = 2.0;
-  // A residual that the search has left is noise only if more than this part of it remains.
+  // Least 1 - h: below it the fit follows a reading, and its residual is what the search has left.
   constexpr double kMinRest = 1e-3;
   const Eigen::Index n = covariance.rows();
   Eigen::VectorXd growth = Eigen::VectorXd::Ones(n);
@@ -19,19 +19,15 @@ Eigen::VectorXd calc_growth(const ReadingModel& model, const Linearization& at,
     const Eigen::MatrixXd jacobian = get_block(at.jacobian, block) / std::sqrt(misfit);
     const Eigen::ArrayXd squares =
         at.residual.segment(block.begin, block.count).array().square() / misfit;
-    const Eigen::MatrixXd of_block = covariance(block.unknowns, block.unknowns);
+    const Eigen::MatrixXd influence = jacobian * covariance(block.unknowns, Eigen::all);
     const Eigen::ArrayXd rest =
-        1.0 - (jacobian * of_block).cwiseProduct(jacobian).rowwise().sum().array();
+        1.0 - influence(Eigen::all, block.unknowns).cwiseProduct(jacobian).rowwise().sum().array();
     const Eigen::ArrayXd counts = (rest > kMinRest).cast<double>();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::VectorXd of_unknown = covariance(block.unknowns, i);
-      if (of_unknown.isZero(0.0)) continue;
-      const Eigen::ArrayXd weights = (jacobian * of_unknown).array().square() * counts;
-      sums(i) += weights.sum();
-      fourth(i) += weights.square().sum();
-      expected(i) += (weights * rest).sum();
-      found(i) += (weights * squares).sum();
-    }
+    const Eigen::ArrayXXd weights = influence.array().square().colwise() * counts;
+    sums += weights.colwise().sum().transpose();
+    fourth += weights.square().colwise().sum().transpose();
+    expected += (weights.colwise() * rest).colwise().sum().transpose();
+    found += (weights.colwise() * squares).colwise().sum().transpose();
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     const double variance = covariance(i, i);

@@ -111,8 +111,7 @@ void check_rate(CampaignData& data, std::size_t r) {
 std::string suspect_unit(const MeasuredTable& table, const CampaignColumn& c,
                          const ColumnReading& reading, double spread, double expected,
                          const std::string& comparison) {
-  const std::string guess =
-      reading.scale == 1.0 ? guess_unit(c.si, spread / expected / reading.unit) : "";
+  const std::string guess = reading.guess_true_unit(c.si, spread / expected);
   std::string text = fmt::format(
       "{}: {} (column '{}', read in {}) has a standard deviation of {} {}, {}: is its "
       "unit wrong, perhaps by a factor of 1000?",

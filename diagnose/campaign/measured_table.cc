@@ -84,28 +84,20 @@ void check_varies(const std::string& name, const CampaignColumn& c, const Measur
       name, c.channel, c.column, format_number(first), c.si, count));
 }
 
-MeasuredColumn take_column(std::size_t at, const std::vector<double>& values,
-                           const std::pair<std::size_t, std::size_t>& rows) {
-  MeasuredColumn column{at, {}, 0};
-  column.values.assign(values.begin() + static_cast<std::ptrdiff_t>(rows.first),
-                       values.begin() + static_cast<std::ptrdiff_t>(rows.second));
-  column.missing = static_cast<std::size_t>(std::count_if(
-      column.values.begin(), column.values.end(), [](double v) { return std::isnan(v); }));
-  return column;
+/// Keeps rows [first, last) of a column, and counts those that are missing.
+void keep_rows(const std::pair<std::size_t, std::size_t>& rows, MeasuredColumn& column) {
+  std::vector<double>& values = column.values;
+  values.erase(values.begin() + static_cast<std::ptrdiff_t>(rows.second), values.end());
+  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows.first));
+  column.missing = static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }));
 }
-
-/// A column with its values at the campaign's times.
-struct TimedColumn {
-  std::size_t at = 0;  // index in Campaign::columns
-  std::vector<double> values;
-  ColumnReading reading{};
-};
 
 /// Adds the columns of `clock` with their values at `times`, those of the campaign's clock: all of
 /// them where it is that clock.
 void add_columns(const Campaign& campaign, const Measurement& file, const std::string& clock,
                  const std::vector<double>& own_times, const std::vector<double>& times,
-                 std::vector<TimedColumn>& columns, std::vector<std::string>& notes) {
+                 std::vector<MeasuredColumn>& columns, std::vector<std::string>& notes) {
   for (std::size_t i = 0; i < campaign.columns.size(); ++i) {
     const CampaignColumn& c = campaign.columns[i];
     const CsvColumn* raw = file.find(c.column);
@@ -116,13 +108,13 @@ void add_columns(const Campaign& campaign, const Measurement& file, const std::s
     for (double& value : values) value = conversion.convert(value);  // NaN stays NaN
     const ColumnReading reading{conversion.unit.factor, std::abs(conversion.factor), c.delay};
     if (c.clock.empty() && c.delay == 0.0) {
-      columns.push_back({i, std::move(values), reading});
+      columns.push_back({i, std::move(values), 0, reading});
       continue;
     }
     std::vector<double> own = own_times;
     for (double& t : own) t -= c.delay;
     columns.push_back(
-        {i, move_to_clock(own, values, times, c.role == ColumnRole::kInput), reading});
+        {i, move_to_clock(own, values, times, c.role == ColumnRole::kInput), 0, reading});
   }
 }
 
@@ -196,7 +188,6 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
   MeasuredTable table;
   table.name = run.file.string();
   std::vector<double> times;
-  std::vector<TimedColumn> columns;
   for (const std::string& clock : list_clocks(campaign)) {
     const Measurement file = read_columns(campaign, run, clock);
     std::vector<double> own = read_clock(campaign, file, clock, table.notes);
@@ -204,7 +195,7 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
       table.notes.insert(table.notes.end(), file.notes.begin(), file.notes.end());
       times = own;
     }
-    add_columns(campaign, file, clock, own, times, columns, table.notes);
+    add_columns(campaign, file, clock, own, times, table.columns, table.notes);
   }
   const auto rows = find_window(run, times);
   if (rows.second < rows.first + kMinSamples) {
@@ -219,13 +210,11 @@ MeasuredTable read_measured_table(const Campaign& campaign, const CampaignRun& r
   table.times.assign(times.begin() + static_cast<std::ptrdiff_t>(rows.first),
                      times.begin() + static_cast<std::ptrdiff_t>(rows.second));
   even_clock(table.times);
-  std::sort(columns.begin(), columns.end(),
-            [](const TimedColumn& a, const TimedColumn& b) { return a.at < b.at; });
-  for (const TimedColumn& timed : columns) {
-    const CampaignColumn& c = campaign.columns[timed.at];
-    table.columns.push_back(take_column(timed.at, timed.values, rows));
-    MeasuredColumn& column = table.columns.back();
-    column.reading = timed.reading;
+  std::sort(table.columns.begin(), table.columns.end(),
+            [](const MeasuredColumn& a, const MeasuredColumn& b) { return a.at < b.at; });
+  for (MeasuredColumn& column : table.columns) {
+    const CampaignColumn& c = campaign.columns[column.at];
+    keep_rows(rows, column);
     if (c.role == ColumnRole::kOutput) check_varies(table.name, c, column);
     if (column.missing == 0 || !c.clock.empty() || c.delay != 0.0) continue;
     table.notes.push_back(fmt::format("{}: {}: {} of {} samples are missing", table.name, c.channel,

@@ -258,7 +258,7 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       const OnAt on = find_on(model_effects, effect.name, place);
       if (on == OnAt::kOverlapping) continue;
       if ((effect.places & kOnChannel) != 0 && !is_compared(data, place)) continue;
-      // Of a single channel it is sensor_delay.
+      // With a single channel, an offset of the clock is the same as a delay of that sensor.
       if ((effect.places & kOnChannels) != 0 && !has_run_with_several_channels(data)) continue;
       const auto found = motions.find(find_axle(place));
       const StrutMotion motion = found == motions.end() ? StrutMotion{} : found->second;

@@ -10,7 +10,6 @@
 
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
-#include "io/table/units.h"
 
 namespace strut {
 namespace {
@@ -27,13 +26,18 @@ constexpr double kSameFactor = 1.15;
 constexpr double kMaxLag = 0.010, kMaxCommonLag = 0.015;  // s
 constexpr double kMinLagRatio = 1.3;
 
+/// Lags [s] by run.
+struct Lags {
+  std::vector<double> runs;
+  double median = 0.0;
+};
+
 /// A channel in all runs.
 struct ChannelSummary {
   int channel = 0;  // in ModelInfo::channels
   std::vector<const ChannelAlignment*> runs;
-  std::vector<double> lags;      // s, of the runs
-  std::vector<double> own_lags;  // without what the other channels of a run share
-  double factor = 1.0, lag = 0.0, own_lag = 0.0, lag_ratio = 1.0, correlation = 0.0;  // medians
+  Lags lag, own_lag;  // own: without what the other channels of a run share
+  double factor = 1.0, lag_ratio = 1.0, correlation = 0.0;  // medians
   bool is_negative = false;
 };
 
@@ -80,10 +84,10 @@ std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
     if (!moves(a) || a.correlation < (are_few ? kClear : kComparable)) continue;
     channels[number].channel = number;
     channels[number].runs.push_back(&a);
-    channels[number].lags.push_back(a.lag);
+    channels[number].lag.runs.push_back(a.lag);
     // Many runs agree about a sensor's lag whatever shifts one of them.
     const double shared = are_few ? calc_shared_lag(alignment, a, moves) : 0.0;
-    channels[number].own_lags.push_back(a.lag - shared);
+    channels[number].own_lag.runs.push_back(a.lag - shared);
   }
   std::vector<ChannelSummary> list;
   for (auto& [number, c] : channels) {
@@ -95,8 +99,7 @@ std::vector<ChannelSummary> summarize(const std::vector<MeasuredRun>& runs,
     });
     c.is_negative = 2 * static_cast<std::size_t>(negative) > c.runs.size();
     c.factor = calc_median(c.runs, [](const auto& run) { return std::abs(run.factor); });
-    c.lag = calc_quantile(c.lags, 0.5);
-    c.own_lag = calc_quantile(c.own_lags, 0.5);
+    for (Lags* lags : {&c.lag, &c.own_lag}) lags->median = calc_quantile(lags->runs, 0.5);
     c.lag_ratio = calc_median(c.runs, [](const auto& run) { return run.lag_ratio; });
     c.correlation = calc_median(c.runs, [](const auto& run) { return run.correlation; });
     list.push_back(std::move(c));
@@ -116,7 +119,7 @@ RecordingFinding make_sign(const std::string& channel) {
 
 /// For readings that are `factor` times what they should be: the unit that explains it, or a scale.
 std::string advise_scale(const std::string& si, const ColumnReading& reading, double factor) {
-  const std::string unit = reading.scale == 1.0 ? guess_unit(si, factor / reading.unit) : "";
+  const std::string unit = reading.guess_true_unit(si, factor);
   return unit.empty() ? fmt::format("scale = {}?", format_significant(reading.scale / factor, 3))
                       : fmt::format("unit = \"{}\"?", unit);
 }
@@ -127,7 +130,7 @@ ColumnReading get_reading(const std::vector<MeasuredRun>& runs, const ChannelSum
   return runs[first.run].channels[first.channel].reading;
 }
 
-/// What was recorded of the first input: itself or a time derivative.
+/// The recorded column that drives the first input: the input itself or a time derivative of it.
 struct InputColumn {
   std::string name, unit;
   ColumnReading reading{};
@@ -164,7 +167,7 @@ std::string describe_lag(double lag) {
                      lag > 0.0 ? "late" : "early");
 }
 
-/// `lag`: what is left with the column as it was read.
+/// `lag`: beyond the delay with which the column was read.
 std::string advise_delay(const ColumnReading& reading, double lag) {
   return fmt::format("delay = {}", format_significant(reading.delay + lag, 3));
 }
@@ -209,16 +212,16 @@ bool is_phase(double lag, double period) {
   return period > 0.0 && std::abs(lag) > kMaxPart * period;
 }
 
-/// Whether most runs of a channel agree that it has this lag: `lags` of the runs, `median` of
-/// these.
-bool has_lag(const ChannelSummary& c, const std::vector<double>& lags, double median,
-             double least) {
+/// Whether most runs of a channel agree about `lags`, one kind of its own.
+bool has_lag(const ChannelSummary& c, const Lags& lags, double least) {
   std::size_t same = 0;
-  for (std::size_t i = 0; i < lags.size(); ++i) {
-    same += lags[i] * median > 0.0 && std::abs(lags[i]) > 0.5 * std::abs(median) &&
-            !is_phase(lags[i], c.runs[i]->period) && !is_phase(c.lags[i], c.runs[i]->period);
+  for (std::size_t i = 0; i < lags.runs.size(); ++i) {
+    const double lag = lags.runs[i], period = c.runs[i]->period;
+    same += lag * lags.median > 0.0 && std::abs(lag) > 0.5 * std::abs(lags.median) &&
+            !is_phase(lag, period) && !is_phase(c.lag.runs[i], period);
   }
-  return std::abs(median) >= least && c.lag_ratio >= kMinLagRatio && 2 * same > lags.size();
+  return std::abs(lags.median) >= least && c.lag_ratio >= kMinLagRatio &&
+         2 * same > lags.runs.size();
 }
 
 /// Lags of all channels are one of the clock; others are those of single sensors.
@@ -227,12 +230,12 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
   const bool is_driven = runs.front().setup.info().is_driven_by_inputs();
   std::vector<double> lags;
   lags.reserve(channels.size());
-  for (const ChannelSummary& c : channels) lags.push_back(c.lag);
+  for (const ChannelSummary& c : channels) lags.push_back(c.lag.median);
   const double common = calc_quantile(lags, 0.5);
   const bool all_late =
       channels.size() > 1 &&
       std::all_of(channels.begin(), channels.end(), [&](const ChannelSummary& c) {
-        return has_lag(c, c.lags, c.lag, 0.5 * kMaxCommonLag) && std::abs(c.lag - common) < kMaxLag;
+        return has_lag(c, c.lag, 0.5 * kMaxCommonLag) && std::abs(c.lag.median - common) < kMaxLag;
       });
   if (all_late && std::abs(common) >= kMaxCommonLag) {
     const std::string what = fmt::format("all channels are {}", describe_lag(common));
@@ -248,10 +251,11 @@ void add_lags(const std::vector<MeasuredRun>& runs, const std::vector<ChannelSum
   }
   for (const ChannelSummary& c : channels) {
     const double least = channels.size() > 1 ? kMaxLag : kMaxCommonLag;
-    if (!has_lag(c, c.own_lags, c.own_lag, least)) continue;
-    findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, c.own_lag,
-                        fmt::format("is {}", describe_lag(c.own_lag)),
-                        advise_delay(get_reading(runs, c), c.own_lag) +
+    if (!has_lag(c, c.own_lag, least)) continue;
+    const double lag = c.own_lag.median;
+    findings.push_back({FindingKind::kLag, "", get_info(runs, c.channel).name, lag,
+                        "is " + describe_lag(lag),
+                        advise_delay(get_reading(runs, c), lag) +
                             " if another clock recorded it; or is it filtered?"});
   }
 }

@@ -58,6 +58,11 @@ const std::vector<EffectInfo>& list_effects();
 /// Null where no effect has this name.
 const EffectInfo* find_effect(std::string_view name);
 
+/// The same for the effect of a setting, which the catalogue has.
+inline bool is_sensor_setting(const EffectSetting& setting) {
+  return is_of_sensors(*find_effect(setting.effect));
+}
+
 /// The parameters that exist in this kind of model, in order; empty where the effect does not
 /// exist.
 std::vector<const EffectParameter*> list_effect_parameters(const EffectInfo& effect,

@@ -370,5 +370,34 @@ TEST_CASE("Limits of sign, factor, lag and swap", "[unit]") {
   }
 }
 
+TEST_CASE("Advice for an input is for the column that was recorded of it", "[unit]") {
+  // A quarter car, both channels late by 20 ms; the campaign lists the actuator before the road,
+  // whose acceleration was recorded and is taken to be late by 5 ms.
+  RigSpec rig;
+  rig.kind = RigKind::kQuarterCar;
+  MeasuredRun run{"drive.csv", Model(RigCase{rig, {}}), {0.0, 0.01}, {}};
+  const std::vector<double> zeros = {0.0, 0.0};
+  run.setup.rig().inputs = {make_signal("actuator_force", run.times, zeros, Interpolation::kLinear),
+                            make_signal("road_position", run.times, zeros, Interpolation::kLinear)};
+  run.input_noise = {{.reading = {1.0, 1.0, 0.07}},
+                     {.derivative = 2, .reading = {9.80665, 1.0, 0.005}}};
+  for (const char* name : {"unsprung_position", "sprung_position"}) {
+    run.channels.push_back({find_channel(run.setup.info(), name), 1e-4, {}});
+  }
+  Alignment alignment;
+  alignment.channels = {{0, 0, 0.95, 1.0, 1.0, 0.02, 5.0, 2.0},
+                        {0, 1, 0.95, 1.0, 1.0, 0.02, 5.0, 2.0}};
+  CHECK(strut::describe(check_alignment({run}, alignment)) ==
+        Texts{"all channels are 20 ms late against road_acceleration: delay = -0.0150 of "
+              "road_acceleration"});
+  for (ChannelAlignment& a : alignment.channels) {
+    a.lag = 0.0;
+    a.factor = 1.0 / 9.80665;  // the input is in m/s^2, and read in g
+  }
+  CHECK(strut::describe(check_alignment({run}, alignment)) ==
+        Texts{"road_acceleration is 9.8 times what the channels that it drives suggest: unit = "
+              "\"m/s^2\"?"});
+}
+
 }  // namespace
 }  // namespace strut

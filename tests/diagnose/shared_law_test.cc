@@ -61,7 +61,7 @@ TEST_CASE("The interval of a parameter contains that of every member of a group"
 TEST_CASE("The interval of a secant is that of the calibrated model's parameter, over the group",
           "[unit]") {
   CampaignData data = test::make_stand({{0.01, 1.0}});
-  // A late sensor of the motion is none of the strut's.
+  // The delay of a motion sensor must not change the strut's secants.
   data.runs[0].setup.effects() = {{"sensor_delay", "displacement", {0.02}}};
   const Unknown damping = make_shared_unknown(data.runs, "damping");
   Selection s;

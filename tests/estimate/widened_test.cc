@@ -76,7 +76,7 @@ SlopeFits fit_slopes(double noise_of_first) {
 
 TEST_CASE("A residual that is larger where an unknown is decided widens its standard error",
           "[statistical]") {
-  // Of 400 fits, whose spread is known within 3.5 %. By chi2 alone, 0.4 of it would be stated.
+  // 400 estimates give their spread within 3.5 %; from chi2 alone, the stated error is 0.4 of it.
   const SlopeFits uneven = fit_slopes(4.0);
   CHECK(uneven.stated > 0.9 * uneven.spread);
   CHECK(uneven.stated < 1.1 * uneven.spread);
