@@ -57,6 +57,10 @@ std::string ColumnReading::guess_true_unit(const std::string& si, double factor)
   return scale == 1.0 ? guess_unit(si, factor / unit) : "";
 }
 
+ColumnReading make_reading(const ColumnConversion& conversion, double delay) {
+  return {conversion.unit.factor, std::abs(conversion.factor), delay};
+}
+
 void cut_window(MeasuredRun& run, double from, double to) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < run.times.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimate/sensor_noise.h"
+#include "io/table/units.h"
 #include "model/model.h"
 
 namespace strut {
@@ -22,6 +23,8 @@ struct ColumnReading {
   /// readings.
   std::string guess_true_unit(const std::string& si, double factor) const;
 };
+
+ColumnReading make_reading(const ColumnConversion& conversion, double delay = 0.0);
 
 /// The readings of one sensor.
 struct MeasuredChannel {

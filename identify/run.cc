@@ -28,7 +28,8 @@ MeasuredRun read_measured_run(const std::filesystem::path& file, const Case& set
   MeasuredRun run{file.string(), setup, history.values(kTimeColumn), {}};
   for (std::size_t c = 0; c < channels.size(); ++c) {
     run.channels.push_back({channels[c], noise[static_cast<std::size_t>(channels[c])],
-                            history.values(columns[c].name)});
+                            history.values(columns[c].name),
+                            make_reading(history.conversions[c + 1])});  // the times come first
   }
   check_measured_run(run);
   return run;

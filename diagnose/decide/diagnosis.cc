@@ -48,7 +48,11 @@ void fill_largest(const ChannelComparison& c, Where& where) {
   const auto window = std::max_element(
       c.windows.begin(), c.windows.end(),
       [](const WindowResidual& a, const WindowResidual& b) { return a.rms < b.rms; });
-  if (window != c.windows.end()) where.time = window->window.name;
+  if (window != c.windows.end()) {
+    const TimeWindow& w = window->window;
+    where.time =
+        fmt::format("{}, {} to {} s", w.name, format_significant(w.from), format_significant(w.to));
+  }
   const auto band = std::max_element(
       c.bands.begin(), c.bands.end(),
       [](const BandResidual& a, const BandResidual& b) { return a.residual_rms < b.residual_rms; });
@@ -68,6 +72,7 @@ Where find_largest(const CampaignData& data, const std::vector<DiagnosedRun>& ru
     for (const ChannelComparison& c : run.before.channels) {
       if (c.chi2_per_reading / c.limit <= max_excess) continue;
       max_excess = c.chi2_per_reading / c.limit;
+      where.run = data.campaign.runs[run.run].name;
       where.channel = data.info(c.channel).name;
       fill_largest(c, where);
     }

@@ -49,7 +49,7 @@ struct Improvement {
 
 /// Where the residual of the calibrated model is largest.
 struct Where {
-  std::string channel, time, band, depends_on, place;
+  std::string run, channel, time, band, depends_on, place;
 };
 
 /// A force of a strut that is not in the catalogue.

@@ -171,6 +171,7 @@ Measurement read_channels(const fs::path& file, MeasuredPart part,
     column.name = channel.name;
     column.unit = channel.unit;
     converted.push_back(std::move(column));
+    measurement.conversions.push_back(conversion);
   }
   measurement.columns = std::move(converted);
   if (part == MeasuredPart::kHistory) cut_window(map, measurement);

@@ -29,16 +29,6 @@ struct MappedColumn {
 MappedColumn read_mapped_column(const Table& columns, const std::string& channel,
                                 const std::string& si);
 
-/// Converts the cells of a column to SI.
-struct ColumnConversion {
-  UnitScale unit;
-  double factor = 1.0, offset = 0.0;
-
-  double convert(double value) const {
-    return factor * (unit.factor * value + unit.offset) + offset;
-  }
-};
-
 /// The conversion of a column in a file that says `stated` of its unit. Adds a note where the map
 /// says otherwise. Throws InputError where the unit does not convert to that of the channel.
 ColumnConversion find_conversion(const std::filesystem::path& file, const std::string& stated,

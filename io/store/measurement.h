@@ -11,6 +11,7 @@
 #include "io/store/hdf5_table.h"
 #include "io/store/shard.h"
 #include "io/table/table_file.h"
+#include "io/table/units.h"
 
 namespace strut {
 
@@ -28,7 +29,8 @@ struct Measurement {
   std::filesystem::path path;
   std::vector<CsvColumn> columns;  // requested columns that exist, in the order of the request
   std::vector<int> lines;          // text: line in the file of each row; otherwise empty
-  std::vector<std::string> notes;  // for the user: what was left out or assumed
+  std::vector<ColumnConversion> conversions;  // of the columns; empty: they are as in the file
+  std::vector<std::string> notes;             // for the user: what was left out or assumed
 
   std::size_t row_count() const { return columns.empty() ? 0 : columns.front().values.size(); }
   /// Returns nullptr if there is no such column.

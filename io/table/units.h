@@ -12,6 +12,16 @@ struct UnitScale {
   double factor = 1.0, offset = 0.0;
 };
 
+/// Converts the cells of a column to SI.
+struct ColumnConversion {
+  UnitScale unit;
+  double factor = 1.0, offset = 0.0;
+
+  double convert(double value) const {
+    return factor * (unit.factor * value + unit.offset) + offset;
+  }
+};
+
 /// Returns the spelling of `unit` that the table of units has: "m/s²", "m/s2" and "m/s/s" as
 /// "m/s^2", "°" as "deg", "sec" as "s". Other texts are returned without blanks at both ends.
 std::string normalize_unit(std::string_view unit);

@@ -239,7 +239,7 @@ std::vector<Chart> make_improvement_charts(const Diagnosis& diagnosis) {
   if (diagnosis.improvement.channels.empty() || !diagnosis.is_extended()) return {};
   constexpr double kWidth = 0.26;
   ChartPanel panel{{""}, {"rms error on held-out runs [% of spread]"}, {}};
-  ChartSeries before{"baseline", SeriesKind::kBars, 2}, after{"extended", SeriesKind::kBars, 3},
+  ChartSeries before{"calibrated", SeriesKind::kBars, 2}, after{"extended", SeriesKind::kBars, 3},
       noise{"noise", SeriesKind::kBars, 6};
   before.width = after.width = noise.width = kWidth;
   for (const ChannelImprovement& c : diagnosis.improvement.channels) {

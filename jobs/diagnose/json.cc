@@ -109,11 +109,8 @@ Json make_conflicts(const CampaignData& data, const std::vector<PriorConflict>& 
 }
 
 Json make_where(const Where& where) {
-  return Json{{"channel", where.channel},
-              {"time", where.time},
-              {"band", where.band},
-              {"depends_on", where.depends_on},
-              {"place", where.place}};
+  return Json{{"run", where.run},   {"channel", where.channel},       {"time", where.time},
+              {"band", where.band}, {"depends_on", where.depends_on}, {"place", where.place}};
 }
 
 /// The map's coefficients are in the extended model, its values in force_map.csv.

@@ -109,7 +109,7 @@ std::string make_where_text(const Where& where) {
     if (!detail->empty()) details += (details.empty() ? "" : ", ") + *detail;
   }
   std::string text;
-  if (!where.channel.empty()) text += " in " + where.channel;
+  if (!where.channel.empty()) text += fmt::format(" in {} of {}", where.channel, where.run);
   if (!details.empty()) text += fmt::format(" ({})", details);
   if (!where.depends_on.empty()) text += ", depending on " + where.depends_on;
   return text.empty()
@@ -238,7 +238,7 @@ std::string make_diagnose_text(const CampaignData& data, const Diagnosis& diagno
 }
 
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run) {
-  std::vector<ModelCurves> models = {{"baseline", 5, &run.before.evaluation}};
+  std::vector<ModelCurves> models = {{"calibrated", 5, &run.before.evaluation}};
   if (diagnosis.is_extended()) models.push_back({"extended", 2, &run.after.evaluation});
   return models;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/error/input_error.h"
 #include "io/table/units.h"
@@ -48,7 +49,13 @@ const std::map<std::string, std::vector<std::string>>& list_synonyms() {
       {"chassis", {"body", "sprung"}},
       {"body", {"body", "sprung"}},
       {"beschl", {"acceleration"}},
+      {"beschleunigung", {"acceleration"}},
       {"geschw", {"velocity"}},
+      {"geschwindigkeit", {"velocity"}},
+      {"hoehe", {"position"}},
+      {"federweg", {"displacement", "deflection"}},
+      {"daempfer", {"damper"}},
+      {"reifen", {"tire"}},
       {"plate", {"road"}},
       {"platte", {"road"}},
       {"ground", {"road"}},
@@ -67,8 +74,39 @@ bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_word(char c) { return is_lower(c) || is_upper(c) || (c >= '0' && c <= '9'); }
 
+/// German letters as their pairs, in UTF-8.
+std::string spell_out(std::string text) {
+  static const std::vector<std::pair<std::string, std::string>> pairs = {
+      {"\u00e4", "ae"}, {"\u00f6", "oe"}, {"\u00fc", "ue"}, {"\u00df", "ss"},
+      {"\u00c4", "Ae"}, {"\u00d6", "Oe"}, {"\u00dc", "Ue"}};
+  for (const auto& [letter, pair] : pairs) {
+    for (std::size_t at = 0; (at = text.find(letter, at)) != std::string::npos;) {
+      text.replace(at, letter.size(), pair);
+    }
+  }
+  return text;
+}
+
+/// Adds the parts of a German compound whose parts are all known: "strassenhoehe" is strasse and
+/// hoehe. Returns whether they are.
+bool split_compound(const std::string& word, std::vector<std::string>& parts) {
+  constexpr std::size_t kMinPart = 3;
+  if (word.empty()) return true;
+  for (const auto& [part, meaning] : list_synonyms()) {
+    if (part.size() < kMinPart || word.compare(0, part.size(), part) != 0) continue;
+    const std::string rest = word.substr(part.size());
+    const bool is_linked = !rest.empty() && (rest[0] == 'n' || rest[0] == 's');
+    parts.push_back(part);
+    if (split_compound(rest, parts)) return true;
+    if (is_linked && split_compound(rest.substr(1), parts)) return true;
+    parts.pop_back();
+  }
+  return false;
+}
+
 /// The words of "AccZ_front", lower case: acc, z, front.
-Words split_words(const std::string& name) {
+Words split_words(const std::string& text) {
+  const std::string name = spell_out(text);
   std::vector<std::string> list;
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (!is_word(name[i])) continue;
@@ -77,7 +115,13 @@ Words split_words(const std::string& name) {
     if (begins) list.emplace_back();
     list.back() += is_upper(name[i]) ? static_cast<char>(name[i] | 0x20) : name[i];
   }
-  return {list.begin(), list.end()};
+  Words words;
+  for (const std::string& word : list) {
+    std::vector<std::string> parts;
+    if (list_synonyms().count(word) > 0 || !split_compound(word, parts)) parts = {word};
+    words.insert(parts.begin(), parts.end());
+  }
+  return words;
 }
 
 Words expand(const Words& words) {

@@ -43,7 +43,7 @@ Diagnosis make_named(const CampaignData& data) {
   position.close = 2;
   position.unknown = d.verdict.unknown_share = 0.01;
   d.verdict.positions = {position};
-  d.where = {"sprung_position", "0.8 to 1.6 s", "0.5-3 Hz", "suspension_velocity", ""};
+  d.where = {"drive", "sprung_position", "0.8 to 1.6 s", "0.5-3 Hz", "suspension_velocity", ""};
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   d.parameters = {
@@ -243,7 +243,7 @@ TEST_CASE("The curves of every run are written beside each other", "[io]") {
   const CsvTable table = read_csv(folder / "run_2_b.csv", MissingCells::kNan);
   CHECK(table.row_count() == data.times(1).size());
   const auto& measured = table.column("sprung_position").values;
-  const auto& before = table.column("sprung_position_baseline").values;
+  const auto& before = table.column("sprung_position_calibrated").values;
   const auto& after = table.column("sprung_position_extended").values;
   const std::vector<double>& residual = diagnosis.runs[1].before.evaluation.residual.back();
   CHECK(measured[100] - before[100] == Approx(residual[100]).margin(1e-12));

@@ -158,6 +158,21 @@ TEST_CASE("A drafted campaign holds out what is asked for and says what is left 
   CHECK(run_program("inspect " + first + " --hold-out " + first).code == 2);
 }
 
+TEST_CASE("A drafted campaign knows German words, letters and compounds", "[io]") {
+  const test::TemporaryFolder folder;
+  std::string rows = "Zeit [s];Straßenhöhe [mm];Höhe Rad [mm];Aufbaubeschleunigung\n";
+  for (int i = 0; i < 10; ++i) rows += fmt::format("0,{};{},5;{};{}\n", i, 3 * i, 9 - i, i % 3);
+  const std::string file = folder.write("fahrt.csv", rows).string();
+  const std::string campaign = (folder / "campaign.toml").string();
+  const test::Outcome outcome = run_program("inspect " + file + " --model " + kExamples +
+                                            "/rigs/quarter_car.toml -o " + campaign);
+  REQUIRE(outcome.code == 0);
+  CHECK_THAT(test::read_text(campaign),
+             Contains("road_position       = { column = \"Straßenhöhe\", role = \"input\" }") &&
+                 Contains("unsprung_position   = { column = \"Höhe Rad\" }") &&
+                 Contains("sprung_acceleration = { column = \"Aufbaubeschleunigung\" }"));
+}
+
 TEST_CASE("identify reads a recording by the columns of a campaign", "[io]") {
   const test::TemporaryFolder folder;
   const std::string vehicle = kExamples + "/vehicles/paper_sedan.toml";
@@ -177,17 +192,21 @@ TEST_CASE("identify reads a recording by the columns of a campaign", "[io]") {
   rate.unit = "deg/s";
   for (double& r : rate.values) r *= 57.29577951308232;
   write_csv(folder / "logger.csv", {time, acceleration, rate});
-  const std::string campaign =
-      folder.write("columns.toml", "model = \"" + vehicle +
-                                       "\"\n[columns]\ntime = { column = \"Clock\" }\n"
-                                       "imu_acceleration_z = { column = \"AccZ\", sign = "
-                                       "-1 }\nimu_rate_y = { column = \"Pitch\" }\n");
-  const test::Outcome outcome =
-      run_program("identify " + vehicle + " " + (folder / "logger.csv").string() + " --maneuver " +
-                  maneuver + " --window 0.3:2 --json --columns " + campaign);
+  const auto identify = [&](const std::string& unit) {
+    const std::string campaign =
+        folder.write("columns.toml", "model = \"" + vehicle +
+                                         "\"\n[columns]\ntime = { column = \"Clock\" }\n"
+                                         "imu_acceleration_z = { column = \"AccZ\", sign = -1" +
+                                         unit + " }\nimu_rate_y = { column = \"Pitch\" }\n");
+    return run_program("identify " + vehicle + " " + (folder / "logger.csv").string() +
+                       " --maneuver " + maneuver + " --window 0.3:2 --json --columns " + campaign);
+  };
+  const test::Outcome outcome = identify("");
   REQUIRE(outcome.code == 0);
   CHECK(test::parse_json(outcome.out).get<double>("parameters.rear_damping.value") ==
         Approx(1850.0).epsilon(1e-3));
+  // The advice counts from the unit in which the column was read.
+  CHECK_THAT(identify(", unit = \"ft/s^2\"").messages, Contains("unit = \"g\"?"));
 }
 
 }  // namespace
