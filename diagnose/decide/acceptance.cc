@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "diagnose/decide/effect_round.h"
+
 namespace strut {
 namespace {
 
@@ -39,6 +41,20 @@ bool is_large(const Selection& selection, const SelectRound& round, const Select
   if (selection.causes.empty()) return true;
   const double share = is_certain(round, options) ? options.certain_share : options.second_share;
   return best.gain > share * selection.rounds.front().candidates.front().gain;
+}
+
+std::size_t choose_lead(const SelectRound& round, const std::vector<double>& gains) {
+  constexpr double kBetter = 1.02;
+  const auto most = std::max_element(gains.begin(), gains.end());
+  const double first = gains.front();
+  const bool is_better =
+      *most >= kBetter * first && *most - first >= round.threshold * round.misfit;
+  return is_better ? static_cast<std::size_t>(most - gains.begin()) : 0;
+}
+
+bool is_dispensable(const FitResult& now, double changed, double without) {
+  constexpr double kSigmas = 3.0;
+  return without >= changed - kSigmas * kSigmas * calc_misfit(now, changed);
 }
 
 double sum_chi2(const std::vector<HoldOutRun>& runs) {

@@ -6,6 +6,7 @@
 
 #include "base/math/normal.h"
 #include "base/parallel/team.h"
+#include "diagnose/decide/acceptance.h"
 #include "diagnose/decide/extended_unknowns.h"
 #include "diagnose/decide/rank_trials.h"
 
@@ -187,15 +188,16 @@ bool is_allowed(const CampaignData& data, const Candidate& c) {
 /// An effect of the model's file that is better with other values may as well not be there: then
 /// that is the hypothesis, since nothing is left to be determined.
 void try_removal(const Round& round, Fitted& fitted) {
-  constexpr double kSigmas = 9.0;  // chi2 of 3 standard deviations
   const Candidate& c = fitted.candidate;
   if (c.values.empty() || c.hypothesis.change != EffectChange::kChanged) return;
   const Hypothesis removal = make_removal(round.data, c.hypothesis);
   const std::vector<double>& none = removal.beginnings.front();
   Fitted removed =
       keep_fit(round, removal, round.bench.fit(removal, none, round.options.convergence), none);
-  const double least = c.gain - kSigmas * calc_misfit(round.now.fit, c.gain);
-  if (removed.candidate.values.empty() || removed.candidate.gain < least) return;
+  if (removed.candidate.values.empty() ||
+      !is_dispensable(round.now.fit, c.gain, removed.candidate.gain)) {
+    return;
+  }
   removed.candidate.score = c.score;
   removed.candidate.stability = c.stability;
   removed.candidate.simulations += c.simulations;

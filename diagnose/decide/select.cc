@@ -142,32 +142,25 @@ class Selector {
   /// The best alone may be a third effect that imitates two others together. For the best of each
   /// class, the best second effect is looked up, and that of the best pair leads the round.
   void look_ahead(SelectRound& round) {
-    constexpr double kExplained = 1.2, kBetter = 1.02;
+    constexpr double kExplained = 1.2;
     if (!data_.has_inputs() || round.candidates.size() < 2 || round.misfit < kExplained) return;
     if (round.candidates.front().gain < round.threshold * round.misfit) return;
     tell("looking for pairs of effects");
     // By score, then the best by fits.
     std::vector<Pair> pairs = list_pairs(round);
-    double first = 0.0, most = 0.0;
-    std::size_t best = 0;
+    std::vector<double> gains(round.candidates.size(), 0.0);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool is_first = pairs[i].candidate == 0;
-      if (i >= options_.paired_fits && !is_first) continue;
+      if (i >= options_.paired_fits && pairs[i].candidate != 0) continue;
       const Candidate& c = round.candidates[pairs[i].candidate];
       const SelectRound beside = test_beside(c, options_.partners);
       round.simulations += beside.simulations;
-      const double gain =
+      gains[pairs[i].candidate] =
           c.gain + (beside.candidates.empty() ? 0.0 : beside.candidates.front().gain);
-      if (is_first) first = gain;
-      if (gain <= most) continue;
-      most = gain;
-      best = pairs[i].candidate;
     }
-    round.pair_gain = first;
-    if (most < kBetter * first || most - first < round.threshold * round.misfit) return;
-    std::rotate(round.candidates.begin(), round.candidates.begin() + static_cast<long>(best),
-                round.candidates.begin() + static_cast<long>(best) + 1);
-    round.pair_gain = most;
+    const std::size_t lead = choose_lead(round, gains);
+    round.pair_gain = gains[lead];
+    const auto at = round.candidates.begin() + static_cast<std::ptrdiff_t>(lead);
+    std::rotate(round.candidates.begin(), at, at + 1);
   }
 
   /// A candidate, and the delta chi2 that it promises with the best second effect.

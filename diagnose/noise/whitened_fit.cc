@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
 
 #include "base/error/input_error.h"
-#include "diagnose/baseline/time_windows.h"
 #include "diagnose/noise/chord_search.h"
 #include "diagnose/noise/measure_color.h"
 #include "diagnose/noise/road_search.h"
+#include "diagnose/noise/roughness.h"
 
 namespace strut {
 
@@ -20,65 +17,6 @@ SharedValues WhitenedFit::shared() const {
   return {{fit.unknowns.begin(), fit.unknowns.begin() + count},
           {fit.values.begin(), fit.values.begin() + count}};
 }
-
-namespace {
-
-/// Of a run before it meets its bump: by how much the mean square of each channel exceeds that of
-/// its sensor, over that of a road with G0 = 1 m^3; the median of the channels. Nothing where too
-/// little of the run comes before.
-std::optional<double> measure_approach(const CampaignData& data, std::size_t run,
-                                       std::size_t number, const ReadingModel& model,
-                                       const NoiseSpectrum& spectrum,
-                                       const Eigen::VectorXd& residual) {
-  constexpr std::size_t kEnough = 50;  // samples
-  const double end = make_time_windows(data, run).front().to;
-  const std::size_t channels = spectrum.sigma.size();
-  std::vector<double> squares(channels, 0.0), means(channels, 0.0);
-  std::vector<std::size_t> counts(channels, 0);
-  for (std::size_t k = 0; k < model.reading_count(); ++k) {
-    const ReadingPlace& place = model.readings()[k];
-    if (place.run != number || data.times(run)[place.time] >= end) continue;
-    const double r = residual(static_cast<Eigen::Index>(k));
-    squares[place.channel] += r * r;
-    means[place.channel] += r;
-    ++counts[place.channel];
-  }
-  std::vector<double> levels;
-  for (std::size_t c = 0; c < channels; ++c) {
-    if (counts[c] < kEnough) continue;
-    // Variance of the channel over sigma^2 per m^3.
-    const double unit = calc_common_variance(spectrum, c) / (spectrum.sigma[c] * spectrum.sigma[c]);
-    const auto n = static_cast<double>(counts[c]);
-    const double variance = squares[c] / n - (means[c] / n) * (means[c] / n);
-    if (unit > 0.0) levels.push_back(std::max(0.0, variance - 1.0) / unit);
-  }
-  if (levels.empty()) return std::nullopt;
-  std::sort(levels.begin(), levels.end());
-  return levels[levels.size() / 2];
-}
-
-/// By runs over level ground, where there are some; else by what comes before the bumps, which no
-/// effect of the car reaches.
-Roughness measure_roughness(const CampaignData& data, const std::vector<std::size_t>& runs,
-                            const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
-                            const Eigen::VectorXd& residual) {
-  std::vector<bool> is_level;
-  std::vector<double> approaches;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    is_level.push_back(!meets_bump(data, runs[i]));
-    const auto level = measure_approach(data, runs[i], i, model, spectra[i], residual);
-    if (level) approaches.push_back(*level);
-  }
-  if (std::find(is_level.begin(), is_level.end(), true) != is_level.end()) {
-    return fit_roughness(model, spectra, is_level, residual);
-  }
-  constexpr double kResponseError = 0.02;
-  if (approaches.empty()) return {0.0, kResponseError};
-  std::sort(approaches.begin(), approaches.end());
-  return {approaches[approaches.size() / 2], kResponseError};
-}
-
-}  // namespace
 
 std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline) {
   std::vector<NoiseSpectrum> spectra =

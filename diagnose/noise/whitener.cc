@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <unsupported/Eigen/FFT>
 #include <utility>
 
@@ -276,47 +275,6 @@ void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
           counts[from][b] > 0.0 ? std::max(1.0, sums[from][b] / counts[from][b]) : 1.0;
     }
   }
-}
-
-Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
-                        const std::vector<bool>& is_level, const Eigen::VectorXd& residual) {
-  constexpr double kLowest = 1e-7, kHighest = 1e-3, kPerDecade = 4.0;
-  // Where the car answers to the road; what a tire passes on of shorter waves is less certain, and
-  // there would be more of them.
-  WhitenerOptions felt;
-  felt.highest = 15.0;
-  std::vector<Roughness> tried = {{0.0, 0.02}};
-  for (const double error : {0.02, 0.1}) {
-    for (double level = kLowest; level < kHighest; level *= std::pow(10.0, 1.0 / kPerDecade)) {
-      tried.push_back({level, error});
-    }
-  }
-  // By run, the roughness under which its residual is most likely.
-  std::vector<Roughness> best(spectra.size());
-  std::vector<double> most(spectra.size(), -std::numeric_limits<double>::infinity());
-  for (std::size_t r = 0; r < spectra.size(); ++r) {
-    if (!is_level[r]) continue;
-    for (const Roughness& roughness : tried) {
-      std::vector<NoiseSpectrum> at = spectra;
-      for (std::size_t i = 0; i < at.size(); ++i) {
-        at[i].level = roughness.level;
-        at[i].response_error = roughness.response_error;
-        if (i != r) at[i].samples = 2;  // of the others nothing is asked
-      }
-      const Whitener whitener(model, at, {}, felt);
-      const double likelihood = whitener.calc_log_likelihood(whitener.apply_residual(residual), r);
-      if (likelihood <= most[r]) continue;
-      most[r] = likelihood;
-      best[r] = roughness;
-    }
-  }
-  std::vector<Roughness> quiet;
-  for (std::size_t r = 0; r < spectra.size(); ++r) {
-    if (is_level[r]) quiet.push_back(best[r]);
-  }
-  std::stable_sort(quiet.begin(), quiet.end(),
-                   [](const Roughness& a, const Roughness& b) { return a.level < b.level; });
-  return quiet[quiet.size() / 4];
 }
 
 }  // namespace strut

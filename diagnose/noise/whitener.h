@@ -119,15 +119,4 @@ class WhitenedModel : public ReadingModel {
 void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
                   std::vector<NoiseSpectrum>& spectra);
 
-/// Roughness estimated from residuals.
-struct Roughness {
-  double level = 0.0;           // G0, m^3
-  double response_error = 0.0;  // NoiseSpectrum::response_error
-};
-
-/// Fits the roughness to the residuals of the runs over level ground, by maximum likelihood over
-/// levels from 1e-7 to 1e-3 m^3. `residual`: of the model's readings.
-Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
-                        const std::vector<bool>& is_level, const Eigen::VectorXd& residual);
-
 }  // namespace strut

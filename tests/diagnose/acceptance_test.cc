@@ -161,5 +161,30 @@ TEST_CASE("A calibration may miss its minimum by a twentieth of what the causes 
   CHECK(is_near_minimum(calibration, {181.0}));
 }
 
+TEST_CASE("Another candidate leads a round if its pair gains 2 %, and the threshold, more",
+          "[unit]") {
+  SelectRound round = make_round(0.0);  // a threshold of 30
+  CHECK(choose_lead(round, {1000.0, 0.0, 1029.0}) == 0);
+  CHECK(choose_lead(round, {1000.0, 0.0, 1031.0}) == 2);
+  CHECK(choose_lead(round, {10000.0, 10190.0}) == 0);
+  CHECK(choose_lead(round, {10000.0, 10210.0}) == 1);
+  CHECK(choose_lead(round, {10000.0, 11000.0, 10500.0}) == 1);
+  CHECK(choose_lead(round, {10000.0, 9000.0}) == 0);
+}
+
+TEST_CASE("An effect of the model's file is dispensable within three standard deviations",
+          "[unit]") {
+  FitResult now;
+  now.chi2 = 900.0;
+  now.degrees = 200;
+  // With other values of the effect 500 are left: 2.5 per degree of freedom, so 22.5 for 3 sigmas.
+  CHECK(is_dispensable(now, 400.0, 377.6));
+  CHECK_FALSE(is_dispensable(now, 400.0, 377.4));
+  CHECK(is_dispensable(now, 400.0, 410.0));
+  // Residuals below their noise count as noise.
+  CHECK(is_dispensable(now, 800.0, 791.1));
+  CHECK_FALSE(is_dispensable(now, 800.0, 790.9));
+}
+
 }  // namespace
 }  // namespace strut

@@ -10,66 +10,14 @@
 
 #include "base/error/check.h"
 #include "tests/support/campaign_files.h"
+#include "tests/support/common_noise.h"
 #include "tests/support/tolerance.h"
 
 namespace strut {
 namespace {
 
-constexpr std::size_t kSamples = 240, kChannels = 3;
-constexpr double kInterval = 0.01;  // s
-
-/// Readings that are the unknown itself, a constant in every channel.
-class ConstantModel : public ReadingModel {
- public:
-  /// `kept`: of the last channel only every so-manieth sample was read.
-  explicit ConstantModel(std::size_t runs, std::size_t kept = 1) : ReadingModel({Unknown{}}) {
-    unknowns_.front().name = "constant";
-    for (std::size_t r = 0; r < runs; ++r) {
-      channels_.push_back({0, 1, 2});
-      for (std::size_t t = 0; t < kSamples; ++t) {
-        for (std::size_t c = 0; c < kChannels; ++c) {
-          if (c + 1 < kChannels || t % kept == 0) readings_.push_back({r, t, c});
-        }
-      }
-    }
-  }
-  Linearization linearize(const std::vector<double>& values) override {
-    Linearization at;
-    const auto rows = static_cast<Eigen::Index>(reading_count());
-    at.residual = Eigen::VectorXd::Constant(rows, values.front());
-    at.jacobian = Eigen::MatrixXd::Ones(rows, 1);
-    return at;
-  }
-  using ReadingModel::evaluate;
-  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override {
-    std::vector<Evaluation> evaluations;
-    evaluations.reserve(points.size());
-    for (const std::vector<double>& p : points) evaluations.push_back({"", linearize(p).residual});
-    return evaluations;
-  }
-};
-
-/// The response of a channel to one source: weighted, and late by the channel's number of samples.
-double get_weight(std::size_t channel) { return 3.0 + 2.0 * static_cast<double>(channel); }
-
-NoiseSpectrum make_spectrum() {
-  NoiseSpectrum s;
-  s.samples = kSamples;
-  s.interval = kInterval;
-  s.sigma = {1.0, 1.0, 1.0};
-  s.response_error = 0.0;
-  Eigen::MatrixXcd source(kChannels, kSamples / 2 + 1);
-  for (Eigen::Index k = 0; k < source.cols(); ++k) {
-    for (Eigen::Index c = 0; c < source.rows(); ++c) {
-      const double phase = -2.0 * std::numbers::pi * static_cast<double>(k * c) / kSamples;
-      source(c, k) = std::polar(get_weight(static_cast<std::size_t>(c)), phase);
-    }
-  }
-  for (Eigen::Index k = 0; k < source.cols(); ++k) {
-    s.common.emplace_back(source.col(k) * source.col(k).adjoint());
-  }
-  return s;
-}
+using test::ConstantModel, test::get_weight, test::kChannels, test::kInterval, test::kSamples,
+    test::make_spectrum;
 
 /// Sensor noise and the source's, drawn over time; periodic, as the transform has it.
 Eigen::VectorXd draw_noise(std::size_t runs) {
@@ -176,33 +124,6 @@ TEST_CASE("Noise below its spectrum is no negative excess", "[unit]") {
   // At most a twentieth of sqrt(1 + 49) sigmas.
   count_excess(whitener, 0.05 * whitener.apply(draw_noise(1)), spectra);
   for (const double excess : spectra[0].excess) CHECK(excess == 1.0);
-}
-
-TEST_CASE("The roughness of several level runs is that of a quiet one", "[unit]") {
-  // Levels in units of 1e-5 m^3, by run.
-  const std::vector<double> levels = {100.0, 1.0, 10.0, 0.1};
-  const std::size_t runs = levels.size();
-  const ConstantModel model(runs);
-  std::vector<NoiseSpectrum> spectra(runs, make_spectrum());
-  for (NoiseSpectrum& s : spectra) {
-    for (Eigen::MatrixXcd& common : s.common) common *= 1e5;
-  }
-  Eigen::VectorXd residual(static_cast<Eigen::Index>(runs * kSamples * kChannels));
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < runs; ++r) {
-    for (std::size_t t = 0; t < kSamples; ++t) {
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        const double source = test::calc_test_normal(r, 99, (t + kSamples - c) % kSamples);
-        residual(row++) =
-            test::calc_test_normal(r, c, t) + std::sqrt(levels[r]) * get_weight(c) * source;
-      }
-    }
-  }
-  const Roughness roughness =
-      fit_roughness(model, spectra, std::vector<bool>(runs, true), residual);
-  // The second lowest of four; levels are tried in steps of 1.8, and 240 samples know it to 10 %.
-  CHECK(roughness.level > 0.5e-5);
-  CHECK(roughness.level < 2e-5);
 }
 
 TEST_CASE("Missing readings do not make noise look smaller", "[unit]") {
