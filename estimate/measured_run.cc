@@ -7,7 +7,6 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
-#include "io/table/units.h"
 
 namespace strut {
 namespace {
@@ -57,7 +56,7 @@ std::string ColumnReading::guess_true_unit(const std::string& si, double factor)
   return scale == 1.0 ? guess_unit(si, factor / unit) : "";
 }
 
-ColumnReading make_reading(const ColumnConversion& conversion, double delay) {
+ColumnReading make_column_reading(const ColumnConversion& conversion, double delay) {
   return {conversion.unit.factor, std::abs(conversion.factor), delay};
 }
 

@@ -29,7 +29,7 @@ MeasuredRun read_measured_run(const std::filesystem::path& file, const Case& set
   for (std::size_t c = 0; c < channels.size(); ++c) {
     run.channels.push_back({channels[c], noise[static_cast<std::size_t>(channels[c])],
                             history.values(columns[c].name),
-                            make_reading(history.conversions[c + 1])});  // the times come first
+                            make_column_reading(history.conversion(columns[c].name))});
   }
   check_measured_run(run);
   return run;

@@ -106,7 +106,10 @@ std::vector<WindowResidual> calc_window_residuals(std::span<const double> times,
   results.reserve(windows.size());
   for (const TimeWindow& window : windows) {
     const auto first = std::lower_bound(times.begin(), times.end(), window.from) - times.begin();
-    const auto last = std::lower_bound(times.begin(), times.end(), window.to) - times.begin();
+    const auto end = &window == &windows.back()
+                         ? std::upper_bound(times.begin(), times.end(), window.to)
+                         : std::lower_bound(times.begin(), times.end(), window.to);
+    const auto last = end - times.begin();
     const auto part = residual.subspan(static_cast<std::size_t>(first),
                                        static_cast<std::size_t>(std::max(first, last) - first));
     const double rms = calc_rms(part);

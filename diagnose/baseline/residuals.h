@@ -8,7 +8,8 @@
 
 namespace strut {
 
-/// A part of a run, on the run's clock.
+/// A part of a run, on the run's clock, which for a rig begins at 0: [from, to), the last one
+/// [from, to].
 struct TimeWindow {
   std::string name;
   double from = 0.0, to = 0.0;  // s

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace strut {
 namespace {
@@ -12,17 +10,12 @@ namespace {
 constexpr int kSegments = 5;
 constexpr double kFootprint = 0.1;  // m, half the contact patch before and after the bump
 
-/// Windows are open at their end.
-double end_after(const MeasuredRun& run) {
-  return std::nextafter(run.times.back(), std::numeric_limits<double>::infinity());
-}
-
 std::vector<TimeWindow> make_segments(const MeasuredRun& run) {
   std::vector<TimeWindow> windows;
   windows.reserve(kSegments);
   for (int i = 0; i < kSegments; ++i) {
     const double from = run.times.back() * i / kSegments;
-    const double to = i + 1 == kSegments ? end_after(run) : run.times.back() * (i + 1) / kSegments;
+    const double to = run.times.back() * (i + 1) / kSegments;
     windows.push_back({fmt::format("segment {} of {}", i + 1, kSegments), from, to});
   }
   return windows;
@@ -30,7 +23,7 @@ std::vector<TimeWindow> make_segments(const MeasuredRun& run) {
 
 std::vector<TimeWindow> make_axle_windows(const MeasuredRun& run) {
   const ManeuverSpec& m = run.setup.car().maneuver;
-  const double last = end_after(run), first = std::min(0.0, run.times.front());
+  const double last = run.times.back(), first = std::min(0.0, run.times.front());
   const double half = 0.5 * m.road.length + kFootprint;
   const double front = m.bump_distance;
   const double rear = front + run.setup.car().vehicle.whole.wheelbase();

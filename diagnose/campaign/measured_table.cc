@@ -106,7 +106,7 @@ void add_columns(const Campaign& campaign, const Measurement& file, const std::s
     std::vector<double> values(raw->values.begin(),
                                raw->values.begin() + static_cast<std::ptrdiff_t>(own_times.size()));
     for (double& value : values) value = conversion.convert(value);  // NaN stays NaN
-    const ColumnReading reading = make_reading(conversion, c.delay);
+    const ColumnReading reading = make_column_reading(conversion, c.delay);
     if (c.clock.empty() && c.delay == 0.0) {
       columns.push_back({i, std::move(values), 0, reading});
       continue;

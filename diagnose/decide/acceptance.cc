@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "diagnose/decide/effect_round.h"
-
 namespace strut {
 namespace {
 
@@ -43,13 +41,16 @@ bool is_large(const Selection& selection, const SelectRound& round, const Select
   return best.gain > share * selection.rounds.front().candidates.front().gain;
 }
 
-std::size_t choose_lead(const SelectRound& round, const std::vector<double>& gains) {
+std::size_t choose_lead(const std::vector<double>& gains, double least) {
   constexpr double kBetter = 1.02;
-  const auto most = std::max_element(gains.begin(), gains.end());
+  const auto max = std::max_element(gains.begin(), gains.end());
   const double first = gains.front();
-  const bool is_better =
-      *most >= kBetter * first && *most - first >= round.threshold * round.misfit;
-  return is_better ? static_cast<std::size_t>(most - gains.begin()) : 0;
+  const bool is_better = *max >= kBetter * first && *max - first >= least;
+  return is_better ? static_cast<std::size_t>(max - gains.begin()) : 0;
+}
+
+double calc_misfit(const FitResult& fit, double gain) {
+  return std::max(1.0, (fit.chi2 - gain) / static_cast<double>(fit.degrees));
 }
 
 bool is_dispensable(const FitResult& now, double changed, double without) {

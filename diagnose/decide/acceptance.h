@@ -2,6 +2,7 @@
 // its confirmation by the held-out ones.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "diagnose/decide/select.h"
@@ -15,14 +16,17 @@ bool is_certain(const SelectRound& round, const SelectOptions& options);
 /// full.
 bool is_large(const Selection& selection, const SelectRound& round, const SelectOptions& options);
 
-/// Which candidate leads a round whose pairs were fitted. `gains`: delta chi2 of each candidate
-/// with the best second effect beside it, 0 where none was fitted. The first, unless another's pair
-/// gains 1.02 times as much as the first's, and the threshold more.
-std::size_t choose_lead(const SelectRound& round, const std::vector<double>& gains);
+/// Which candidate leads a round, with the best second effect fitted beside each. `gains`: delta
+/// chi2 of these pairs, by candidate, at least one; 0 where none was fitted. The first leads,
+/// unless another's pair gains 1.02 times as much, and `least` more.
+std::size_t choose_lead(const std::vector<double>& gains, double least);
 
-/// Whether an effect of the model's file had better not be there: whether the model without it, of
-/// delta chi2 `without`, is within three standard deviations, for noise as large as the residuals,
-/// of the one with other values of it, of delta chi2 `changed`.
+/// chi2 over its expectation once a fit's is lower by `gain`, at least 1.
+double calc_misfit(const FitResult& fit, double gain);
+
+/// Whether an effect of the model's file can be dropped: whether the model without it, of delta
+/// chi2 `without`, is within three standard deviations, for noise as large as the residuals, of the
+/// one with other values of it, of delta chi2 `changed`.
 bool is_dispensable(const FitResult& now, double changed, double without);
 
 /// Sum of chi2 over the held-out runs; larger than any other where one cannot be simulated.

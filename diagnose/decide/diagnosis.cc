@@ -50,8 +50,9 @@ void fill_largest(const ChannelComparison& c, Where& where) {
       [](const WindowResidual& a, const WindowResidual& b) { return a.rms < b.rms; });
   if (window != c.windows.end()) {
     const TimeWindow& w = window->window;
-    where.time =
-        fmt::format("{}, {} to {} s", w.name, format_significant(w.from), format_significant(w.to));
+    const double width = w.to - w.from;
+    where.time = fmt::format("{}, {} to {} s of the run", w.name, format_to_error(w.from, width),
+                             format_to_error(w.to, width));
   }
   const auto band = std::max_element(
       c.bands.begin(), c.bands.end(),
@@ -63,7 +64,7 @@ void fill_largest(const ChannelComparison& c, Where& where) {
   if (state != c.states.end()) where.depends_on = state->state;
 }
 
-/// Where the calibrated model, without any extension, is worst; of the runs for fitting first.
+/// Where the calibrated model, without any extension, is worst in the runs for fitting.
 Where find_largest(const CampaignData& data, const std::vector<DiagnosedRun>& runs) {
   Where where;
   double max_excess = 0.0;

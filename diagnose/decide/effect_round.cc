@@ -293,10 +293,6 @@ double calc_negligible(bool has_inputs, const SelectOptions& options, const Whit
   return power;
 }
 
-double calc_misfit(const FitResult& fit, double gain) {
-  return std::max(1.0, (fit.chi2 - gain) / static_cast<double>(fit.degrees));
-}
-
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round_options) {
   TestBench bench(data, now, options.threads);

@@ -21,9 +21,6 @@ double calc_threshold(const Evidence& evidence, const Score& score,
 /// chi2 that no cause may claim: a fraction of the power of the noise, of the sensors and the road.
 double calc_negligible(bool has_inputs, const SelectOptions& options, const Whitener& whitener);
 
-/// chi2 over its expectation once a fit's is lower by `gain`, at least 1.
-double calc_misfit(const FitResult& fit, double gain);
-
 /// Tests every effect beside those of `now`. Throws InputError where `now` cannot be simulated.
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round);

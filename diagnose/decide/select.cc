@@ -157,7 +157,7 @@ class Selector {
       gains[pairs[i].candidate] =
           c.gain + (beside.candidates.empty() ? 0.0 : beside.candidates.front().gain);
     }
-    const std::size_t lead = choose_lead(round, gains);
+    const std::size_t lead = choose_lead(gains, round.threshold * round.misfit);
     round.pair_gain = gains[lead];
     const auto at = round.candidates.begin() + static_cast<std::ptrdiff_t>(lead);
     std::rotate(round.candidates.begin(), at, at + 1);

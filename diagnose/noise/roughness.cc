@@ -5,14 +5,15 @@
 #include <limits>
 #include <optional>
 
+#include "base/error/check.h"
 #include "diagnose/baseline/time_windows.h"
 
 namespace strut {
 namespace {
 
-/// G0 by what a run reads before it meets its bump; nothing where that is too little.
+/// G0 from the samples of a run before its bump; nullopt if there are too few.
 std::optional<double> measure_approach(const CampaignData& data, std::size_t run,
-                                       std::size_t number, const ReadingModel& model,
+                                       std::size_t model_run, const ReadingModel& model,
                                        const NoiseSpectrum& spectrum,
                                        const Eigen::VectorXd& residual) {
   constexpr std::size_t kEnough = 50;  // samples
@@ -22,7 +23,7 @@ std::optional<double> measure_approach(const CampaignData& data, std::size_t run
   std::vector<std::size_t> counts(channels, 0);
   for (std::size_t k = 0; k < model.reading_count(); ++k) {
     const ReadingPlace& place = model.readings()[k];
-    if (place.run != number || data.times(run)[place.time] >= end) continue;
+    if (place.run != model_run || data.times(run)[place.time] >= end) continue;
     const double r = residual(static_cast<Eigen::Index>(k));
     squares[place.channel] += r * r;
     means[place.channel] += r;
@@ -46,14 +47,14 @@ std::optional<double> measure_approach(const CampaignData& data, std::size_t run
 
 Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
                         const std::vector<bool>& is_level, const Eigen::VectorXd& residual) {
-  constexpr double kLowest = 1e-7, kHighest = 1e-3, kPerDecade = 4.0;
+  constexpr double kMin = 1e-7, kMax = 1e-3, kPerDecade = 4.0;
   // Where the car answers to the road; what a tire passes on of shorter waves is less certain, and
   // there would be more of them.
   WhitenerOptions felt;
   felt.highest = 15.0;
   std::vector<Roughness> tried = {{0.0, 0.02}};
   for (const double error : {0.02, 0.1}) {
-    for (double level = kLowest; level < kHighest; level *= std::pow(10.0, 1.0 / kPerDecade)) {
+    for (double level = kMin; level < kMax; level *= std::pow(10.0, 1.0 / kPerDecade)) {
       tried.push_back({level, error});
     }
   }
@@ -67,7 +68,7 @@ Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectr
       for (std::size_t i = 0; i < at.size(); ++i) {
         at[i].level = roughness.level;
         at[i].response_error = roughness.response_error;
-        if (i != r) at[i].samples = 2;  // of the others nothing is asked
+        if (i != r) at[i].samples = 2;  // the other runs are not needed
       }
       const Whitener whitener(model, at, {}, felt);
       const double likelihood = whitener.calc_log_likelihood(whitener.apply_residual(residual), r);
@@ -82,6 +83,7 @@ Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectr
   }
   std::stable_sort(quiet.begin(), quiet.end(),
                    [](const Roughness& a, const Roughness& b) { return a.level < b.level; });
+  STRUT_CHECK(!quiet.empty(), "fit_roughness: no run on level ground");
   return quiet[quiet.size() / 4];
 }
 

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "diagnose/campaign/campaign_data.h"
 #include "diagnose/noise/whitener.h"
+#include "estimate/reading_model.h"
 
 namespace strut {
 
@@ -15,15 +17,18 @@ struct Roughness {
 };
 
 /// Fits the roughness to the residuals of the runs over level ground, by maximum likelihood over
-/// levels from 1e-7 to 1e-3 m^3. `residual`: of the model's readings.
+/// levels from 1e-7 to 1e-3 m^3. `is_level`: by run; true for one at least. `residual`: of the
+/// model's readings.
 Roughness fit_roughness(const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
                         const std::vector<bool>& is_level, const Eigen::VectorXd& residual);
 
-/// By fit_roughness over the runs on level ground, where there are some; else by what comes before
-/// the bumps, which no effect of the car reaches: by how much the mean squares of the channels
-/// exceed those of their sensors, over those of a road with G0 = 1 m^3; the median of the channels,
-/// then of the runs. Runs with fewer than 50 samples before the bump tell nothing. `residual`: of
-/// the readings of `model`, whose runs are `runs`, in standard deviations of the sensors.
+/// Measures the roughness: by fit_roughness if any run is on level ground, otherwise from the
+/// samples before the bumps, which no effect of the car reaches:
+///
+///   G0 = median over runs and channels of (variance / sigma^2 - 1) / (that of a road with G0 = 1)
+///
+/// Runs with fewer than 50 samples before the bump are ignored. `residual`: of the readings of
+/// `model`, whose runs are `runs`, in standard deviations of the sensors.
 Roughness measure_roughness(const CampaignData& data, const std::vector<std::size_t>& runs,
                             const ReadingModel& model, const std::vector<NoiseSpectrum>& spectra,
                             const Eigen::VectorXd& residual);

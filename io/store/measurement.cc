@@ -66,6 +66,13 @@ const std::vector<double>& Measurement::values(const std::string& name) const {
   return column->values;
 }
 
+const ColumnConversion& Measurement::conversion(const std::string& name) const {
+  const CsvColumn* column = find(name);
+  STRUT_CHECK(column != nullptr && conversions.size() == columns.size(),
+              "Measurement: no conversion of " + name);
+  return conversions[static_cast<std::size_t>(column - columns.data())];
+}
+
 std::string Measurement::locate(std::size_t row) const {
   if (row < lines.size()) return fmt::format("{}:{}", path.string(), lines[row]);
   return fmt::format("{}: row {}", path.string(), row);

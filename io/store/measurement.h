@@ -29,7 +29,7 @@ struct Measurement {
   std::filesystem::path path;
   std::vector<CsvColumn> columns;  // requested columns that exist, in the order of the request
   std::vector<int> lines;          // text: line in the file of each row; otherwise empty
-  std::vector<ColumnConversion> conversions;  // of the columns; empty: they are as in the file
+  std::vector<ColumnConversion> conversions;  // by column; empty: as in the file
   std::vector<std::string> notes;             // for the user: what was left out or assumed
 
   std::size_t row_count() const { return columns.empty() ? 0 : columns.front().values.size(); }
@@ -37,6 +37,8 @@ struct Measurement {
   const CsvColumn* find(const std::string& name) const;
   /// Returns the values of a column that must exist.
   const std::vector<double>& values(const std::string& name) const;
+  /// Returns how a column that must exist was converted; read_channels says so of its own.
+  const ColumnConversion& conversion(const std::string& name) const;
   /// Returns the location of a row for messages: "drive.csv:12", or "drive.h5: row 11" (from 0).
   std::string locate(std::size_t row) const;
 };

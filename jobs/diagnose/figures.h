@@ -16,8 +16,8 @@ std::vector<Chart> make_cause_charts(const Diagnosis& diagnosis);
 /// Errors on the held-out runs before and after, beside the noise; empty without an extension.
 std::vector<Chart> make_improvement_charts(const Diagnosis& diagnosis);
 
-/// One run: measured, baseline and extended curves over time with residuals; where there is a body
-/// balance, its residual force. Empty where the baseline could not be simulated.
+/// One run: measured, calibrated and extended curves over time with residuals; where there is a
+/// body balance, its residual force. Empty where the calibrated model could not be simulated.
 std::vector<Chart> make_run_charts(const CampaignData& data, const Diagnosis& diagnosis,
                                    const DiagnosedRun& run);
 

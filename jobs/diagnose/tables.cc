@@ -109,7 +109,7 @@ std::string make_where_text(const Where& where) {
     if (!detail->empty()) details += (details.empty() ? "" : ", ") + *detail;
   }
   std::string text;
-  if (!where.channel.empty()) text += fmt::format(" in {} of {}", where.channel, where.run);
+  if (!where.channel.empty()) text += fmt::format(" in {}, run {}", where.channel, where.run);
   if (!details.empty()) text += fmt::format(" ({})", details);
   if (!where.depends_on.empty()) text += ", depending on " + where.depends_on;
   return text.empty()

@@ -29,11 +29,11 @@ std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis);
 /// measurement.
 std::string make_diagnose_text(const CampaignData& data, const Diagnosis& diagnosis);
 
-/// The curves of the baseline and, where there is one, the extended model.
+/// The curves of the calibrated and, where there is one, the extended model.
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run);
 
-/// Writes for every run NAME.csv: time and, for every channel, measured, baseline and extended; and
-/// force_map.csv for a force map. Returns their names. Throws EnvironmentError.
+/// Writes for every run NAME.csv: time and, for every channel, measured, calibrated and extended;
+/// and force_map.csv for a force map. Returns their names. Throws EnvironmentError.
 std::vector<std::string> write_diagnose_tables(const DiagnoseFolder& folder,
                                                const CampaignData& data,
                                                const Diagnosis& diagnosis);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "base/error/input_error.h"
@@ -74,11 +75,11 @@ bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_word(char c) { return is_lower(c) || is_upper(c) || (c >= '0' && c <= '9'); }
 
-/// German letters as their pairs, in UTF-8.
+/// Transliterates German letters in UTF-8: "ä" to "ae".
 std::string spell_out(std::string text) {
   static const std::vector<std::pair<std::string, std::string>> pairs = {
       {"\u00e4", "ae"}, {"\u00f6", "oe"}, {"\u00fc", "ue"}, {"\u00df", "ss"},
-      {"\u00c4", "Ae"}, {"\u00d6", "Oe"}, {"\u00dc", "Ue"}};
+      {"\u00c4", "AE"}, {"\u00d6", "OE"}, {"\u00dc", "UE"}};
   for (const auto& [letter, pair] : pairs) {
     for (std::size_t at = 0; (at = text.find(letter, at)) != std::string::npos;) {
       text.replace(at, letter.size(), pair);
@@ -87,15 +88,16 @@ std::string spell_out(std::string text) {
   return text;
 }
 
-/// Adds the parts of a German compound whose parts are all known: "strassenhoehe" is strasse and
-/// hoehe. Returns whether they are.
-bool split_compound(const std::string& word, std::vector<std::string>& parts) {
-  constexpr std::size_t kMinPart = 3;
+/// Appends the parts of a German compound, which an n or s may link: of "strassenhoehe" strasse and
+/// hoehe. Returns false, and appends none, if a part is unknown.
+bool split_compound(std::string_view word, std::vector<std::string>& parts) {
+  constexpr std::size_t kMinPart = 3, kMaxWord = 64;  // longer ones are no words
   if (word.empty()) return true;
+  if (word.size() > kMaxWord) return false;
   for (const auto& [part, meaning] : list_synonyms()) {
-    if (part.size() < kMinPart || word.compare(0, part.size(), part) != 0) continue;
-    const std::string rest = word.substr(part.size());
-    const bool is_linked = !rest.empty() && (rest[0] == 'n' || rest[0] == 's');
+    if (part.size() < kMinPart || word.substr(0, part.size()) != part) continue;
+    const std::string_view rest = word.substr(part.size());
+    const bool is_linked = rest.size() > 1 && (rest[0] == 'n' || rest[0] == 's');
     parts.push_back(part);
     if (split_compound(rest, parts)) return true;
     if (is_linked && split_compound(rest.substr(1), parts)) return true;

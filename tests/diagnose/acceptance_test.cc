@@ -163,13 +163,20 @@ TEST_CASE("A calibration may miss its minimum by a twentieth of what the causes 
 
 TEST_CASE("Another candidate leads a round if its pair gains 2 %, and the threshold, more",
           "[unit]") {
-  SelectRound round = make_round(0.0);  // a threshold of 30
-  CHECK(choose_lead(round, {1000.0, 0.0, 1029.0}) == 0);
-  CHECK(choose_lead(round, {1000.0, 0.0, 1031.0}) == 2);
-  CHECK(choose_lead(round, {10000.0, 10190.0}) == 0);
-  CHECK(choose_lead(round, {10000.0, 10210.0}) == 1);
-  CHECK(choose_lead(round, {10000.0, 11000.0, 10500.0}) == 1);
-  CHECK(choose_lead(round, {10000.0, 9000.0}) == 0);
+  CHECK(choose_lead({1000.0, 0.0, 1029.0}, 30.0) == 0);
+  CHECK(choose_lead({1000.0, 0.0, 1031.0}, 30.0) == 2);
+  CHECK(choose_lead({10000.0, 10190.0}, 30.0) == 0);
+  CHECK(choose_lead({10000.0, 10210.0}, 30.0) == 1);
+  CHECK(choose_lead({10000.0, 11000.0, 10500.0}, 30.0) == 1);
+  CHECK(choose_lead({10000.0, 9000.0}, 30.0) == 0);
+}
+
+TEST_CASE("A misfit is chi2 of the best fit per degree of freedom, and never below 1", "[unit]") {
+  FitResult fit;
+  fit.chi2 = 700.0;
+  fit.degrees = 200;
+  CHECK(calc_misfit(fit, 100.0) == 3.0);
+  CHECK(calc_misfit(fit, 600.0) == 1.0);
 }
 
 TEST_CASE("An effect of the model's file is dispensable within three standard deviations",

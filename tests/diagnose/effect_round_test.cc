@@ -1,4 +1,4 @@
-// Threshold, negligible effects and misfit of a round, in closed form.
+// Threshold and negligible effects of a round, in closed form.
 #include "diagnose/decide/effect_round.h"
 
 #include <catch2/catch.hpp>
@@ -83,14 +83,6 @@ TEST_CASE("A cause explains more than a fraction of the noise's power", "[unit]"
   CHECK(calc_negligible(true, {}, whitener) == Approx(60 * 1e-3).epsilon(tolerance(1e-12)));
   CHECK(calc_negligible(false, {}, whitener) ==
         Approx(60 * (2.5e-3 + 4.0 * 3e-5)).epsilon(tolerance(1e-12)));
-}
-
-TEST_CASE("A misfit is chi2 of the best fit per degree of freedom, and never below 1", "[unit]") {
-  FitResult fit;
-  fit.chi2 = 700.0;
-  fit.degrees = 200;
-  CHECK(calc_misfit(fit, 100.0) == 3.0);
-  CHECK(calc_misfit(fit, 600.0) == 1.0);
 }
 
 }  // namespace

@@ -105,6 +105,7 @@ TEST_CASE("verdict.json has the keys that scripts rely on", "[io]") {
   CHECK(json.get_child("runners_up").front().second.get<double>("probability") == 0.03);
   CHECK(json.get<double>("unknown_share") == 0.01);
   CHECK(json.get<std::string>("where.depends_on") == "suspension_velocity");
+  CHECK(json.get<std::string>("where.run") == "drive");
   CHECK(json.get<double>("parameters.before.stiffness.value") == 900.0);
   CHECK(json.get<double>("parameters.after.stiffness.value") == 950.0);
   // A parameter of only the extended model is not in `before`; an unknown bound has no number.
@@ -353,6 +354,9 @@ TEST_CASE("diagnose gives an effect outside of its catalogue a force map", "[io]
   CHECK((verdict == "unknown" || verdict == "form_incomplete"));
   CHECK_THAT(json.get<std::string>("sentence"), Contains("a force in the strut that depends on"));
   CHECK_THAT(json.get<std::string>("where.depends_on"), Catch::StartsWith("strut "));
+  CHECK_THAT(json.get<std::string>("where.run"), Contains(".csv"));
+  CHECK_THAT(json.get<std::string>("where.time"),
+             Catch::Matches("segment [1-5] of 5, [0-9.]+ to [0-9.]+ s of the run"));
   CHECK(json.get<double>("force_map.share_of_velocity") > 0.3);
   CHECK(json.get<double>("force_map.hold_out_share") > 0.3);
   CHECK(json.get<std::string>("extended_model") == "extended.toml");

@@ -160,8 +160,11 @@ TEST_CASE("A drafted campaign holds out what is asked for and says what is left 
 
 TEST_CASE("A drafted campaign knows German words, letters and compounds", "[io]") {
   const test::TemporaryFolder folder;
-  std::string rows = "Zeit [s];Straßenhöhe [mm];Höhe Rad [mm];Aufbaubeschleunigung\n";
-  for (int i = 0; i < 10; ++i) rows += fmt::format("0,{};{},5;{};{}\n", i, 3 * i, 9 - i, i % 3);
+  std::string rows = "Zeit [s];Straßenhöhe [mm];HÖHE RAD [mm];Aufbaubeschleunigung;speed_rads;" +
+                     std::string(100000, 'r') + "\n";
+  for (int i = 0; i < 10; ++i) {
+    rows += fmt::format("0,{};{},5;{};{};{};1\n", i, 3 * i, 9 - i, i % 3, 5 * i);
+  }
   const std::string file = folder.write("fahrt.csv", rows).string();
   const std::string campaign = (folder / "campaign.toml").string();
   const test::Outcome outcome = run_program("inspect " + file + " --model " + kExamples +
@@ -169,8 +172,10 @@ TEST_CASE("A drafted campaign knows German words, letters and compounds", "[io]"
   REQUIRE(outcome.code == 0);
   CHECK_THAT(test::read_text(campaign),
              Contains("road_position       = { column = \"Straßenhöhe\", role = \"input\" }") &&
-                 Contains("unsprung_position   = { column = \"Höhe Rad\" }") &&
+                 Contains("unsprung_position   = { column = \"HÖHE RAD\" }") &&
                  Contains("sprung_acceleration = { column = \"Aufbaubeschleunigung\" }"));
+  // A unit in the plural is no wheel.
+  CHECK_THAT(test::read_text(campaign), Contains("# CHANNEL = { column = \"speed_rads\" }"));
 }
 
 TEST_CASE("identify reads a recording by the columns of a campaign", "[io]") {

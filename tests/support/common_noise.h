@@ -1,7 +1,9 @@
 // Readings of three channels whose noise has a source in common.
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -16,7 +18,7 @@ inline constexpr double kInterval = 0.01;  // s
 /// Readings that are the unknown itself, a constant in every channel.
 class ConstantModel : public ReadingModel {
  public:
-  /// `kept`: of the last channel only every so-manieth sample was read.
+  /// `kept`: the last channel has one sample in `kept`.
   explicit ConstantModel(std::size_t runs, std::size_t kept = 1) : ReadingModel({Unknown{}}) {
     unknowns_.front().name = "constant";
     for (std::size_t r = 0; r < runs; ++r) {
