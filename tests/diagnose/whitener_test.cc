@@ -15,8 +15,7 @@
 namespace strut {
 namespace {
 
-using test::ConstantModel, test::get_weight, test::kChannels, test::kInterval, test::kSamples,
-    test::make_spectrum;
+using test::ConstantModel, test::get_weight, test::kChannels, test::kSamples, test::make_spectrum;
 
 /// Sensor noise and the source's, drawn over time; periodic, as the transform has it.
 Eigen::VectorXd draw_noise(std::size_t runs) {
