@@ -24,7 +24,8 @@ struct ColumnReading {
   std::string guess_true_unit(const std::string& si, double factor) const;
 };
 
-/// How a column was read that `conversion` took to SI. `delay`: of the column, in s.
+/// Describes how a column was read. `conversion`: of its cells to SI; `delay`: by how much they are
+/// late [s].
 ColumnReading make_column_reading(const ColumnConversion& conversion, double delay = 0.0);
 
 /// The readings of one sensor.

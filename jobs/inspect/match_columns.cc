@@ -150,30 +150,47 @@ struct Candidate {
   std::size_t channel, column;
 };
 
+/// The words of a column's name, and these with what they mean.
+struct ColumnWords {
+  Words own, meanings;
+};
+
+std::vector<ColumnWords> list_column_words(const TableSummary& table) {
+  std::vector<ColumnWords> list;
+  list.reserve(table.columns.size());
+  for (const ColumnSummary& column : table.columns) {
+    Words own = split_words(column.name), meanings = expand(own);
+    list.push_back({std::move(own), std::move(meanings)});
+  }
+  return list;
+}
+
 /// Fraction of the channel's words that stand in the column's name, less a little for each word too
 /// many.
-double calc_score(const ChannelInfo& channel, const ColumnSummary& column) {
+double calc_score(const Words& channel, const ColumnWords& column) {
   constexpr double kPerExtraWord = 0.01;
-  const std::string& unit = column.unit.empty() ? column.guessed_unit : column.unit;
-  if (!converts(unit, channel.unit)) return 0.0;
-  const Words own = split_words(column.name), found = expand(own),
-              wanted = split_words(channel.name);
-  const auto common = std::count_if(wanted.begin(), wanted.end(),
-                                    [&](const std::string& word) { return found.count(word) > 0; });
-  return static_cast<double>(common) / static_cast<double>(wanted.size()) -
-         kPerExtraWord * static_cast<double>(own.size());
+  const auto common = std::count_if(channel.begin(), channel.end(), [&](const std::string& word) {
+    return column.meanings.count(word) > 0;
+  });
+  return static_cast<double>(common) / static_cast<double>(channel.size()) -
+         kPerExtraWord * static_cast<double>(column.own.size());
 }
 
 }  // namespace
 
 std::vector<ColumnMatch> match_columns(const ModelInfo& model, const TableSummary& table) {
   constexpr double kMinScore = 0.4, kSureScore = 0.9;
+  const std::vector<ColumnWords> words = list_column_words(table);
   std::vector<Candidate> candidates;
   for (std::size_t c = 0; c < model.channels.size(); ++c) {
+    const ChannelInfo& channel = model.channels[c];
+    const Words wanted = split_words(channel.name);
     for (std::size_t k = 0; k < table.columns.size(); ++k) {
       const ColumnSummary& column = table.columns[k];
       if (column.is_clock || !column.fault.empty()) continue;
-      const double score = calc_score(model.channels[c], column);
+      const std::string& unit = column.unit.empty() ? column.guessed_unit : column.unit;
+      if (!converts(unit, channel.unit)) continue;
+      const double score = calc_score(wanted, words[k]);
       if (score >= kMinScore) candidates.push_back({score, c, k});
     }
   }
