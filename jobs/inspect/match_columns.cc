@@ -159,8 +159,8 @@ std::vector<ColumnWords> list_column_words(const TableSummary& table) {
   std::vector<ColumnWords> list;
   list.reserve(table.columns.size());
   for (const ColumnSummary& column : table.columns) {
-    Words own = split_words(column.name), meanings = expand(own);
-    list.push_back({std::move(own), std::move(meanings)});
+    const Words own = split_words(column.name);
+    list.push_back({own, expand(own)});
   }
   return list;
 }
