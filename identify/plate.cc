@@ -103,7 +103,7 @@ Window make_window(const std::vector<double>& cycles, std::size_t i, int half) {
   Eigen::VectorXd counts(2 * half);
   for (int k = -half, row = 0; k <= half; ++k) {
     if (k == 0) continue;
-    const double tau = w.calc_tau(cycles[static_cast<std::size_t>(static_cast<int>(i) + k)]);
+    const double tau = w.calc_tau(cycles[i - h + static_cast<std::size_t>(k + half)]);
     basis.row(row) << tau, tau * tau;
     counts(row++) = k;
   }
@@ -218,8 +218,9 @@ std::vector<PlateResponse> calc_plate_responses(const PlateRecord& record) {
 }
 
 double calc_plate_noise(const std::vector<PlateResponse>& responses) {
-  std::vector<double> noise;
-  for (const PlateResponse& r : responses) noise.push_back(r.noise);
+  std::vector<double> noise(responses.size());
+  std::transform(responses.begin(), responses.end(), noise.begin(),
+                 [](const PlateResponse& r) { return r.noise; });
   const auto middle = noise.begin() + static_cast<Index>(noise.size() / 2);
   std::nth_element(noise.begin(), middle, noise.end());
   return *middle;

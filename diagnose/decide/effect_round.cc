@@ -8,7 +8,6 @@
 #include "base/parallel/team.h"
 #include "diagnose/decide/acceptance.h"
 #include "diagnose/decide/extended_unknowns.h"
-#include "diagnose/decide/rank_trials.h"
 
 namespace strut {
 namespace {
@@ -267,12 +266,8 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
 
 }  // namespace
 
-double calc_threshold(const Evidence& evidence, const Score& score,
-                      const std::vector<bool>& one_sided, const SelectOptions& options,
-                      double negligible) {
-  const double null =
-      calc_null_threshold(evidence, score, one_sided, options.nulls, options.confidence);
-  return std::max(options.margin * null, negligible);
+double calc_threshold(const NullScores& nulls, const SelectOptions& options, double negligible) {
+  return std::max(options.margin * nulls.get_quantile(options.confidence), negligible);
 }
 
 double calc_negligible(bool has_inputs, const SelectOptions& options, const Whitener& whitener) {
@@ -305,14 +300,15 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   const Evidence evidence = bench.gather(hypotheses);
   const Score score = calc_score(evidence, std::vector<double>(evidence.run_count(), 1.0));
   SelectRound result;
-  if (round_options.is_final) {
-    result.threshold =
-        calc_threshold(evidence, score, one_sided, options,
-                       calc_negligible(data.has_inputs(), options, bench.whitener()));
-  }
-  const Round round{data, now, options, bench, hypotheses, evidence};
   std::vector<RankedTrial> all = rank_trials(evidence, score, one_sided);
   if (!all.empty()) result.best_score = all.front().gain.chi2;
+  if (round_options.is_final) {
+    const NullScores nulls = draw_null_scores(evidence, score, one_sided, options.nulls);
+    result.threshold = calc_threshold(
+        nulls, options, calc_negligible(data.has_inputs(), options, bench.whitener()));
+    result.p_value = nulls.calc_p_value(result.best_score);
+  }
+  const Round round{data, now, options, bench, hypotheses, evidence};
   const std::vector<RankedTrial> ranked =
       choose(evidence, hypotheses, std::move(all), round_options, 0.3 * result.threshold);
   const std::vector<std::size_t> classes = list_classes(evidence, score, ranked);

@@ -1,6 +1,7 @@
 // One round of the selection: a score test of all hypotheses beside a fit, and fits of the best.
 #pragma once
 
+#include "diagnose/decide/rank_trials.h"
 #include "diagnose/decide/select.h"
 
 namespace strut {
@@ -14,9 +15,7 @@ struct RoundOptions {
 
 /// Threshold of a candidate's delta chi2 over the misfit: that of the null distribution with its
 /// margin, at least `negligible`.
-double calc_threshold(const Evidence& evidence, const Score& score,
-                      const std::vector<bool>& one_sided, const SelectOptions& options,
-                      double negligible);
+double calc_threshold(const NullScores& nulls, const SelectOptions& options, double negligible);
 
 /// chi2 that no cause may claim: a fraction of the power of the noise, of the sensors and the road.
 double calc_negligible(bool has_inputs, const SelectOptions& options, const Whitener& whitener);

@@ -85,9 +85,18 @@ std::vector<std::size_t> list_classes(const Evidence& evidence, const Score& sco
   return classes;
 }
 
-double calc_null_threshold(const Evidence& evidence, const Score& score,
-                           const std::vector<bool>& one_sided, std::size_t nulls,
-                           double confidence) {
+double NullScores::get_quantile(double confidence) const {
+  const auto at = static_cast<std::size_t>(confidence * static_cast<double>(best.size()));
+  return best[std::min(best.size() - 1, at)];
+}
+
+double NullScores::calc_p_value(double score) const {
+  const auto from = std::lower_bound(best.begin(), best.end(), score);
+  return static_cast<double>(1 + (best.end() - from)) / static_cast<double>(1 + best.size());
+}
+
+NullScores draw_null_scores(const Evidence& evidence, const Score& score,
+                            const std::vector<bool>& one_sided, std::size_t draws) {
   constexpr std::uint64_t kSeed = 1;
   // The root of the correlation matrix: effects differ in size by orders of magnitude, and rounding
   // errors of the largest must not count as noise of the smallest.
@@ -97,10 +106,10 @@ double calc_null_threshold(const Evidence& evidence, const Score& score,
                                                               unit.asDiagonal());
   const Eigen::MatrixXd root = sigma.asDiagonal() * solver.eigenvectors() *
                                solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  std::vector<double> most;
-  most.reserve(nulls);
+  NullScores scores;
+  scores.best.reserve(draws);
   Score null = score;
-  for (std::size_t i = 0; i < nulls; ++i) {
+  for (std::size_t i = 0; i < draws; ++i) {
     Eigen::VectorXd normal(root.cols());
     for (Eigen::Index k = 0; k < normal.size(); ++k) {
       normal(k) = calc_normal(kSeed, i, static_cast<std::uint64_t>(k));
@@ -110,11 +119,10 @@ double calc_null_threshold(const Evidence& evidence, const Score& score,
     for (const HypothesisTrial& trial : evidence.trials) {
       best = std::max(best, calc_gain(null, trial.columns, one_sided[trial.hypothesis]).chi2);
     }
-    most.push_back(best);
+    scores.best.push_back(best);
   }
-  std::sort(most.begin(), most.end());
-  return most[std::min(nulls - 1,
-                       static_cast<std::size_t>(confidence * static_cast<double>(nulls)))];
+  std::sort(scores.best.begin(), scores.best.end());
+  return scores;
 }
 
 }  // namespace strut

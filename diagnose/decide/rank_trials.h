@@ -29,10 +29,15 @@ double calc_stability(const Evidence& evidence, const std::vector<bool>& one_sid
 std::vector<std::size_t> list_classes(const Evidence& evidence, const Score& score,
                                       const std::vector<RankedTrial>& ranked);
 
-/// The quantile `confidence` of the best delta chi2 of all trials under the null hypothesis, from
-/// `nulls` draws.
-double calc_null_threshold(const Evidence& evidence, const Score& score,
-                           const std::vector<bool>& one_sided, std::size_t nulls,
-                           double confidence);
+/// The best delta chi2 of all trials in draws from the null hypothesis, ascending.
+struct NullScores {
+  std::vector<double> best;
+
+  double get_quantile(double confidence) const;
+  /// Probability that noise alone scores `score` or more: (1 + number of such draws) / (1 + draws).
+  double calc_p_value(double score) const;
+};
+NullScores draw_null_scores(const Evidence& evidence, const Score& score,
+                            const std::vector<bool>& one_sided, std::size_t draws);
 
 }  // namespace strut

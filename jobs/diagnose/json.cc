@@ -169,6 +169,14 @@ Json make_secants(const std::vector<StrutSecant>& secants) {
   return json;
 }
 
+/// The test whether anything is there at all, beside the calibrated model.
+Json make_existence(const SelectRound& first) {
+  return Json{{"best_score", first.best_score},
+              {"p_value", first.p_value},
+              {"threshold", first.threshold},
+              {"misfit", first.misfit}};
+}
+
 Json make_by_channel(const std::vector<ChannelImprovement>& channels,
                      double ChannelImprovement::*member) {
   Json json = Json::object();
@@ -211,6 +219,8 @@ Json make_verdict_json(const CampaignData& data, const Diagnosis& diagnosis) {
   json["positions"] = make_positions(verdict.positions);
   json["runners_up"] = make_causes(verdict.list_runners_up());
   json["unknown_share"] = verdict.unknown_share;
+  const std::vector<SelectRound>& rounds = diagnosis.selection.rounds;
+  json["existence"] = rounds.empty() ? Json() : make_existence(rounds.front());
   json["calibrated_model"] = make_adequacy(data, diagnosis.misfits_before);
   json["final_model"] = make_adequacy(data, verdict.misfits);
   json["prior_conflicts"] = make_conflicts(data, diagnosis.conflicts);

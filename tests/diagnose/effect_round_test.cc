@@ -26,6 +26,10 @@ struct OneHypothesis {
     score.norm = Eigen::VectorXd::Constant(1, 7.0);
     score.gradient = Eigen::VectorXd::Zero(1);
   }
+
+  NullScores draw(const SelectOptions& options) const {
+    return draw_null_scores(evidence, score, {false}, options.nulls);
+  }
 };
 
 TEST_CASE("The threshold of false alarms is what the nulls give, with the margin", "[unit]") {
@@ -34,7 +38,7 @@ TEST_CASE("The threshold of false alarms is what the nulls give, with the margin
   options.nulls = 20000;
   options.confidence = 0.99;
   options.margin = 1.25;
-  const double threshold = calc_threshold(one.evidence, one.score, {false}, options, 0.0);
+  const double threshold = calc_threshold(one.draw(options), options, 0.0);
   // 99 % quantile of chi2 with one degree of freedom; 4 sigmas of 20000 draws are 0.4.
   CHECK(threshold == Approx(1.25 * 6.635).margin(tolerance(0.5)));
   // Null data sets of the test's own: z / sqrt(K) is standard normal.
@@ -54,7 +58,7 @@ TEST_CASE("By default one null data set in a thousand exceeds the threshold with
   SelectOptions options;
   options.nulls *= 20;
   // 99.9 % quantile of chi2 with one degree of freedom; 4 sigmas of 40000 draws are 1.2.
-  CHECK(calc_threshold(one.evidence, one.score, {false}, options, 0.0) ==
+  CHECK(calc_threshold(one.draw(options), options, 0.0) ==
         Approx(1.25 * 10.828).margin(tolerance(1.5)));
 }
 
@@ -62,7 +66,7 @@ TEST_CASE("What is negligible is below every threshold", "[unit]") {
   const OneHypothesis one;
   SelectOptions options;
   options.nulls = 100;
-  CHECK(calc_threshold(one.evidence, one.score, {false}, options, 500.0) == 500.0);
+  CHECK(calc_threshold(one.draw(options), options, 500.0) == 500.0);
 }
 
 /// 60 readings of one channel with a sigma of 2, beside a road of 4 times their power.

@@ -114,13 +114,29 @@ TEST_CASE("The threshold of one hypothesis is a quantile of chi squared", "[unit
   score.norm = Eigen::VectorXd::Constant(1, 9.0);
   score.gradient = Eigen::VectorXd::Zero(1);
   // Quantiles of one degree of freedom (Abramowitz and Stegun, table 26.8).
-  CHECK(calc_null_threshold(evidence, score, {false}, 20000, 0.95) ==
+  CHECK(draw_null_scores(evidence, score, {false}, 20000).get_quantile(0.95) ==
         Approx(3.841).margin(test::tolerance(0.15)));
-  CHECK(calc_null_threshold(evidence, score, {false}, 20000, 0.99) ==
+  CHECK(draw_null_scores(evidence, score, {false}, 20000).get_quantile(0.99) ==
         Approx(6.635).margin(test::tolerance(0.4)));
   // One-sided: half of the nulls have no score.
-  CHECK(calc_null_threshold(evidence, score, {true}, 20000, 0.95) ==
+  CHECK(draw_null_scores(evidence, score, {true}, 20000).get_quantile(0.95) ==
         Approx(2.706).margin(test::tolerance(0.15)));
+}
+
+TEST_CASE("The p-value of a score is that of chi squared", "[unit]") {
+  Evidence evidence;
+  evidence.trials = {{0, 0, {0}, {0}}};
+  Score score;
+  score.covariance = Eigen::MatrixXd::Constant(1, 1, 7.0);
+  score.norm = Eigen::VectorXd::Constant(1, 9.0);
+  score.gradient = Eigen::VectorXd::Zero(1);
+  constexpr std::size_t kDraws = 20000;
+  const NullScores nulls = draw_null_scores(evidence, score, {false}, kDraws);
+  // One degree of freedom (Abramowitz and Stegun, table 26.8); 4 sigma of the draws.
+  CHECK(nulls.calc_p_value(3.841) == Approx(0.05).margin(test::tolerance(0.0062)));
+  CHECK(nulls.calc_p_value(6.635) == Approx(0.01).margin(test::tolerance(0.0028)));
+  CHECK(nulls.calc_p_value(0.0) == 1.0);
+  CHECK(nulls.calc_p_value(1e3) == 1.0 / (1 + kDraws));
 }
 
 TEST_CASE("Many hypotheses need a higher threshold than one", "[unit]") {
@@ -132,8 +148,9 @@ TEST_CASE("Many hypotheses need a higher threshold than one", "[unit]") {
   score.norm = Eigen::VectorXd::Ones(kMany);
   score.gradient = Eigen::VectorXd::Zero(kMany);
   // The largest of 50: P(chi2 < x)^50 = 0.95, x = 10.79.
-  CHECK(calc_null_threshold(evidence, score, std::vector<bool>(kMany, false), 4000, 0.95) ==
-        Approx(10.79).margin(test::tolerance(0.6)));
+  CHECK(
+      draw_null_scores(evidence, score, std::vector<bool>(kMany, false), 4000).get_quantile(0.95) ==
+      Approx(10.79).margin(test::tolerance(0.6)));
 }
 
 TEST_CASE("A threshold does not depend on the sizes in which effects are counted", "[unit]") {
@@ -147,7 +164,8 @@ TEST_CASE("A threshold does not depend on the sizes in which effects are counted
       kLarge * kLarge;
   score.norm = score.covariance.diagonal();
   score.gradient = Eigen::VectorXd::Zero(2);
-  const double threshold = calc_null_threshold(evidence, score, {false, false}, 4000, 0.99);
+  const double threshold =
+      draw_null_scores(evidence, score, {false, false}, 4000).get_quantile(0.99);
   // Between that of one and that of two independent ones.
   CHECK(threshold > 6.0);
   CHECK(threshold < 8.6);

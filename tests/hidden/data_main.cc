@@ -7,6 +7,7 @@
 #include <iostream>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -19,11 +20,10 @@ constexpr char kUsage[] =
     "Usage: strut_hidden_data KIT SEEDS DIR [THREADS [ABLATION [REGIME]]]\n\n"
     "Writes the trials of the seeds into DIR/trials and their truths into DIR/truths; those that\n"
     "are there already stay. KIT: car, quarter_car or dyno. SEEDS: FROM:TO, TO not included, or\n"
-    "such ranges and single seeds with commas between. ABLATION: none, no_roughness,\n"
-    "no_deflection, body_only or one_crossing. REGIME: exact, sensors (with small errors within\n"
-    "data sheets) or machine (these, realistic sizes and small misfits). The files depend on "
-    "seeds,\n"
-    "ablation and regime alone.\n\n"
+    "such ranges and single seeds with commas between; nulls:SEEDS keeps those that hide\n"
+    "nothing. ABLATION: none, no_roughness, no_deflection, body_only or one_crossing. REGIME:\n"
+    "exact, sensors (with small errors within data sheets) or machine (these, realistic sizes\n"
+    "and small misfits). The files depend on seeds, ablation and regime alone.\n\n"
     "Example: strut_hidden_data quarter_car 0:39 hidden 2\n";
 
 namespace {
@@ -36,9 +36,15 @@ struct Request {
   Ablation ablation = Ablation::kNone;
 };
 
-/// "3", "1:4" or "1:4,9"
+/// "3", "1:4", "1:4,9" or "nulls:1:4"
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
+  constexpr std::string_view kNulls = "nulls:";
   std::vector<std::uint64_t> seeds;
+  if (text.starts_with(kNulls)) {
+    seeds = parse_seeds(text.substr(kNulls.size()));
+    std::erase_if(seeds, [](std::uint64_t s) { return draw_category(s) != Category::kNone; });
+    return seeds;
+  }
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const std::string part = text.substr(at, end - at);

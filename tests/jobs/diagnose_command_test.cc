@@ -43,6 +43,10 @@ Diagnosis make_named(const CampaignData& data) {
   position.close = 2;
   position.unknown = d.verdict.unknown_share = 0.01;
   d.verdict.positions = {position};
+  SelectRound round;
+  round.p_value = 0.25;
+  round.threshold = 20.0;
+  d.selection.rounds = {round};
   d.where = {"drive", "sprung_position", "0.8 to 1.6 s", "0.5-3 Hz", "suspension_velocity", ""};
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -104,6 +108,8 @@ TEST_CASE("verdict.json has the keys that scripts rely on", "[io]") {
   CHECK(json.get_child("group").size() == 2);
   CHECK(json.get_child("runners_up").front().second.get<double>("probability") == 0.03);
   CHECK(json.get<double>("unknown_share") == 0.01);
+  CHECK(json.get<double>("existence.p_value") == 0.25);
+  CHECK(json.get<double>("existence.threshold") == 20.0);
   CHECK(json.get<std::string>("where.depends_on") == "suspension_velocity");
   CHECK(json.get<std::string>("where.run") == "drive");
   CHECK(json.get<double>("parameters.before.stiffness.value") == 900.0);
