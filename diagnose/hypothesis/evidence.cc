@@ -9,11 +9,14 @@ namespace strut {
 
 Score calc_score(const Evidence& evidence, const std::vector<double>& weights) {
   Eigen::MatrixXd sum = evidence.products.back();
-  for (std::size_t r = 0; r < evidence.run_count(); ++r) sum += weights[r] * evidence.products[r];
+  Score score;
+  score.norm = Eigen::VectorXd::Zero(evidence.norms.front().size());
+  for (std::size_t r = 0; r < evidence.run_count(); ++r) {
+    sum += weights[r] * evidence.products[r];
+    score.norm += weights[r] * evidence.norms[r];
+  }
   const auto shared = static_cast<Eigen::Index>(evidence.shared);
   const Eigen::Index count = sum.rows() - shared - 1;
-  Score score;
-  score.norm = sum.diagonal().segment(shared, count);
   if (shared > 0) {
     Eigen::MatrixXd own = sum.topLeftCorner(shared, shared);
     own.diagonal() *= 1.0 + 1e-12;

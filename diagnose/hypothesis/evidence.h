@@ -33,6 +33,7 @@ struct Evidence {
   /// By run: products of shared unknowns, columns and residual (in this order), with the run's own
   /// unknowns eliminated; last: those of the priors.
   std::vector<Eigen::MatrixXd> products;
+  std::vector<Eigen::VectorXd> norms;  // by run: squares of the columns before any elimination
 
   std::size_t run_count() const { return products.size() - 1; }
 };
@@ -42,7 +43,7 @@ struct Score {
   Eigen::MatrixXd covariance;  // K
   Eigen::VectorXd gradient;    // z
   double chi2 = 0.0;           // of the residual
-  Eigen::VectorXd norm;        // diagonal of K without elimination
+  Eigen::VectorXd norm;        // diagonal of K without any elimination, of a run's own unknowns too
 };
 
 /// The score over the runs, run i weighted by `weights[i]`.

@@ -166,6 +166,7 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
     const auto begin = as_index(whitener_->run_begin()[r]);
     const auto length = as_index(whitener_->run_begin()[r + 1]) - begin;
     Eigen::MatrixXd products = add_products(begin, length, own);
+    evidence.norms.emplace_back(products.diagonal().segment(products.rows() - 1 - count, count));
     for (std::size_t i = 0; i < own.size(); ++i) {
       const Index at = shared + as_index(i);
       products(at, at) += priors(own[i], own[i]);

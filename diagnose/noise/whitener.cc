@@ -253,6 +253,12 @@ std::vector<double> WhitenedModel::align(const std::vector<double>& values) {
   return model_.align(values);
 }
 
+double shrink_excess(double ratio, double count) {
+  constexpr double kSigmas = 2.0;
+  const double beyond = ratio - 1.0, limit = kSigmas * kSigmas * 2.0 / count;
+  return beyond * beyond > limit ? 1.0 + std::max(0.0, beyond - limit / beyond) : 1.0;
+}
+
 void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
                   std::vector<NoiseSpectrum>& spectra) {
   constexpr double kEnough = 200.0;
@@ -271,8 +277,8 @@ void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
   for (std::size_t r = 0; r < runs; ++r) {
     for (std::size_t b = 0; b < bands; ++b) {
       const std::size_t from = counts[r][b] >= kEnough ? r : runs;
-      spectra[r].excess[b] =
-          counts[from][b] > 0.0 ? std::max(1.0, sums[from][b] / counts[from][b]) : 1.0;
+      const double count = counts[from][b];
+      spectra[r].excess[b] = count > 0.0 ? shrink_excess(sums[from][b] / count, count) : 1.0;
     }
   }
 }

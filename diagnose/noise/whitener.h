@@ -113,9 +113,15 @@ class WhitenedModel : public ReadingModel {
   const Whitener& whitener_;
 };
 
+/// Factor on the variance of noise whose mean square over `count` independent readings is `ratio`
+/// times what is expected, at least 1. The deviation from 1, of variance 2 / count, is shrunk
+/// (positive part of James and Stein, 4th Berkeley Symp. 1 (1961), with two standard deviations):
+/// where each chance deviation counted, noise would on average be stated too large.
+double shrink_excess(double ratio, double count);
+
 /// Sets the excess of `spectra`, by run and kNoiseBands, to that of the whitener's spectra times
-/// the mean square of the whitened readings, at least 1. A band with few readings in a run uses
-/// those of all runs.
+/// the mean square of the whitened readings, shrunk. A band with few readings in a run uses those
+/// of all runs.
 void count_excess(const Whitener& whitener, const Eigen::VectorXd& whitened,
                   std::vector<NoiseSpectrum>& spectra);
 

@@ -41,6 +41,7 @@ struct Problem {
       Eigen::MatrixXd all(60, 7);
       all << shared[r], columns[r], residual[r];
       e.products.emplace_back(all.transpose() * all);
+      e.norms.emplace_back(columns[r].colwise().squaredNorm());
     }
     e.products.emplace_back(Eigen::MatrixXd::Zero(7, 7));
     return e;
@@ -104,6 +105,18 @@ TEST_CASE("A hypothesis that free unknowns can imitate has no score", "[unit]") 
   }
   const Score score = calc_score(problem.gather(), {1.0, 1.0});
   CHECK(calc_gain(score, {0}, false).chi2 == 0.0);
+}
+
+TEST_CASE("What a run's own unknowns take over is no hypothesis, and adds nothing to the nulls",
+          "[unit]") {
+  // A constant force beside a sensor's bias: with that eliminated, rounding is left of it.
+  Problem problem;
+  Evidence evidence = problem.gather();
+  for (int r = 0; r < 2; ++r) evidence.norms[r](0) *= 1e7;
+  const Score score = calc_score(evidence, {1.0, 1.0});
+  CHECK(calc_gain(score, {0}, false).chi2 == 0.0);
+  evidence.trials = {{0, 0, {0}, {0}}};
+  CHECK(draw_null_scores(evidence, score, {false}, 10).best.back() == 0.0);
 }
 
 TEST_CASE("The threshold of one hypothesis is a quantile of chi squared", "[unit]") {

@@ -22,6 +22,7 @@ Evidence make_evidence(const std::vector<std::vector<double>>& z_by_run) {
     }
     products(count, count) = 100.0;
     e.products.push_back(products);
+    e.norms.emplace_back(Eigen::VectorXd::Ones(count));
   }
   e.products.emplace_back(Eigen::MatrixXd::Zero(count + 1, count + 1));
   return e;

@@ -114,6 +114,26 @@ TEST_CASE("Noise in excess of a spectrum is counted by run and band", "[unit]") 
   CHECK(spectra[1].excess[band] == Approx(9.0).margin(test::tolerance(1.8)));
 }
 
+TEST_CASE("What chance adds to few readings is hardly an excess", "[unit]") {
+  // Standard deviation 0.1: three of it are kept but for 4/3, one is chance, 80 are all kept.
+  CHECK(shrink_excess(1.3, 200.0) == Approx(1.3 - 0.4 / 3.0));
+  CHECK(shrink_excess(1.1, 200.0) == 1.0);
+  CHECK(shrink_excess(0.2, 200.0) == 1.0);
+  CHECK(shrink_excess(9.0, 200.0) == Approx(9.0).margin(0.01));
+  // Mean squares of 20 standard normal numbers.
+  constexpr std::uint64_t kSets = 4000, kReadings = 20;
+  double sum = 0.0;
+  for (std::uint64_t set = 0; set < kSets; ++set) {
+    double square = 0.0;
+    for (std::uint64_t i = 0; i < kReadings; ++i) {
+      const double z = test::calc_test_normal(6, set, i);
+      square += z * z;
+    }
+    sum += shrink_excess(square / kReadings, static_cast<double>(kReadings));
+  }
+  CHECK(sum / kSets == Approx(1.0).margin(0.02));
+}
+
 TEST_CASE("Noise below its spectrum is no negative excess", "[unit]") {
   const ConstantModel model(1);
   std::vector<NoiseSpectrum> spectra = {make_spectrum()};
