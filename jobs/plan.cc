@@ -62,13 +62,16 @@ void print_text(const Plan& plan, const SweepEstimate& estimate) {
   print_strata(plan);
   std::cout << fmt::format(
       "order     {}\n"
+      "runs      {}\n"
       "shards    {} of up to {} cases\n"
       "time      about {} on {} cores (an estimate, from {} cases)\n"
       "size      about {} (an estimate, before compression)\n"
       "plan      {}\n",
-      describe_order(plan), plan.shard_count(), plan.request().shard_cases,
-      format_duration(estimate.seconds), estimate.cores, estimate.measured,
-      format_bytes(estimate.bytes), plan.hash());
+      describe_order(plan),
+      ends_at_snapshot(plan.request()) ? "each until its snapshot; nothing after it is recorded"
+                                       : "each for its duration",
+      plan.shard_count(), plan.request().shard_cases, format_duration(estimate.seconds),
+      estimate.cores, estimate.measured, format_bytes(estimate.bytes), plan.hash());
 }
 
 void print_json(const Plan& plan, const SweepEstimate& estimate,
@@ -85,6 +88,7 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
                                 {"by", plan.request().sample.by},
                                 {"layers", layers},
                                 {"shuffled", plan.request().shuffle},
+                                {"until_snapshot", ends_at_snapshot(plan.request())},
                                 {"shards", plan.shard_count()},
                                 {"shard_cases", plan.request().shard_cases},
                                 {"estimated_seconds", estimate.seconds},

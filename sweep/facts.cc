@@ -68,6 +68,7 @@ void add_record(const SweepRequest& request, Facts& facts) {
     facts.emplace_back("record.snapshot.offset", format_number(request.snapshot.offset));
     facts.emplace_back("record.snapshot.channels", list_channels(request.snapshot.channels));
   }
+  if (ends_at_snapshot(request)) facts.emplace_back("record.until", "snapshot");
   if (request.history.rate > 0.0) {
     facts.emplace_back("record.history.rate", format_number(request.history.rate));
     facts.emplace_back("record.history.channels", list_channels(request.history.channels));

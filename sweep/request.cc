@@ -218,11 +218,16 @@ double find_longest_step(const SweepRequest& request) {
   return calc_longest_step(stiffest);
 }
 
+bool ends_at_snapshot(const SweepRequest& request) {
+  return request.snapshot.on && !(request.history.rate > 0.0);
+}
+
 SamplePlan make_sample_plan(const SweepRequest& request) {
   SamplePlan plan;
   plan.duration = request.base.maneuver.duration;
   plan.interval = request.history.rate > 0.0 ? 1.0 / request.history.rate : 0.0;
   plan.snapshot = request.snapshot.on;
+  plan.until_snapshot = ends_at_snapshot(request);
   plan.channel_count = CarChannel::kCount;
   return plan;
 }

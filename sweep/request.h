@@ -53,6 +53,9 @@ SweepRequest read_request(const std::filesystem::path& path);
 /// step is halved to it.
 double find_longest_step(const SweepRequest& request);
 
+/// Whether each run ends with its snapshot: nothing after it is recorded.
+bool ends_at_snapshot(const SweepRequest& request);
+
 /// Samples that the simulations of this request record.
 SamplePlan make_sample_plan(const SweepRequest& request);
 

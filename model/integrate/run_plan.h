@@ -26,6 +26,7 @@ struct SamplePlan {
   double duration = 3.0;  // s
   double interval = 0.0;  // s between history samples from t = 0; 0: no history
   bool snapshot = true;
+  bool until_snapshot = false;  // whether a run without history ends with its snapshot
   int channel_count = 0;
   int parts = 1;  // samples per interval; every parts-th equals that of parts = 1 bit for bit
   std::vector<int> recorded = {};  // channels of the history, in this order; empty: all

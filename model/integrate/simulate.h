@@ -274,12 +274,16 @@ class Simulation {
           get_mask_lane(stalled, lane) ? RunStatus::kStalled : system_.get_failure(lane));
       results_.failure_time[at] = get_lane(time_, lane);
     }
-    // A retired lane remains at its last valid state.
-    end_ = select(failed, time_, end_);
-    h_ = select(failed, T(0.0), h_);
+    retire(failed);
+  }
+
+  /// Ends lanes: each remains at the state before this step, its last valid one.
+  void retire(Mask lanes) {
+    end_ = select(lanes, time_, end_);
+    h_ = select(lanes, T(0.0), h_);
     for (int i = 0; i < system_.size(); ++i) {
-      x1()[i] = select(failed, x()[i], x1()[i]);
-      f1()[i] = select(failed, T(0.0), f1()[i]);
+      x1()[i] = select(lanes, x()[i], x1()[i]);
+      f1()[i] = select(lanes, T(0.0), f1()[i]);
     }
   }
 
@@ -310,6 +314,7 @@ class Simulation {
       store_channels(results_.snapshot.data(), lane);
     }
     triggered_ = select(hit, T(1.0), triggered_);
+    if (plan_.until_snapshot && results_.sample_count == 0) retire(hit);
   }
 
   void store_channels(double* row, int lane) const {

@@ -225,6 +225,7 @@ LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options, Sa
       break;
     }
     if (flag == CV_ROOT_RETURN) pass_roots(t, state, problem, cvode, results);
+    if (plan.until_snapshot && results.sample_count == 0 && results.has_snapshot()) break;
     record_samples(system, t, state, recording);
   }
   results.derivative_count = problem.derivatives;

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "model/sensor/read_out.h"
 #include "tests/support/test_car.h"
 #include "tests/support/test_sweep.h"
 
@@ -130,6 +131,58 @@ TEST_CASE("A car that never meets the bump has the status no_event", "[unit]") {
   CHECK(rows.status[1] == as_int(RunStatus::kNoEvent));
   CHECK(std::isnan(rows.event_time[1]));
   CHECK(rows.failure_time[1] == 3.0);
+}
+
+TEST_CASE("A run that ends at its snapshot has the same bits as one to its duration", "[unit]") {
+  SweepText text;
+  // The last of each axis meets the bump later, so lanes end one by one.
+  text.grid =
+      "speed = { from = 12, to = 20, step = 2 }\n"
+      "front_damping = { from = 1500, to = 2000, step = 500 }\n";
+  text.sample = "strata = 2\n";
+  const PlannedSweep brief(text);
+  text.history = "history = { rate = 1, channels = [\"time\"] }";
+  const PlannedSweep whole(text);
+  REQUIRE(ends_at_snapshot(brief.plan().request()));
+  REQUIRE_FALSE(ends_at_snapshot(whole.plan().request()));
+  const std::vector<std::int64_t> ids = list_ids(brief.plan().case_count());
+  const ShardRows ended = simulate(brief.plan(), ids), run_on = simulate(whole.plan(), ids);
+  CHECK(ended.snapshot == run_on.snapshot);
+  CHECK(ended.event_time == run_on.event_time);
+  CHECK(ended.status == run_on.status);
+
+  SECTION("in less than half the work") {
+    const PreparedCase c = test::prepare(brief.plan().make_case(0));
+    SamplePlan plan;
+    const IntegrateOptions options;
+    const LaneResults all = list_kernels().front().run_scalar(c, options, plan);
+    plan.until_snapshot = true;
+    const LaneResults part = list_kernels().front().run_scalar(c, options, plan);
+    CHECK(part.get_event_time() == all.get_event_time());
+    CHECK(2 * part.derivative_count < all.derivative_count);
+    const LaneResults reference = run_cvode(c, {}, plan);
+    plan.until_snapshot = false;
+    const LaneResults reference_all = run_cvode(c, {}, plan);
+    CHECK(reference.snapshot == reference_all.snapshot);
+    CHECK(2 * reference.derivative_count < reference_all.derivative_count);
+  }
+}
+
+TEST_CASE("A sensor with memory reads the snapshot of a run that goes on", "[unit]") {
+  SamplePlan requested;
+  requested.until_snapshot = true;
+  PreparedCase c = test::prepare(PlannedSweep().plan().make_case(0));
+  LaneResults read[2];
+  for (const bool until : {false, true}) {
+    requested.until_snapshot = until;
+    const EffectSettings delayed = {{"sensor_delay", "body_acceleration_z", {0.01}}};
+    const ReadOut out(list_car_channels(), {&delayed});
+    read[until ? 1 : 0] = simulate_readings(out, requested, [&](const SamplePlan& plan) {
+      return list_kernels().front().run_scalar(c, {}, plan);
+    });
+  }
+  CHECK(read[0].get_snapshot(CarChannel::kBodyAccelerationZ) ==
+        read[1].get_snapshot(CarChannel::kBodyAccelerationZ));
 }
 
 TEST_CASE("Histories hold every sample of their channel", "[unit]") {
