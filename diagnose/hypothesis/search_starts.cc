@@ -123,6 +123,21 @@ const Rules& list_rules() {
                       return {{{"rate", 0.1 * m.damping}}};
                     }},
                    {EffectName::kPayload, start_payload},
+                   // Errors of road and speed move all readings in time: a car that is 1 % faster
+                   // is elsewhere after a second, which no longer is the tangent that runs whose
+                   // own speeds are free can take over.
+                   {EffectName::kSpeedError,
+                    [](Motion) -> Starts {
+                      return {{{"gain", 5e-4}}};
+                    }},
+                   {EffectName::kBumpHeight,
+                    [](Motion) -> Starts {
+                      return {{{"gain", 0.01}}};
+                    }},
+                   {EffectName::kBumpLength,
+                    [](Motion) -> Starts {
+                      return {{{"gain", 5e-3}}};
+                    }},
                    {EffectName::kWheelRunout, start_runout},
                    {EffectName::kSensorGain,
                     [](Motion) -> Starts {
