@@ -89,7 +89,7 @@ void add_file(const std::string& prefix, const std::filesystem::path& path, Fact
 }  // namespace
 
 Facts list_facts(const SweepRequest& request) {
-  Facts facts = {{"results_version", std::to_string(kResultsVersion)}};
+  Facts facts = {{kResultsVersionName, std::to_string(request.results_version)}};
   add_grid(request, facts);
   add_sample(request, facts);
   add_integrate(request.integrate, facts);

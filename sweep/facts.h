@@ -9,11 +9,11 @@
 
 namespace strut {
 
-/// Increment it with every change after which the same request yields different numbers.
-inline constexpr int kResultsVersion = 1;
-
 /// The (name, value) pairs that the plan's hash covers, in order.
 using Facts = NamedTexts;
+
+/// Name of the fact that SweepRequest::results_version is.
+inline constexpr char kResultsVersionName[] = "results_version";
 
 /// Lists the request with its defaults resolved, every value of the vehicle and maneuver files, and
 /// the SHA-256 of each file that those name. File names, comments and the order of keys do not

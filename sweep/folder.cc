@@ -52,11 +52,21 @@ void check_free(const SweepFolder& folder) {
   }
 }
 
+/// The request by the rules of the version that made the plan.
+SweepRequest by_rules_of(const PlanRecord& record, SweepRequest request) {
+  for (int version = 1; version <= kResultsVersion; ++version) {
+    if (find_text(record.facts, kResultsVersionName) == std::to_string(version)) {
+      request.results_version = version;
+    }
+  }
+  return request;
+}
+
 void check_same(const SweepFolder& folder, const Plan& plan) {
   const PlanRecord record = read_plan(folder.plan());
-  if (record.extent.plan_hash == plan.hash()) {
-    open_sweep_folder(folder);  // its own files may have been changed
-    if (!is_sealed(folder.plan())) write_plan(folder.plan(), plan);
+  if (record.extent.plan_hash == calc_hash(list_facts(by_rules_of(record, plan.request())))) {
+    const Plan found = open_sweep_folder(folder);  // its own files may have been changed
+    if (!is_sealed(folder.plan())) write_plan(folder.plan(), found);
     return;
   }
   throw InputError(fmt::format(
@@ -114,7 +124,7 @@ Plan open_sweep_folder(const SweepFolder& folder) {
         ": not a sweep folder: no plan.h5; `strut plan SWEEP.toml -o DIR` creates one");
   }
   const PlanRecord record = read_plan(folder.plan());
-  Plan plan(read_request(folder.request()));
+  Plan plan(by_rules_of(record, read_request(folder.request())));
   if (record.extent.plan_hash != plan.hash()) {
     throw InputError(
         fmt::format("{}: does not match its plan; allowed: the planned request, or another folder. "

@@ -219,7 +219,8 @@ double find_longest_step(const SweepRequest& request) {
 }
 
 bool ends_at_snapshot(const SweepRequest& request) {
-  return request.snapshot.on && !(request.history.rate > 0.0);
+  constexpr int kFirst = 2;
+  return request.results_version >= kFirst && request.snapshot.on && !(request.history.rate > 0.0);
 }
 
 SamplePlan make_sample_plan(const SweepRequest& request) {

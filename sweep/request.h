@@ -33,6 +33,11 @@ struct HistoryRequest {
   std::vector<int> channels;
 };
 
+/// Increment it with every change after which the same request yields different numbers. A folder
+/// that was planned by an earlier version is finished by that one's rules:
+/// 1: starts by KINSOL; every run goes on to its duration.
+inline constexpr int kResultsVersion = 2;
+
 struct SweepRequest {
   std::filesystem::path path, vehicle, maneuver;  // files that it was read from
   Case base;
@@ -43,6 +48,7 @@ struct SweepRequest {
   HistoryRequest history;
   int shard_cases = 512;
   bool shuffle = true;  // run order, see case_order.h
+  int results_version = kResultsVersion;
 };
 
 /// Reads a sweep file; docs/sweeps.md lists every key. Throws InputError with file, line, key,

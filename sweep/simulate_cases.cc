@@ -70,7 +70,11 @@ std::size_t CaseSimulator::batch_size() const {
 
 bool CaseSimulator::simulate(std::span<const std::int64_t> cases, ShardRows& rows,
                              std::size_t first_row, const std::atomic<bool>& stop) {
-  const std::vector<Ready> ready = prepare_all(cases, rows, first_row);
+  std::vector<Ready> ready;
+  {
+    const Timer timer(seconds_.prepare);
+    ready = prepare_all(cases, rows, first_row);
+  }
   for (std::size_t begin = 0; begin < ready.size();) {
     if (stop) return false;
     begin += run_group(std::span(ready).subspan(begin), rows);
@@ -86,16 +90,16 @@ bool CaseSimulator::simulate(std::span<const std::int64_t> cases, ShardRows& row
 
 void CaseSimulator::retry(std::int64_t case_id, int attempt, ShardRows& rows, std::size_t row) {
   const Timer timer(seconds_.retry);
-  start_row(case_id, rows, row);
+  const std::vector<Ready> ready = prepare_all({&case_id, 1}, rows, row);
   rows.attempt[row] = attempt;
-  const std::optional<PreparedCase> prepared = prepare(case_id, rows, row);
-  if (!prepared) return;
+  if (ready.empty()) return;
+  const PreparedCase& prepared = ready.front().prepared;
   const SolverOptions& integrate = plan_.request().integrate;
   const LaneResults results =
-      simulate_readings(make_read_out({&*prepared}), samples_, [&](const SamplePlan& samples) {
+      simulate_readings(make_read_out({&prepared}), samples_, [&](const SamplePlan& samples) {
         return integrate.solver == Solver::kCvode
-                   ? run_cvode(*prepared, integrate.reference, samples)
-                   : kernel_.run_scalar(*prepared, make_retry_options(integrate.options, attempt),
+                   ? run_cvode(prepared, integrate.reference, samples)
+                   : kernel_.run_scalar(prepared, make_retry_options(integrate.options, attempt),
                                         samples);
       });
   record(results, 0, rows, row);
@@ -120,10 +124,10 @@ void CaseSimulator::start_row(std::int64_t case_id, ShardRows& rows, std::size_t
   }
 }
 
-std::optional<PreparedCase> CaseSimulator::prepare(std::int64_t case_id, ShardRows& rows,
-                                                   std::size_t row) {
+std::optional<PreparedCase> CaseSimulator::assemble(std::int64_t case_id, ShardRows& rows,
+                                                    std::size_t row) {
   try {
-    return preparer_.prepare(plan_.make_case(case_id), plan_.request().snapshot.offset);
+    return preparer_.assemble(plan_.make_case(case_id), plan_.request().snapshot.offset);
   } catch (const ModelError& e) {
     const bool is_road = e.fault() == ModelFault::kRoad;
     fail(rows, row, is_road ? RunStatus::kImpossible : RunStatus::kNoEquilibrium, 0.0, e.what());
@@ -134,15 +138,35 @@ std::optional<PreparedCase> CaseSimulator::prepare(std::int64_t case_id, ShardRo
 std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std::int64_t> cases,
                                                              ShardRows& rows,
                                                              std::size_t first_row) {
-  const Timer timer(seconds_.prepare);
   std::vector<Ready> ready;
   ready.reserve(cases.size());
   for (std::size_t i = 0; i < cases.size(); ++i) {
     start_row(cases[i], rows, first_row + i);
-    std::optional<PreparedCase> prepared = prepare(cases[i], rows, first_row + i);
-    if (prepared) ready.push_back({std::move(*prepared), first_row + i});
+    std::optional<PreparedCase> assembled = assemble(cases[i], rows, first_row + i);
+    if (assembled) ready.push_back({std::move(*assembled), first_row + i});
   }
-  return ready;
+  return keep_started(std::move(ready), rows);
+}
+
+/// Those that have an equilibrium to start from; the others fail.
+std::vector<CaseSimulator::Ready> CaseSimulator::keep_started(std::vector<Ready> ready,
+                                                              ShardRows& rows) const {
+  std::vector<PreparedCase*> cases;
+  cases.reserve(ready.size());
+  for (Ready& r : ready) cases.push_back(&r.prepared);
+  const bool in_lanes = plan_.request().results_version > 1;
+  const std::vector<std::string> reasons =
+      find_starts(cases, in_lanes ? StartMethod::kLanes : StartMethod::kKinsol);
+  std::vector<Ready> started;
+  started.reserve(ready.size());
+  for (std::size_t i = 0; i < ready.size(); ++i) {
+    if (reasons[i].empty()) {
+      started.push_back(std::move(ready[i]));
+    } else {
+      fail(rows, ready[i].row, RunStatus::kNoEquilibrium, 0.0, reasons[i]);
+    }
+  }
+  return started;
 }
 
 /// Runs the first of `ready` together with as many of its successors as may share lanes with it;

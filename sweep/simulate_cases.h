@@ -58,9 +58,10 @@ class CaseSimulator {
   };
 
   void start_row(std::int64_t case_id, ShardRows& rows, std::size_t row) const;
-  std::optional<PreparedCase> prepare(std::int64_t case_id, ShardRows& rows, std::size_t row);
+  std::optional<PreparedCase> assemble(std::int64_t case_id, ShardRows& rows, std::size_t row);
   std::vector<Ready> prepare_all(std::span<const std::int64_t> cases, ShardRows& rows,
                                  std::size_t first_row);
+  std::vector<Ready> keep_started(std::vector<Ready> ready, ShardRows& rows) const;
   std::size_t run_group(std::span<const Ready> ready, ShardRows& rows);
   void record(const LaneResults& results, int lane, ShardRows& rows, std::size_t row) const;
 

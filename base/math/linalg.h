@@ -60,4 +60,39 @@ void solve_ldlt(SymmetricMatrix6<T>& a, std::array<T, 6>& b) {
   }
 }
 
+/// Rows of an N x N matrix.
+template <class T, int N>
+using SquareMatrix = std::array<std::array<T, N>, N>;
+
+/// Solves a x = b by elimination with the largest pivot of each column, chosen lane by lane; x
+/// replaces b, factors replace a. Not finite where a is singular.
+template <class T, std::size_t N>
+void solve_pivoted(std::array<std::array<T, N>, N>& a, std::array<T, N>& b) {
+  for (std::size_t k = 0; k < N; ++k) {
+    for (std::size_t row = k + 1; row < N; ++row) {
+      const auto larger = abs(a[row][k]) > abs(a[k][k]);
+      if (!any(larger)) continue;
+      const auto swap_where = [&](T& x, T& y) {
+        const T kept = x;
+        x = select(larger, y, x);
+        y = select(larger, kept, y);
+      };
+      for (std::size_t column = k; column < N; ++column) swap_where(a[k][column], a[row][column]);
+      swap_where(b[k], b[row]);
+    }
+    const T inverse = T(1.0) / a[k][k];
+    for (std::size_t row = k + 1; row < N; ++row) {
+      const T factor = a[row][k] * inverse;
+      for (std::size_t column = k + 1; column < N; ++column) {
+        a[row][column] -= factor * a[k][column];
+      }
+      b[row] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = N; k-- > 0;) {
+    for (std::size_t column = k + 1; column < N; ++column) b[k] -= a[k][column] * b[column];
+    b[k] = b[k] / a[k][k];
+  }
+}
+
 }  // namespace strut

@@ -223,8 +223,8 @@ JointSamples close_over_travel(const CornerTopology& topology,
 }
 
 template <CornerTree kTree>
-ClosurePredictor fit_predictor(const JointSamples& joints) {
-  ClosurePredictor predictor;
+ClosurePredictor<double> fit_predictor(const JointSamples& joints) {
+  ClosurePredictor<double> predictor;
   predictor.half_travel = kHalfTravel;
   for (int d = 0; d < kTree.dependent_count(); ++d) {
     std::vector<double> values;

@@ -15,7 +15,7 @@ struct BuiltCorner {
   CornerTopology topology;
   CornerGeometry<double> geometry{};
   CornerInertia<double> inertia{};
-  ClosurePredictor predictor;
+  ClosurePredictor<double> predictor;
 };
 
 /// Key of an axle's table in a vehicle file, for messages.

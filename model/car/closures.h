@@ -12,19 +12,21 @@
 
 namespace strut {
 
-/// One Newton iteration from the predictor.
-template <class T>
+/// One Newton iteration from the predictor: the layout's (C = double, the same in all lanes), or of
+/// one car per lane (C = T).
+template <class T, class C = double>
 struct NewtonClosure {
   const VehicleLayout* layout;
   const VehicleParameters<T>* numbers;
+  const VehiclePredictors<C>* predictors = &layout->predictor;
 
   T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
     const CornerTopology& topology = layout->corner[corner];
     const auto close = topology.kind == SuspensionKind::kMacPherson
-                           ? &close_corner<kMacPhersonTree, T>
-                           : &close_corner<kMultilinkTree, T>;
-    return close(topology, layout->predictor[corner], numbers->geometry[corner],
-                 numbers->inertia[corner], q, motion);
+                           ? &close_corner<kMacPhersonTree, T, C>
+                           : &close_corner<kMultilinkTree, T, C>;
+    return close(topology, (*predictors)[static_cast<std::size_t>(corner)],
+                 numbers->geometry[corner], numbers->inertia[corner], q, motion);
   }
   void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
     (*this)(corner, q, motion);

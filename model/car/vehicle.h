@@ -32,10 +32,13 @@ struct VehicleParameters {
   T gravity;    // m/s^2
 };
 
+template <class C>
+using VehiclePredictors = std::array<ClosurePredictor<C>, kCorners>;
+
 /// The properties common to all simulations of a batch.
 struct VehicleLayout {
   std::array<CornerTopology, kCorners> corner;
-  std::array<ClosurePredictor, kCorners> predictor;
+  VehiclePredictors<double> predictor;
   ContactKind contact = ContactKind::kEnvelope;
   bool relaxation = false;
   Pac2002Parts tire_parts;

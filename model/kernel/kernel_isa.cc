@@ -17,13 +17,24 @@ using strut::RigSpec;
 using strut::SamplePlan;
 using strut::StepOptions;
 
+/// `count` cases, the last of them repeated to fill all lanes.
+template <class Pointer>
+std::array<Pointer, NativeLanes::kWidth> pad(const Pointer* cases, int count) {
+  std::array<Pointer, NativeLanes::kWidth> padded;
+  for (int lane = 0; lane < NativeLanes::kWidth; ++lane) {
+    padded[static_cast<std::size_t>(lane)] = cases[std::min(lane, count - 1)];
+  }
+  return padded;
+}
+
+unsigned find_starts(PreparedCase* const* cases, int count) {
+  const unsigned found = strut::find_starts<NativeLanes>(pad(cases, count).data());
+  return found & ((1U << static_cast<unsigned>(count)) - 1U);
+}
+
 LaneResults run_lanes(const PreparedCase* const* cases, int count, const IntegrateOptions& options,
                       const SamplePlan& plan) {
-  const PreparedCase* padded[NativeLanes::kWidth];
-  for (int lane = 0; lane < NativeLanes::kWidth; ++lane) {
-    padded[lane] = cases[lane < count ? lane : count - 1];
-  }
-  return strut::run_cases<NativeLanes>(padded, options, plan);
+  return strut::run_cases<NativeLanes>(pad(cases, count).data(), options, plan);
 }
 
 LaneResults run_scalar(const PreparedCase& c, const IntegrateOptions& options,
@@ -34,11 +45,7 @@ LaneResults run_scalar(const PreparedCase& c, const IntegrateOptions& options,
 
 LaneResults run_rigs(const RigSpec* const* specs, int count, const std::vector<InputSignal>& inputs,
                      const StepOptions& options, const SamplePlan& plan) {
-  const RigSpec* padded[NativeLanes::kWidth];
-  for (int lane = 0; lane < NativeLanes::kWidth; ++lane) {
-    padded[lane] = specs[lane < count ? lane : count - 1];
-  }
-  return strut::simulate_rigs<NativeLanes>(padded, inputs, options, plan);
+  return strut::simulate_rigs<NativeLanes>(pad(specs, count).data(), inputs, options, plan);
 }
 
 /// Twelve independent chains hide the latency of two multiply-add units of four cycles each; with
@@ -67,6 +74,6 @@ double run_peak_loop(long rounds, double& sink) {
 extern "C" strut::Kernel STRUT_ISA_NAME(strut_kernel_)();
 
 extern "C" strut::Kernel STRUT_ISA_NAME(strut_kernel_)() {
-  return {STRUT_ISA_STRING, NativeLanes::kWidth, &run_lanes,
+  return {STRUT_ISA_STRING, NativeLanes::kWidth, &find_starts,  &run_lanes,
           &run_scalar,      &run_rigs,           &run_peak_loop};
 }

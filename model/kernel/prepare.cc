@@ -65,12 +65,15 @@ void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
   }
 }
 
-/// The start state of the maneuver: steady rolling on flat road, with the drive torque or without.
-State<double> trim(const Case& c, const Mechanism& mechanism, Vehicle<double> vehicle) {
+/// By KINSOL.
+void find_start_alone(PreparedCase& c) {
+  Vehicle<double> vehicle = c.vehicle;
   vehicle.layout.on_bump.fill(false);
-  if (c.maneuver.trim == TrimKind::kStatic) vehicle.numbers.drive_torque.fill(0.0);
-  const double speed = c.maneuver.speed + c.maneuver.lead_speed;
-  return solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, speed).state;
+  vehicle.road = Road<double>{};
+  if (!c.starts_driven) vehicle.numbers.drive_torque.fill(0.0);
+  const Mechanism& mechanism = *c.mechanism;
+  c.start =
+      solve_rolling(vehicle, mechanism.tables, mechanism.car.center_height, c.start_speed).state;
 }
 
 }  // namespace
@@ -80,7 +83,13 @@ bool shares_mechanism(const Case& a, const Case& b) {
   return x.vehicle == y.vehicle && x.maneuver == y.maneuver;
 }
 
-PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
+PreparedCase CasePreparer::prepare(const Case& c, double snapshot_offset) {
+  PreparedCase prepared = assemble(c, snapshot_offset);
+  find_start(prepared);
+  return prepared;
+}
+
+PreparedCase CasePreparer::assemble(const Case& given, double snapshot_offset) {
   validate(given.vehicle.effects, get_car_info());
   validate(given.vehicle.force_maps, get_car_info());
   const Case c = apply_case_effects(given);
@@ -105,7 +114,9 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
   prepared.sensors = list_sensor_settings(c.vehicle.effects);
 
   check_springs(c.vehicle, car);
-  prepared.start = trim(c, *mechanism_, vehicle);
+  prepared.start.fill(std::numeric_limits<double>::quiet_NaN());
+  prepared.start_speed = c.maneuver.speed + c.maneuver.lead_speed;
+  prepared.starts_driven = c.maneuver.trim != TrimKind::kStatic;
   const Surface* surface = &mechanism_->surface;
   vehicle.road = make_road<double>(&surface, &prepared.bump_center);
   prepared.rough = c.maneuver.rough;
@@ -114,6 +125,37 @@ PreparedCase CasePreparer::prepare(const Case& given, double snapshot_offset) {
     vehicle.road.rough[side] = make_rough_tracks<double>(&track);
   }
   return prepared;
+}
+
+void find_start(PreparedCase& c) {
+  PreparedCase* const cases[] = {&c};
+  if (list_kernels().front().find_starts(cases, 1) == 0) find_start_alone(c);
+}
+
+std::vector<std::string> find_starts(const std::vector<PreparedCase*>& cases, StartMethod method) {
+  const Kernel& kernel = list_kernels().front();
+  const auto width = static_cast<std::size_t>(method == StartMethod::kLanes ? kernel.lanes : 1);
+  std::vector<std::string> reasons(cases.size());
+  for (std::size_t begin = 0, count = 0; begin < cases.size(); begin += count) {
+    count = 1;
+    while (count < width && begin + count < cases.size() &&
+           may_share_lanes(*cases[begin], *cases[begin + count], Closure::kTable)) {
+      ++count;
+    }
+    unsigned found = 0;
+    if (method == StartMethod::kLanes) {
+      found = kernel.find_starts(cases.data() + begin, static_cast<int>(count));
+    }
+    for (std::size_t i = begin; i < begin + count; ++i, found >>= 1U) {
+      if ((found & 1U) != 0) continue;
+      try {
+        find_start_alone(*cases[i]);
+      } catch (const ModelError& e) {
+        reasons[i] = e.what();
+      }
+    }
+  }
+  return reasons;
 }
 
 bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure) {
@@ -127,7 +169,9 @@ bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closu
       va.suspension[kRear].damper_curve == vb.suspension[kRear].damper_curve &&
       va.suspension[kFront].kind == vb.suspension[kFront].kind &&
       va.suspension[kRear].kind == vb.suspension[kRear].kind;
-  return same_layout && closure == Closure::kTable;
+  // Lanes eliminate the loops of a corner in one order.
+  return same_layout &&
+         (closure == Closure::kTable || a.vehicle.layout.corner == b.vehicle.layout.corner);
 }
 
 }  // namespace strut

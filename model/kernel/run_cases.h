@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/car/trim_lanes.h"
 #include "model/kernel/simulation.h"
 
 namespace strut {
@@ -26,6 +27,31 @@ VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
       packed.degree[corner] = calc_larger(packed.degree[corner], tables.degree[corner]);
     }
     packed.corner[corner] = pack_lanes<CornerCoefficients, T>(lanes.data());
+  }
+  return packed;
+}
+
+/// Whether the loops of all lanes start from the same guess.
+template <class T>
+bool have_equal_predictors(const PreparedCase* const* cases) {
+  return std::all_of(cases, cases + kLaneCount<T>,
+                     [&](const PreparedCase* c) { return c->mechanism == cases[0]->mechanism; });
+}
+
+/// Predictors of W cars.
+template <class T>
+VehiclePredictors<T> pack_predictors(const PreparedCase* const* cases) {
+  VehiclePredictors<T> packed;
+  for (std::size_t corner = 0; corner < packed.size(); ++corner) {
+    packed[corner].half_travel = cases[0]->vehicle.layout.predictor[corner].half_travel;
+    for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+      const auto& own = cases[lane]->vehicle.layout.predictor[corner].coefficient;
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        for (std::size_t d = 0; d < own[i].size(); ++d) {
+          set_lane(packed[corner].coefficient[i][d], lane, own[i][d]);
+        }
+      }
+    }
   }
   return packed;
 }
@@ -72,6 +98,44 @@ Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   return vehicle;
 }
 
+/// Finds the starts of kLaneCount<T> cases that may share lanes; bit i of the result: of case i.
+template <class T>
+unsigned find_starts(PreparedCase* const* cases) {
+  Vehicle<T> vehicle = pack_vehicle<T>(cases);
+  vehicle.layout.on_bump.fill(false);
+  vehicle.road = Road<T>{};
+  T height(0.0), speed(0.0);
+  bool equal_tables = true;
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+    const PreparedCase& c = *cases[lane];
+    set_lane(height, lane, c.mechanism->car.center_height);
+    set_lane(speed, lane, c.start_speed);
+    for (T& torque : vehicle.numbers.drive_torque) {
+      if (!c.starts_driven) set_lane(torque, lane, 0.0);
+    }
+    equal_tables = equal_tables && have_equal_tables(*cases[0]->mechanism, *c.mechanism);
+  }
+  const auto solve = [&](const auto& closure) {
+    return LaneTrimmer(TrimProblem{&vehicle, closure, height, speed}).solve();
+  };
+  LaneTrim<T> trim;
+  if (equal_tables) {
+    trim = solve(TableClosure<T, double>{&cases[0]->mechanism->tables});
+  } else {
+    const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
+    trim = solve(TableClosure<T, T>{tables.get()});
+  }
+  unsigned found = 0;
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+    if (!get_mask_lane(trim.is_found(), lane)) continue;
+    found |= 1U << static_cast<unsigned>(lane);
+    for (std::size_t i = 0; i < trim.state.size(); ++i) {
+      cases[lane]->start[i] = get_lane(trim.state[i], lane);
+    }
+  }
+  return found;
+}
+
 template <class T, class Closure>
 LaneResults run_system(const Vehicle<T>& vehicle, const Closure& closure, const T& trigger,
                        const std::array<T, StateIndex::kCount>& start,
@@ -102,9 +166,15 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
   SamplePlan all = plan;
   all.duration = cases[0]->duration;
   all.channel_count = CarChannel::kCount;
-  if (options.closure == Closure::kNewton) {
+  if (options.closure == Closure::kNewton && have_equal_predictors<T>(cases)) {
     return run_system<T>(vehicle, NewtonClosure<T>{&vehicle.layout, &vehicle.numbers}, trigger,
                          start, options, all);
+  }
+  if (options.closure == Closure::kNewton) {
+    const auto predictors = std::make_unique<VehiclePredictors<T>>(pack_predictors<T>(cases));
+    return run_system<T>(vehicle,
+                         NewtonClosure<T, T>{&vehicle.layout, &vehicle.numbers, predictors.get()},
+                         trigger, start, options, all);
   }
   if (equal_tables) {
     return run_system<T>(vehicle, TableClosure<T, double>{&cases[0]->mechanism->tables}, trigger,

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "model/car/assemble.h"
@@ -40,10 +41,12 @@ inline bool have_equal_tables(const Mechanism& a, const Mechanism& b) {
 struct PreparedCase {
   std::shared_ptr<const Mechanism> mechanism;
   Vehicle<double> vehicle;
-  State<double> start;
-  double bump_center = 0.0;  // m, world x
-  double trigger_x = 0.0;    // m, world x of the snapshot's line
-  double duration = 0.0;     // s
+  State<double> start;        // NaN until find_starts
+  double start_speed = 0.0;   // m/s
+  bool starts_driven = true;  // with the drive torque
+  double bump_center = 0.0;   // m, world x
+  double trigger_x = 0.0;     // m, world x of the snapshot's line
+  double duration = 0.0;      // s
   double longest_step = std::numeric_limits<double>::infinity();  // s, that its effects need
   EffectSettings sensors{};  // effects of channels, for ReadOut; the simulation ignores them
   CornerForceMaps force_maps{};
@@ -55,6 +58,8 @@ class CasePreparer {
  public:
   /// `snapshot_offset` [m] moves the snapshot's line from the bump's center. Throws ModelError.
   PreparedCase prepare(const Case& c, double snapshot_offset = 0.0);
+  /// All of prepare but the start. Throws ModelError.
+  PreparedCase assemble(const Case& c, double snapshot_offset = 0.0);
 
  private:
   std::shared_ptr<const Mechanism> mechanism_;
@@ -64,6 +69,9 @@ class CasePreparer {
 struct Kernel {
   const char* isa;  // "baseline", "avx2", "avx512"
   int lanes;        // W
+  /// Finds the starts of up to W cases that may share lanes; bit i of the result is set where that
+  /// of case i was found.
+  unsigned (*find_starts)(PreparedCase* const* cases, int count);
   /// Runs up to W cases in lockstep; results have W lanes, those beyond `count` repeat the last
   /// case. Throws ModelError for cases that may not share lanes.
   LaneResults (*run_lanes)(const PreparedCase* const* cases, int count,
@@ -84,7 +92,18 @@ struct Kernel {
 /// Kernels this processor can run, widest first; never empty.
 const std::vector<Kernel>& list_kernels();
 
-/// True if the cases may share lanes: same layout, and with Newton closure the same hardpoints.
+/// Finds the start of a case: its steady rolling, by the widest kernel, else by KINSOL. Throws
+/// ModelError where there is none. Every bit is that which find_starts finds.
+void find_start(PreparedCase& c);
+
+/// In lanes where cases may share them, else by KINSOL; or all by KINSOL, which is slower.
+enum class StartMethod { kLanes, kKinsol };
+
+/// Finds the starts of all cases. Returns the reason why a case has none, "" where it has.
+std::vector<std::string> find_starts(const std::vector<PreparedCase*>& cases,
+                                     StartMethod method = StartMethod::kLanes);
+
+/// True if the cases may share lanes: same layout, and with Newton closure the same loops.
 bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure);
 
 struct ReferenceOptions {

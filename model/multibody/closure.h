@@ -10,10 +10,12 @@ inline constexpr int kPredictorTerms = 13;
 inline constexpr int kNewtonIterations = 1;  // suffices: the predictor is accurate to 1e-12 m
 
 /// Initial guess of the dependent coordinates: polynomials in q / half_travel, lowest power first.
-/// It depends on q only, so a closure has no memory and the result of a case no history.
+/// It depends on q only, so a closure has no memory and the result of a case no history. C: double
+/// for one corner, the same in all lanes, or a lane type for one corner per lane.
+template <class C>
 struct ClosurePredictor {
   double half_travel = 0.1;  // m
-  std::array<std::array<double, kMaxDependent>, kPredictorTerms> coefficient{};
+  std::array<std::array<C, kMaxDependent>, kPredictorTerms> coefficient{};
 };
 
 /// A part's displacement from nominal trim: r = rotation r_nominal + shift.
@@ -171,8 +173,8 @@ LoopVector<T> solve_loops(const CornerTopology& topology, const LoopFactor<T>& f
 }
 
 /// Joint coordinates at q from the predictor.
-template <CornerTree kTree, class T>
-std::array<T, kMaxJoints> predict_joints(const ClosurePredictor& predictor, const T& q) {
+template <CornerTree kTree, class T, class C>
+std::array<T, kMaxJoints> predict_joints(const ClosurePredictor<C>& predictor, const T& q) {
   std::array<T, kMaxJoints> z{};
   const T x = q * T(1.0 / predictor.half_travel);
   constexpr int n = kTree.dependent_count();

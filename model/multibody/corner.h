@@ -31,6 +31,7 @@ struct Attachment {
   int part = kChassisPart;
   int rod = -1;  // >= 0: on this rod, `rod_fraction` of the way from chassis to upright, and
                  // `rod_offset` beside its line
+  bool operator==(const Attachment&) const = default;
 };
 
 /// Joints and loops of a kind of suspension. Values of this type are template arguments, so that
@@ -99,6 +100,7 @@ struct CornerTopology {
   std::array<std::array<Attachment, 2>, kLines> line{};
   std::array<int, kMaxDependent> pivot_row{};     // elimination order of the loop equations, found
   std::array<int, kMaxDependent> pivot_column{};  // at nominal trim; the same in every lane
+  bool operator==(const CornerTopology&) const = default;
 };
 
 /// Hardpoints at nominal trim [m], chassis axes.

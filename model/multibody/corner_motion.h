@@ -236,8 +236,8 @@ void update_corner_motion(const CornerTopology& topology, const CornerGeometry<T
 
 /// Motion functions at q by Newton on the loops from the predictor; returns the residual loop error
 /// [m].
-template <CornerTree kTree, class T>
-T close_corner(const CornerTopology& topology, const ClosurePredictor& predictor,
+template <CornerTree kTree, class T, class C>
+T close_corner(const CornerTopology& topology, const ClosurePredictor<C>& predictor,
                const CornerGeometry<T>& geometry, const CornerInertia<T>& inertia, const T& q,
                CornerMotion<T>& motion) {
   CornerPose<T> pose;

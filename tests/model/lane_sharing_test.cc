@@ -1,6 +1,7 @@
 // Which cases may run in one batch of lanes, and that a batch serves all of them.
 
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "tests/support/test_car.h"
 
@@ -77,11 +78,31 @@ TEST_CASE("Cases that may not share lanes are refused", "[unit]") {
   Case point = make_short_case();
   point.vehicle.tire.contact = ContactKind::kPoint;
   CHECK_THROWS_AS(run_pair(base, test::prepare(point), make_options(Closure::kTable)), ModelError);
-  Case heavier = make_short_case();
-  heavier.vehicle.suspension[kRear].wheel_mass += 1.0;
-  const PreparedCase other = test::prepare(heavier);
+  PreparedCase other = test::prepare(make_short_case());
+  std::swap(other.vehicle.layout.corner[kRearLeft].pivot_row[0],
+            other.vehicle.layout.corner[kRearLeft].pivot_row[1]);
   CHECK_THROWS_AS(run_pair(base, other, make_options(Closure::kNewton)), ModelError);
   CHECK_NOTHROW(run_pair(base, other, make_options(Closure::kTable)));
+}
+
+TEST_CASE("Cars of other masses and hardpoints close their own loops in one batch",
+          "[unit][property]") {
+  Case heavier = make_short_case();
+  heavier.vehicle.suspension[kRear].wheel_mass += 1.0;
+  heavier.vehicle.whole.mass *= 1.1;
+  Case moved = make_short_case();
+  moved.vehicle.suspension[kFront].strut_top.z += 0.01;
+  const PreparedCase a = test::prepare(heavier), b = test::prepare(moved);
+  const IntegrateOptions options = make_options(Closure::kNewton);
+  const LaneResults both = run_pair(a, b, options);
+  const LaneResults alone[] = {run_pair(a, a, options), run_pair(b, b, options)};
+  for (int lane = 0; lane < 2; ++lane) {
+    for (int i = 0; i < StateIndex::kCountWithoutRelaxation; ++i) {
+      CHECK(both.get_final_state(i, lane) == alone[lane].get_final_state(i));
+    }
+  }
+  CHECK(both.get_final_state(StateIndex::kPosition + 2, 0) !=
+        both.get_final_state(StateIndex::kPosition + 2, 1));
 }
 
 TEST_CASE("A spring too soft for its load is refused with key, value and range", "[unit]") {
