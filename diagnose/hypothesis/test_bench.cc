@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "estimate/nuisances.h"
+#include "model/effects/names.h"
 
 namespace strut {
 namespace {
@@ -129,7 +131,35 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypot
     }
     first += hypothesis.parameters.size();
   }
-  return simulate_columns(added, points);
+  Eigen::MatrixXd columns = simulate_columns(added, points);
+  for (const HypothesisTrial& trial : trials) {
+    const Hypothesis& h = hypotheses[trial.hypothesis];
+    const Eigen::VectorXd own = combine_own_columns(h, h.beginnings[trial.beginning].front());
+    if (own.size() > 0) columns.col(as_index(trial.columns.front())) = own;
+  }
+  return columns;
+}
+
+/// The response to a relative error of what each run has as an unknown of its own, from the
+/// derivatives by those: both are one motion, and a difference of simulations would leave a false
+/// rest beside them. Empty where a run that the error acts on has no such unknown.
+Eigen::VectorXd TestBench::combine_own_columns(const Hypothesis& h, double gain) const {
+  const bool is_speed = h.effect == EffectName::kSpeedError;
+  if (!is_speed && h.effect != EffectName::kBumpHeight) return {};
+  const char* name = is_speed ? kSpeedName : "bump_height";
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(residual_.size());
+  const auto whitened = as_index(whitener_->whitened_count());  // priors stay where they are
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    if (!is_speed && !meets_bump(data_, runs_[r])) continue;
+    const auto own = std::find_if(unknowns_.begin(), unknowns_.end(), [&](const Unknown& u) {
+      return u.run == static_cast<int>(r) && u.name == name;
+    });
+    if (own == unknowns_.end()) return {};
+    const std::ptrdiff_t at = own - unknowns_.begin();
+    const double change = gain * values_[static_cast<std::size_t>(at)] / own->scale;
+    sum.head(whitened) += change * jacobian_.col(at).head(whitened);
+  }
+  return sum;
 }
 
 Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {

@@ -50,6 +50,7 @@ class TestBench {
   std::size_t get_run(std::size_t number) const { return runs_[number]; }
 
  private:
+  Eigen::VectorXd combine_own_columns(const Hypothesis& h, double gain) const;
   std::unique_ptr<ReadingModel> make_model(const std::vector<Unknown>& added, int threads) const;
 
   const CampaignData& data_;
