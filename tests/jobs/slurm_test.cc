@@ -26,7 +26,7 @@ using test::wait_until;
 
 /// A sweep with tasks of some seconds.
 const ProgramSweep& get_sweep() {
-  static const ProgramSweep sweep(test::make_coarse_sweep(4, "", "2e-5"));
+  static const ProgramSweep sweep(test::make_coarse_sweep(4, "", "8e-6"));
   return sweep;
 }
 
