@@ -157,10 +157,13 @@ int run_plan(const Arguments& arguments) {
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
 
   if (!dry) check_output_folder("output", arguments.text("output"));
-  const Plan plan(read_request(sweep));
+  Plan plan(read_request(sweep));
   check_plan(plan);
   std::optional<SweepFolder> folder;
-  if (!dry) folder = make_sweep_folder(arguments.text("output"), plan);
+  if (!dry) {
+    folder = make_sweep_folder(arguments.text("output"), plan);
+    plan = open_sweep_folder(*folder);  // an earlier version may have planned it
+  }
   const SweepEstimate estimate = estimate_time(plan);
   arguments.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
   warn_of_step(plan.request());

@@ -53,7 +53,7 @@ void check_free(const SweepFolder& folder) {
 }
 
 /// The request by the rules of the version that made the plan.
-SweepRequest by_rules_of(const PlanRecord& record, SweepRequest request) {
+SweepRequest apply_rules_of(const PlanRecord& record, SweepRequest request) {
   for (int version = 1; version <= kResultsVersion; ++version) {
     if (find_text(record.facts, kResultsVersionName) == std::to_string(version)) {
       request.results_version = version;
@@ -64,7 +64,8 @@ SweepRequest by_rules_of(const PlanRecord& record, SweepRequest request) {
 
 void check_same(const SweepFolder& folder, const Plan& plan) {
   const PlanRecord record = read_plan(folder.plan());
-  if (record.extent.plan_hash == calc_hash(list_facts(by_rules_of(record, plan.request())))) {
+  const Facts facts = list_facts(apply_rules_of(record, plan.request()));
+  if (record.extent.plan_hash == calc_hash(facts)) {
     const Plan found = open_sweep_folder(folder);  // its own files may have been changed
     if (!is_sealed(folder.plan())) write_plan(folder.plan(), found);
     return;
@@ -72,8 +73,7 @@ void check_same(const SweepFolder& folder, const Plan& plan) {
   throw InputError(fmt::format(
       "{}: already planned for a different request than {}; allowed: the same request, or another "
       "folder. Differences:{}",
-      folder.root.string(), plan.request().path.string(),
-      list_changes(record.facts, plan.facts())));
+      folder.root.string(), plan.request().path.string(), list_changes(record.facts, facts)));
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ Plan open_sweep_folder(const SweepFolder& folder) {
         ": not a sweep folder: no plan.h5; `strut plan SWEEP.toml -o DIR` creates one");
   }
   const PlanRecord record = read_plan(folder.plan());
-  Plan plan(by_rules_of(record, read_request(folder.request())));
+  Plan plan(apply_rules_of(record, read_request(folder.request())));
   if (record.extent.plan_hash != plan.hash()) {
     throw InputError(
         fmt::format("{}: does not match its plan; allowed: the planned request, or another folder. "

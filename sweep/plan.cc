@@ -124,6 +124,7 @@ Plan::Plan(const SweepRequest& request) {
 
 Plan::~Plan() = default;
 Plan::Plan(Plan&&) noexcept = default;
+Plan& Plan::operator=(Plan&&) noexcept = default;
 
 const SweepRequest& Plan::request() const { return state_->request; }
 const std::string& Plan::hash() const { return state_->hash; }

@@ -30,6 +30,7 @@ class Plan {
   explicit Plan(const SweepRequest& request);
   ~Plan();
   Plan(Plan&&) noexcept;
+  Plan& operator=(Plan&&) noexcept;
 
   const SweepRequest& request() const;
   /// SHA-256 over everything that changes a result, 64 hexadecimal digits.

@@ -219,8 +219,11 @@ double find_longest_step(const SweepRequest& request) {
 }
 
 bool ends_at_snapshot(const SweepRequest& request) {
-  constexpr int kFirst = 2;
-  return request.results_version >= kFirst && request.snapshot.on && !(request.history.rate > 0.0);
+  return request.results_version > 1 && request.snapshot.on && !(request.history.rate > 0.0);
+}
+
+StartMethod get_start_method(const SweepRequest& request) {
+  return request.results_version > 1 ? StartMethod::kLanes : StartMethod::kKinsol;
 }
 
 SamplePlan make_sample_plan(const SweepRequest& request) {

@@ -62,6 +62,9 @@ double find_longest_step(const SweepRequest& request);
 /// Whether each run ends with its snapshot: nothing after it is recorded.
 bool ends_at_snapshot(const SweepRequest& request);
 
+/// How this request's version finds the starts of its cases.
+StartMethod get_start_method(const SweepRequest& request);
+
 /// Samples that the simulations of this request record.
 SamplePlan make_sample_plan(const SweepRequest& request);
 

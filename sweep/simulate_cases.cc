@@ -148,15 +148,14 @@ std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std
   return keep_started(std::move(ready), rows);
 }
 
-/// Those that have an equilibrium to start from; the others fail.
+/// Finds the starts. Returns the cases that have one; sets the failure of the others.
 std::vector<CaseSimulator::Ready> CaseSimulator::keep_started(std::vector<Ready> ready,
                                                               ShardRows& rows) const {
   std::vector<PreparedCase*> cases;
   cases.reserve(ready.size());
   for (Ready& r : ready) cases.push_back(&r.prepared);
-  const bool in_lanes = plan_.request().results_version > 1;
   const std::vector<std::string> reasons =
-      find_starts(cases, in_lanes ? StartMethod::kLanes : StartMethod::kKinsol);
+      find_starts(kernel_, cases, get_start_method(plan_.request()));
   std::vector<Ready> started;
   started.reserve(ready.size());
   for (std::size_t i = 0; i < ready.size(); ++i) {

@@ -302,11 +302,11 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   SelectRound result;
   std::vector<RankedTrial> all = rank_trials(evidence, score, one_sided);
   if (!all.empty()) result.best_score = all.front().gain.chi2;
+  NullScores nulls;
   if (round_options.is_final) {
-    const NullScores nulls = draw_null_scores(evidence, score, one_sided, options.nulls);
+    nulls = draw_null_scores(evidence, score, one_sided, options.nulls);
     result.threshold = calc_threshold(
         nulls, options, calc_negligible(data.has_inputs(), options, bench.whitener()));
-    result.p_value = nulls.calc_p_value(result.best_score);
   }
   const Round round{data, now, options, bench, hypotheses, evidence};
   const std::vector<RankedTrial> ranked =
@@ -329,6 +329,8 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                    [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
   const double most = result.candidates.empty() ? 0.0 : result.candidates.front().gain;
   result.misfit = calc_misfit(now.fit, most);
+  if (round_options.is_final)
+    result.p_value = nulls.calc_p_value(result.best_score / result.misfit);
   result.simulations += bench.simulation_count();
   return result;
 }

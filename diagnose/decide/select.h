@@ -79,7 +79,7 @@ struct SelectRound {
   /// Delta chi2 of the first candidate and another effect together, where pairs were looked for.
   double pair_gain = 0.0;
   double best_score = 0.0;  // delta chi2 to first order of the best hypothesis
-  double p_value = 1.0;     // probability that noise alone has a best score as large
+  double p_value = 1.0;     // probability that noise, as large as the misfit, has such a best score
   /// Largest delta chi2 of a fit whose values are not such as its effect has: something is there,
   /// but not what the name says.
   double refused_gain = 0.0;

@@ -144,9 +144,10 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Hypothesis>& hypot
 /// derivatives by those: both are one motion, and a difference of simulations would leave a false
 /// rest beside them. Empty where a run that the error acts on has no such unknown.
 Eigen::VectorXd TestBench::combine_own_columns(const Hypothesis& h, double gain) const {
+  constexpr const char* kBumpHeightName = "bump_height";  // of the maneuver's parameter
   const bool is_speed = h.effect == EffectName::kSpeedError;
   if (!is_speed && h.effect != EffectName::kBumpHeight) return {};
-  const char* name = is_speed ? kSpeedName : "bump_height";
+  const char* name = is_speed ? kSpeedName : kBumpHeightName;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(residual_.size());
   const auto whitened = as_index(whitener_->whitened_count());  // priors stay where they are
   for (std::size_t r = 0; r < runs_.size(); ++r) {

@@ -10,8 +10,9 @@
 namespace {
 
 int run(const char* request, const char* directory) {
-  const strut::Plan plan(strut::read_request(request));
-  const strut::SweepFolder folder = strut::make_sweep_folder(directory, plan);
+  const strut::SweepFolder folder =
+      strut::make_sweep_folder(directory, strut::Plan(strut::read_request(request)));
+  const strut::Plan plan = strut::open_sweep_folder(folder);
 
   strut::RunOptions options;
   options.kernel = &strut::list_kernels().front();  // the widest of this processor

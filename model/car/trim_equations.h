@@ -85,7 +85,7 @@ template <class T, class C>
 State<T> calc_trim_residual(TrimProblem<T, C>& p, const T* u, T* r) {
   using I = StateIndex;
   using U = TrimIndex;
-  // Of the corner and spin accelerations relative to those of the chassis.
+  // Weights of the corner and spin accelerations relative to those of the chassis.
   constexpr double kCornerWeight = 0.1, kSpinWeight = 1e-3;
   State<T> x = make_trim_state(p, u);
   const State<T> dx = evaluate_trim(p, x);

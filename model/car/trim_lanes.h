@@ -47,12 +47,15 @@ class LaneTrimmer {
   static constexpr int N = TrimIndex::kCount;
   using Mask = MaskOf<T>;
 
-  /// Residual and state at u; returns the largest residual, NaN where one is.
+  /// Residual and state at u; returns the largest residual, NaN where one is not finite.
   T evaluate() {
     state_ = calc_trim_residual(p_, u_.data(), r_.data());
-    T error(0.0);
-    for (const T& r : r_) error = select(abs(r) <= error, error, abs(r));
-    return error;
+    T error(0.0), zero(0.0);
+    for (const T& r : r_) {
+      error = max(error, abs(r));
+      zero += r - r;  // NaN where r is not finite
+    }
+    return error + zero;
   }
 
   /// By forward differences.

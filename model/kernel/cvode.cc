@@ -219,6 +219,7 @@ LaneResults run_cvode(const PreparedCase& c, const ReferenceOptions& options, Sa
   record_samples(system, t, state, recording);
   while (t < plan.duration) {
     const int flag = cvode.advance(std::min(recording.get_next_time(), plan.duration), t);
+    if (flag < 0 && plan.until_snapshot && results.has_snapshot()) break;
     if (flag < 0) {
       results.status[0] = static_cast<int>(system.get_failure(0));
       results.failure_time[0] = t;

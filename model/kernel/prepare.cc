@@ -65,7 +65,7 @@ void check_springs(const VehicleSpec& spec, const AssembledVehicle& car) {
   }
 }
 
-/// By KINSOL.
+/// Finds the start by KINSOL. Throws ModelError where there is none.
 void find_start_alone(PreparedCase& c) {
   Vehicle<double> vehicle = c.vehicle;
   vehicle.layout.on_bump.fill(false);
@@ -132,8 +132,8 @@ void find_start(PreparedCase& c) {
   if (list_kernels().front().find_starts(cases, 1) == 0) find_start_alone(c);
 }
 
-std::vector<std::string> find_starts(const std::vector<PreparedCase*>& cases, StartMethod method) {
-  const Kernel& kernel = list_kernels().front();
+std::vector<std::string> find_starts(const Kernel& kernel, const std::vector<PreparedCase*>& cases,
+                                     StartMethod method) {
   const auto width = static_cast<std::size_t>(method == StartMethod::kLanes ? kernel.lanes : 1);
   std::vector<std::string> reasons(cases.size());
   for (std::size_t begin = 0, count = 0; begin < cases.size(); begin += count) {

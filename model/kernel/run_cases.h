@@ -31,13 +31,6 @@ VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
   return packed;
 }
 
-/// Whether the loops of all lanes start from the same guess.
-template <class T>
-bool have_equal_predictors(const PreparedCase* const* cases) {
-  return std::all_of(cases, cases + kLaneCount<T>,
-                     [&](const PreparedCase* c) { return c->mechanism == cases[0]->mechanism; });
-}
-
 /// Predictors of W cars.
 template <class T>
 VehiclePredictors<T> pack_predictors(const PreparedCase* const* cases) {
@@ -105,7 +98,7 @@ unsigned find_starts(PreparedCase* const* cases) {
   vehicle.layout.on_bump.fill(false);
   vehicle.road = Road<T>{};
   T height(0.0), speed(0.0);
-  bool equal_tables = true;
+  bool equal_cars = true;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     const PreparedCase& c = *cases[lane];
     set_lane(height, lane, c.mechanism->car.center_height);
@@ -113,13 +106,13 @@ unsigned find_starts(PreparedCase* const* cases) {
     for (T& torque : vehicle.numbers.drive_torque) {
       if (!c.starts_driven) set_lane(torque, lane, 0.0);
     }
-    equal_tables = equal_tables && have_equal_tables(*cases[0]->mechanism, *c.mechanism);
+    equal_cars = equal_cars && have_equal_tables(*cases[0]->mechanism, *c.mechanism);
   }
   const auto solve = [&](const auto& closure) {
     return LaneTrimmer(TrimProblem{&vehicle, closure, height, speed}).solve();
   };
   LaneTrim<T> trim;
-  if (equal_tables) {
+  if (equal_cars) {
     trim = solve(TableClosure<T, double>{&cases[0]->mechanism->tables});
   } else {
     const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
@@ -157,16 +150,16 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
   const Vehicle<T> vehicle = pack_vehicle<T>(cases);
   State<T> start;
   T trigger(0.0);
-  bool equal_tables = true;
+  bool equal_cars = true;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     for (std::size_t i = 0; i < start.size(); ++i) set_lane(start[i], lane, cases[lane]->start[i]);
     set_lane(trigger, lane, cases[lane]->trigger_x);
-    equal_tables = equal_tables && have_equal_tables(*cases[0]->mechanism, *cases[lane]->mechanism);
+    equal_cars = equal_cars && have_equal_tables(*cases[0]->mechanism, *cases[lane]->mechanism);
   }
   SamplePlan all = plan;
   all.duration = cases[0]->duration;
   all.channel_count = CarChannel::kCount;
-  if (options.closure == Closure::kNewton && have_equal_predictors<T>(cases)) {
+  if (options.closure == Closure::kNewton && equal_cars) {
     return run_system<T>(vehicle, NewtonClosure<T>{&vehicle.layout, &vehicle.numbers}, trigger,
                          start, options, all);
   }
@@ -176,7 +169,7 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
                          NewtonClosure<T, T>{&vehicle.layout, &vehicle.numbers, predictors.get()},
                          trigger, start, options, all);
   }
-  if (equal_tables) {
+  if (equal_cars) {
     return run_system<T>(vehicle, TableClosure<T, double>{&cases[0]->mechanism->tables}, trigger,
                          start, options, all);
   }

@@ -69,8 +69,8 @@ class CasePreparer {
 struct Kernel {
   const char* isa;  // "baseline", "avx2", "avx512"
   int lanes;        // W
-  /// Finds the starts of up to W cases that may share lanes; bit i of the result is set where that
-  /// of case i was found.
+  /// Finds the starts of up to W cases, all of which may share lanes (the caller's promise); bit i
+  /// of the result is set where that of case i was found.
   unsigned (*find_starts)(PreparedCase* const* cases, int count);
   /// Runs up to W cases in lockstep; results have W lanes, those beyond `count` repeat the last
   /// case. Throws ModelError for cases that may not share lanes.
@@ -92,18 +92,21 @@ struct Kernel {
 /// Kernels this processor can run, widest first; never empty.
 const std::vector<Kernel>& list_kernels();
 
-/// Finds the start of a case: its steady rolling, by the widest kernel, else by KINSOL. Throws
-/// ModelError where there is none. Every bit is that which find_starts finds.
-void find_start(PreparedCase& c);
-
-/// In lanes where cases may share them, else by KINSOL; or all by KINSOL, which is slower.
+/// In the lanes of a kernel, by KINSOL where that finds none; or all by KINSOL, which is slower and
+/// the rule of sweeps that an earlier version planned.
 enum class StartMethod { kLanes, kKinsol };
 
-/// Finds the starts of all cases. Returns the reason why a case has none, "" where it has.
-std::vector<std::string> find_starts(const std::vector<PreparedCase*>& cases,
+/// Finds the starts of all cases, steady rolling. Returns the reason why a case has none, "" where
+/// it has. A start does not depend on the other cases.
+std::vector<std::string> find_starts(const Kernel& kernel, const std::vector<PreparedCase*>& cases,
                                      StartMethod method = StartMethod::kLanes);
 
-/// True if the cases may share lanes: same layout, and with Newton closure the same loops.
+/// The start of one case by the widest kernel, bit-identical to find_starts. Throws ModelError
+/// where there is none.
+void find_start(PreparedCase& c);
+
+/// True if the cases may share lanes: same layout, and with Newton closure the same topology
+/// and elimination order of the loops.
 bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure);
 
 struct ReferenceOptions {

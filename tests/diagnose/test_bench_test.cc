@@ -2,6 +2,7 @@
 #include "diagnose/hypothesis/test_bench.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "estimate/unknown.h"
 #include "tests/support/fit_case.h"
@@ -49,24 +50,32 @@ WhitenedFit make_fit(const CampaignData& data, const std::vector<std::string>& o
   return fit;
 }
 
-/// What no free unknown takes over of a change of the road, as a fraction of its chi2.
-double calc_left(const std::string& effect, double gain, const std::vector<std::string>& own) {
+/// The score of a relative error of the road or the speed.
+Score calc_road_score(const std::string& effect, double gain, const std::vector<std::string>& own) {
   const CampaignData data = make_campaign();
   const WhitenedFit fit = make_fit(data, own);
   TestBench bench(data, fit, 1);
   const Hypothesis h{effect, "road", {{"road_" + effect, "gain"}}, {{gain}}, {}, {0.0}};
-  const Score score = calc_score(bench.gather({h}), {1.0, 1.0});
-  return score.covariance(0, 0) / score.norm(0);
+  return calc_score(bench.gather({h}), {1.0, 1.0});
 }
+
+/// Fraction of its chi2 that no free unknown takes over.
+double calc_rest(const Score& score) { return score.covariance(0, 0) / score.norm(0); }
 
 TEST_CASE("A common error beside runs whose own is free is a matter of their priors alone",
           "[unit]") {
-  // Sizes at which readings no longer follow their tangent.
+  constexpr double kLarge = 0.02;  // where readings no longer follow their tangent
+  constexpr double kSmall = 1e-4;
   for (const auto& [effect, own] :
-       {std::pair{"speed_error", "speed"}, {"bump_height", "bump_height"}}) {
+       {std::pair{"speed_error", "speed"}, std::pair{"bump_height", "bump_height"}}) {
     CAPTURE(effect);
-    CHECK(calc_left(effect, 0.02, {own}) < 0.01);
-    CHECK(calc_left(effect, 0.02, {}) > 0.1);
+    const Score beside = calc_road_score(effect, kLarge, {own});
+    const Score alone = calc_road_score(effect, kSmall, {});
+    CHECK(calc_rest(beside) < 0.01);
+    CHECK(calc_rest(alone) > 0.1);
+    // Its size is that of a small difference of simulations.
+    CHECK(std::sqrt(beside.norm(0)) / kLarge ==
+          Approx(std::sqrt(alone.norm(0)) / kSmall).epsilon(test::tolerance(0.02)));
   }
 }
 

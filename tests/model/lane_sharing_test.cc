@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <utility>
+#include <vector>
 
 #include "tests/support/test_car.h"
 
@@ -94,15 +95,26 @@ TEST_CASE("Cars of other masses and hardpoints close their own loops in one batc
   moved.vehicle.suspension[kFront].strut_top.z += 0.01;
   const PreparedCase a = test::prepare(heavier), b = test::prepare(moved);
   const IntegrateOptions options = make_options(Closure::kNewton);
-  const LaneResults both = run_pair(a, b, options);
-  const LaneResults alone[] = {run_pair(a, a, options), run_pair(b, b, options)};
-  for (int lane = 0; lane < 2; ++lane) {
-    for (int i = 0; i < StateIndex::kCountWithoutRelaxation; ++i) {
-      CHECK(both.get_final_state(i, lane) == alone[lane].get_final_state(i));
+  for (const Kernel& kernel : list_kernels()) {
+    CAPTURE(kernel.isa);
+    std::vector<const PreparedCase*> mixed, of_a, of_b;
+    for (int lane = 0; lane < kernel.lanes; ++lane) {
+      mixed.push_back(lane % 2 == 0 ? &a : &b);
+      of_a.push_back(&a);
+      of_b.push_back(&b);
     }
+    const auto run = [&](const std::vector<const PreparedCase*>& cases) {
+      return kernel.run_lanes(cases.data(), kernel.lanes, options, {});
+    };
+    const LaneResults both = run(mixed), alone[] = {run(of_a), run(of_b)};
+    for (int lane = 0; lane < kernel.lanes; ++lane) {
+      for (int i = 0; i < StateIndex::kCountWithoutRelaxation; ++i) {
+        CHECK(both.get_final_state(i, lane) == alone[lane % 2].get_final_state(i, lane));
+      }
+    }
+    constexpr int kHeight = StateIndex::kPosition + 2;
+    CHECK(both.get_final_state(kHeight, 0) != both.get_final_state(kHeight, 1));
   }
-  CHECK(both.get_final_state(StateIndex::kPosition + 2, 0) !=
-        both.get_final_state(StateIndex::kPosition + 2, 1));
 }
 
 TEST_CASE("A spring too soft for its load is refused with key, value and range", "[unit]") {

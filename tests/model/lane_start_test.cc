@@ -19,11 +19,12 @@ State<double> find_reference(const PreparedCase& c) {
   Vehicle<double> vehicle = c.vehicle;
   vehicle.layout.on_bump.fill(false);
   vehicle.road = Road<double>{};
+  if (!c.starts_driven) vehicle.numbers.drive_torque.fill(0.0);
   return solve_rolling(vehicle, c.mechanism->tables, c.mechanism->car.center_height, c.start_speed)
       .state;
 }
 
-/// Cars with other springs, masses, tires and speeds than the paper's.
+/// Cars with other springs, masses, hardpoints, tires and speeds than the paper's.
 std::vector<Case> draw_cases(int count) {
   Random random(7);
   std::vector<Case> cases;
@@ -37,6 +38,10 @@ std::vector<Case> draw_cases(int count) {
     }
     c.vehicle.tire.stiffness *= random.uniform(0.7, 1.5);
     c.vehicle.tire.relaxation = i % 7 == 0;
+    c.vehicle.whole.mass *= random.uniform(0.9, 1.2);
+    c.vehicle.suspension[kFront].strut_top.z += random.uniform(-0.01, 0.01);
+    c.maneuver.trim = i % 3 == 0 ? TrimKind::kStatic : TrimKind::kSteady;
+    c.maneuver.lead_speed = i % 2 == 0 ? 0.5 : 0.0;
     c.maneuver.speed = random.uniform(2.0, 45.0);
     c.maneuver.drive_torque = random.uniform(0.0, 150.0);
     cases.push_back(std::move(c));
@@ -54,7 +59,7 @@ std::vector<PreparedCase> assemble(const std::vector<Case>& cases) {
 std::vector<std::string> start(std::vector<PreparedCase>& cases) {
   std::vector<PreparedCase*> pointers;
   for (PreparedCase& c : cases) pointers.push_back(&c);
-  return find_starts(pointers);
+  return find_starts(list_kernels().front(), pointers);
 }
 
 TEST_CASE("Starts that lanes find are those of KINSOL", "[unit][reference]") {

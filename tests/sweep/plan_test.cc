@@ -368,6 +368,19 @@ TEST_CASE("The hash covers everything that changes a result, and nothing else", 
         make_plan_of(make_grid_text(axis("rear_stiffness") + axis("front_stiffness"))).hash());
 }
 
+TEST_CASE("A sweep that an earlier version planned keeps that version's rules", "[unit]") {
+  SweepRequest request = make_plan_of(make_sweep_text()).request();
+  request.history = {};
+  CHECK(find_text(list_facts(request), "record.until") == "snapshot");
+  CHECK(get_start_method(request) == StartMethod::kLanes);
+  request.results_version = 1;
+  CHECK_FALSE(ends_at_snapshot(request));
+  CHECK_FALSE(make_sample_plan(request).until_snapshot);
+  CHECK(get_start_method(request) == StartMethod::kKinsol);
+  CHECK(find_text(list_facts(request), "results_version") == "1");
+  CHECK_FALSE(find_text(list_facts(request), "record.until"));
+}
+
 TEST_CASE("The differences of two requests are listed line by line", "[unit]") {
   const Facts was = {{"a", "1"}, {"b", "2"}, {"c", "3"}}, is = {{"b", "2"}, {"a", "4"}, {"d", "5"}};
   CHECK(compare_facts(was, is) ==
