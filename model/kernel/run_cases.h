@@ -108,8 +108,8 @@ unsigned find_starts(PreparedCase* const* cases) {
     }
     equal_cars = equal_cars && have_equal_tables(*cases[0]->mechanism, *c.mechanism);
   }
-  const auto solve = [&](const auto& closure) {
-    return LaneTrimmer(TrimProblem{&vehicle, closure, height, speed}).solve();
+  const auto solve = [&]<class C>(const TableClosure<T, C>& closure) {
+    return LaneTrimmer<T, C>({&vehicle, closure, height, speed}).solve();
   };
   LaneTrim<T> trim;
   if (equal_cars) {

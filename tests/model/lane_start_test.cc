@@ -52,12 +52,14 @@ std::vector<Case> draw_cases(int count) {
 std::vector<PreparedCase> assemble(const std::vector<Case>& cases) {
   CasePreparer preparer;
   std::vector<PreparedCase> assembled;
+  assembled.reserve(cases.size());
   for (const Case& c : cases) assembled.push_back(preparer.assemble(c));
   return assembled;
 }
 
 std::vector<std::string> start(std::vector<PreparedCase>& cases) {
   std::vector<PreparedCase*> pointers;
+  pointers.reserve(cases.size());
   for (PreparedCase& c : cases) pointers.push_back(&c);
   return find_starts(list_kernels().front(), pointers);
 }
