@@ -62,7 +62,8 @@ double find_longest_step(const SweepRequest& request);
 /// Whether each run ends with its snapshot: nothing after it is recorded.
 bool ends_at_snapshot(const SweepRequest& request);
 
-/// How this request's version finds the starts of its cases.
+/// Method that finds the state in which each case starts: that of the version that planned the
+/// sweep.
 StartMethod get_start_method(const SweepRequest& request);
 
 /// Samples that the simulations of this request record.

@@ -65,30 +65,54 @@ template <class T>
 Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   constexpr auto kWidth = static_cast<std::size_t>(kLaneCount<T>);
   std::vector<VehicleParameters<double>> numbers(kWidth);
-  std::array<const Surface*, kWidth> surfaces;
-  std::array<double, kWidth> centers;
   std::array<const CornerForceMaps*, kWidth> maps;
   for (std::size_t lane = 0; lane < kWidth; ++lane) {
     numbers[lane] = cases[lane]->vehicle.numbers;
-    surfaces[lane] = &cases[lane]->mechanism->surface;
-    centers[lane] = cases[lane]->bump_center;
     maps[lane] = &cases[lane]->force_maps;
   }
   VehicleLayout layout = cases[0]->vehicle.layout;
   for (std::size_t lane = 1; lane < kWidth; ++lane) {
     add_parts(cases[lane]->vehicle.layout, layout);
   }
-  Vehicle<T> vehicle{layout,
-                     pack_lanes<VehicleParameters, T>(numbers.data()),
-                     {},
-                     make_road<T>(surfaces.data(), centers.data())};
+  Vehicle<T> vehicle{layout, pack_lanes<VehicleParameters, T>(numbers.data()), {}, {}};
+  fill_strut_elements(vehicle, maps.data());
+  return vehicle;
+}
+
+template <class T>
+Road<T> pack_road(const PreparedCase* const* cases) {
+  constexpr auto kWidth = static_cast<std::size_t>(kLaneCount<T>);
+  std::array<const Surface*, kWidth> surfaces;
+  std::array<double, kWidth> centers;
+  for (std::size_t lane = 0; lane < kWidth; ++lane) {
+    surfaces[lane] = &cases[lane]->mechanism->surface;
+    centers[lane] = cases[lane]->bump_center;
+  }
+  Road<T> road = make_road<T>(surfaces.data(), centers.data());
   for (std::size_t side = 0; side < 2; ++side) {
     std::array<const RoughTrack*, kWidth> tracks;
     for (std::size_t lane = 0; lane < kWidth; ++lane) tracks[lane] = &cases[lane]->rough[side];
-    vehicle.road.rough[side] = make_rough_tracks<T>(tracks.data());
+    road.rough[side] = make_rough_tracks<T>(tracks.data());
   }
-  fill_strut_elements(vehicle, maps.data());
-  return vehicle;
+  return road;
+}
+
+/// Whether all lanes have the same linkages: tables and predictors.
+template <class T>
+bool have_equal_cars(const PreparedCase* const* cases) {
+  return std::all_of(cases, cases + kLaneCount<T>, [&](const PreparedCase* c) {
+    return have_equal_tables(*cases[0]->mechanism, *c->mechanism);
+  });
+}
+
+/// `use(closure)` with the tables of these cases.
+template <class T, class Use>
+auto use_tables(const PreparedCase* const* cases, const Use& use) {
+  if (have_equal_cars<T>(cases)) {
+    return use(TableClosure<T, double>{&cases[0]->mechanism->tables});
+  }
+  const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
+  return use(TableClosure<T, T>{tables.get()});
 }
 
 /// Finds the starts of kLaneCount<T> cases that may share lanes; bit i of the result: of case i.
@@ -96,9 +120,7 @@ template <class T>
 unsigned find_starts(PreparedCase* const* cases) {
   Vehicle<T> vehicle = pack_vehicle<T>(cases);
   vehicle.layout.on_bump.fill(false);
-  vehicle.road = Road<T>{};
   T height(0.0), speed(0.0);
-  bool equal_cars = true;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     const PreparedCase& c = *cases[lane];
     set_lane(height, lane, c.mechanism->car.center_height);
@@ -106,18 +128,10 @@ unsigned find_starts(PreparedCase* const* cases) {
     for (T& torque : vehicle.numbers.drive_torque) {
       if (!c.starts_driven) set_lane(torque, lane, 0.0);
     }
-    equal_cars = equal_cars && have_equal_tables(*cases[0]->mechanism, *c.mechanism);
   }
-  const auto solve = [&]<class C>(const TableClosure<T, C>& closure) {
+  const LaneTrim<T> trim = use_tables<T>(cases, [&]<class C>(const TableClosure<T, C>& closure) {
     return LaneTrimmer<T, C>({&vehicle, closure, height, speed}).solve();
-  };
-  LaneTrim<T> trim;
-  if (equal_cars) {
-    trim = solve(TableClosure<T, double>{&cases[0]->mechanism->tables});
-  } else {
-    const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
-    trim = solve(TableClosure<T, T>{tables.get()});
-  }
+  });
   unsigned found = 0;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     if (!get_mask_lane(trim.is_found(), lane)) continue;
@@ -147,19 +161,18 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
       throw ModelError("lanes: these cases may not share a batch (see may_share_lanes)");
     }
   }
-  const Vehicle<T> vehicle = pack_vehicle<T>(cases);
+  Vehicle<T> vehicle = pack_vehicle<T>(cases);
+  vehicle.road = pack_road<T>(cases);
   State<T> start;
   T trigger(0.0);
-  bool equal_cars = true;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     for (std::size_t i = 0; i < start.size(); ++i) set_lane(start[i], lane, cases[lane]->start[i]);
     set_lane(trigger, lane, cases[lane]->trigger_x);
-    equal_cars = equal_cars && have_equal_tables(*cases[0]->mechanism, *cases[lane]->mechanism);
   }
   SamplePlan all = plan;
   all.duration = cases[0]->duration;
   all.channel_count = CarChannel::kCount;
-  if (options.closure == Closure::kNewton && equal_cars) {
+  if (options.closure == Closure::kNewton && have_equal_cars<T>(cases)) {
     return run_system<T>(vehicle, NewtonClosure<T>{&vehicle.layout, &vehicle.numbers}, trigger,
                          start, options, all);
   }
@@ -169,12 +182,9 @@ LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& 
                          NewtonClosure<T, T>{&vehicle.layout, &vehicle.numbers, predictors.get()},
                          trigger, start, options, all);
   }
-  if (equal_cars) {
-    return run_system<T>(vehicle, TableClosure<T, double>{&cases[0]->mechanism->tables}, trigger,
-                         start, options, all);
-  }
-  const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
-  return run_system<T>(vehicle, TableClosure<T, T>{tables.get()}, trigger, start, options, all);
+  return use_tables<T>(cases, [&](const auto& closure) {
+    return run_system<T>(vehicle, closure, trigger, start, options, all);
+  });
 }
 
 }  // namespace strut

@@ -135,7 +135,7 @@ TEST_CASE("A car that never meets the bump has the status no_event", "[unit]") {
 
 TEST_CASE("A run that ends at its snapshot has the same bits as one to its duration", "[unit]") {
   SweepText text;
-  // The last of each axis meets the bump later, so lanes end one by one.
+  // Slower cars meet the bump later, so lanes end one by one.
   text.grid =
       "speed = { from = 12, to = 20, step = 2 }\n"
       "front_damping = { from = 1500, to = 2000, step = 500 }\n";
@@ -170,8 +170,7 @@ TEST_CASE("A run that ends at its snapshot has the same bits as one to its durat
 
 TEST_CASE("A sensor with memory reads the snapshot of a run that goes on", "[unit]") {
   SamplePlan requested;
-  requested.until_snapshot = true;
-  PreparedCase c = test::prepare(PlannedSweep().plan().make_case(0));
+  const PreparedCase c = test::prepare(PlannedSweep().plan().make_case(0));
   LaneResults read[2];
   for (const bool until : {false, true}) {
     requested.until_snapshot = until;
