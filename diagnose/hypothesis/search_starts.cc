@@ -1,6 +1,7 @@
 #include "diagnose/hypothesis/search_starts.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -13,8 +14,13 @@ namespace {
 
 using Starts = SearchStarts;
 using Motion = const StrutMotion&;
-using Rule = Starts (*)(Motion);
+using Rule = std::function<Starts(Motion)>;
 using Rules = std::map<std::string, Rule>;
+
+/// One size, whatever the motion.
+Rule start_at(const char* parameter, double value) {
+  return [=](Motion) { return Starts{{{parameter, value}}}; };
+}
 
 Starts start_blow_off(Motion m) {
   return {{{"loss", 0.2}, {"knee", 0.3 * m.velocity}},
@@ -87,10 +93,7 @@ Rules check_rules(Rules rules) {
 /// By effect. Small sizes that the motion shows, so that a search begins where the effect is seen.
 const Rules& list_rules() {
   static const Rules rules =
-      check_rules({{EffectName::kDamperAsymmetry,
-                    [](Motion) -> Starts {
-                      return {{{"asymmetry", 0.1}}};
-                    }},
+      check_rules({{EffectName::kDamperAsymmetry, start_at("asymmetry", 0.1)},
                    {EffectName::kDamperBlowOff, start_blow_off},
                    {EffectName::kDamperHysteresis,
                     [](Motion m) -> Starts {
@@ -126,34 +129,14 @@ const Rules& list_rules() {
                    // Errors of road and speed move all readings in time: a car that is 1 % faster
                    // is elsewhere after a second, which no longer is the tangent that runs whose
                    // own speeds are free can take over.
-                   {EffectName::kSpeedError,
-                    [](Motion) -> Starts {
-                      return {{{"gain", 5e-4}}};
-                    }},
-                   {EffectName::kBumpHeight,
-                    [](Motion) -> Starts {
-                      return {{{"gain", 0.01}}};
-                    }},
-                   {EffectName::kBumpLength,
-                    [](Motion) -> Starts {
-                      return {{{"gain", 5e-3}}};
-                    }},
+                   {EffectName::kSpeedError, start_at("gain", 5e-4)},
+                   {EffectName::kBumpHeight, start_at("gain", 0.01)},
+                   {EffectName::kBumpLength, start_at("gain", 5e-3)},
                    {EffectName::kWheelRunout, start_runout},
-                   {EffectName::kSensorGain,
-                    [](Motion) -> Starts {
-                      return {{{"gain", 0.01}}};
-                    }},
-                   {EffectName::kSensorDelay,
-                    [](Motion) -> Starts {
-                      return {{{"delay", 5e-4}}};
-                    }},
-                   {EffectName::kClockOffset,
-                    [](Motion) -> Starts {
-                      return {{{"offset", 5e-4}}};
-                    }},
-                   {EffectName::kSensorLowpass, [](Motion) -> Starts {
-                      return {{{"time", 5e-4}}};
-                    }}});
+                   {EffectName::kSensorGain, start_at("gain", 0.01)},
+                   {EffectName::kSensorDelay, start_at("delay", 5e-4)},
+                   {EffectName::kClockOffset, start_at("offset", 5e-4)},
+                   {EffectName::kSensorLowpass, start_at("time", 5e-4)}});
   return rules;
 }
 

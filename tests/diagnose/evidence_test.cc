@@ -119,32 +119,29 @@ TEST_CASE("What a run's own unknowns take over is no hypothesis, and adds nothin
   CHECK(draw_null_scores(evidence, score, {false}, 10).best.back() == 0.0);
 }
 
-TEST_CASE("The threshold of one hypothesis is a quantile of chi squared", "[unit]") {
+constexpr std::size_t kDraws = 20000;
+
+/// Null scores of a single hypothesis with one column.
+NullScores draw_of_one(bool one_sided) {
   Evidence evidence;
   evidence.trials = {{0, 0, {0}, {0}}};
   Score score;
   score.covariance = Eigen::MatrixXd::Constant(1, 1, 7.0);
   score.norm = Eigen::VectorXd::Constant(1, 9.0);
   score.gradient = Eigen::VectorXd::Zero(1);
+  return draw_null_scores(evidence, score, {one_sided}, kDraws);
+}
+
+TEST_CASE("The threshold of one hypothesis is a quantile of chi squared", "[unit]") {
   // Quantiles of one degree of freedom (Abramowitz and Stegun, table 26.8).
-  CHECK(draw_null_scores(evidence, score, {false}, 20000).get_quantile(0.95) ==
-        Approx(3.841).margin(test::tolerance(0.15)));
-  CHECK(draw_null_scores(evidence, score, {false}, 20000).get_quantile(0.99) ==
-        Approx(6.635).margin(test::tolerance(0.4)));
+  CHECK(draw_of_one(false).get_quantile(0.95) == Approx(3.841).margin(test::tolerance(0.15)));
+  CHECK(draw_of_one(false).get_quantile(0.99) == Approx(6.635).margin(test::tolerance(0.4)));
   // One-sided: half of the nulls have no score.
-  CHECK(draw_null_scores(evidence, score, {true}, 20000).get_quantile(0.95) ==
-        Approx(2.706).margin(test::tolerance(0.15)));
+  CHECK(draw_of_one(true).get_quantile(0.95) == Approx(2.706).margin(test::tolerance(0.15)));
 }
 
 TEST_CASE("The p-value of a score is that of chi squared", "[unit]") {
-  Evidence evidence;
-  evidence.trials = {{0, 0, {0}, {0}}};
-  Score score;
-  score.covariance = Eigen::MatrixXd::Constant(1, 1, 7.0);
-  score.norm = Eigen::VectorXd::Constant(1, 9.0);
-  score.gradient = Eigen::VectorXd::Zero(1);
-  constexpr std::size_t kDraws = 20000;
-  const NullScores nulls = draw_null_scores(evidence, score, {false}, kDraws);
+  const NullScores nulls = draw_of_one(false);
   // One degree of freedom (Abramowitz and Stegun, table 26.8); 4 sigma of the draws.
   CHECK(nulls.calc_p_value(3.841) == Approx(0.05).margin(test::tolerance(0.0062)));
   CHECK(nulls.calc_p_value(6.635) == Approx(0.01).margin(test::tolerance(0.0028)));

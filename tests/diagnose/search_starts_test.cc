@@ -12,7 +12,7 @@
 namespace strut {
 namespace {
 
-/// Accelerations of body and wheels while a car crosses the bump, at a relative error of `effect`.
+/// The body's vertical acceleration while a car crosses the bump, at a relative error of `effect`.
 Eigen::VectorXd simulate(const std::string& effect, double error) {
   Case c = test::make_paper_case();
   c.maneuver.duration = 1.5;
