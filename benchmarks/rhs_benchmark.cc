@@ -54,7 +54,7 @@ struct alignas(4096) RightHandSide {  // the same offset in a page for all: offs
   }
   static Vehicle<T> make_vehicle() {
     const std::vector<const PreparedCase*> cases(kLaneCount<T>, &get_case());
-    return pack_vehicle<T>(cases.data());
+    return pack_vehicle<Sides::kBoth, T>(cases.data());
   }
   void calc() {
     calc_derivative(vehicle, Closure<T>::make(vehicle), TireMode::kRolling, x.data(), dx.data(),

@@ -145,6 +145,22 @@ MaskOf<T> is_finite(const T& x) {
   return abs(x) <= T(1.7976931348623157e308);
 }
 
+/// Whether two values are equal in every lane.
+template <class T>
+bool all_equal(const T& a, const T& b) {
+  return all((a >= b) & (a <= b));
+}
+
+/// Number of directions along which a T carries derivatives (dual.h).
+template <class T>
+inline constexpr std::size_t kDirectionCount = 0;
+
+/// Derivative along a direction in one lane; only duals have any.
+template <class T>
+double get_slope(const T& /*x*/, std::size_t /*direction*/, int /*lane*/) {
+  return 0.0;
+}
+
 template <class T>
 T square(const T& x) {
   return x * x;

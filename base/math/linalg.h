@@ -1,4 +1,5 @@
-// Small dense algebra over lanes: the 6 x 6 spatial system of a floating body.
+// Small dense algebra over lanes: the 6 x 6 spatial system of a floating body, and the 3 x 3 system
+// of one that moves in a plane.
 #pragma once
 
 #include <array>
@@ -7,17 +8,19 @@
 
 namespace strut {
 
-/// Symmetric 6 x 6 matrix, lower triangle by rows.
-template <class T>
-struct SymmetricMatrix6 {
-  std::array<T, 21> lower;
-  static constexpr int at(int row, int column) { return row * (row + 1) / 2 + column; }
+/// Symmetric N x N matrix, lower triangle by rows.
+template <class T, std::size_t N>
+struct SymmetricMatrix {
+  std::array<T, N*(N + 1) / 2> lower;
+  static constexpr std::size_t at(std::size_t row, std::size_t column) {
+    return row * (row + 1) / 2 + column;
+  }
 };
 
 /// [m I, -S~; S~, J]: inertia of a body of mass m, first moment S, inertia J about the origin.
 template <class T>
-SymmetricMatrix6<T> make_spatial_inertia(const T& mass, const Vec3<T>& moment,
-                                         const Sym3<T>& inertia) {
+SymmetricMatrix<T, 6> make_spatial_inertia(const T& mass, const Vec3<T>& moment,
+                                           const Sym3<T>& inertia) {
   const T zero(0.0);
   const Vec3<T>& s = moment;
   const Sym3<T>& j = inertia;
@@ -29,32 +32,43 @@ SymmetricMatrix6<T> make_spatial_inertia(const T& mass, const Vec3<T>& moment,
            -s.y, s.x,  zero, j.xz, j.yz, j.zz}};
 }
 
-/// a += scale c c^T.
+/// make_spatial_inertia for motion along x and z and rotation about y alone.
 template <class T>
-void add_rank_one(SymmetricMatrix6<T>& a, const std::array<T, 6>& c, const T& scale) {
-  for (int row = 0; row < 6; ++row) {
+SymmetricMatrix<T, 3> make_planar_inertia(const T& mass, const Vec3<T>& moment,
+                                          const Sym3<T>& inertia) {
+  return {{mass,          //
+           T(0.0), mass,  //
+           moment.z, -moment.x, inertia.yy}};
+}
+
+/// a += scale c c^T.
+template <class T, std::size_t N>
+void add_rank_one(SymmetricMatrix<T, N>& a, const std::array<T, N>& c, const T& scale) {
+  for (std::size_t row = 0; row < N; ++row) {
     const T scaled = scale * c[row];
-    for (int column = 0; column <= row; ++column) a.lower[a.at(row, column)] += scaled * c[column];
+    for (std::size_t column = 0; column <= row; ++column) {
+      a.lower[a.at(row, column)] += scaled * c[column];
+    }
   }
 }
 
 /// Solves a x = b for symmetric positive definite a by L D L^T; x replaces b, factors replace a.
-template <class T>
-void solve_ldlt(SymmetricMatrix6<T>& a, std::array<T, 6>& b) {
-  std::array<T, 6> inverse_pivot;
-  for (int k = 0; k < 6; ++k) {
+template <class T, std::size_t N>
+void solve_ldlt(SymmetricMatrix<T, N>& a, std::array<T, N>& b) {
+  std::array<T, N> inverse_pivot;
+  for (std::size_t k = 0; k < N; ++k) {
     inverse_pivot[k] = T(1.0) / a.lower[a.at(k, k)];
-    for (int row = k + 1; row < 6; ++row) {
+    for (std::size_t row = k + 1; row < N; ++row) {
       const T factor = a.lower[a.at(row, k)] * inverse_pivot[k];
-      for (int column = k + 1; column <= row; ++column) {
+      for (std::size_t column = k + 1; column <= row; ++column) {
         a.lower[a.at(row, column)] -= factor * a.lower[a.at(column, k)];
       }
       b[row] -= factor * b[k];
     }
   }
-  for (int k = 5; k >= 0; --k) {
+  for (std::size_t k = N; k-- > 0;) {
     b[k] *= inverse_pivot[k];
-    for (int row = k + 1; row < 6; ++row) {
+    for (std::size_t row = k + 1; row < N; ++row) {
       b[k] -= a.lower[a.at(row, k)] * inverse_pivot[k] * b[row];
     }
   }

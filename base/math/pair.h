@@ -16,6 +16,10 @@ struct PairMask {
   friend PairMask operator!(PairMask x) { return {!x.a, !x.b}; }
 };
 
+/// A number that stands for both values of a Pair<T>.
+template <class Number, class T>
+concept SingleOf = std::is_convertible_v<Number, T>;
+
 /// Two values of T; arithmetic is by element. A T or a double stands for both.
 template <class T>
 struct Pair {
@@ -25,8 +29,8 @@ struct Pair {
   Pair() = default;
   Pair(const T& first, const T& second) : a(first), b(second) {}
   Pair(const T& both) : a(both), b(both) {}  // NOLINT: a T stands for both
-  template <class Number>
-  requires(std::is_arithmetic_v<Number> && !std::is_same_v<T, Number>) Pair(Number both)
+  template <SingleOf<T> Number>
+  requires(!std::is_same_v<T, Number>) Pair(const Number& both)
       : a(both), b(both) {}  // NOLINT: so does a number
 
   friend Pair operator+(const Pair& x, const Pair& y) { return {x.a + y.a, x.b + y.b}; }
@@ -34,6 +38,38 @@ struct Pair {
   friend Pair operator*(const Pair& x, const Pair& y) { return {x.a * y.a, x.b * y.b}; }
   friend Pair operator/(const Pair& x, const Pair& y) { return {x.a / y.a, x.b / y.b}; }
   friend Pair operator-(const Pair& x) { return {-x.a, -x.b}; }
+  template <SingleOf<T> S>
+  friend Pair operator+(const S& s, const Pair& x) {
+    return {s + x.a, s + x.b};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator+(const Pair& x, const S& s) {
+    return {x.a + s, x.b + s};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator-(const S& s, const Pair& x) {
+    return {s - x.a, s - x.b};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator-(const Pair& x, const S& s) {
+    return {x.a - s, x.b - s};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator*(const S& s, const Pair& x) {
+    return {s * x.a, s * x.b};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator*(const Pair& x, const S& s) {
+    return {x.a * s, x.b * s};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator/(const S& s, const Pair& x) {
+    return {s / x.a, s / x.b};
+  }
+  template <SingleOf<T> S>
+  friend Pair operator/(const Pair& x, const S& s) {
+    return {x.a / s, x.b / s};
+  }
   Pair& operator+=(const Pair& y) { return *this = *this + y; }
   Pair& operator-=(const Pair& y) { return *this = *this - y; }
   Pair& operator*=(const Pair& y) { return *this = *this * y; }

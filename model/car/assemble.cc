@@ -88,7 +88,7 @@ State<double> make_rest_state(double center_height) {
 
 /// Sets the spring forces at nominal trim, from the equilibrium of each corner.
 void fit_preload(AssembledVehicle& car) {
-  Vehicle<double> bare{car.layout, car.numbers, {}, {}};
+  Vehicle<double> bare{car.layout, car.numbers, car.pacejka, {}, {}};
   bare.layout.on_bump.fill(false);
   Workspace<double> ws{};
   State<double> x = make_rest_state(car.center_height), dx{};
@@ -147,7 +147,7 @@ void check_chassis_inertia(const Sym3<double>& j) {
 AssembledVehicle assemble_vehicle(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
   AssembledVehicle car{};
   car.numbers.tire.fill(make_tire(spec.tire));
-  car.numbers.pacejka = spec.pacejka;
+  car.pacejka = spec.pacejka;
   car.numbers.gravity = maneuver.gravity;
   car.numbers.imu = spec.imu_position;
   car.center_height = spec.whole.centroid_height;

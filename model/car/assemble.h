@@ -3,6 +3,7 @@
 
 #include "model/car/build_corner.h"
 #include "model/car/closures.h"
+#include "model/car/sides.h"
 #include "model/car/spec.h"
 #include "model/car/vehicle.h"
 #include "model/error/model_error.h"
@@ -14,6 +15,7 @@ namespace strut {
 struct AssembledVehicle {
   VehicleLayout layout;
   VehicleParameters<double> numbers;
+  Pac2002<double> pacejka;
   std::array<double, kCorners> nominal_load;  // N, at rest
   std::array<double, kCorners> preload;       // N, spring force at nominal trim
   double center_height = 0.0;                 // m, chassis origin over the ground at nominal trim
@@ -50,28 +52,29 @@ Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 /// chassis origin starts at x = 0.
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver);
 
-/// Fills the lists of spring, damper and effect elements from the vehicle's parameters, and the
-/// list of force maps from the maps of each lane.
-template <class T>
+/// Fills the lists of spring, damper and effect elements of the computed corners from the vehicle's
+/// parameters, and the list of force maps from the maps of each lane.
+template <Sides S = Sides::kBoth, class T>
 void fill_strut_elements(Vehicle<T>& vehicle, const CornerForceMaps* const* maps = nullptr) {
   static_assert(kCorners <= kMaxElements, "each corner adds at most one element of a kind");
   const VehicleLayout& layout = vehicle.layout;
   const VehicleParameters<T>& numbers = vehicle.numbers;
   vehicle.struts = {};
   vehicle.effects = {};
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const unsigned bits = layout.strut_effects[c];
     std::get<0>(vehicle.struts).add(c, numbers.spring[c]);
     if ((bits & kShapedDamper) == 0) std::get<1>(vehicle.struts).add(c, numbers.damper[c]);
     vehicle.effects.add(c, bits, numbers.effects[c], layout.damper_curve[axle_of(c)]);
   }
   for (int axle = 0; axle < kAxles; ++axle) {
-    if (!layout.has_anti_roll_bar[axle]) continue;
+    // Bars exert no force in a symmetric motion.
+    if (S == Sides::kLeft || !layout.has_anti_roll_bar[axle]) continue;
     vehicle.effects.add_bar(2 * axle, numbers.anti_roll_bar[axle]);
   }
   if (maps == nullptr) return;
-  vehicle.effects.add_maps(maps,
-                           [&](int c) { return numbers.nominal_length[c * kLines + kDamperLine]; });
+  const auto get_length = [&](int c) { return numbers.nominal_length[c * kLines + kDamperLine]; };
+  vehicle.effects.add_maps(maps, get_length, static_cast<std::size_t>(kCornerStride<S>));
 }
 
 }  // namespace strut

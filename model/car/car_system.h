@@ -18,12 +18,27 @@ inline constexpr double kSettlingTime = 0.2;
 /// states.
 enum class SpinTreatment { kExponential, kExplicit };
 
-/// The closure is called through function pointers, so that integrators are compiled once for all
-/// closures.
-template <class T>
+/// State of a system that computes the sides S: the number of its components, the component of
+/// StateIndex at an index, and the index of a component.
+template <Sides S>
+struct SystemState : StateIndex {
+  static constexpr int get(int index) { return index; }
+  static constexpr int find(int component) { return component; }
+};
+template <>
+struct SystemState<Sides::kLeft> : SymmetricStateIndex {};
+
+/// The car, or the left side of one that moves symmetrically, whose state is that of
+/// SymmetricStateIndex. The closure is called through function pointers, so that integrators are
+/// compiled once for all closures.
+template <class T, Sides S = Sides::kBoth>
 class CarSystem {
  public:
-  static constexpr int kCapacity = StateIndex::kCount;
+  using Layout = SystemState<S>;
+  static constexpr int kCapacity = Layout::kCount;
+  static constexpr int kStride = kCornerStride<S>;
+  static constexpr int kComputed = kCorners / kStride;  // corners
+  static constexpr int kStrutStates = StateIndex::kStrutCount / kStride;
   using Mask = MaskOf<T>;
   static_assert(kCorners + StateIndex::kStrutCount <= kMaxStiff);
 
@@ -42,36 +57,40 @@ class CarSystem {
   }
 
   int size() const {
-    if (vehicle_.effects.has_states()) return StateIndex::kCount;
-    return vehicle_.layout.relaxation ? StateIndex::kCountWithoutStruts
-                                      : StateIndex::kCountWithoutRelaxation;
+    if (vehicle_.effects.has_states()) return Layout::kCount;
+    return vehicle_.layout.relaxation ? Layout::kCountWithoutStruts
+                                      : Layout::kCountWithoutRelaxation;
   }
   /// The spins of the wheels, then the states of the struts, if there are any.
   int stiff_at(int i) const {
-    return i < kCorners ? StateIndex::kSpin + i : StateIndex::kStrut + (i - kCorners);
+    constexpr int kSpin = Layout::find(StateIndex::kSpin);
+    constexpr int kStrut = Layout::find(StateIndex::kStrut);
+    return i < kComputed ? kSpin + i : kStrut + (i - kComputed);
   }
   int stiff_count() const {
     if (!stiff_) return 0;
-    return vehicle_.effects.has_states() ? kCorners + StateIndex::kStrutCount : kCorners;
+    return vehicle_.effects.has_states() ? kComputed + kStrutStates : kComputed;
   }
 
   /// Puts every wheel on the road segment under it.
-  void start(const T* x) {
+  void start(const T* reduced) {
     if (!has_kinks_) return;
     T dx[kCapacity];
-    derivative_(*this, x, dx);
-    for (int c = 0; c < kCorners; ++c) {
+    derivative_(*this, reduced, dx);
+    const T* x = expand(reduced);
+    for (int c = 0; c < kCorners; c += kStride) {
       if (!vehicle_.layout.on_bump[c]) continue;
       workspace_.segment[c] = find_segment(vehicle_.road, calc_wheel_x(x, c));
     }
   }
 
-  void calc_derivative(const T& /*t*/, const T* x, T* dx, T* decay) {
-    derivative_(*this, x, dx);
+  void calc_derivative(const T& /*t*/, const T* reduced, T* dx, T* decay) {
+    derivative_(*this, reduced, dx);
+    const T* x = get_expanded(reduced);
     if (stiff_) {
-      for (int c = 0; c < kCorners; ++c) decay[c] = workspace_.spin_decay[c];
-      for (int i = kCorners; i < stiff_count(); ++i) {
-        decay[i] = workspace_.strut_decay[i - kCorners];
+      for (int i = 0; i < kComputed; ++i) decay[i] = workspace_.spin_decay[kStride * i];
+      for (int i = kComputed; i < stiff_count(); ++i) {
+        decay[i] = workspace_.strut_decay[kStride * (i - kComputed)];
       }
     }
     failed_ = (!is_finite(workspace_.acceleration.z + workspace_.acceleration.x +
@@ -82,29 +101,34 @@ class CarSystem {
               (abs(x[StateIndex::kVelocity + 2]) > T(kDivergenceSpeed));
     largest_loop_error_ = max(largest_loop_error_, workspace_.closure_error);
     update_trigger(x);
-    for (int c = 0; has_kinks_ && c < kCorners; ++c) kink_x_[c] = calc_wheel_x(x, c);
+    for (int c = 0; has_kinks_ && c < kCorners; c += kStride) kink_x_[c] = calc_wheel_x(x, c);
   }
 
-  int guard_count() const { return has_kinks_ ? 2 * kCorners : kCorners; }
+  int guard_count() const { return has_kinks_ ? 2 * kComputed : kComputed; }
   void get_guards(T* g) const {
-    for (int c = 0; c < kCorners; ++c) g[c] = workspace_.contact[c].unclamped_load;
-    for (int c = 0; has_kinks_ && c < kCorners; ++c) g[kCorners + c] = calc_kink_distance(c);
+    for (int i = 0; i < kComputed; ++i) g[i] = workspace_.contact[kStride * i].unclamped_load;
+    for (int i = 0; has_kinks_ && i < kComputed; ++i) {
+      g[kComputed + i] = calc_kink_distance(kStride * i);
+    }
   }
   /// Guards and trigger at any state, from the positions of the wheels without the dynamics.
-  void calc_guards(const T& /*t*/, const T* x, T* g) {
+  void calc_guards(const T& /*t*/, const T* reduced, T* g) {
+    const T* x = expand(reduced);
     workspace_.rotation = rotation_of(get_quaternion(x));
-    for (int c = 0; c < kCorners; ++c) {
+    for (int c = 0; c < kCorners; c += kStride) {
       place_wheel_(*this, c, x[StateIndex::kCorner + c]);
       if (has_kinks_) kink_x_[c] = calc_wheel_x(x, c);
     }
-    for (int axle = 0; axle < kAxles; ++axle) update_contacts(vehicle_, x, axle, workspace_);
+    for (int i = 0; i < kWheelPairs<S>; ++i) {
+      update_contacts<S>(vehicle_, x, get_wheel_pair<S>(i), workspace_);
+    }
     update_trigger(x);
     get_guards(g);
   }
   /// A wheel that has passed a kink moves on to the next road segment.
   bool cross(int guard, Mask lanes) {
-    if (guard < kCorners) return false;
-    T& segment = workspace_.segment[guard - kCorners];
+    if (guard < kComputed) return false;
+    T& segment = workspace_.segment[kStride * (guard - kComputed)];
     segment = select(lanes, segment + T(1.0), segment);
     return true;
   }
@@ -112,9 +136,9 @@ class CarSystem {
   /// True on the bump, within one and a half coarse steps before it, and for kSettlingTime after
   /// it.
   Mask wants_fine_step(const T& /*t*/, const T* x, const T* /*dx*/, const T& coarse_step) const {
-    const T& speed = x[StateIndex::kVelocity];
+    const T& speed = x[Layout::find(StateIndex::kVelocity)];
     if (vehicle_.road.is_rough()) return !(speed < speed);
-    const T ahead = x[StateIndex::kPosition] - vehicle_.road.center;
+    const T ahead = x[Layout::find(StateIndex::kPosition)] - vehicle_.road.center;
     const T front = ahead + vehicle_.numbers.geometry[kFrontLeft].wheel_center.x;
     const T rear = ahead + vehicle_.numbers.geometry[kRearLeft].wheel_center.x;
     return (front > vehicle_.road.reach_begin - T(1.5) * coarse_step * speed) &
@@ -134,12 +158,14 @@ class CarSystem {
   }
 
   /// Channels at the state of the last calc_derivative.
-  void observe(const T& t, const T* x, T* out) {
+  void observe(const T& t, const T* reduced, T* out) {
+    const T* x = expand(reduced);
     observe_body(vehicle_, t, x, workspace_, out);
-    for (int c = 0; c < kCorners; ++c) {
+    for (int c = 0; c < kCorners; c += kStride) {
+      T* own = out + CarChannel::kCornerBegin + c * CarChannel::kCornerChannels;
       center_acceleration_(*this, c, x[StateIndex::kCorner + c]);
-      observe_corner(vehicle_, x, workspace_, c,
-                     out + CarChannel::kCornerBegin + c * CarChannel::kCornerChannels);
+      observe_corner(vehicle_, x, workspace_, c, own);
+      if constexpr (S == Sides::kLeft) mirror_corner(own, own + CarChannel::kCornerChannels);
     }
   }
 
@@ -151,9 +177,17 @@ class CarSystem {
 
  private:
   template <class Closure>
-  static void call_derivative(CarSystem& self, const T* x, T* dx) {
-    strut::calc_derivative(self.vehicle_, *static_cast<const Closure*>(self.closure_),
-                           TireMode::kRolling, x, dx, self.workspace_);
+  static void call_derivative(CarSystem& self, const T* reduced, T* dx) {
+    const auto& closure = *static_cast<const Closure*>(self.closure_);
+    const T* x = self.expand(reduced);
+    if constexpr (S == Sides::kBoth) {
+      strut::calc_derivative<S>(self.vehicle_, closure, TireMode::kRolling, x, dx, self.workspace_);
+    } else {
+      State<T> all;
+      strut::calc_derivative<S>(self.vehicle_, closure, TireMode::kRolling, x, all.data(),
+                                self.workspace_);
+      for (int i = 0; i < self.size(); ++i) dx[i] = all[Layout::get(i)];
+    }
   }
   template <class Closure>
   static void call_place_wheel(CarSystem& self, int corner, const T& q) {
@@ -164,6 +198,20 @@ class CarSystem {
   static void call_center_acceleration(CarSystem& self, int corner, const T& q) {
     static_cast<const Closure*>(self.closure_)
         ->update_center_acceleration(corner, q, self.workspace_.motion[corner]);
+  }
+
+  /// The state in the layout of StateIndex; of a symmetric motion the right side and the lateral
+  /// components are zero.
+  const T* expand(const T* reduced) {
+    if constexpr (S == Sides::kLeft) {
+      for (int i = 0; i < size(); ++i) expanded_[Layout::get(i)] = reduced[i];
+    }
+    return get_expanded(reduced);
+  }
+  /// The state that was expanded last.
+  const T* get_expanded(const T* reduced) const {
+    if constexpr (S == Sides::kBoth) return reduced;
+    return expanded_.data();
   }
 
   /// World x of a wheel center.
@@ -182,6 +230,7 @@ class CarSystem {
                                                                                       : kRearRight;
   }
   int trigger_right() const {
+    if constexpr (S == Sides::kLeft) return trigger_left();
     return vehicle_.layout.on_bump[kRearRight] || !vehicle_.layout.on_bump[kRearLeft] ? kRearRight
                                                                                       : kRearLeft;
   }
@@ -198,6 +247,7 @@ class CarSystem {
   T largest_loop_error_{0.0};
   T wheel_x_{};
   std::array<T, kCorners> kink_x_{};
+  State<T> expanded_{};
 };
 
 }  // namespace strut

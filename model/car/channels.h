@@ -73,4 +73,11 @@ void observe_corner(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& w
   out[C::kWheelSpeed] = x[I::kSpin + corner] - dot(m.axis, m.upright_rate) * rate - dot(m.axis, w);
 }
 
+/// Channels of a right corner that moves as the mirror image of the left one.
+template <class T>
+void mirror_corner(const T* left, T* right) {
+  for (int i = 0; i < CarChannel::kCornerChannels; ++i) right[i] = left[i];
+  right[CarChannel::kTireForceY] = -left[CarChannel::kTireForceY];
+}
+
 }  // namespace strut

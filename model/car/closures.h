@@ -6,6 +6,9 @@
 //   c.update_center_acceleration(corner, q, motion): center_qq, for output, after c(...)
 #pragma once
 
+#include <memory>
+
+#include "base/math/dual.h"
 #include "model/car/vehicle.h"
 #include "model/multibody/corner_motion.h"
 #include "model/multibody/corner_table.h"
@@ -42,20 +45,42 @@ struct VehicleTables {
   double half_travel = 0.0;  // m, maximum |q| of the fit
 };
 
+/// Derivatives of tables along N directions; null where they do not change.
+template <class T, std::size_t N>
+using TableSlopes = std::array<std::unique_ptr<VehicleTables<T>>, N>;
+
 template <class T, class C>
 struct TableClosure {
   const VehicleTables<C>* tables;
+  const TableSlopes<Passive<T>, kDirectionCount<T>>* slopes = nullptr;  // of duals only
 
   /// The loop error of a table is zero.
   T operator()(int corner, const T& q, CornerMotion<T>& motion) const {
-    update_corner_motion(tables->corner[corner], tables->degree[corner], q, motion);
+    evaluate(corner, q, motion, [](auto&&... arguments) { update_corner_motion(arguments...); });
     return T(0.0);
   }
   void place_wheel(int corner, const T& q, CornerMotion<T>& motion) const {
-    update_wheel_place(tables->corner[corner], tables->degree[corner], q, motion);
+    evaluate(corner, q, motion, [](auto&&... arguments) { update_wheel_place(arguments...); });
   }
   void update_center_acceleration(int corner, const T& q, CornerMotion<T>& motion) const {
-    strut::update_center_acceleration(tables->corner[corner], tables->degree[corner], q, motion);
+    evaluate(corner, q, motion,
+             [](auto&&... arguments) { strut::update_center_acceleration(arguments...); });
+  }
+
+ private:
+  /// `update(coefficients, degrees, q, motion)` with the tables, and with their derivatives.
+  template <class Update>
+  void evaluate(int corner, const T& q, CornerMotion<T>& motion, const Update& update) const {
+    update(tables->corner[corner], tables->degree[corner], q, motion);
+    if constexpr (HasDerivatives<T>) {
+      for (std::size_t i = 0; slopes != nullptr && i < slopes->size(); ++i) {
+        if ((*slopes)[i] == nullptr) continue;
+        const VehicleTables<Passive<T>>& moved = *(*slopes)[i];
+        CornerMotion<Passive<T>> slope{};
+        update(moved.corner[corner], moved.degree[corner], q.v, slope);
+        add_slope(slope, i, motion);
+      }
+    }
   }
 };
 

@@ -16,11 +16,12 @@
 //
 // with p, l linear and angular momentum and beta the upright's angular velocity per unit dq. The
 // spin of a wheel measured in inertial space does not couple, so 14 accelerations need one 6 x 6
-// solve. Derivation and the link to the paper's equations (1)-(3): docs/theory.md.
+// solve; of a car that moves symmetrically the left corners and a 3 x 3 solve suffice (sides.h).
+// Derivation and the link to the paper's equations (1)-(3): docs/theory.md.
 #pragma once
 
 #include "base/math/linalg.h"
-#include "base/math/pair.h"
+#include "model/car/sides.h"
 #include "model/car/state.h"
 #include "model/car/vehicle.h"
 
@@ -56,17 +57,34 @@ struct Workspace {
 /// Forces of the tires: a car at rest does not roll and has no in-plane tire forces.
 enum class TireMode { kRolling, kFrictionless };
 
-/// Height and slope of the road under a wheel center at world x.
+/// Height and slope of a road under a wheel center at world x.
+template <class T>
+RoadPoint<T> find_road(const VehicleLayout& layout, const Road<T>& road, const T& world_x,
+                       int corner, const T& segment) {
+  RoadPoint<T> point{T(0.0), T(0.0)};
+  if (layout.on_bump[corner]) point = calc_road_point(road, world_x, segment);
+  const RoughTracks<T>& rough = road.rough[corner % 2];
+  if (rough.is_rough) add_roughness(rough, world_x - road.center, point.height, point.slope);
+  return point;
+}
+
+/// The same of the vehicle's road; of a dual with the derivatives of the road itself.
 template <class T>
 RoadPoint<T> find_road(const Vehicle<T>& vehicle, const T& world_x, int corner,
                        const Workspace<T>& ws) {
-  RoadPoint<T> point{T(0.0), T(0.0)};
-  if (vehicle.layout.on_bump[corner]) {
-    point = calc_road_point(vehicle.road, world_x, ws.segment[corner]);
-  }
-  const RoughTracks<T>& rough = vehicle.road.rough[corner % 2];
-  if (rough.is_rough) {
-    add_roughness(rough, world_x - vehicle.road.center, point.height, point.slope);
+  const T& segment = ws.segment[corner];
+  RoadPoint<T> point = find_road(vehicle.layout, vehicle.road, world_x, corner, segment);
+  if constexpr (HasDerivatives<T>) {
+    for (std::size_t i = 0; vehicle.road_slopes && i < kDirectionCount<T>; ++i) {
+      if (!(*vehicle.road_slopes)[i]) continue;
+      const RoadNeighbors<Passive<T>>& along = *(*vehicle.road_slopes)[i];
+      const auto find = [&](const Road<Passive<T>>& road) {
+        return find_road(vehicle.layout, road, world_x.v, corner, segment.v);
+      };
+      const RoadPoint<Passive<T>> above = find(along.above), below = find(along.below);
+      point.height.d[i] += (above.height - below.height) * along.inverse_distance;
+      point.slope.d[i] += (above.slope - below.slope) * along.inverse_distance;
+    }
   }
   return point;
 }
@@ -81,34 +99,43 @@ WheelMotion<T> calc_wheel_motion(const T* x, int corner, const CornerMotion<T>& 
           w + rate * motion.upright_rate, x[I::kSpin + corner]};
 }
 
-/// Decrease of the clearance by the run-out of an axle's wheels [m].
+/// Decrease of the clearance by the run-out of two wheels [m].
 template <class T>
-Pair<T> calc_runout(const Vehicle<T>& vehicle, const T* x, int axle) {
-  T offset[2];
-  for (int side = 0; side < 2; ++side) {
-    const int corner = 2 * axle + side;
+Pair<T> calc_runout(const Vehicle<T>& vehicle, const T* x, WheelPair pair) {
+  const auto calc = [&](int corner) {
     const WheelRunout<T>& runout = vehicle.numbers.runout[corner];
-    offset[side] = runout.amplitude * cos(x[StateIndex::kWheelAngle + corner] + runout.phase);
-  }
-  return {offset[0], offset[1]};
+    return T(runout.amplitude * cos(x[StateIndex::kWheelAngle + corner] + runout.phase));
+  };
+  return {calc(pair.first), calc(pair.second)};
 }
 
-/// Motion of both wheels of an axle and their contact with the road.
-template <class T>
-TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int axle,
+/// Springs of the tires of two wheels: one value for both where they are of one axle.
+template <Sides S, class T>
+decltype(auto) get_tires(const VehicleParameters<T>& numbers, WheelPair pair) {
+  if constexpr (S == Sides::kBoth) {
+    return (numbers.tire[axle_of(pair.first)]);
+  } else {
+    return join_pair(numbers.tire[axle_of(pair.first)], numbers.tire[axle_of(pair.second)]);
+  }
+}
+
+/// Motion of two wheels and their contact with the road.
+template <Sides S, class T>
+TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, WheelPair pair,
                                      Workspace<T>& ws) {
-  const int left = 2 * axle, right = left + 1;
+  const int wheel[2] = {pair.first, pair.second};
   const Vec3<T> position = get_vec3(x, StateIndex::kPosition);
   RoadPoint<T> road[2];
   Vec3<T> center[2];
-  for (int c = left; c <= right; ++c) {
+  for (int i = 0; i < 2; ++i) {
+    const int c = wheel[i];
     ws.wheel[c] = calc_wheel_motion(x, c, ws.motion[c]);
-    center[c - left] = position + ws.rotation * ws.motion[c].center;
-    road[c - left] = find_road(vehicle, center[c - left].x, c, ws);
+    center[i] = position + ws.rotation * ws.motion[c].center;
+    road[i] = find_road(vehicle, center[i].x, c, ws);
   }
   const Pair<T> slope(road[0].slope, road[1].slope);
   Pair<T> clearance(center[0].z - road[0].height, center[1].z - road[1].height);
-  if (vehicle.layout.has_runout) clearance = clearance - calc_runout(vehicle, x, axle);
+  if (vehicle.layout.has_runout) clearance = clearance - calc_runout(vehicle, x, pair);
   const Pair<T> normal_z = Pair<T>(1.0) / sqrt(Pair<T>(1.0) + slope * slope);
   // The road's normal (-slope, 0, 1) in chassis axes.
   const Vec3<T> forward{ws.rotation.x.x, ws.rotation.y.x, ws.rotation.z.x};
@@ -116,27 +143,28 @@ TireContact<Pair<T>> update_contacts(const Vehicle<T>& vehicle, const T* x, int 
   const Vec3<Pair<T>> normal{normal_z * (up.x - slope * forward.x),
                              normal_z * (up.y - slope * forward.y),
                              normal_z * (up.z - slope * forward.z)};
+  const auto& tires = get_tires<S>(vehicle.numbers, pair);
   const TireContact<Pair<T>> contact = calc_tire_contact(
-      vehicle.numbers.tire[axle], vehicle.layout.contact, vehicle.layout.progressive_tire,
-      join_pair(ws.wheel[left], ws.wheel[right]), normal, normal_z, clearance);
-  split_pair(contact, ws.contact[left], ws.contact[right]);
+      tires, vehicle.layout.contact, vehicle.layout.progressive_tire,
+      join_pair(ws.wheel[pair.first], ws.wheel[pair.second]), normal, normal_z, clearance);
+  split_pair(contact, ws.contact[pair.first], ws.contact[pair.second]);
   if (!vehicle.layout.tire_curve) return contact;
-  for (int c = left; c <= right; ++c) {
-    TireContact<T>& wheel = ws.contact[c];
-    wheel.unclamped_load +=
-        calc_curved_load(vehicle.numbers.tire[axle], *vehicle.layout.tire_curve, wheel.deflection);
-    wheel.load = max(wheel.unclamped_load, T(0.0));
+  for (const int c : wheel) {
+    TireContact<T>& own = ws.contact[c];
+    own.unclamped_load += calc_curved_load(vehicle.numbers.tire[axle_of(c)],
+                                           *vehicle.layout.tire_curve, own.deflection);
+    own.load = max(own.unclamped_load, T(0.0));
   }
-  return join_pair(ws.contact[left], ws.contact[right]);
+  return join_pair(ws.contact[pair.first], ws.contact[pair.second]);
 }
 
-/// Forces on both tires of an axle.
-template <class T>
-void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle,
+/// Forces on two tires.
+template <Sides S, class T>
+void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, WheelPair pair,
                   const TireContact<Pair<T>>& contact, Workspace<T>& ws) {
-  const int left = 2 * axle, right = left + 1;
+  const int a = pair.first, b = pair.second;
   if (mode == TireMode::kFrictionless) {
-    for (int c = left; c <= right; ++c) {
+    for (const int c : {a, b}) {
       ws.wrench[c] = {ws.contact[c].load * ws.contact[c].normal,
                       {T(0.0), T(0.0), T(0.0)},
                       T(0.0),
@@ -146,19 +174,19 @@ void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle
     return;
   }
   const VehicleParameters<T>& numbers = vehicle.numbers;
-  const WheelMotion<Pair<T>> wheel = join_pair(ws.wheel[left], ws.wheel[right]);
+  const WheelMotion<Pair<T>> wheel = join_pair(ws.wheel[a], ws.wheel[b]);
   const TireSlipState<Pair<T>> slip =
-      calc_tire_slip(numbers.pacejka, numbers.tire[axle], wheel, contact);
+      calc_tire_slip(vehicle.pacejka, get_tires<S>(numbers, pair), wheel, contact);
   Pair<T> kappa = slip.kappa, tan_alpha = slip.tan_alpha;
   if (vehicle.layout.relaxation) {
-    kappa = {x[StateIndex::kKappa + left], x[StateIndex::kKappa + right]};
-    tan_alpha = {x[StateIndex::kTanAlpha + left], x[StateIndex::kTanAlpha + right]};
+    kappa = {x[StateIndex::kKappa + a], x[StateIndex::kKappa + b]};
+    tan_alpha = {x[StateIndex::kTanAlpha + a], x[StateIndex::kTanAlpha + b]};
   }
-  const Pair<T> side(T(1.0), T(-1.0));
-  split_pair(calc_tire_wrench(numbers.pacejka, vehicle.layout.tire_parts, wheel, contact, slip,
+  const Pair<T> side(T(is_right(a) ? -1.0 : 1.0), T(is_right(b) ? -1.0 : 1.0));
+  split_pair(calc_tire_wrench(vehicle.pacejka, vehicle.layout.tire_parts, wheel, contact, slip,
                               kappa, tan_alpha, side),
-             ws.wrench[left], ws.wrench[right]);
-  split_pair(slip, ws.slip[left], ws.slip[right]);
+             ws.wrench[a], ws.wrench[b]);
+  split_pair(slip, ws.slip[a], ws.slip[b]);
 }
 
 /// Minimum relaxation length [m]; relaxation lengths vanish with the load, for example when a tire
@@ -166,13 +194,13 @@ void update_tires(const Vehicle<T>& vehicle, const T* x, TireMode mode, int axle
 inline constexpr double kMinRelaxation = 0.05;
 
 /// First-order slip: length * d(slip)/dt = speed * (steady slip - slip).
-template <class T>
+template <Sides S, class T>
 void add_relaxation(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& ws, T* dx) {
   using I = StateIndex;
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const TireSlipState<T>& slip = ws.slip[c];
     const RelaxationLength<T> length = calc_relaxation_length(
-        vehicle.numbers.pacejka, ws.contact[c].load, dot(ws.wheel[c].axis, ws.contact[c].normal));
+        vehicle.pacejka, ws.contact[c].load, dot(ws.wheel[c].axis, ws.contact[c].normal));
     dx[I::kKappa + c] =
         slip.speed * (slip.kappa - x[I::kKappa + c]) / max(length.longitudinal, T(kMinRelaxation));
     dx[I::kTanAlpha + c] = slip.speed * (slip.tan_alpha - x[I::kTanAlpha + c]) /
@@ -181,17 +209,17 @@ void add_relaxation(const Vehicle<T>& vehicle, const T* x, const Workspace<T>& w
 }
 
 /// Composite first moment and inertia of the whole car about the chassis origin.
-template <class T>
+template <Sides S, class T>
 void update_composite(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws) {
   const RigidBody<T>& chassis = vehicle.numbers.chassis;
   ws.moment = chassis.mass * chassis.center;
   ws.inertia =
       chassis.inertia + T(0.5) * chassis.mass * inertia_form(chassis.center, chassis.center);
   ws.moment_rate = {T(0.0), T(0.0), T(0.0)};
-  for (int c = 0; c < kCorners; ++c) {
-    ws.moment += ws.motion[c].moment;
-    ws.inertia += ws.motion[c].inertia;
-    ws.moment_rate += x[StateIndex::kCornerRate + c] * ws.motion[c].moment_q;
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
+    ws.moment += add_polar_sides<S>(ws.motion[c].moment);
+    ws.inertia += add_sides<S>(ws.motion[c].inertia);
+    ws.moment_rate += add_polar_sides<S>(x[StateIndex::kCornerRate + c] * ws.motion[c].moment_q);
   }
 }
 
@@ -220,7 +248,7 @@ T add_lift(const Vehicle<T>& vehicle, const Vec3<T>& v, const Vec3<T>& w, Vec3<T
 
 /// External and inertia forces: the right-hand sides of the equations at the top of this file.
 /// Returns the power of non-conservative forces [W].
-template <class T>
+template <Sides S = Sides::kBoth, class T>
 T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, GeneralizedForce<T>& rhs) {
   using I = StateIndex;
   const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
@@ -233,7 +261,7 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
   Vec3<T> moment = cross(ws.moment, gravity) - cross(ws.moment_rate, v) - cross(v, p);
   T power = T(0.0);
 
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const CornerMotion<T>& m = ws.motion[c];
     const TireWrench<T>& tire = ws.wrench[c];
     const T& rate = x[I::kCornerRate + c];
@@ -241,7 +269,7 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const T momentum = vehicle.numbers.inertia[c].spin_inertia * spin;
     const T rate2 = rate * rate;
     const Vec3<T> inertia_w = m.inertia_q * w;
-    l += rate * m.coupling + momentum * m.axis;
+    l += add_axial_sides<S>(rate * m.coupling + momentum * m.axis);
 
     const Vec3<T> contact_point = m.center + ws.contact[c].arm;
     const Vec3<T> arm_moment = cross(ws.contact[c].arm, tire.force) + tire.moment;
@@ -251,10 +279,10 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
     const T reaction = vehicle.numbers.drive_reaction * drive;
     ws.spin_moment[c] = tire_spin_moment + drive;
 
-    force += tire.force - rate2 * m.moment_qq;
-    moment += cross(contact_point, tire.force) + tire.moment -
-              (tire_spin_moment + reaction) * m.axis - rate * inertia_w - rate2 * m.coupling_q -
-              (momentum * rate) * m.axis_q;
+    force += add_polar_sides<S>(tire.force - rate2 * m.moment_qq);
+    moment += add_axial_sides<S>(cross(contact_point, tire.force) + tire.moment -
+                                 (tire_spin_moment + reaction) * m.axis - rate * inertia_w -
+                                 rate2 * m.coupling_q - (momentum * rate) * m.axis_q);
     const T upright_spin = dot(m.axis, m.upright_rate);
     const T tire_on_corner = dot(tire.force, m.center_q) + dot(arm_moment, m.upright_rate);
     rhs.corner[c] = tire_on_corner - tire_spin_moment * upright_spin + ws.strut[c].generalized +
@@ -262,9 +290,10 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
                     T(0.5) * dot(w, inertia_w) + momentum * dot(m.axis_q, w);
 
     const T relative_spin = spin - upright_spin * rate - dot(m.axis, w);
-    power += ws.strut[c].power + dot(tire.force, v) + dot(cross(contact_point, tire.force), w) +
-             dot(tire.moment, w) + tire_on_corner * rate + tire_spin_moment * relative_spin +
-             drive * spin - reaction * dot(m.axis, w);
+    power += add_sides<S>(T(ws.strut[c].power + dot(tire.force, v) +
+                            dot(cross(contact_point, tire.force), w) + dot(tire.moment, w) +
+                            tire_on_corner * rate + tire_spin_moment * relative_spin +
+                            drive * spin - reaction * dot(m.axis, w)));
   }
   if (vehicle.layout.has_lift) power += add_lift(vehicle, v, w, force, moment);
   rhs.force = force - cross(w, p);
@@ -272,36 +301,72 @@ T calc_forces(const Vehicle<T>& vehicle, const T* x, Workspace<T>& ws, Generaliz
   return power;
 }
 
-/// Eliminates the four corner accelerations, solves the 6 x 6 chassis block, substitutes back.
-template <class T>
+/// The system of the chassis' accelerations: x, y, z and about x, y, z.
+template <Sides S>
+struct ChassisSystem {
+  static constexpr std::size_t kSize = 6;
+  template <class T>
+  static std::array<T, kSize> gather(const Vec3<T>& linear, const Vec3<T>& angular) {
+    return {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z};
+  }
+  template <class T>
+  static void scatter(const std::array<T, kSize>& a, Vec3<T>& linear, Vec3<T>& angular) {
+    linear = {a[0], a[1], a[2]};
+    angular = {a[3], a[4], a[5]};
+  }
+  template <class T>
+  static SymmetricMatrix<T, kSize> make_inertia(const T& mass, const Workspace<T>& ws) {
+    return make_spatial_inertia(mass, ws.moment, ws.inertia);
+  }
+};
+
+/// The same for a symmetric motion, whose accelerations are along x and z and about y.
+template <>
+struct ChassisSystem<Sides::kLeft> {
+  static constexpr std::size_t kSize = 3;
+  template <class T>
+  static std::array<T, kSize> gather(const Vec3<T>& linear, const Vec3<T>& angular) {
+    return {linear.x, linear.z, angular.y};
+  }
+  template <class T>
+  static void scatter(const std::array<T, kSize>& a, Vec3<T>& linear, Vec3<T>& angular) {
+    linear = {a[0], T(0.0), a[1]};
+    angular = {T(0.0), a[2], T(0.0)};
+  }
+  template <class T>
+  static SymmetricMatrix<T, kSize> make_inertia(const T& mass, const Workspace<T>& ws) {
+    return make_planar_inertia(mass, ws.moment, ws.inertia);
+  }
+};
+
+/// Eliminates the corner accelerations, solves the chassis block, substitutes back.
+template <Sides S, class T>
 void solve_accelerations(const Vehicle<T>& vehicle, const GeneralizedForce<T>& rhs,
                          Workspace<T>& ws) {
-  SymmetricMatrix6<T> a = make_spatial_inertia(vehicle.numbers.mass, ws.moment, ws.inertia);
-  std::array<T, 6> b{rhs.force.x,  rhs.force.y,  rhs.force.z,
-                     rhs.moment.x, rhs.moment.y, rhs.moment.z};
-  std::array<std::array<T, 6>, kCorners> coupling;
+  using Chassis = ChassisSystem<S>;
+  auto a = Chassis::make_inertia(vehicle.numbers.mass, ws);
+  auto b = Chassis::gather(rhs.force, rhs.moment);
+  std::array<std::array<T, Chassis::kSize>, kCorners> coupling;
   std::array<T, kCorners> inverse;
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const CornerMotion<T>& m = ws.motion[c];
-    coupling[c] = {m.moment_q.x, m.moment_q.y, m.moment_q.z,
-                   m.coupling.x, m.coupling.y, m.coupling.z};
+    coupling[c] = Chassis::gather(m.moment_q, m.coupling);
     inverse[c] = T(1.0) / m.mass;
-    add_rank_one(a, coupling[c], -inverse[c]);
-    const T scaled = rhs.corner[c] * inverse[c];
-    for (int i = 0; i < 6; ++i) b[i] -= coupling[c][i] * scaled;
+    add_rank_one(a, coupling[c], add_sides<S>(T(-inverse[c])));
+    const T scaled = add_sides<S>(T(rhs.corner[c] * inverse[c]));
+    for (std::size_t i = 0; i < b.size(); ++i) b[i] -= coupling[c][i] * scaled;
   }
   solve_ldlt(a, b);
-  ws.acceleration = {b[0], b[1], b[2]};
-  ws.angular_acceleration = {b[3], b[4], b[5]};
-  for (int c = 0; c < kCorners; ++c) {
+  Chassis::scatter(b, ws.acceleration, ws.angular_acceleration);
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     T r = rhs.corner[c];
-    for (int i = 0; i < 6; ++i) r -= coupling[c][i] * b[i];
+    for (std::size_t i = 0; i < b.size(); ++i) r -= coupling[c][i] * b[i];
     ws.corner_acceleration[c] = r * inverse[c];
   }
 }
 
 /// Rates of position, orientation and wheel angles.
-template <class T>
+template <Sides S, class T>
 void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
   using I = StateIndex;
   const Vec3<T> v = get_vec3(x, I::kVelocity), w = get_vec3(x, I::kAngularVelocity);
@@ -313,7 +378,7 @@ void update_kinematic_rates(const T* x, const Workspace<T>& ws, T* dx) {
   dx[I::kQuaternion + 1] = T(0.5) * (e.w * w.x + e.y * w.z - e.z * w.y) + pull * e.x;
   dx[I::kQuaternion + 2] = T(0.5) * (e.w * w.y + e.z * w.x - e.x * w.z) + pull * e.y;
   dx[I::kQuaternion + 3] = T(0.5) * (e.w * w.z + e.x * w.y - e.y * w.x) + pull * e.z;
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const CornerMotion<T>& m = ws.motion[c];
     const T& rate = x[I::kCornerRate + c];
     dx[I::kCorner + c] = rate;
@@ -337,40 +402,42 @@ void update_strut_effects(const Vehicle<T>& vehicle, const T* x, T* dx, Workspac
 
 /// dx/dt of the car at state x. `closure(corner, q, motion)` computes the corner's motion functions
 /// and returns the residual loop error [m] (closures.h). ws.segment is input, the rest of ws
-/// output.
-template <class T, class Closure>
+/// output. With Sides::kLeft `x` is a symmetric motion of a car that is its own mirror image, and
+/// what belongs to the right side is neither read nor written.
+template <Sides S = Sides::kBoth, class T, class Closure>
 void calc_derivative(const Vehicle<T>& vehicle, const Closure& closure, TireMode mode, const T* x,
                      T* dx, Workspace<T>& ws) {
   using I = StateIndex;
   ws.rotation = rotation_of(get_quaternion(x));
   ws.closure_error = T(0.0);
   ws.travel_excess = T(-1.0);
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const T& q = x[I::kCorner + c];
     ws.closure_error = max(ws.closure_error, closure(c, q, ws.motion[c]));
     ws.travel_excess = max(ws.travel_excess, abs(q) - T(vehicle.layout.predictor[c].half_travel));
   }
-  for (int axle = 0; axle < kAxles; ++axle) {
-    update_tires(vehicle, x, mode, axle, update_contacts(vehicle, x, axle, ws), ws);
+  for (int i = 0; i < kWheelPairs<S>; ++i) {
+    const WheelPair pair = get_wheel_pair<S>(i);
+    update_tires<S>(vehicle, x, mode, pair, update_contacts<S>(vehicle, x, pair, ws), ws);
   }
   add_strut_forces<T, kCorners>(vehicle.struts, ws.motion, x + I::kCornerRate, ws.strut);
   if (vehicle.effects.count > 0) update_strut_effects(vehicle, x, dx, ws);
-  update_composite(vehicle, x, ws);
+  update_composite<S>(vehicle, x, ws);
   GeneralizedForce<T> rhs;
-  const T power = calc_forces(vehicle, x, ws, rhs);
-  solve_accelerations(vehicle, rhs, ws);
+  const T power = calc_forces<S>(vehicle, x, ws, rhs);
+  solve_accelerations<S>(vehicle, rhs, ws);
 
-  update_kinematic_rates(x, ws, dx);
+  update_kinematic_rates<S>(x, ws, dx);
   set_vec3(dx, I::kVelocity, ws.acceleration);
   set_vec3(dx, I::kAngularVelocity, ws.angular_acceleration);
-  for (int c = 0; c < kCorners; ++c) {
+  for (int c = 0; c < kCorners; c += kCornerStride<S>) {
     const T inverse = T(1.0) / vehicle.numbers.inertia[c].spin_inertia;
     dx[I::kCornerRate + c] = ws.corner_acceleration[c];
     dx[I::kSpin + c] = ws.spin_moment[c] * inverse;
     ws.spin_decay[c] = vehicle.layout.relaxation ? T(0.0) : ws.wrench[c].spin_damping * inverse;
   }
   dx[I::kWork] = power;
-  if (vehicle.layout.relaxation) add_relaxation(vehicle, x, ws, dx);
+  if (vehicle.layout.relaxation) add_relaxation<S>(vehicle, x, ws, dx);
 }
 
 /// Kinetic energy, potential energy of gravity (zero at world z = 0) and of springs [J].

@@ -32,6 +32,63 @@ struct StateIndex {
 template <class T>
 using State = std::array<T, StateIndex::kCount>;
 
+/// The components that a symmetric motion (sides.h) is integrated in, those of the right side and
+/// of lateral motion left out; in the order of StateIndex.
+struct SymmetricStateIndex {
+  using I = StateIndex;
+  static constexpr int kCount = 28;
+  static constexpr int kCountWithoutStruts = 20;
+  static constexpr int kCountWithoutRelaxation = 16;
+  static constexpr std::array<int, kCount> kComponent = {I::kPosition,
+                                                         I::kPosition + 2,
+                                                         I::kQuaternion,
+                                                         I::kQuaternion + 2,
+                                                         I::kCorner,
+                                                         I::kCorner + 2,
+                                                         I::kWheelAngle,
+                                                         I::kWheelAngle + 2,
+                                                         I::kVelocity,
+                                                         I::kVelocity + 2,
+                                                         I::kAngularVelocity + 1,
+                                                         I::kCornerRate,
+                                                         I::kCornerRate + 2,
+                                                         I::kSpin,
+                                                         I::kSpin + 2,
+                                                         I::kWork,
+                                                         I::kKappa,
+                                                         I::kKappa + 2,
+                                                         I::kTanAlpha,
+                                                         I::kTanAlpha + 2,
+                                                         I::kStrut,
+                                                         I::kStrut + 2,
+                                                         I::kStrut + 4,
+                                                         I::kStrut + 6,
+                                                         I::kStrut + 8,
+                                                         I::kStrut + 10,
+                                                         I::kStrut + 12,
+                                                         I::kStrut + 14};
+  static constexpr int get(int index) { return kComponent[static_cast<std::size_t>(index)]; }
+  /// Index of a component of StateIndex that is among them.
+  static constexpr int find(int component) {
+    int i = 0;
+    while (get(i) != component) ++i;
+    return i;
+  }
+};
+
+/// Completes a symmetric state whose components of the left side are set: the right side mirrors
+/// them. Only the slip angles change sign.
+template <class T>
+void mirror_left_side(T* x) {
+  using I = StateIndex;
+  for (const int group : {I::kCorner, I::kWheelAngle, I::kCornerRate, I::kSpin, I::kKappa}) {
+    for (int left = 0; left < 4; left += 2) x[group + left + 1] = x[group + left];
+  }
+  for (int left = 0; left < 4; left += 2) x[I::kTanAlpha + left + 1] = -x[I::kTanAlpha + left];
+  for (int left = 0; left < I::kStrutCount; left += 2)
+    x[I::kStrut + left + 1] = x[I::kStrut + left];
+}
+
 template <class T>
 Vec3<T> get_vec3(const T* x, int at) {
   return {x[at], x[at + 1], x[at + 2]};

@@ -17,6 +17,11 @@ struct TrimIndex {
   static constexpr int kCount = kSpinSlip + kCorners;
 };
 
+/// Units of the unknowns.
+inline constexpr double kTrimLength = 1e-2;  // m
+inline constexpr double kTrimAngle = 1e-2;   // rad
+inline constexpr double kTrimSlip = 1e-2;    // of the speed of free rolling
+
 /// Largest residual of an equilibrium [m/s^2].
 inline constexpr double kMaxTrimResidual = 1e-8;
 
@@ -38,26 +43,24 @@ template <class T, class C>
 State<T> make_trim_state(const TrimProblem<T, C>& p, const T* u) {
   using I = StateIndex;
   using U = TrimIndex;
-  constexpr double kLengthUnit = 1e-2, kAngleUnit = 1e-2;  // m, rad
-  constexpr double kSlipUnit = 1e-2;                       // relative to the speed of free rolling
   State<T> x;
   x.fill(T(0.0));
   T cr, sr, cp, sp;
-  sin_cos(T(0.5 * kAngleUnit) * u[U::kRoll], sr, cr);
-  sin_cos(T(0.5 * kAngleUnit) * u[U::kPitch], sp, cp);
-  x[I::kPosition + 2] = p.center_height + T(kLengthUnit) * u[U::kHeight];
+  sin_cos(T(0.5 * kTrimAngle) * u[U::kRoll], sr, cr);
+  sin_cos(T(0.5 * kTrimAngle) * u[U::kPitch], sp, cp);
+  x[I::kPosition + 2] = p.center_height + T(kTrimLength) * u[U::kHeight];
   x[I::kQuaternion] = cp * cr;  // pitch about y, then roll about the pitched x
   x[I::kQuaternion + 1] = cp * sr;
   x[I::kQuaternion + 2] = sp * cr;
   x[I::kQuaternion + 3] = -(sp * sr);
-  for (int c = 0; c < kCorners; ++c) x[I::kCorner + c] = T(kLengthUnit) * u[U::kCorner + c];
+  for (int c = 0; c < kCorners; ++c) x[I::kCorner + c] = T(kTrimLength) * u[U::kCorner + c];
   if (!p.rolling) return x;
   const Vec3<T> v =
       transpose_times(rotation_of(get_quaternion(x.data())), Vec3<T>{p.speed, T(0.0), T(0.0)});
   set_vec3(x.data(), I::kVelocity, v);
   for (int c = 0; c < kCorners; ++c) {
     const T& radius = p.vehicle->numbers.tire[axle_of(c)].radius;
-    x[I::kSpin + c] = p.speed / radius * (T(1.0) + T(kSlipUnit) * u[U::kSpinSlip + c]);
+    x[I::kSpin + c] = p.speed / radius * (T(1.0) + T(kTrimSlip) * u[U::kSpinSlip + c]);
   }
   return x;
 }

@@ -2,6 +2,7 @@
 // simulation.
 #pragma once
 
+#include "base/math/dual.h"
 #include "model/car/spec.h"
 #include "model/force/strut_effects.h"
 #include "model/force/tire_contact.h"
@@ -27,9 +28,8 @@ struct VehicleParameters {
   std::array<TireVertical<T>, kAxles> tire;
   std::array<WheelRunout<T>, kCorners> runout;
   std::array<T, kAxles> lift;  // N s^2/m^2, aerodynamic lift over speed squared
-  Pac2002<T> pacejka;
-  Vec3<T> imu;  // m, chassis axes
-  T gravity;    // m/s^2
+  Vec3<T> imu;                 // m, chassis axes
+  T gravity;                   // m/s^2
 };
 
 template <class C>
@@ -57,9 +57,11 @@ template <class T>
 struct Vehicle {
   VehicleLayout layout;
   VehicleParameters<T> numbers;
+  Pac2002<Passive<T>> pacejka;
   StrutElements<T> struts;
   Road<T> road;
   StrutEffects<T> effects{};
+  std::shared_ptr<const RoadSlopes<Passive<T>, kDirectionCount<T>>> road_slopes{};  // of duals only
 };
 
 }  // namespace strut

@@ -15,6 +15,7 @@ struct SplineAxis {
   T low;    // in the argument's unit
   T scale;  // cells per unit
   T cells;  // their number
+  bool operator==(const SplineAxis&) const = default;
 };
 
 /// The four splines that are not zero at an argument: index of the first and values of all.
@@ -44,6 +45,7 @@ struct ForceMapTable {
   SplineAxis<double> deflection, velocity;
   double stride;                     // coefficients per row, which has one deflection
   std::vector<double> coefficients;  // N
+  bool operator==(const ForceMapTable&) const = default;
 };
 
 /// Zero everywhere.

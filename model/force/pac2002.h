@@ -387,10 +387,10 @@ RelaxationLength<T> calc_relaxation_length(const Pac2002<C>& p, const T& load, c
 ///
 /// @param deflection rho [m]; a tire off the road (rho < 0) has R_e = R0.
 /// @param vertical_stiffness C_z [N/m], > 0.
-template <class C, class T>
-T calc_rolling_radius(const Pac2002<C>& p, const C& unloaded_radius, const T& deflection,
-                      const C& vertical_stiffness) {
-  const C rho0 = p.FNOMIN / vertical_stiffness, inverse = vertical_stiffness / p.FNOMIN;
+template <class C, class Tire, class T>
+T calc_rolling_radius(const Pac2002<C>& p, const Tire& unloaded_radius, const T& deflection,
+                      const Tire& vertical_stiffness) {
+  const Tire rho0 = p.FNOMIN / vertical_stiffness, inverse = vertical_stiffness / p.FNOMIN;
   const T rho = max(deflection, T(0.0));
   const T x = rho * inverse;
   const T fitted = rho0 * (p.DREFF * atan_any(p.BREFF * x) + p.FREFF * x);

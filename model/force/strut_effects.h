@@ -216,13 +216,13 @@ struct StrutEffects {
     ++count;
   }
 
-  /// Adds the maps `tables[lane][corner]` (null: none). `get_length(corner)`: length of the
-  /// damper's line at nominal trim [m].
+  /// Adds the maps `tables[lane][corner]` (null: none) of every `stride`-th corner.
+  /// `get_length(corner)`: length of the damper's line at nominal trim [m].
   template <class Tables, class GetLength>
-  void add_maps(const Tables* const* tables, const GetLength& get_length) {
+  void add_maps(const Tables* const* tables, const GetLength& get_length, std::size_t stride = 1) {
     auto& list = std::get<4>(added);
     ForceMapPacker packer;
-    for (std::size_t c = 0; c < std::tuple_size_v<Tables>; ++c) {
+    for (std::size_t c = 0; c < std::tuple_size_v<Tables>; c += stride) {
       std::array<const ForceMapTable*, static_cast<std::size_t>(kLaneCount<T>)> lanes;
       for (std::size_t lane = 0; lane < lanes.size(); ++lane)
         lanes[lane] = (*tables[lane])[c].get();

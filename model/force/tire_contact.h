@@ -124,8 +124,8 @@ struct TireSlipState {
   T tan_alpha;       // 1
 };
 
-template <class C, class T>
-TireSlipState<T> calc_tire_slip(const Pac2002<C>& pacejka, const TireVertical<C>& tire,
+template <class C, class Tire, class T>
+TireSlipState<T> calc_tire_slip(const Pac2002<C>& pacejka, const TireVertical<Tire>& tire,
                                 const WheelMotion<T>& wheel, const TireContact<T>& contact) {
   TireSlipState<T> slip;
   slip.forward = dot(wheel.velocity, contact.forward);

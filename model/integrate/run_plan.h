@@ -15,15 +15,18 @@ enum class Stepper { kRk4, kAbm4 };
 
 struct StepOptions {
   Stepper stepper = Stepper::kRk4;
-  double step = 1e-3;         // s
-  bool locate_events = true;  // end steps at contact events
-  double coarse_step = 0.0;   // s, where the system needs no fine step; 0: `step` everywhere
+  double step = 1e-3;          // s
+  bool locate_events = true;   // end steps at contact events
+  double coarse_step = 0.0;    // s, where the system needs no fine step; 0: `step` everywhere
+  bool refines_events = true;  // whether events are located to rounding, not to the dense output
 
   bool operator==(const StepOptions&) const = default;
 };
 
 struct SamplePlan {
   double duration = 3.0;  // s
+  /// Of each lane where they differ, at most `duration` [s]; their samples then end with NaN.
+  std::vector<double> lane_durations = {};
   double interval = 0.0;  // s between history samples from t = 0; 0: no history
   bool snapshot = true;
   bool until_snapshot = false;  // whether a run without history ends with its snapshot
@@ -67,6 +70,9 @@ struct LaneResults {
   std::vector<int> recorded;         // channels of the history as in the plan; empty: all
   std::vector<double> final_state;   // [component][lane]
   std::vector<double> loop_error;    // m per lane, maximum over the run (systems with loops)
+  /// Derivatives of event_time, snapshot and history, of a run that was differentiated: one for
+  /// each direction, per unit of its parameter.
+  std::vector<LaneResults> slopes = {};
   int sample_count = 0;
   long derivative_count = 0;  // right-hand sides evaluated (all lanes at once)
   long event_count = 0;       // steps shortened by a guard, summed over lanes

@@ -67,11 +67,17 @@ class Simulation {
     history_row_ = static_cast<std::size_t>(plan_.recorded_count()) * lanes;
     results_.history.assign(static_cast<std::size_t>(results_.sample_count) * history_row_,
                             std::nan(""));
+    results_.slopes.assign(kDirectionCount<T>, results_);
     channel_.resize(channels);
     x_ring_[0] = x0;
     head_ = 0;
     time_ = h_ = T(0.0);
     end_ = T(plan_.duration);
+    for (std::size_t lane = 0; lane < plan_.lane_durations.size(); ++lane) {
+      results_.failure_time[lane] = plan_.lane_durations[lane];
+      set_lane(end_, static_cast<int>(lane), plan_.lane_durations[lane]);
+    }
+    max_steps_ = T(kMaxStepRatio / options_.step) * end_;
     past_count_ = T(0.0);
     past_step_ = T(0.0);
     step_count_ = T(0.0);
@@ -165,8 +171,9 @@ class Simulation {
       T theta = T(2.0), chosen = T(-1.0);
       for (int g = 0; g < guards; ++g) {
         const T side1 = calc_side(guard1_[g]);
-        const Mask changed =
+        Mask changed =
             (abs(side1 - side_[g]) > T(0.5)) & (abs(landed - T(g)) > T(0.5)) & (time_ < end_);
+        if (options_.refines_events) changed = changed & (!is_joined(g, landed));
         const Mask inside = guard_[g] * guard1_[g] < T(0.0);
         // Crossed between steps within rounding: there is no root to locate in this step.
         side_[g] = select(changed & (!inside), side1, side_[g]);
@@ -178,6 +185,7 @@ class Simulation {
       const Mask crossing = chosen > T(-0.5);
       if (!any(crossing)) break;
       shorten_step(crossing, max(refine_crossing(crossing, chosen) * h_, shortest));
+      if (options_.refines_events) shorten_step(crossing, max(correct_step(chosen), shortest));
       landed = select(crossing, chosen, landed);
     }
     return landed;
@@ -214,6 +222,22 @@ class Simulation {
     return theta;
   }
 
+  /// Step length at which each lane's chosen guard vanishes, by Newton's method from the step just
+  /// taken, whose end misses it by the error of the dense output.
+  T correct_step(const T& chosen) {
+    constexpr double kBack = 1e-2;  // of the step, over which the slope is taken
+    interpolate_state(x(), f(), x1(), f1(), h_, T(1.0 - kBack), system_.size(), other_.data());
+    std::array<T, kMaxGuards> before;
+    system_.calc_guards(time_ + T(1.0 - kBack) * h_, other_.data(), before.data());
+    T correction = T(0.0);
+    for (int g = 0; g < system_.guard_count(); ++g) {
+      const T slope = (guard1_[g] - before[g]) * T(1.0 / kBack);
+      const T step = max(min(guard1_[g] / slope, T(kBack)), T(-kBack));
+      correction = select((abs(chosen - T(g)) < T(0.5)) & (abs(slope) > T(0.0)), step, correction);
+    }
+    return min(h_ - correction * h_, end_ - time_);
+  }
+
   void shorten_step(Mask lanes, const T& h) {
     h_ = select(lanes, h, h_);
     update_stiff_weights(decay_.data(), h_, system_.stiff_count(), weights_);
@@ -225,17 +249,30 @@ class Simulation {
     trigger1_ = system_.get_trigger();
   }
 
-  /// Lanes that passed guard g in the step just taken: the step ended there, or (where both wheels
-  /// of an axle reach a kink at once) this guard reached zero together with that at which it ended.
-  /// If events are not located: the guard changed sides anywhere in the step.
+  /// Lanes in which guard g is as near to zero as that at which the step ended (`landed`; -1: at
+  /// none), so that they are one event: both wheels of an axle lift off, touch down or reach a kink
+  /// at once.
+  Mask is_joined(int g, const T& landed) const {
+    // Relative distances from zero: far above rounding, and far below a step's other events, for
+    // steps that begin so near to an event that they locate it badly.
+    constexpr double kTogether = 1e-7, kFarthest = 1e-4;
+    T residual(0.0);
+    for (int other = 0; options_.refines_events && other < system_.guard_count(); ++other) {
+      const Mask ended = abs(landed - T(other)) < T(0.5);
+      residual = select(ended, abs(guard1_[other]) / abs(guard_[other]), residual);
+    }
+    const T distance = max(T(kTogether), min(T(2.0) * residual, T(kFarthest)));
+    return (landed > T(-0.5)) & (abs(guard1_[g]) <= distance * abs(guard_[g]));
+  }
+
+  /// Lanes that passed guard g in the step just taken: the step ended there or at a guard joined
+  /// with it. If events are not located: the guard changed sides anywhere in the step.
   Mask find_passed(int g, Mask restarted, const T& landed) const {
     if (!options_.locate_events) {
       const T side1 = calc_side(guard1_[g]);
       return (abs(side1 - side_[g]) > T(0.5)) & (time_ < end_);
     }
-    constexpr double kTogether = 1e-7;  // relative distance from zero, far above rounding
-    const Mask reached = abs(guard1_[g]) <= T(kTogether) * abs(guard_[g]);
-    return restarted & ((abs(landed - T(g)) < T(0.5)) | reached);
+    return restarted & ((abs(landed - T(g)) < T(0.5)) | is_joined(g, landed));
   }
 
   /// Registers the passed guards; reevaluates f1 where the right-hand side changes with them.
@@ -264,7 +301,7 @@ class Simulation {
   }
 
   void retire_failed() {
-    const Mask stalled = step_count_ > T(kMaxStepRatio * plan_.duration / options_.step);
+    const Mask stalled = step_count_ > max_steps_;
     const Mask failed = (system_.has_failed() | stalled) & (time_ < end_);
     if (!any(failed)) return;
     // A run that goes on after its snapshot only because of those beside it has its result.
@@ -312,16 +349,26 @@ class Simulation {
     system_.observe(at, other_.data(), channel_.data());
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!get_mask_lane(hit, lane)) continue;
-      results_.event_time[static_cast<std::size_t>(lane)] = get_lane(at, lane);
-      store_channels(results_.snapshot.data(), lane);
+      store(&LaneResults::event_time, static_cast<std::size_t>(lane), at, lane);
+      store_channels(&LaneResults::snapshot, 0, lane);
     }
     triggered_ = select(hit, T(1.0), triggered_);
     if (plan_.until_snapshot && results_.sample_count == 0) retire(hit);
   }
 
-  void store_channels(double* row, int lane) const {
+  /// One lane of `value` into element `at` of an array of the results, its derivatives into that of
+  /// the slopes.
+  void store(std::vector<double> LaneResults::*array, std::size_t at, const T& value, int lane) {
+    (results_.*array)[at] = get_lane(value, lane);
+    for (std::size_t i = 0; i < kDirectionCount<T>; ++i) {
+      (results_.slopes[i].*array)[at] = get_slope(value, i, lane);
+    }
+  }
+
+  /// All channels into the row of an array that begins at `row`.
+  void store_channels(std::vector<double> LaneResults::*array, std::size_t row, int lane) {
     for (std::size_t c = 0; c < channel_.size(); ++c) {
-      row[c * kLanes + static_cast<std::size_t>(lane)] = get_lane(channel_[c], lane);
+      store(array, row + c * kLanes + static_cast<std::size_t>(lane), channel_[c], lane);
     }
   }
 
@@ -329,14 +376,14 @@ class Simulation {
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!get_mask_lane(lanes, lane)) continue;
       const auto sample = static_cast<std::size_t>(get_lane(next_sample_, lane));
-      double* row = results_.history.data() + sample * history_row_;
+      std::size_t row = sample * history_row_;
       if (plan_.recorded.empty()) {
-        store_channels(row, lane);
+        store_channels(&LaneResults::history, row, lane);
         continue;
       }
-      row += lane;
+      row += static_cast<std::size_t>(lane);
       for (const int c : plan_.recorded) {
-        *row = get_lane(channel_[static_cast<std::size_t>(c)], lane);
+        store(&LaneResults::history, row, channel_[static_cast<std::size_t>(c)], lane);
         row += kLanes;
       }
     }
@@ -425,8 +472,8 @@ class Simulation {
   StiffWeights<T> weights_;
   StepScratch<T, N> scratch_;
   std::array<T, kMaxGuards> guard_{}, guard1_{}, side_{};
-  T time_, end_, h_, past_count_, past_step_, step_count_, next_sample_, trigger_, trigger1_,
-      triggered_;
+  T time_, end_, h_, past_count_, past_step_, step_count_, max_steps_, next_sample_, trigger_,
+      trigger1_, triggered_;
   std::vector<T> channel_;
   std::size_t history_row_ = 0;  // numbers per history sample
 };

@@ -36,9 +36,8 @@ struct StiffWeights {
 template <class T>
 void update_stiff_weights(const T* decay, const T& h, int count, StiffWeights<T>& weights) {
   for (int i = 0; i < count; ++i) {
-    const auto is_same = [](const T& a, const T& b) { return all((a >= b) & (a <= b)); };
     const bool is_known =
-        i < weights.known && is_same(weights.decay[i], decay[i]) && is_same(weights.step[i], h);
+        i < weights.known && all_equal(weights.decay[i], decay[i]) && all_equal(weights.step[i], h);
     if (is_known) continue;
     weights.decay[i] = decay[i];
     weights.step[i] = h;

@@ -25,6 +25,9 @@ using System = CarSystem<double>;
 /// formulas with fixed-point iteration, whose step the rate bounds.
 constexpr double kStiffDecay = 5000.0;
 constexpr double kMaxStep = 2e-3;  // s; no step may jump over the bump
+/// s; towards a state that has no derivative, as at the end of a corner's travel, steps would
+/// shrink for ever.
+constexpr double kMinStep = 1e-12;
 constexpr long kMaxSteps = 10000000;
 constexpr int kMaxRoots = 2 * kCorners + 1;  // the guards, then the trigger
 
@@ -75,6 +78,7 @@ class Cvode {
     CVodeSStolerances(memory_.raw, options.relative_tolerance, options.absolute_tolerance);
     CVodeSetMaxNumSteps(memory_.raw, kMaxSteps);
     CVodeSetMaxStep(memory_.raw, kMaxStep);
+    CVodeSetMinStep(memory_.raw, kMinStep);
     CVodeSetErrHandlerFn(
         memory_.raw, [](int, const char*, const char*, char*, void*) {}, nullptr);
     stiff ? set_newton_solver(problem.system->size()) : set_fixed_point_solver();

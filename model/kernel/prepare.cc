@@ -100,7 +100,7 @@ PreparedCase CasePreparer::assemble(const Case& given, double snapshot_offset) {
   }
   const AssembledVehicle& car = mechanism_->car;
   const Road<double> flat_road{};
-  PreparedCase prepared{mechanism_, {car.layout, car.numbers, {}, flat_road}, {}};
+  PreparedCase prepared{mechanism_, {car.layout, car.numbers, car.pacejka, {}, flat_road}, {}};
   Vehicle<double>& vehicle = prepared.vehicle;
   set_operating_parameters(c.vehicle, c.maneuver, car, vehicle.numbers);
   set_effects(c.vehicle, vehicle.layout, vehicle.numbers);
@@ -135,11 +135,13 @@ void find_start(PreparedCase& c) {
 std::vector<std::string> find_starts(const Kernel& kernel, const std::vector<PreparedCase*>& cases,
                                      StartMethod method) {
   const auto width = static_cast<std::size_t>(method == StartMethod::kLanes ? kernel.lanes : 1);
+  IntegrateOptions options;
+  options.closure = Closure::kTable;
   std::vector<std::string> reasons(cases.size());
   for (std::size_t begin = 0, count = 0; begin < cases.size(); begin += count) {
     count = 1;
     while (count < width && begin + count < cases.size() &&
-           may_share_lanes(*cases[begin], *cases[begin + count], Closure::kTable)) {
+           may_share_lanes(*cases[begin], *cases[begin + count], options)) {
       ++count;
     }
     unsigned found = 0;
@@ -158,8 +160,9 @@ std::vector<std::string> find_starts(const Kernel& kernel, const std::vector<Pre
   return reasons;
 }
 
-bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure) {
-  if (a.duration != b.duration) return false;
+bool may_share_lanes(const PreparedCase& a, const PreparedCase& b,
+                     const IntegrateOptions& options) {
+  if (options.symmetry && is_symmetric(a) != is_symmetric(b)) return false;
   if (a.mechanism == b.mechanism) return true;
   const VehicleSpec &va = a.mechanism->vehicle, &vb = b.mechanism->vehicle;
   const bool same_layout =
@@ -171,7 +174,7 @@ bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closu
       va.suspension[kRear].kind == vb.suspension[kRear].kind;
   // Lanes eliminate the loops of a corner in one order.
   return same_layout &&
-         (closure == Closure::kTable || a.vehicle.layout.corner == b.vehicle.layout.corner);
+         (options.closure == Closure::kTable || a.vehicle.layout.corner == b.vehicle.layout.corner);
 }
 
 }  // namespace strut

@@ -14,13 +14,13 @@ inline CornerDegrees calc_larger(const CornerDegrees& a, const CornerDegrees& b)
           std::max(a.rate, b.rate)};
 }
 
-/// Tables with the coefficients of W mechanisms.
-template <class T>
+/// Tables of the computed corners with the coefficients of W mechanisms.
+template <Sides S, class T>
 VehicleTables<T> pack_tables(const PreparedCase* const* cases) {
   VehicleTables<T> packed;
   packed.half_travel = cases[0]->mechanism->tables.half_travel;
   std::array<CornerCoefficients<double>, static_cast<std::size_t>(kLaneCount<T>)> lanes;
-  for (int corner = 0; corner < kCorners; ++corner) {
+  for (int corner = 0; corner < kCorners; corner += kCornerStride<S>) {
     for (int lane = 0; lane < kLaneCount<T>; ++lane) {
       const VehicleTables<double>& tables = cases[lane]->mechanism->tables;
       lanes[static_cast<std::size_t>(lane)] = tables.corner[corner];
@@ -61,32 +61,39 @@ inline void add_parts(const VehicleLayout& lane, VehicleLayout& batch) {
   batch.has_lift = batch.has_lift || lane.has_lift;
 }
 
-template <class T>
+template <Sides S, class T>
 Vehicle<T> pack_vehicle(const PreparedCase* const* cases) {
   constexpr auto kWidth = static_cast<std::size_t>(kLaneCount<T>);
   std::vector<VehicleParameters<double>> numbers(kWidth);
+  std::array<Pac2002<double>, kWidth> pacejka;
   std::array<const CornerForceMaps*, kWidth> maps;
   for (std::size_t lane = 0; lane < kWidth; ++lane) {
     numbers[lane] = cases[lane]->vehicle.numbers;
+    pacejka[lane] = cases[lane]->vehicle.pacejka;
     maps[lane] = &cases[lane]->force_maps;
   }
   VehicleLayout layout = cases[0]->vehicle.layout;
   for (std::size_t lane = 1; lane < kWidth; ++lane) {
     add_parts(cases[lane]->vehicle.layout, layout);
   }
-  Vehicle<T> vehicle{layout, pack_lanes<VehicleParameters, T>(numbers.data()), {}, {}};
-  fill_strut_elements(vehicle, maps.data());
+  Vehicle<T> vehicle{layout,
+                     pack_lanes<VehicleParameters, T>(numbers.data()),
+                     pack_lanes<Pac2002, T>(pacejka.data()),
+                     {},
+                     {}};
+  fill_strut_elements<S>(vehicle, maps.data());
   return vehicle;
 }
 
+/// The roads of the cases, with the bumps where those of `places` have them.
 template <class T>
-Road<T> pack_road(const PreparedCase* const* cases) {
+Road<T> pack_road(const PreparedCase* const* cases, const PreparedCase* const* places) {
   constexpr auto kWidth = static_cast<std::size_t>(kLaneCount<T>);
   std::array<const Surface*, kWidth> surfaces;
   std::array<double, kWidth> centers;
   for (std::size_t lane = 0; lane < kWidth; ++lane) {
     surfaces[lane] = &cases[lane]->mechanism->surface;
-    centers[lane] = cases[lane]->bump_center;
+    centers[lane] = places[lane]->bump_center;
   }
   Road<T> road = make_road<T>(surfaces.data(), centers.data());
   for (std::size_t side = 0; side < 2; ++side) {
@@ -106,19 +113,19 @@ bool have_equal_cars(const PreparedCase* const* cases) {
 }
 
 /// `use(closure)` with the tables of these cases.
-template <class T, class Use>
+template <Sides S, class T, class Use>
 auto use_tables(const PreparedCase* const* cases, const Use& use) {
   if (have_equal_cars<T>(cases)) {
     return use(TableClosure<T, double>{&cases[0]->mechanism->tables});
   }
-  const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<T>(cases));
+  const auto tables = std::make_unique<VehicleTables<T>>(pack_tables<S, T>(cases));
   return use(TableClosure<T, T>{tables.get()});
 }
 
 /// Finds the starts of kLaneCount<T> cases that may share lanes; bit i of the result: of case i.
 template <class T>
 unsigned find_starts(PreparedCase* const* cases) {
-  Vehicle<T> vehicle = pack_vehicle<T>(cases);
+  Vehicle<T> vehicle = pack_vehicle<Sides::kBoth, T>(cases);
   vehicle.layout.on_bump.fill(false);
   T height(0.0), speed(0.0);
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
@@ -129,9 +136,10 @@ unsigned find_starts(PreparedCase* const* cases) {
       if (!c.starts_driven) set_lane(torque, lane, 0.0);
     }
   }
-  const LaneTrim<T> trim = use_tables<T>(cases, [&]<class C>(const TableClosure<T, C>& closure) {
-    return LaneTrimmer<T, C>({&vehicle, closure, height, speed}).solve();
-  });
+  const LaneTrim<T> trim =
+      use_tables<Sides::kBoth, T>(cases, [&]<class C>(const TableClosure<T, C>& closure) {
+        return LaneTrimmer<T, C>({&vehicle, closure, height, speed}).solve();
+      });
   unsigned found = 0;
   for (int lane = 0; lane < kLaneCount<T>; ++lane) {
     if (!get_mask_lane(trim.is_found(), lane)) continue;
@@ -143,13 +151,78 @@ unsigned find_starts(PreparedCase* const* cases) {
   return found;
 }
 
-template <class T, class Closure>
+/// Final states in the layout of StateIndex.
+template <Sides S>
+void complete_final_states(LaneResults& results) {
+  if constexpr (S == Sides::kBoth) return;
+  using Layout = SymmetricStateIndex;
+  const auto lanes = static_cast<std::size_t>(results.lanes);
+  const std::size_t size = results.final_state.size() / lanes;
+  std::vector<double> all;
+  std::size_t count = StateIndex::kCountWithoutRelaxation;
+  if (size > Layout::kCountWithoutRelaxation) count = StateIndex::kCountWithoutStruts;
+  if (size > Layout::kCountWithoutStruts) count = StateIndex::kCount;
+  all.resize(count * lanes);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    State<double> x{};
+    for (std::size_t i = 0; i < size; ++i) {
+      x[static_cast<std::size_t>(Layout::kComponent[i])] = results.final_state[i * lanes + lane];
+    }
+    mirror_left_side(x.data());
+    for (std::size_t i = 0; i < count; ++i) all[i * lanes + lane] = x[i];
+  }
+  results.final_state = std::move(all);
+}
+
+template <Sides S, class T, class Closure>
 LaneResults run_system(const Vehicle<T>& vehicle, const Closure& closure, const T& trigger,
-                       const std::array<T, StateIndex::kCount>& start,
-                       const IntegrateOptions& options, const SamplePlan& plan) {
-  CarSystem<T> system(vehicle, closure, options.spin, trigger);
+                       const PreparedCase* const* cases, const IntegrateOptions& options,
+                       const SamplePlan& plan) {
+  using System = CarSystem<T, S>;
+  System system(vehicle, closure, options.spin, trigger);
+  std::array<T, System::kCapacity> start;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const auto component = static_cast<std::size_t>(System::Layout::get(static_cast<int>(i)));
+    for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+      set_lane(start[i], lane, cases[lane]->start[component]);
+    }
+  }
   system.start(start.data());
-  return Simulation<T, CarSystem<T>>(system, options.step, plan).run(start);
+  LaneResults results = Simulation<T, System>(system, options.step, plan).run(start);
+  complete_final_states<S>(results);
+  return results;
+}
+
+/// The plan with the durations of the cases.
+template <class T>
+SamplePlan make_lane_plan(const PreparedCase* const* cases, SamplePlan plan) {
+  plan.duration = 0.0;
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+    plan.lane_durations.push_back(cases[lane]->duration);
+    plan.duration = std::max(plan.duration, cases[lane]->duration);
+  }
+  plan.channel_count = CarChannel::kCount;
+  return plan;
+}
+
+/// run_cases with the corners of S computed.
+template <Sides S, class T>
+LaneResults run_sides(const PreparedCase* const* cases, const IntegrateOptions& options,
+                      const SamplePlan& plan) {
+  Vehicle<T> vehicle = pack_vehicle<S, T>(cases);
+  vehicle.road = pack_road<T>(cases, cases);
+  T trigger(0.0);
+  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+    set_lane(trigger, lane, cases[lane]->trigger_x);
+  }
+  const SamplePlan all = make_lane_plan<T>(cases, plan);
+  const auto run = [&](const auto& closure) {
+    return run_system<S, T>(vehicle, closure, trigger, cases, options, all);
+  };
+  if (options.closure == Closure::kTable) return use_tables<S, T>(cases, run);
+  if (have_equal_cars<T>(cases)) return run(NewtonClosure<T>{&vehicle.layout, &vehicle.numbers});
+  const auto predictors = std::make_unique<VehiclePredictors<T>>(pack_predictors<T>(cases));
+  return run(NewtonClosure<T, T>{&vehicle.layout, &vehicle.numbers, predictors.get()});
 }
 
 /// Runs kLaneCount<T> cases. Throws ModelError unless all may share lanes with the first.
@@ -157,34 +230,13 @@ template <class T>
 LaneResults run_cases(const PreparedCase* const* cases, const IntegrateOptions& options,
                       const SamplePlan& plan) {
   for (int lane = 1; lane < kLaneCount<T>; ++lane) {
-    if (!may_share_lanes(*cases[0], *cases[lane], options.closure)) {
+    if (!may_share_lanes(*cases[0], *cases[lane], options)) {
       throw ModelError("lanes: these cases may not share a batch (see may_share_lanes)");
     }
   }
-  Vehicle<T> vehicle = pack_vehicle<T>(cases);
-  vehicle.road = pack_road<T>(cases);
-  State<T> start;
-  T trigger(0.0);
-  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
-    for (std::size_t i = 0; i < start.size(); ++i) set_lane(start[i], lane, cases[lane]->start[i]);
-    set_lane(trigger, lane, cases[lane]->trigger_x);
-  }
-  SamplePlan all = plan;
-  all.duration = cases[0]->duration;
-  all.channel_count = CarChannel::kCount;
-  if (options.closure == Closure::kNewton && have_equal_cars<T>(cases)) {
-    return run_system<T>(vehicle, NewtonClosure<T>{&vehicle.layout, &vehicle.numbers}, trigger,
-                         start, options, all);
-  }
-  if (options.closure == Closure::kNewton) {
-    const auto predictors = std::make_unique<VehiclePredictors<T>>(pack_predictors<T>(cases));
-    return run_system<T>(vehicle,
-                         NewtonClosure<T, T>{&vehicle.layout, &vehicle.numbers, predictors.get()},
-                         trigger, start, options, all);
-  }
-  return use_tables<T>(cases, [&](const auto& closure) {
-    return run_system<T>(vehicle, closure, trigger, start, options, all);
-  });
+  return options.symmetry && is_symmetric(*cases[0])
+             ? run_sides<Sides::kLeft, T>(cases, options, plan)
+             : run_sides<Sides::kBoth, T>(cases, options, plan);
 }
 
 }  // namespace strut

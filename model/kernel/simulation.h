@@ -20,6 +20,7 @@ struct IntegrateOptions {
   StepOptions step;  // stepper, step [s], contact events located or not
   Closure closure = Closure::kNewton;
   SpinTreatment spin = SpinTreatment::kExponential;
+  bool symmetry = false;  // whether of a case that is_symmetric only the left side is computed
 };
 
 /// The expensive parts that many cases share: one car's mechanism and road.
@@ -105,9 +106,15 @@ std::vector<std::string> find_starts(const Kernel& kernel, const std::vector<Pre
 /// where there is none.
 void find_start(PreparedCase& c);
 
-/// True if the cases may share lanes: same layout, and with Newton closure the same topology
-/// and elimination order of the loops.
-bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, Closure closure);
+/// Whether the car is its own mirror image and starts and drives as one, to rounding (1e-12 of each
+/// number): same struts, effects, drive and road left and right, no lateral center of mass, no
+/// products of inertia with the lateral axis. Its motion then is symmetric.
+bool is_symmetric(const PreparedCase& c);
+
+/// True if the cases may share lanes: same layout, with Newton closure the same topology and
+/// elimination order of the loops, with symmetry the same computed corners. Of cases of different
+/// durations the shorter ones' samples end with NaN.
+bool may_share_lanes(const PreparedCase& a, const PreparedCase& b, const IntegrateOptions& options);
 
 struct ReferenceOptions {
   double relative_tolerance = 1e-12;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "base/math/lanes.h"
@@ -99,6 +100,17 @@ struct Road {
   std::array<RoughTracks<T>, 2> rough;                                                // left, right
   bool is_rough() const { return rough[0].is_rough || rough[1].is_rough; }
 };
+
+/// Two roads on both sides of another along a parameter, their bumps at the same place.
+template <class T>
+struct RoadNeighbors {
+  Road<T> above, below;
+  T inverse_distance;  // 1 over the parameter's unit
+};
+
+/// Along N directions; null where the road does not change.
+template <class T, std::size_t N>
+using RoadSlopes = std::array<std::unique_ptr<RoadNeighbors<T>>, N>;
 
 template <class T>
 struct RoadPoint {

@@ -26,6 +26,12 @@ double calc_force(const ForceCurve& curve, double speed) {
   return curve.rate * calc_rate_factor(curve, speed) * speed;
 }
 
+IntegrateOptions make_table_options() {
+  IntegrateOptions options;
+  options.closure = Closure::kTable;
+  return options;
+}
+
 TEST_CASE("A damper curve passes its points, rises between them and goes on straight", "[unit]") {
   const auto curve = make_force_curve(kMeasured);
   for (std::size_t i = 0; i < kMeasured.x.size(); ++i) {
@@ -114,9 +120,9 @@ TEST_CASE("Cars with different damper curves share no lanes", "[unit]") {
   c.vehicle.suspension[kRear].damper_curve = kMeasured;
   const PreparedCase a = test::prepare(c);
   c.vehicle.suspension[kRear].damper_curve.force.back() += 50.0;
-  CHECK_FALSE(may_share_lanes(a, test::prepare(c), Closure::kTable));
+  CHECK_FALSE(may_share_lanes(a, test::prepare(c), make_table_options()));
   c.vehicle.suspension[kRear].damper_curve = kMeasured;
-  CHECK(may_share_lanes(a, test::prepare(c), Closure::kTable));
+  CHECK(may_share_lanes(a, test::prepare(c), make_table_options()));
 }
 
 /// Points of k (d + q d^2) up to `end` [m], `count` intervals.
@@ -202,9 +208,9 @@ TEST_CASE("Cars with different tire curves share no lanes", "[unit]") {
   Case c{reference::make_paper_sedan_spec(), {}};
   c.vehicle.tire.curve = {{0.0, 0.04}, {0.0, 8000.0}};
   const PreparedCase a = test::prepare(c);
-  CHECK(may_share_lanes(a, test::prepare(c), Closure::kTable));
+  CHECK(may_share_lanes(a, test::prepare(c), make_table_options()));
   c.vehicle.tire.curve.force.back() += 50.0;
-  CHECK_FALSE(may_share_lanes(a, test::prepare(c), Closure::kTable));
+  CHECK_FALSE(may_share_lanes(a, test::prepare(c), make_table_options()));
 }
 
 std::string get_refusal(void (*validate)(const ForceCurveSpec&), std::vector<double> x,

@@ -1,6 +1,8 @@
 // Which cases may run in one batch of lanes, and that a batch serves all of them.
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -15,6 +17,22 @@ LaneResults run_pair(const PreparedCase& a, const PreparedCase& b,
                      const IntegrateOptions& options) {
   const PreparedCase* cases[] = {&a, &b};
   return list_kernels().back().run_lanes(cases, 2, options, {});
+}
+
+/// Results of two cases in alternating lanes of one batch, and of a batch of each alone.
+struct AlternatingRuns {
+  LaneResults both;
+  std::array<LaneResults, 2> alone;
+};
+
+AlternatingRuns run_alternating(const Kernel& kernel, const PreparedCase& a, const PreparedCase& b,
+                                const IntegrateOptions& options, const SamplePlan& plan) {
+  const auto run = [&](const PreparedCase& even, const PreparedCase& odd) {
+    std::vector<const PreparedCase*> cases(static_cast<std::size_t>(kernel.lanes), &even);
+    for (std::size_t lane = 1; lane < cases.size(); lane += 2) cases[lane] = &odd;
+    return kernel.run_lanes(cases.data(), kernel.lanes, options, plan);
+  };
+  return {run(a, b), {run(a, a), run(b, b)}};
 }
 
 IntegrateOptions make_options(Closure closure) {
@@ -73,9 +91,6 @@ TEST_CASE("A car under weaker gravity keeps its own linkage beside another", "[u
 
 TEST_CASE("Cases that may not share lanes are refused", "[unit]") {
   const PreparedCase base = test::prepare(make_short_case());
-  Case longer = make_short_case();
-  longer.maneuver.duration = 0.9;
-  CHECK_THROWS_AS(run_pair(base, test::prepare(longer), make_options(Closure::kTable)), ModelError);
   Case point = make_short_case();
   point.vehicle.tire.contact = ContactKind::kPoint;
   CHECK_THROWS_AS(run_pair(base, test::prepare(point), make_options(Closure::kTable)), ModelError);
@@ -84,6 +99,35 @@ TEST_CASE("Cases that may not share lanes are refused", "[unit]") {
             other.vehicle.layout.corner[kRearLeft].pivot_row[1]);
   CHECK_THROWS_AS(run_pair(base, other, make_options(Closure::kNewton)), ModelError);
   CHECK_NOTHROW(run_pair(base, other, make_options(Closure::kTable)));
+}
+
+TEST_CASE("Cases of different durations end each at its own time", "[unit][property]") {
+  Case shorter = make_short_case();
+  shorter.maneuver.duration = 0.0405;
+  Case longer = make_short_case();
+  longer.maneuver.duration = 0.06;
+  const PreparedCase a = test::prepare(shorter), b = test::prepare(longer);
+  const SamplePlan plan{.interval = 0.01};
+  for (const Kernel& kernel : list_kernels()) {
+    CAPTURE(kernel.isa);
+    const auto [both, alone] = run_alternating(kernel, a, b, make_options(Closure::kTable), plan);
+    REQUIRE(both.sample_count == 7);
+    for (int lane = 0; lane < kernel.lanes; ++lane) {
+      const LaneResults& own = alone[static_cast<std::size_t>(lane % 2)];
+      CHECK(both.get_failure_time(lane) == own.get_failure_time(lane));
+      for (int i = 0; i < StateIndex::kCountWithoutRelaxation; ++i) {
+        CHECK(both.get_final_state(i, lane) == own.get_final_state(i, lane));
+      }
+      for (int i = 0; i < both.sample_count; ++i) {
+        const double value = both.get_sample(i, CarChannel::kBodyPositionZ, lane);
+        if (i < own.sample_count) {
+          CHECK(value == own.get_sample(i, CarChannel::kBodyPositionZ, lane));
+        } else {
+          CHECK(std::isnan(value));
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("Cars of other masses and hardpoints close their own loops in one batch",
@@ -97,19 +141,11 @@ TEST_CASE("Cars of other masses and hardpoints close their own loops in one batc
   const IntegrateOptions options = make_options(Closure::kNewton);
   for (const Kernel& kernel : list_kernels()) {
     CAPTURE(kernel.isa);
-    std::vector<const PreparedCase*> mixed, of_a, of_b;
-    for (int lane = 0; lane < kernel.lanes; ++lane) {
-      mixed.push_back(lane % 2 == 0 ? &a : &b);
-      of_a.push_back(&a);
-      of_b.push_back(&b);
-    }
-    const auto run = [&](const std::vector<const PreparedCase*>& cases) {
-      return kernel.run_lanes(cases.data(), kernel.lanes, options, {});
-    };
-    const LaneResults both = run(mixed), alone[] = {run(of_a), run(of_b)};
+    const auto [both, alone] = run_alternating(kernel, a, b, options, {});
     for (int lane = 0; lane < kernel.lanes; ++lane) {
       for (int i = 0; i < StateIndex::kCountWithoutRelaxation; ++i) {
-        CHECK(both.get_final_state(i, lane) == alone[lane % 2].get_final_state(i, lane));
+        CHECK(both.get_final_state(i, lane) ==
+              alone[static_cast<std::size_t>(lane % 2)].get_final_state(i, lane));
       }
     }
     constexpr int kHeight = StateIndex::kPosition + 2;
