@@ -6,11 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "io/file/file_sync.h"
-
 namespace strut {
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -33,13 +29,6 @@ std::size_t read_size(const FileDescriptor& file, const fs::path& path) {
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) throw file_failure(path, kNotRead, errno);
   return static_cast<std::size_t>(status.st_size);
-}
-
-}  // namespace
-
-std::vector<std::byte> read_first_bytes(const fs::path& path, std::size_t count) {
-  const FileDescriptor file = open_regular_file(path);
-  return read_from(file, path, std::min(count, read_size(file, path)));
 }
 
 std::vector<std::byte> read_bytes(const fs::path& path) {

@@ -71,7 +71,8 @@ FileSeal read_lines(const std::string& kind, const std::string& text, std::size_
 bool fits(const FileSeal& seal) {
   constexpr std::size_t kOwnLines = 192;  // bytes of the lines that every seal has, at most
   std::size_t length = make_first_line(seal.kind).size();
-  for (const auto& [key, value] : seal.lines) length += key.size() + value.size();
+  // A line has a space and an end beside its words.
+  for (const auto& [key, value] : seal.lines) length += key.size() + value.size() + 2;
   return length + seal.sha256.size() + kOwnLines <= kSealBytes;
 }
 
@@ -98,21 +99,60 @@ void compare_hash(SealCheck& check, const std::string& sha256, const SealKind& k
   check.remedy = kind.remedy;
 }
 
-/// Returns the SHA-256 of all bytes after the seal; nullopt, with errno, if the file cannot be
-/// read.
-std::optional<std::string> hash_content(const FileDescriptor& file) {
+/// The bytes of a file that its seal covers.
+struct SealedRange {
+  std::size_t begin = 0, end = 0;
+};
+
+SealedRange get_sealed_range(std::size_t size, bool is_last) {
+  return is_last ? SealedRange{0, size - kSealBytes} : SealedRange{kSealBytes, size};
+}
+
+/// Returns the SHA-256 of a range of bytes; nullopt, with errno, if the file cannot be read.
+std::optional<std::string> hash_content(const FileDescriptor& file, const SealedRange& range) {
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   if (!file.is_open()) return std::nullopt;
   std::vector<std::byte> block(kBlock);
   Sha256 hash;
-  for (auto at = static_cast<off_t>(kSealBytes);;) {
-    const ssize_t count = ::pread(file.get(), block.data(), block.size(), at);
+  for (std::size_t at = range.begin; at < range.end;) {
+    const std::size_t wanted = std::min(block.size(), range.end - at);
+    const ssize_t count = ::pread(file.get(), block.data(), wanted, static_cast<off_t>(at));
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return std::nullopt;
-    if (count == 0) return to_hex(hash.finish());
+    if (count == 0) break;
     hash.update(std::span(block).first(static_cast<std::size_t>(count)));
-    at += count;
+    at += static_cast<std::size_t>(count);
   }
+  return to_hex(hash.finish());
+}
+
+/// The last bytes of a file, at most as many as a seal has.
+std::vector<std::byte> read_last_bytes(const FileDescriptor& file, const fs::path& path) {
+  const std::size_t size = read_size(file, path), count = std::min(size, kSealBytes);
+  std::vector<std::byte> bytes(count);
+  const ssize_t done = ::pread(file.get(), bytes.data(), count, static_cast<off_t>(size - count));
+  if (done < 0) throw file_failure(path, kNotRead, errno);
+  bytes.resize(static_cast<std::size_t>(done));
+  return bytes;
+}
+
+/// Whether the bytes were a seal before one of them changed, or one was added or lost.
+bool resembles_seal(std::span<const std::byte> bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  constexpr std::array<std::string_view, 3> kMarks = {"\nsize ", "\nsha256 ", "\nseal "};
+  return std::any_of(kMarks.begin(), kMarks.end(), [&](std::string_view mark) {
+    return text.find(mark) != std::string_view::npos;
+  });
+}
+
+/// Whether a file's seal is in its last bytes. Merged files that end with it began with it once; of
+/// other kinds a seal at the end only says what else the file is.
+bool is_seal_last(std::span<const std::byte> first, std::span<const std::byte> last,
+                  const SealKind& kind) {
+  if (parse(first)) return false;
+  const std::optional<FileSeal> seal = parse(last);
+  if (seal) return kind.is_last || seal->kind != kind.name;
+  return kind.is_last && !resembles_seal(first);
 }
 
 }  // namespace
@@ -123,14 +163,14 @@ std::string FileSeal::get(const std::string& key) const {
   return found == lines.end() ? "" : found->second;
 }
 
-SealCheck check_seal(std::span<const std::byte> first_bytes, std::uint64_t size,
+SealCheck check_seal(std::span<const std::byte> seal_bytes, std::uint64_t size,
                      const SealKind& kind) {
   const std::string name = kind.name;
-  const std::optional<FileSeal> seal = parse(first_bytes);
+  const std::optional<FileSeal> seal = parse(seal_bytes);
   if (!seal) {
     return {{},
-            fmt::format("damaged, or not a {} file: no valid seal in its first {} bytes", name,
-                        kSealBytes),
+            fmt::format("damaged, or not a {} file: no valid seal in its {} {} bytes", name,
+                        kind.is_last ? "last" : "first", kSealBytes),
             kind.remedy};
   }
   if (seal->kind != name) {
@@ -144,27 +184,55 @@ SealCheck check_seal(std::span<const std::byte> first_bytes, std::uint64_t size,
   return {*seal, "", ""};
 }
 
+namespace {
+
+/// The bytes of a file where its seal is.
+struct SealBytes {
+  std::vector<std::byte> bytes;
+  bool is_last = false;
+};
+
+/// A file is opened once, since a file system on a network answers late.
+SealBytes read_seal_bytes(const FileDescriptor& file, const fs::path& path, const SealKind& kind) {
+  std::vector<std::byte> first = read_from(file, path, kSealBytes);
+  if (parse(first)) return {std::move(first), false};
+  std::vector<std::byte> last = read_last_bytes(file, path);
+  const bool is_last = is_seal_last(first, last, kind);
+  return {std::move(is_last ? last : first), is_last};
+}
+
+SealCheck check_seal(const FileDescriptor& file, const fs::path& path, const SealKind& kind) {
+  return check_seal(read_seal_bytes(file, path, kind).bytes, read_size(file, path), kind);
+}
+
+}  // namespace
+
 SealCheck check_seal(const fs::path& path, const SealKind& kind) {
-  const auto first_bytes = read_first_bytes(path, kSealBytes);
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(path, error);
-  if (error) throw InputError(fmt::format("{}: {}: {}", path.string(), kNotRead, error.message()));
-  return check_seal(first_bytes, size, kind);
+  return check_seal(open_regular_file(path), path, kind);
 }
 
 SealCheck check_sealed_file(const fs::path& path, const SealKind& kind) {
-  SealCheck check = check_seal(path, kind);
+  const FileDescriptor file = open_regular_file(path);
+  const SealBytes found = read_seal_bytes(file, path, kind);
+  const std::size_t size = read_size(file, path);
+  SealCheck check = check_seal(found.bytes, size, kind);
   if (!check.fault.empty()) return check;
-  const std::optional<std::string> sha256 = hash_content(open_regular_file(path));
+  const std::optional<std::string> sha256 =
+      hash_content(file, get_sealed_range(size, found.is_last));
   if (!sha256) throw file_failure(path, kNotRead, errno);
   compare_hash(check, *sha256, kind);
   return check;
 }
 
 SealCheck check_sealed_bytes(std::span<const std::byte> bytes, const SealKind& kind) {
-  SealCheck check = check_seal(bytes, bytes.size(), kind);
+  const std::size_t length = std::min(bytes.size(), kSealBytes);
+  const auto first = bytes.first(length), last = bytes.last(length);
+  const bool is_last = is_seal_last(first, last, kind);
+  SealCheck check = check_seal(is_last ? last : first, bytes.size(), kind);
   if (!check.fault.empty()) return check;
-  compare_hash(check, to_hex(calc_sha256(bytes.subspan(kSealBytes))), kind);
+  const SealedRange range = get_sealed_range(bytes.size(), is_last);
+  const auto covered = bytes.subspan(range.begin, range.end - range.begin);
+  compare_hash(check, to_hex(calc_sha256(covered)), kind);
   return check;
 }
 
@@ -175,51 +243,69 @@ FileSeal require_intact(const fs::path& path, SealCheck check) {
 }
 
 SealedBytes read_sealed(const fs::path& path, const SealKind& kind) {
-  require_intact(path, check_seal(path, kind));
-  SealedBytes sealed{{}, read_bytes(path)};
+  const FileDescriptor file = open_regular_file(path);
+  require_intact(path, check_seal(file, path, kind));
+  if (::lseek(file.get(), 0, SEEK_SET) < 0) throw file_failure(path, kNotRead, errno);
+  SealedBytes sealed;
+  sealed.bytes = read_from(file, path, read_size(file, path));
   sealed.seal = require_intact(path, check_sealed_bytes(sealed.bytes, kind));
   return sealed;
 }
 
 std::string find_seal_kind(const fs::path& path) {
-  const std::optional<FileSeal> seal = parse(read_first_bytes(path, kSealBytes));
+  const FileDescriptor file = open_regular_file(path);
+  std::optional<FileSeal> seal = parse(read_from(file, path, kSealBytes));
+  if (!seal) seal = parse(read_last_bytes(file, path));
   return seal ? seal->kind : "";
 }
 
 bool is_sealed(const fs::path& path) {
   constexpr std::array<char, 8> kSignature = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
-  const std::vector<std::byte> bytes = read_first_bytes(path, kSignature.size());
+  const FileDescriptor file = open_regular_file(path);
+  const std::vector<std::byte> bytes = read_from(file, path, kSignature.size());
   return bytes.size() < kSignature.size() ||
-         std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) != 0;
+         std::memcmp(bytes.data(), kSignature.data(), kSignature.size()) != 0 ||
+         resembles_seal(read_last_bytes(file, path));
 }
 
 void refuse_global_heap(const fs::path& path) {
-  constexpr std::array<char, 8> kHeader = {'G', 'C', 'O', 'L', '\1', '\0', '\0', '\0'};
-  constexpr std::size_t kBlock = std::size_t{1} << 20, kOverlap = kHeader.size() - 1;
+  constexpr std::string_view kHeap("GCOL\1\0\0\0", 8), kAxis = "DIMENSION_SCALE";
+  constexpr std::size_t kBlock = std::size_t{1} << 20, kOverlap = kAxis.size() - 1;
   const FileDescriptor file = open_regular_file(path);
   std::vector<char> block(kBlock);
+  bool has_heap = false, has_axis = false;
   for (off_t at = 0;; at += static_cast<off_t>(kBlock - kOverlap)) {
     const ssize_t count = ::pread(file.get(), block.data(), block.size(), at);
     if (count < 0) throw file_failure(path, kNotRead, errno);
-    const auto end = block.begin() + count;
-    if (std::search(block.begin(), end, kHeader.begin(), kHeader.end()) != end) {
-      throw InputError(path.string() + ": " + kViewFault);
-    }
-    if (count < static_cast<ssize_t>(kBlock)) return;
+    const std::string_view text(block.data(), static_cast<std::size_t>(count));
+    has_heap = has_heap || text.find(kHeap) != std::string_view::npos;
+    has_axis = has_axis || text.find(kAxis) != std::string_view::npos;
+    if (text.size() < kBlock) break;
   }
+  if (!has_heap) return;
+  throw InputError(path.string() + ": " + (has_axis ? kLostSealFault : kViewFault));
 }
 
-void seal_image(const SealLabel& label, std::span<std::byte> image) {
-  const std::string text = render(
-      {label.kind.name, label.lines, image.size(), to_hex(calc_sha256(image.subspan(kSealBytes)))});
-  std::memcpy(image.data(), text.data(), text.size());
+void seal_image(const SealLabel& label, std::vector<std::byte>& image) {
+  const bool is_last = label.kind.is_last;
+  if (is_last) image.resize(image.size() + kSealBytes);
+  const SealedRange range = get_sealed_range(image.size(), is_last);
+  const auto covered = std::span(image).subspan(range.begin, range.end - range.begin);
+  const std::string text =
+      render({label.kind.name, label.lines, image.size(), to_hex(calc_sha256(covered))});
+  std::memcpy(image.data() + (is_last ? range.end : 0), text.data(), text.size());
 }
 
 void seal_file(const SealLabel& label, const fs::path& path, const fs::path& shown) {
   const FileDescriptor file = open_file(path, O_RDWR);
-  const std::optional<std::string> sha256 = hash_content(file);
-  if (!sha256) throw file_failure(shown, "cannot be sealed", errno);
-  const std::string text = render({label.kind.name, label.lines, fs::file_size(path), *sha256});
+  const bool is_last = label.kind.is_last;
+  const std::size_t size = fs::file_size(path) + (is_last ? kSealBytes : 0);
+  const SealedRange range = get_sealed_range(size, is_last);
+  const std::optional<std::string> sha256 = hash_content(file, range);
+  const bool can_write =
+      sha256 && ::lseek(file.get(), static_cast<off_t>(is_last ? range.end : 0), SEEK_SET) >= 0;
+  if (!can_write) throw file_failure(shown, "cannot be sealed", errno);
+  const std::string text = render({label.kind.name, label.lines, size, *sha256});
   write_all(file.get(), std::as_bytes(std::span(text)), shown);
 }
 

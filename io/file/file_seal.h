@@ -1,12 +1,13 @@
-// The seal of a file: a text in its first 512 bytes, HDF5's user block, with the size of the file
-// and the SHA-256 of all bytes after it. A flipped bit anywhere is found from the file alone,
-// before the HDF5 library reads it.
+// The seal of a file: a text in its first 512 bytes, HDF5's user block, or, in a merged file, in
+// its last 512 bytes, with the size of the file and the SHA-256 of all other bytes. A flipped bit
+// anywhere is found from the file alone, before the HDF5 library reads it. A file with a user block
+// is not recognized by all tools: netCDF's look for HDF5's signature in the first bytes.
 //
 //     strut shard seal 1
 //     plan 3f5a...
 //     shard 42
 //     size 81234
-//     sha256 9b0c...      of all bytes from 512 on
+//     sha256 9b0c...      of all bytes outside the seal
 //     seal 77e1...        SHA-256 of the lines above; zeros up to byte 512
 #pragma once
 
@@ -26,11 +27,17 @@ inline constexpr std::size_t kSealBytes = 512;
 inline constexpr char kViewFault[] =
     "a view over shards cannot be verified; `strut merge DIR -o FILE` writes a copy";
 
+/// Fault of a merged file that lost its seal.
+inline constexpr char kLostSealFault[] =
+    "damaged: a merged file without the seal at its end; "
+    "`strut merge DIR -o FILE --force` makes it anew";
+
 /// A kind of sealed file.
 struct SealKind {
-  const char* name;     // "shard"
-  const char* remedy;   // for a damaged file of this kind
-  const char* sealing;  // for a file that an earlier version wrote without a seal
+  const char* name;      // "shard"
+  const char* remedy;    // for a damaged file of this kind
+  const char* sealing;   // for a file that an earlier version wrote without a seal
+  bool is_last = false;  // the last bytes of the file are the seal, not the first
 };
 
 inline constexpr SealKind kShardSeal = {
@@ -43,9 +50,9 @@ inline constexpr SealKind kModelSeal = {"model", "`strut train` makes it anew",
                                         "`strut train` writes sealed ones"};
 inline constexpr SealKind kCheckpointSeal = {
     "checkpoint", "`strut train` without --resume starts anew", "the next one will be sealed"};
-inline constexpr SealKind kMergedSeal = {"merged",
-                                         "`strut merge DIR -o FILE --force` makes it anew",
-                                         "`strut merge DIR -o FILE --force` writes a sealed one"};
+inline constexpr SealKind kMergedSeal = {
+    "merged", "`strut merge DIR -o FILE --force` makes it anew",
+    "`strut merge DIR -o FILE --force` writes a sealed one", true};
 
 /// Further lines of a seal, specific to its kind: (key, text).
 using SealLines = std::vector<std::pair<std::string, std::string>>;
@@ -60,7 +67,7 @@ struct FileSeal {
   std::string kind;
   SealLines lines;
   std::uint64_t size = 0;  // bytes of the whole file
-  std::string sha256;      // digest of all bytes after the seal, 64 digits
+  std::string sha256;      // digest of all bytes outside the seal, 64 digits
 
   /// Returns the text of a line; empty if there is no such line.
   std::string get(const std::string& key) const;
@@ -75,8 +82,8 @@ struct SealCheck {
 
 /// Reads the seal and compares the size. Throws InputError if the file cannot be read.
 SealCheck check_seal(const std::filesystem::path& path, const SealKind& kind);
-/// Checks likewise, given the first bytes of a file of `size` bytes.
-SealCheck check_seal(std::span<const std::byte> first_bytes, std::uint64_t size,
+/// Checks likewise, given the bytes of the seal of a file of `size` bytes.
+SealCheck check_seal(std::span<const std::byte> seal_bytes, std::uint64_t size,
                      const SealKind& kind);
 /// Checks the seal, the size and every byte.
 SealCheck check_sealed_file(const std::filesystem::path& path, const SealKind& kind);
@@ -91,11 +98,11 @@ struct SealedBytes {
   std::vector<std::byte> bytes;  // content of the whole file
 };
 
-/// Reads a file once and checks every byte; if its first bytes are not a seal, the rest is not
-/// read. Throws InputError.
+/// Reads a file once and checks every byte; if it has no seal of this kind, the rest is not read.
+/// Throws InputError.
 SealedBytes read_sealed(const std::filesystem::path& path, const SealKind& kind);
 
-/// Returns the kind of the seal that a file begins with; empty if it does not begin with a seal.
+/// Returns the kind of a file's seal; empty if it has none.
 std::string find_seal_kind(const std::filesystem::path& path);
 
 /// Returns false for an HDF5 file without a seal, as earlier versions of strut wrote plans, models,
@@ -103,14 +110,15 @@ std::string find_seal_kind(const std::filesystem::path& path);
 /// InputError if the file cannot be read.
 bool is_sealed(const std::filesystem::path& path);
 
-/// Throws InputError if an HDF5 file without a seal has a global heap. strut writes global heaps
-/// only in views over other files, and a flipped bit in one may crash the HDF5 library.
+/// Throws InputError if an HDF5 file without a seal has a global heap. strut wrote global heaps
+/// only in views over other files, and in merged files that have a seal; a flipped bit in one may
+/// crash the HDF5 library.
 void refuse_global_heap(const std::filesystem::path& path);
 
-/// Overwrites the first kSealBytes bytes of a file's image with its seal. Throws CheckError if the
-/// lines do not fit.
-void seal_image(const SealLabel& label, std::span<std::byte> image);
-/// Seals a file on disk, which messages call `shown`. Throws EnvironmentError.
+/// Overwrites the first kSealBytes bytes of a file's image with its seal, or appends them. Throws
+/// CheckError if the lines do not fit.
+void seal_image(const SealLabel& label, std::vector<std::byte>& image);
+/// Seals a file on disk likewise, which messages call `shown`. Throws EnvironmentError.
 void seal_file(const SealLabel& label, const std::filesystem::path& path,
                const std::filesystem::path& shown);
 

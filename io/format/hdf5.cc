@@ -128,7 +128,7 @@ void Hdf5Writer::open(const Hdf5WriterOptions& options) {
                     H5Pset_file_image_callbacks(access.id(), &callbacks) >= 0;
   check<EnvironmentError>(good, sink_.shown, "", kNotWritten);
   seal_ = options.seal;
-  const Hdf5Handle creation = hdf5::make_file_creation(sink_.shown, seal_.has_value());
+  const Hdf5Handle creation = hdf5::make_file_creation(sink_.shown, has_user_block());
   sink_.file = checked<EnvironmentError>(
       H5Fcreate(hdf5::make_memory_name().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()),
       H5Fclose, sink_.shown, "", kNotWritten);
@@ -195,11 +195,16 @@ void Hdf5Writer::write_attribute(const std::string& object, const std::string& k
   hdf5::write_number_attribute(sink_, object, key, H5T_NATIVE_DOUBLE, &value);
 }
 
+void Hdf5Writer::attach_scale(const std::string& scale, unsigned dimension,
+                              const std::vector<std::string>& datasets) {
+  hdf5::attach_scale(sink_, scale, dimension, datasets);
+}
+
 std::vector<std::byte> Hdf5Writer::image() {
   const bool good = H5Fflush(sink_.file.id(), H5F_SCOPE_GLOBAL) >= 0 && sink_.file.reset();
   check<EnvironmentError>(good && memory_->closed, sink_.shown, "", kNotWritten);
   const auto* const begin = static_cast<const std::byte*>(memory_->data);
-  const std::uint64_t end = read_end_of_file(begin + (seal_ ? kSealBytes : 0));
+  const std::uint64_t end = read_end_of_file(begin + (has_user_block() ? kSealBytes : 0));
   STRUT_CHECK(end <= memory_->size, "an HDF5 file ends beyond its memory");
   std::vector<std::byte> bytes(begin, begin + end);
   memory_.reset();

@@ -138,6 +138,10 @@ class Hdf5Writer {
   void write_attribute(const std::string& object, const std::string& key, double value);
   void write_attribute_list(const std::string& object, const std::string& key,
                             const std::vector<std::string>& values);
+  /// Makes `scale`, a dataset of one dimension, the axis of a dimension of `datasets` (a dimension
+  /// scale, as netCDF-4 has them).
+  void attach_scale(const std::string& scale, unsigned dimension,
+                    const std::vector<std::string>& datasets);
 
   /// Completes the file and returns its bytes, sealed. Must be the last call.
   std::vector<std::byte> image();
@@ -147,6 +151,7 @@ class Hdf5Writer {
   struct Memory;
 
   void open(const Hdf5WriterOptions& options);
+  bool has_user_block() const { return seal_ && !seal_->kind.is_last; }
 
   std::optional<AtomicFile> target_;
   std::optional<SealLabel> seal_;

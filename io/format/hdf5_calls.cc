@@ -1,6 +1,7 @@
 #include "io/format/hdf5_calls.h"
 
 #include <fmt/format.h>
+#include <hdf5_hl.h>
 
 #include <atomic>
 #include <charconv>
@@ -139,11 +140,11 @@ Hdf5Handle make_file_access(const fs::path& path) {
   return access;
 }
 
-Hdf5Handle make_file_creation(const fs::path& path, bool sealed) {
+Hdf5Handle make_file_creation(const fs::path& path, bool user_block) {
   Hdf5Handle creation =
       checked<EnvironmentError>(H5Pcreate(H5P_FILE_CREATE), H5Pclose, path, "", kNotWritten);
   const bool good = H5Pset_obj_track_times(creation.id(), false) >= 0 &&
-                    H5Pset_userblock(creation.id(), sealed ? kSealBytes : 0) >= 0;
+                    H5Pset_userblock(creation.id(), user_block ? kSealBytes : 0) >= 0;
   check<EnvironmentError>(good, path, "", kNotWritten);
   return creation;
 }
@@ -218,6 +219,57 @@ void write_chunk(const Hdf5Sink& sink, const std::string& name, hid_t dataset, s
 void close_dataset(const Hdf5Sink& sink, const std::string& name, Hdf5Handle& dataset) {
   check<EnvironmentError>(dataset.reset(), sink.shown, name,
                           "dataset cannot be written; disk full?");
+}
+
+void write_variable_texts(const Hdf5Sink& sink, const std::string& name,
+                          const std::vector<std::string>& texts, const Hdf5Label& label) {
+  const Hdf5Handle type = make_type(sink.shown, Hdf5Type::kText, H5T_VARIABLE);
+  const Hdf5Handle creation = checked<EnvironmentError>(H5Pcreate(H5P_DATASET_CREATE), H5Pclose,
+                                                        sink.shown, name, kDatasetNotWritten);
+  check<EnvironmentError>(H5Pset_obj_track_times(creation.id(), false) >= 0, sink.shown, name,
+                          kDatasetNotWritten);
+  Hdf5Handle dataset = create_dataset(sink, name, Hdf5Type::kText, H5T_VARIABLE, {texts.size()},
+                                      creation.id(), label);
+  std::vector<const char*> pointers;
+  pointers.reserve(texts.size());
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  check<EnvironmentError>(
+      H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) >= 0,
+      sink.shown, name, kDatasetNotWritten);
+  close_dataset(sink, name, dataset);
+}
+
+void create_dimension(const Hdf5Sink& sink, const std::string& name, std::size_t size) {
+  const Hdf5Handle space = make_space(sink, name, {size});
+  const Hdf5Handle creation = make_dataset_creation(sink, name, Hdf5Type::kInt32, 0);
+  Hdf5Handle dataset =
+      checked<EnvironmentError>(H5Dcreate2(sink.file.id(), name.c_str(), H5T_NATIVE_INT32,
+                                           space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+                                H5Dclose, sink.shown, name, kDatasetNotWritten);
+  // The words by which netCDF knows it.
+  constexpr char kNoVariable[] = "This is a netCDF dimension but not a netCDF variable.";
+  check<EnvironmentError>(
+      H5DSset_scale(dataset.id(), fmt::format("{}{:10}", kNoVariable, size).c_str()) >= 0,
+      sink.shown, name, kDatasetNotWritten);
+  close_dataset(sink, name, dataset);
+}
+
+void attach_scale(const Hdf5Sink& sink, const std::string& scale, unsigned dimension,
+                  const std::vector<std::string>& datasets) {
+  const auto open = [&](const std::string& name) {
+    return checked<EnvironmentError>(H5Dopen2(sink.file.id(), name.c_str(), H5P_DEFAULT), H5Dclose,
+                                     sink.shown, name, kDatasetNotWritten);
+  };
+  const Hdf5Handle axis = open(scale);
+  const std::string name = scale.substr(scale.rfind('/') + 1);
+  const bool is_new = H5DSis_scale(axis.id()) == 0;
+  check<EnvironmentError>(!is_new || H5DSset_scale(axis.id(), name.c_str()) >= 0, sink.shown, scale,
+                          kDatasetNotWritten);
+  for (const std::string& dataset : datasets) {
+    const Hdf5Handle handle = open(dataset);
+    check<EnvironmentError>(H5DSattach_scale(handle.id(), axis.id(), dimension) >= 0, sink.shown,
+                            dataset, kDatasetNotWritten);
+  }
 }
 
 std::string make_memory_name() {

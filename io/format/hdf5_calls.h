@@ -51,9 +51,9 @@ hid_t get_in_file_access();
 
 /// Returns file access in the format of 1.10, which has checksums over all of its own structures.
 Hdf5Handle make_file_access(const std::filesystem::path& path);
-/// Returns file creation without times, so that equal content is equal bytes; `sealed`: with room
-/// for a seal at the start.
-Hdf5Handle make_file_creation(const std::filesystem::path& path, bool sealed);
+/// Returns file creation without times, so that equal content is equal bytes; `user_block`:
+/// with room for a seal at the start.
+Hdf5Handle make_file_creation(const std::filesystem::path& path, bool user_block);
 
 /// Returns dataset creation with the fill value NaN, -1 or an empty text, without times.
 Hdf5Handle make_dataset_creation(const Hdf5Sink& sink, const std::string& name, Hdf5Type type,
@@ -91,6 +91,16 @@ std::vector<std::string> unpack_texts(const std::vector<char>& raw, std::size_t 
 
 void write_text_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
                           const std::vector<std::string>& values, bool scalar);
+/// Writes texts of variable length, which strut itself never reads.
+void write_variable_texts(const Hdf5Sink& sink, const std::string& name,
+                          const std::vector<std::string>& texts, const Hdf5Label& label);
+/// Makes a dimension scale without values.
+void create_dimension(const Hdf5Sink& sink, const std::string& name, std::size_t size);
+/// Makes `scale`, a dataset of one dimension, a dimension scale and attaches it to a dimension of
+/// `datasets`: tools show their values over those of the scale.
+void attach_scale(const Hdf5Sink& sink, const std::string& scale, unsigned dimension,
+                  const std::vector<std::string>& datasets);
+
 void write_number_attribute(const Hdf5Sink& sink, const std::string& object, const std::string& key,
                             hid_t type, const void* value);
 

@@ -17,7 +17,7 @@ Hdf5StreamWriter::Hdf5StreamWriter(const fs::path& path, SealLabel seal)
   hdf5::prepare_library();
   sink_.shown = path;
   const Hdf5Handle access = hdf5::make_file_access(path);
-  const Hdf5Handle creation = hdf5::make_file_creation(path, true);
+  const Hdf5Handle creation = hdf5::make_file_creation(path, !seal_.kind.is_last);
   sink_.file = checked<EnvironmentError>(
       H5Fcreate(target_.temporary().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose,
       path, "", kNotWritten);
@@ -81,6 +81,20 @@ void Hdf5StreamWriter::write_attribute(const std::string& object, const std::str
 void Hdf5StreamWriter::write_attribute_list(const std::string& object, const std::string& key,
                                             const std::vector<std::string>& values) {
   hdf5::write_text_attribute(sink_, object, key, values, false);
+}
+
+void Hdf5StreamWriter::write_names(const std::string& name, const std::vector<std::string>& names,
+                                   const std::string& description) {
+  hdf5::write_variable_texts(sink_, name, names, {"1", description, {}});
+}
+
+void Hdf5StreamWriter::create_dimension(const std::string& name, std::size_t size) {
+  hdf5::create_dimension(sink_, name, size);
+}
+
+void Hdf5StreamWriter::attach_scale(const std::string& scale, unsigned dimension,
+                                    const std::vector<std::string>& datasets) {
+  hdf5::attach_scale(sink_, scale, dimension, datasets);
 }
 
 void Hdf5StreamWriter::commit() {

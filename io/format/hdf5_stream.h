@@ -40,6 +40,16 @@ class Hdf5StreamWriter {
   void write_attribute_list(const std::string& object, const std::string& key,
                             const std::vector<std::string>& values);
 
+  /// Writes names for the values of a dimension: texts of variable length, since netCDF has no
+  /// others of one dimension. Hdf5Reader refuses to read them.
+  void write_names(const std::string& name, const std::vector<std::string>& names,
+                   const std::string& description);
+  /// Makes a scale without values, netCDF's dimension without a variable.
+  void create_dimension(const std::string& name, std::size_t size);
+  /// As Hdf5Writer::attach_scale.
+  void attach_scale(const std::string& scale, unsigned dimension,
+                    const std::vector<std::string>& datasets);
+
   /// Reads the file back for its seal and gives it its name. Throws CheckError if a dataset lacks
   /// rows.
   void commit();

@@ -138,14 +138,14 @@ Claims::State::State(const Folder& claims_folder, const ClaimOptions& claim_opti
   const std::string runner_file = get_runner_file(name);
   {
     TemporaryFile file = make_temporary(runner_file);
-    const std::string text = write_runner_text(identity, 0);
+    const std::string text = write_runner_text(identity, 0, 0);
     file.write(text);
     // Otherwise a power cut may leave an empty file, whose runner only the lease would prove dead.
     file.flush_and_compare(std::as_bytes(std::span(text)));
     file.name_over();
   }
   remove_abandoned();
-  heartbeat.emplace(folder, runner_file, identity, options.heartbeat);
+  heartbeat.emplace(folder, runner_file, identity, options.heartbeat, options.count_work);
 }
 
 Claims::State::~State() {
@@ -308,7 +308,7 @@ std::vector<ClaimInfo> list_claims(const Folder& folder) {
     const auto holder = read_holder(folder, unit);
     const auto runner = holder ? read_runner(folder, *holder) : std::nullopt;
     if (runner && check_liveness(runner->identity, own) != Liveness::kDead) {
-      claims.push_back({unit, *holder});
+      claims.push_back({unit, *holder, runner->work});
     }
   }
   return claims;

@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,11 +25,15 @@ namespace strut {
 struct ClaimOptions {
   std::chrono::milliseconds heartbeat{1000};
   std::chrono::milliseconds lease{30000};  // a runner is dead if its counter stalls this long
+  /// Work done on the units that are held, which others read in ClaimInfo; called by the
+  /// heartbeat's thread. May be empty.
+  std::function<std::uint64_t()> count_work = {};
 };
 
 struct ClaimInfo {
   std::string unit;
-  std::string runner;  // HOST.PID.NONCE
+  std::string runner;      // HOST.PID.NONCE
+  std::uint64_t work = 0;  // of the runner, on all units that it holds, at its last heartbeat
 };
 
 class Claims {

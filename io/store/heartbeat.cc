@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/text/parse_number.h"
 #include "io/file/file_sync.h"
 
 namespace strut {
@@ -36,11 +37,13 @@ class BlockedSignals {
 
 }  // namespace
 
-std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter) {
+std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter,
+                              std::uint64_t work) {
   // 20 digits hold any 64 bits.
-  return fmt::format("host {}\nboot {}\nnamespace {}\nprocess {}\nstart {}\ncounter {:020}\n",
-                     identity.host, identity.boot, identity.name_space, identity.process,
-                     identity.start, counter);
+  return fmt::format(
+      "host {}\nboot {}\nnamespace {}\nprocess {}\nstart {}\ncounter {:020}\nwork {:020}\n",
+      identity.host, identity.boot, identity.name_space, identity.process, identity.start, counter,
+      work);
 }
 
 RunnerFile read_runner_text(const std::string& text) {
@@ -52,12 +55,17 @@ RunnerFile read_runner_text(const std::string& text) {
     if (space != std::string::npos) values[line.substr(0, space)] = line.substr(space + 1);
   }
   return {{values["host"], values["boot"], values["namespace"], values["process"], values["start"]},
+          parse_number<std::uint64_t>(values["work"]).value_or(0),
           text};
 }
 
 Heartbeat::Heartbeat(const Folder& folder, std::string file, ProcessIdentity identity,
-                     std::chrono::milliseconds interval)
-    : folder_(folder), file_(std::move(file)), identity_(std::move(identity)), interval_(interval) {
+                     std::chrono::milliseconds interval, CountWork count_work)
+    : folder_(folder),
+      file_(std::move(file)),
+      identity_(std::move(identity)),
+      interval_(interval),
+      count_work_(std::move(count_work)) {
   const BlockedSignals blocked;
   try {
     thread_ = std::thread([this] { run(); });
@@ -89,7 +97,7 @@ void Heartbeat::run() {
 // claims pass to other runners. Makes the file again if it was removed.
 void Heartbeat::beat(std::uint64_t counter) const {
   try {
-    const std::string text = write_runner_text(identity_, counter);
+    const std::string text = write_runner_text(identity_, counter, count_work_ ? count_work_() : 0);
     const FileDescriptor file = folder_.open_file(file_, O_WRONLY | O_CREAT);
     if (file.is_open()) write_once(file.get(), std::as_bytes(std::span(text)));
   } catch (const std::exception&) {  // this beat is lost

@@ -1,9 +1,11 @@
-// Proof that a runner is alive: a file with its process and a counter that a thread increments.
+// Proof that a runner is alive: a file with its process, a counter that a thread increments, and
+// how far its work is.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -15,12 +17,14 @@ namespace strut {
 
 struct RunnerFile {
   ProcessIdentity identity;
-  std::string text;  // the whole file, which changes at every heartbeat
+  std::uint64_t work = 0;  // units that the runner counts; 0 where the file does not say
+  std::string text;        // the whole file, which changes at every heartbeat
 };
 
 /// Returns one key and value per line; for one runner the length is fixed, so that the text can be
 /// written in place.
-std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter);
+std::string write_runner_text(const ProcessIdentity& identity, std::uint64_t counter,
+                              std::uint64_t work);
 
 /// Parses such a text; fields that are missing or truncated are empty.
 RunnerFile read_runner_text(const std::string& text);
@@ -29,9 +33,12 @@ RunnerFile read_runner_text(const std::string& text);
 /// signals, and failures of the file do not end it: the counter then stalls.
 class Heartbeat {
  public:
-  /// Throws EnvironmentError if no thread can be started.
+  using CountWork = std::function<std::uint64_t()>;
+
+  /// `count_work` is called by the thread at each beat; it may be empty. Throws EnvironmentError if
+  /// no thread can be started.
   Heartbeat(const Folder& folder, std::string file, ProcessIdentity identity,
-            std::chrono::milliseconds interval);
+            std::chrono::milliseconds interval, CountWork count_work);
   ~Heartbeat();
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
@@ -44,6 +51,7 @@ class Heartbeat {
   std::string file_;
   ProcessIdentity identity_;
   std::chrono::milliseconds interval_;
+  CountWork count_work_;
   std::mutex mutex_;
   std::condition_variable stopped_;
   bool stop_ = false;

@@ -113,7 +113,10 @@ ShardSchema read_shard_schema(const fs::path& path, const Hdf5Reader& file) {
 }
 
 Shard read_shard(const fs::path& path, ShardParts parts) {
-  const SealedBytes sealed = read_sealed(path, kShardSeal);
+  return read_shard(path, read_sealed(path, kShardSeal), parts);
+}
+
+Shard read_shard(const fs::path& path, const SealedBytes& sealed, ShardParts parts) {
   const ShardSeal seal = read_shard_seal(path, sealed.bytes);
   const Hdf5Reader file(path, sealed.bytes);
   Shard shard;

@@ -133,5 +133,8 @@ enum class ShardParts {
 /// digest of the rows. Throws InputError with file and dataset if a byte or a dataset is missing,
 /// damaged or of the wrong shape, or if the schema version is unknown.
 Shard read_shard(const std::filesystem::path& path, ShardParts parts = ShardParts::kAll);
+/// The same of a file that is read already; `path` is for messages.
+Shard read_shard(const std::filesystem::path& path, const SealedBytes& sealed,
+                 ShardParts parts = ShardParts::kAll);
 
 }  // namespace strut

@@ -32,6 +32,12 @@ inline constexpr char kSnapshotName[] = "/snapshot";
 inline constexpr char kReasonName[] = "/reason";
 inline constexpr char kHistoryGroup[] = "/history";
 
+// Axes of a merged file.
+inline constexpr char kParameterAxis[] = "/parameter";
+inline constexpr char kChannelAxis[] = "/channel";
+inline constexpr char kReasonLength[] = "/reason_length";
+inline constexpr char kTimeAxis[] = "/history/time";
+
 inline std::string get_history_name(const ColumnInfo& channel) {
   return kHistoryGroup + ("/" + channel.name);
 }

@@ -33,6 +33,17 @@ void require_retry(const fs::path& file, const Shard& shard, const Shard& overla
   if (!fault.empty()) throw retry_error(file, fault);
 }
 
+/// Calls `act(path)` for each file of a folder. Throws EnvironmentError where it cannot be listed.
+template <class Act>
+void for_each_file(const fs::path& folder, const Act& act) {
+  std::error_code error;
+  for (fs::directory_iterator file(folder, error), end; !error && file != end;
+       file.increment(error)) {
+    act(file->path());
+  }
+  if (error) throw file_failure(folder, "cannot be listed", error.value());
+}
+
 }  // namespace
 
 std::string SweepFolder::name() const {
@@ -53,14 +64,10 @@ std::int64_t SweepFolder::parse_shard_name(const std::string& name) {
 
 std::vector<std::int64_t> list_shards(const SweepFolder& folder) {
   std::vector<std::int64_t> shards;
-  std::error_code error;
-  for (fs::directory_iterator file(folder.shards(), error), end; !error && file != end;
-       file.increment(error)) {
-    const fs::path& path = file->path();
+  for_each_file(folder.shards(), [&](const fs::path& path) {
     const std::int64_t shard = SweepFolder::parse_shard_name(path.stem().string());
     if (shard >= 0 && path == folder.shard(shard)) shards.push_back(shard);
-  }
-  if (error) throw file_failure(folder.shards(), "cannot be listed", error.value());
+  });
   std::sort(shards.begin(), shards.end());
   return shards;
 }
@@ -69,6 +76,18 @@ int count_retries(const SweepFolder& folder, std::int64_t shard) {
   int rounds = 0;
   while (fs::exists(folder.retry(shard, rounds))) ++rounds;
   return rounds;
+}
+
+RetryCounts count_all_retries(const SweepFolder& folder) {
+  RetryCounts counts;
+  std::error_code ignored;
+  if (!fs::exists(folder.retries(), ignored)) return counts;
+  for_each_file(folder.retries(), [&](const fs::path& path) {
+    const std::int64_t shard = SweepFolder::parse_shard_name(path.stem().stem().string());
+    if (shard >= 0 && path == folder.retry(shard, 0)) counts[shard] = 1;
+  });
+  for (auto& [shard, count] : counts) count = count_retries(folder, shard);
+  return counts;
 }
 
 SweepExtent read_sweep_extent(const SweepFolder& folder) {

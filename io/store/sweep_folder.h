@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,11 @@ std::vector<std::int64_t> list_shards(const SweepFolder& folder);
 
 /// Returns the number of rounds of retries in `retries/` for a shard: 0, 1, ... without a gap.
 int count_retries(const SweepFolder& folder, std::int64_t shard);
+
+/// Number of rounds of retries of each shard that has any. Shards without cost nothing.
+using RetryCounts = std::map<std::int64_t, int>;
+/// Throws EnvironmentError.
+RetryCounts count_all_retries(const SweepFolder& folder);
 
 /// Reads the extent from plan.h5. Throws InputError if it is missing or damaged.
 SweepExtent read_sweep_extent(const SweepFolder& folder);

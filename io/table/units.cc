@@ -68,6 +68,14 @@ const std::vector<UnitEntry>& list_units() {
       {"N", "mN", {1e-3, 0.0}},
       {"N", "lbf", {kPound, 0.0}},
       {"N", "kgf", {kGravity, 0.0}},
+      {"N/m", "N/m", {}},
+      {"N/m", "N/mm", {1e3, 0.0}},
+      {"N/m", "kN/m", {1e3, 0.0}},
+      {"N/m", "lbf/in", {kPound / kInch, 0.0}},
+      {"N s/m", "N s/m", {}},
+      {"N s/m", "N s/mm", {1e3, 0.0}},
+      {"N s/m", "kN s/m", {1e3, 0.0}},
+      {"kg", "kg", {}},
       {"K", "K", {}},
       {"K", "degC", {1.0, 273.15}},
       {"K", "degF", {5.0 / 9.0, 273.15 - 160.0 / 9.0}},
@@ -125,7 +133,7 @@ UnitScale find_unit_scale(std::string_view given, const std::string& si) {
     if (entry.name == unit) return entry.scale;
     allowed.emplace_back(entry.name);
   }
-  throw InputError(fmt::format("unit \"{}\": unknown for a channel in {}; allowed: {}{}", unit, si,
+  throw InputError(fmt::format("unit \"{}\": unknown for a quantity in {}; allowed: {}{}", unit, si,
                                join_names(allowed), suggest_name(unit, allowed)));
 }
 

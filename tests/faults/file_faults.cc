@@ -10,6 +10,8 @@
 //   STRUT_FAULT_FIRED=FILE                 made when the fault happened
 //   STRUT_NO_WALL_CLOCK=1                  reading the wall clock ends the program by SIGABRT
 //   STRUT_CLOCK_SHIFT=SECONDS              the wall clock is off by so much
+//   STRUT_DELAY=MILLISECONDS               opening, stat and renaming answer so much later, as on a
+//                                          file system on a network; many at once
 //
 // Not seen: calls that libc makes inside itself for stdio's buffers, mmap, copy_file_range,
 // sendfile.
@@ -67,6 +69,7 @@ struct Settings {
   std::string fired = get_variable("STRUT_FAULT_FIRED");
   bool no_wall_clock = !get_variable("STRUT_NO_WALL_CLOCK").empty();
   long clock_shift = std::atol(get_variable("STRUT_CLOCK_SHIFT").c_str());
+  double delay = std::atof(get_variable("STRUT_DELAY").c_str());
   Fault fault = read_fault();
 };
 
@@ -112,6 +115,17 @@ std::string find_path(int folder, const char* path) {
 std::string find_path(int descriptor) {
   if (get_settings().folder.empty()) return "";
   return get_relative(read_descriptor_path(descriptor));
+}
+
+// Not while a mutex is held.
+void wait_for(const std::string& path) {
+  const double delay = get_settings().delay;
+  if (!(delay > 0.0) || path.empty()) return;
+  const int error_number = errno;
+  const auto nanoseconds = static_cast<long>(1e6 * delay);
+  const timespec time{nanoseconds / 1000000000, nanoseconds % 1000000000};
+  ::nanosleep(&time, nullptr);
+  errno = error_number;
 }
 
 void write_whole(const std::string& path, const std::string& text) {
@@ -172,8 +186,9 @@ void record_open(int descriptor, const std::string& path, int flags) {
 }
 
 int open_at(int folder, const char* name, int flags, mode_t mode) {
-  const std::lock_guard lock(get_mutex());
   const std::string path = find_path(folder, name);
+  wait_for(path);
+  const std::lock_guard lock(get_mutex());
   if (!path.empty() && fails("open")) return -1;
   static const auto next = find_next<int(int, const char*, int, ...)>("openat");
   const int descriptor = next(folder, name, flags, mode);
@@ -239,6 +254,7 @@ int sync_file(int descriptor, const Sync& sync) {
 template <typename Change>
 int change_name(const char* kind, FileCall call, const std::string& path, const std::string& other,
                 const Change& change) {
+  if (std::string(kind) == "rename") wait_for(path);
   const std::lock_guard lock(get_mutex());
   const bool is_ours = !path.empty() || !other.empty();
   if (is_ours && fails(kind)) return -1;
@@ -257,8 +273,9 @@ std::string join(const iovec* parts, int count) {
 
 template <typename Open>
 FILE* open_stream(const char* name, const char* mode, const Open& open) {
-  const std::lock_guard lock(get_mutex());
   const std::string path = find_path(AT_FDCWD, name);
+  wait_for(path);
+  const std::lock_guard lock(get_mutex());
   if (!path.empty() && fails("open")) return nullptr;
   FILE* stream = open();
   const int flags = mode[0] == 'w' ? O_CREAT | O_TRUNC : mode[0] == 'a' ? O_CREAT : 0;
@@ -429,6 +446,17 @@ int mkdirat(int folder, const char* path, mode_t mode) noexcept {
 }
 
 int mkdir(const char* path, mode_t mode) noexcept { return mkdirat(AT_FDCWD, path, mode); }
+
+#define STRUT_STAT(NAME, STRUCT)                                                 \
+  int NAME(const char* path, struct STRUCT* status) noexcept {                   \
+    wait_for(find_path(AT_FDCWD, path));                                         \
+    static const auto next = find_next<int(const char*, struct STRUCT*)>(#NAME); \
+    return next(path, status);                                                   \
+  }
+STRUT_STAT(stat, stat)
+STRUT_STAT(stat64, stat64)
+STRUT_STAT(lstat, stat)
+STRUT_STAT(lstat64, stat64)
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
   if (clock != CLOCK_REALTIME && clock != CLOCK_REALTIME_COARSE) {

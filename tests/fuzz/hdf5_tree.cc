@@ -78,8 +78,10 @@ void read_group(const Hdf5Reader& file, const std::string& group, Tree& tree) {
       node.values = std::move(*texts);
     } else if (auto integers = attempt([&] { return file.read_integers(name); })) {
       node.values = std::move(*integers);
+    } else if (auto numbers = attempt([&] { return file.read(name).values; })) {
+      node.values = std::move(*numbers);
     } else {
-      node.values = file.read(name).values;
+      tree.datasets.erase(name);  // texts of variable length, which no reader takes
     }
   }
 }

@@ -174,7 +174,7 @@ void make_work_folder(const fs::path& work) {
   const std::string runner = "host.1.ab";
   write_text_file(sweep.root / "claim.seed", runner + "\n");
   write_text_file(sweep.root / "runner.seed",
-                  write_runner_text({"host", "boot", "pid:[1]", "1", "2"}, 7));
+                  write_runner_text({"host", "boot", "pid:[1]", "1", "2"}, 7, 3));
   fs::copy_file(sweep.root / "claim.seed", sweep.claims() / "000001");
   fs::copy_file(sweep.root / "runner.seed", sweep.claims() / ("runner." + runner));
 
