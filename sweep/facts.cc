@@ -35,7 +35,11 @@ void add_grid(const SweepRequest& request, Facts& facts) {
   }
 }
 
-void add_integrate(const SolverOptions& request, Facts& facts) {
+void add_integrate(const SweepRequest& sweep, Facts& facts) {
+  const SolverOptions& request = sweep.integrate;
+  if (sweep.accuracy > 0.0) {
+    facts.emplace_back("integrate.accuracy", format_number(sweep.accuracy));
+  }
   if (request.solver == Solver::kCvode) {
     facts.emplace_back("integrate.method", find_name(kIntegrators, Integrator::kCvode));
     facts.emplace_back("integrate.relative_tolerance",
@@ -49,6 +53,9 @@ void add_integrate(const SolverOptions& request, Facts& facts) {
     facts.emplace_back("integrate.coarse_step", format_number(step.coarse_step));
     facts.emplace_back("integrate.locate_events", step.locate_events ? "true" : "false");
     facts.emplace_back("integrate.spin", find_name(kSpins, request.options.spin));
+    if (sweep.results_version > 2) {
+      facts.emplace_back("integrate.symmetry", request.options.symmetry ? "true" : "false");
+    }
   }
   facts.emplace_back("integrate.closure", find_name(kClosures, request.options.closure));
 }
@@ -92,7 +99,7 @@ Facts list_facts(const SweepRequest& request) {
   Facts facts = {{kResultsVersionName, std::to_string(request.results_version)}};
   add_grid(request, facts);
   add_sample(request, facts);
-  add_integrate(request.integrate, facts);
+  add_integrate(request, facts);
   add_record(request, facts);
   facts.emplace_back("shards.cases", std::to_string(request.shard_cases));
   facts.emplace_back("order", request.shuffle ? "shuffled" : "by number, slow axes first");

@@ -7,6 +7,7 @@
 #include "base/error/input_error.h"
 #include "io/file/atomic_file.h"
 #include "io/store/claims.h"
+#include "sweep/choose_settings.h"
 #include "sweep/freeze_inputs.h"
 #include "sweep/plan_file.h"
 
@@ -52,19 +53,29 @@ void check_free(const SweepFolder& folder) {
   }
 }
 
-/// The request by the rules of the version that made the plan.
+/// The request by the rules of the version that made the plan, with the choices of the plan.
 SweepRequest apply_rules_of(const PlanRecord& record, SweepRequest request) {
   for (int version = 1; version <= kResultsVersion; ++version) {
     if (find_text(record.facts, kResultsVersionName) == std::to_string(version)) {
       request.results_version = version;
     }
   }
+  if (request.results_version <= 2) {
+    request.integrate.options.symmetry = false;
+    request.integrate.options.step.refines_events = false;
+    request.accuracy = 0.0;
+    request.chooses_shards = false;
+  }
+  adopt_settings(record.facts, request);
   return request;
 }
 
 void check_same(const SweepFolder& folder, const Plan& plan) {
   const PlanRecord record = read_plan(folder.plan());
-  const Facts facts = list_facts(apply_rules_of(record, plan.request()));
+  // Read again where choices of today may stand in the place of what the file leaves open.
+  const bool is_open = plan.request().accuracy > 0.0 || plan.request().chooses_shards;
+  const Facts facts = list_facts(
+      apply_rules_of(record, is_open ? read_request(plan.request().path) : plan.request()));
   if (record.extent.plan_hash == calc_hash(facts)) {
     const Plan found = open_sweep_folder(folder);  // its own files may have been changed
     if (!is_sealed(folder.plan())) write_plan(folder.plan(), found);
@@ -107,7 +118,9 @@ SweepFolder make_sweep_folder(const fs::path& root, const Plan& plan) {
     return folder;
   }
   freeze_inputs(plan.request(), folder);
-  if (calc_hash(list_facts(read_request(folder.request()))) != plan.hash()) {
+  SweepRequest frozen = read_request(folder.request());
+  adopt_settings(plan.facts(), frozen);
+  if (calc_hash(list_facts(frozen)) != plan.hash()) {
     throw EnvironmentError(folder.request().string() +
                            ": its files changed while they were copied; run `strut plan` again");
   }

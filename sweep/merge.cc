@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "base/text/nearest_name.h"
 #include "io/format/hdf5_stream.h"
 #include "io/store/shard_layout.h"
 
@@ -68,9 +69,12 @@ void create_datasets(const ShardSchema& schema, const MergeLayout& layout, Hdf5S
   rows.history.resize(schema.history.size());
   visit_shard_columns(schema, rows, [&](const ShardColumn& column, const auto& values) {
     using Value = typename std::decay_t<decltype(values)>::value_type;
+    // netCDF has no texts of fixed length, but characters.
+    constexpr bool kIsText = std::is_same_v<Value, std::string>;
+    const std::size_t columns = kIsText ? layout.text_length : column.columns;
     std::vector<std::size_t> shape = {layout.rows};
-    if (column.columns > 0) shape.push_back(column.columns);
-    file.create(column.name, hdf5_type<Value>, shape, column.label, layout.text_length);
+    if (columns > 0) shape.push_back(columns);
+    file.create(column.name, hdf5_type<Value>, shape, column.label, 1);
   });
 }
 
@@ -99,6 +103,50 @@ void write_shard_list(const MergeLayout& layout, Hdf5StreamWriter& file) {
   write("first_row", "its first row in this file", &MergedShard::first_row);
   write("rows", "its cases", &MergedShard::rows);
   write("retries", "overlays that mended rows of it", &MergedShard::retries);
+}
+
+void write_times(const ShardSchema& schema, Hdf5StreamWriter& file) {
+  std::vector<double> times(schema.history_samples);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    times[i] = static_cast<double>(i) * schema.history_interval;
+  }
+  file.create(kTimeAxis, Hdf5Type::kDouble, {times.size()}, {"s", "time of a sample", {}});
+  file.append(kTimeAxis, times);
+}
+
+/// Writes what makes the file one of netCDF-4: an axis for each dimension, and the attributes
+/// `units` and `long_name`.
+void write_axes(const ShardSchema& schema, const MergeLayout& layout, Hdf5StreamWriter& file) {
+  std::vector<std::string> rows, histories;
+  const auto describe = [&](const std::string& name, const Hdf5Label& label) {
+    if (label.units.empty()) file.write_attribute(name, "units", label.unit);
+    file.write_attribute(name, "long_name", label.description);
+    // One text: not all tools read lists.
+    if (!label.names.empty()) file.write_attribute(name, "columns", join_names(label.names));
+  };
+  ShardRows none;
+  none.history.resize(schema.history.size());
+  visit_shard_columns(schema, none, [&](const ShardColumn& column, const auto&) {
+    if (column.name != kCaseIdName) rows.push_back(column.name);
+    if (column.name.starts_with(kHistoryGroup)) histories.push_back(column.name);
+    describe(column.name, column.label);
+  });
+  file.attach_scale(kCaseIdName, 0, rows);
+  file.write_attribute(kReasonName, "_Encoding", "utf-8");
+  file.create_dimension(kReasonLength, layout.text_length);
+  file.attach_scale(kReasonLength, 1, {kReasonName});
+  file.write_names(kParameterAxis, list_names(schema.parameters), "names of the parameters");
+  file.attach_scale(kParameterAxis, 1, {kParametersName});
+  if (!schema.snapshot.empty()) {
+    file.write_names(kChannelAxis, list_names(schema.snapshot), "names of the channels");
+    file.attach_scale(kChannelAxis, 1, {kSnapshotName});
+  }
+  if (!schema.history.empty()) {
+    write_times(schema, file);
+    file.attach_scale(kTimeAxis, 1, histories);
+    describe(kTimeAxis, {"s", "time of a sample", {}});
+  }
+  file.attach_scale("/shards/number", 0, {"/shards/first_row", "/shards/rows", "/shards/retries"});
 }
 
 Shard read_checked_shard(const SweepFolder& folder, const MergeInput& input, std::int64_t number) {
@@ -142,6 +190,7 @@ MergeReport merge_sweep(const SweepFolder& folder, const MergeInput& input, cons
   report.missing = input.extent.shard_count() - report.shards;
   report.data_digest = digest.text();
   write_shard_list(layout, file);
+  write_axes(input.schema, layout, file);
   write_shard_attributes(file, list_names(input.schema.history), input.schema.history_interval,
                          input.schema.status_meaning, input.extent.plan_hash, digest);
   for (const auto& [key, text] : options.provenance) file.write_attribute("/", key, text);

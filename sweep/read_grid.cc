@@ -89,13 +89,7 @@ void check_independence(const Table& grid, const std::vector<Axis>& axes, const 
   for (const Axis& first : axes) {
     for (const Axis& second : axes) {
       if (&first == &second) continue;
-      Case c = base;
-      const ParameterInfo& parameter = find_parameter(first.name);
-      parameter.set(c, first.from);
-      const double before = parameter.get(c);
-      // Differs from any likely current value, so that the effect of setting it is visible.
-      find_parameter(second.name).set(c, 0.5 * second.from + 0.125);
-      if (parameter.get(c) == before) continue;
+      if (!share_quantity(find_parameter(first.name), find_parameter(second.name), base)) continue;
       throw grid.error(
           second.name,
           fmt::format("sets the same quantity as the axis '{}'; allowed: one of the two",
@@ -105,6 +99,12 @@ void check_independence(const Table& grid, const std::vector<Axis>& axes, const 
 }
 
 }  // namespace
+
+bool share_quantity(const ParameterInfo& first, const ParameterInfo& second, Case c) {
+  const double before = first.get(c);
+  second.set(c, second.get(c) + 1.0);
+  return first.get(c) != before;
+}
 
 Grid read_grid(const Table& table, SampleMethod method, const Case& base) {
   const bool levels = method == SampleMethod::kGrid;

@@ -10,12 +10,14 @@
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
 #include "model/longest_step.h"
+#include "model_files/file_kind.h"
 #include "model_files/find_channel.h"
 #include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"
 #include "model_files/read_vehicle.h"
 #include "sweep/case_order.h"
 #include "sweep/choices.h"
+#include "sweep/choose_settings.h"
 #include "sweep/read_grid.h"
 #include "sweep/step_count.h"
 
@@ -78,18 +80,25 @@ void limit_default_strata(const std::optional<Table>& table, const Grid& grid,
   sample.strata = static_cast<int>(std::min<std::int64_t>(sample.strata, max));
 }
 
-/// Longest duration of all cases [s].
-double find_longest_duration(const SweepRequest& request) {
-  double longest = request.base.maneuver.duration;
-  for (const Axis& axis : request.grid.axes()) {
-    if (axis.name == "duration") longest = std::max(axis.from, axis.last());
+/// Default bound of the error of the integrator that `strut plan` chooses.
+constexpr double kDefaultAccuracy = 1e-3;
+
+/// The bound of the error where the table leaves the integrator open; 0 where it names one.
+double read_accuracy(const std::optional<Table>& table) {
+  if (!table) return kDefaultAccuracy;
+  const bool is_given = table->has("accuracy");
+  for (const char* key : {"method", "step", "coarse_step", "closure", "locate_events"}) {
+    if (!table->has(key)) continue;
+    if (!is_given) return 0.0;
+    throw table->error(key, "not allowed beside accuracy, with which `strut plan` chooses it");
   }
-  return longest;
+  return table->number_or("accuracy", kDefaultAccuracy, between(kFinestAccuracy, 0.1, "1"));
 }
 
 SolverOptions read_integrate(const std::optional<Table>& table, double longest_duration,
                              double longest_step) {
   SolverOptions request;
+  request.options.symmetry = true;
   request.options.step.step = shorten_step(request.options.step.step, longest_step);
   if (!table) return request;
   const auto method =
@@ -98,13 +107,15 @@ SolverOptions read_integrate(const std::optional<Table>& table, double longest_d
   request.options.closure = request.reference.closure = closure;
   if (method == Integrator::kCvode) {
     request.solver = Solver::kCvode;
-    for (const char* key : {"step", "coarse_step", "locate_events"}) {
+    for (const char* key : {"step", "coarse_step", "locate_events", "symmetry"}) {
       if (table->has(key))
-        throw table->error(
-            key, "not allowed with cvode, which controls its steps; allowed with rk4, abm4");
+        throw table->error(key,
+                           "not allowed with cvode, which controls its steps and computes the "
+                           "whole car; allowed with rk4, abm4");
     }
     return request;
   }
+  request.options.symmetry = table->boolean_or("symmetry", request.options.symmetry);
   StepOptions& step = request.options.step;
   step.stepper = to_stepper(method);
   step.step = table->number_or("step", step.step,
@@ -172,6 +183,7 @@ void read_shards(const std::optional<Table>& table, SweepRequest& request) {
     max = std::max(std::int64_t{1}, static_cast<std::int64_t>(kMaxShardBytes / bytes));
   }
   const std::int64_t usual = std::min<std::int64_t>(max, request.shard_cases);
+  request.chooses_shards = !table || !table->has("cases");
   request.shard_cases = static_cast<int>(table ? table->integer_or("cases", usual, 1, max) : usual);
 }
 
@@ -179,7 +191,7 @@ void read_shards(const std::optional<Table>& table, SweepRequest& request) {
 
 SweepRequest read_request(const std::filesystem::path& path) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kSweepFile);
   SweepRequest request;
   request.path = path;
   request.vehicle = root.file("vehicle");
@@ -191,8 +203,10 @@ SweepRequest read_request(const std::filesystem::path& path) {
   request.grid = read_grid(root.table("grid"), request.sample.method, request.base);
   read_by(sample, request.grid, request.sample);
   limit_default_strata(sample, request.grid, request.sample);
-  request.integrate = read_integrate(root.find_table("integrate"), find_longest_duration(request),
-                                     find_longest_step(request));
+  const auto integrate = root.find_table("integrate");
+  request.accuracy = read_accuracy(integrate);
+  request.integrate =
+      read_integrate(integrate, find_longest_duration(request), find_longest_step(request));
   read_record(root.table("record"), request);
   read_shards(root.find_table("shards"), request);
   request.shuffle = request.sample.method == SampleMethod::kGrid && find_slow_axes(request).empty();
@@ -216,6 +230,14 @@ double find_longest_step(const SweepRequest& request) {
     }
   }
   return calc_longest_step(stiffest);
+}
+
+double find_longest_duration(const SweepRequest& request) {
+  double longest = request.base.maneuver.duration;
+  for (const Axis& axis : request.grid.axes()) {
+    if (axis.name == "duration") longest = std::max(axis.from, axis.last());
+  }
+  return longest;
 }
 
 bool ends_at_snapshot(const SweepRequest& request) {

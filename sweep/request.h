@@ -36,7 +36,10 @@ struct HistoryRequest {
 /// Increment it with every change after which the same request yields different numbers. A folder
 /// that was planned by an earlier version is finished by that one's rules:
 /// 1: starts by KINSOL; every run goes on to its duration.
-inline constexpr int kResultsVersion = 2;
+/// 1 and 2: both sides of a car that moves symmetrically are computed; the lift-off of both wheels
+///    of an axle may take two steps; an open integrator is RK4 with Newton's closure, and a shard
+///    has 512 cases unless the file says otherwise.
+inline constexpr int kResultsVersion = 3;
 
 struct SweepRequest {
   std::filesystem::path path, vehicle, maneuver;  // files that it was read from
@@ -44,10 +47,14 @@ struct SweepRequest {
   Grid grid;
   SampleRequest sample;
   SolverOptions integrate;
+  /// > 0: the file leaves the integrator open, and this is the bound of its error
+  /// (choose_settings.h).
+  double accuracy = 0.0;
   SnapshotRequest snapshot;
   HistoryRequest history;
   int shard_cases = 512;
-  bool shuffle = true;  // run order, see case_order.h
+  bool chooses_shards = false;  // the file leaves them open: shard_cases is their maximum
+  bool shuffle = true;          // run order, see case_order.h
   int results_version = kResultsVersion;
 };
 
@@ -58,6 +65,9 @@ SweepRequest read_request(const std::filesystem::path& path);
 /// Longest step [s] that resolves the effects of every case (model/longest_step.h): the default
 /// step is halved to it.
 double find_longest_step(const SweepRequest& request);
+
+/// Longest duration of all cases [s].
+double find_longest_duration(const SweepRequest& request);
 
 /// Whether each run ends with its snapshot: nothing after it is recorded.
 bool ends_at_snapshot(const SweepRequest& request);

@@ -1,5 +1,6 @@
 #include "sweep/run.h"
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 
@@ -77,6 +78,15 @@ ShardWriter::Settings make_writer_settings(const RunInput& run) {
   return settings;
 }
 
+ClaimOptions make_claim_options(const RunInput& run) {
+  ClaimOptions options = run.options.claims;
+  options.count_work = [&progress = run.progress] {
+    const std::int64_t written = progress.written;  // first: a case is simulated, then written
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(progress.simulated - written, 0));
+  };
+  return options;
+}
+
 /// Calls `produce(writer)` on each thread of a team; returns the number of files written.
 template <class Produce>
 std::int64_t run_writing_team(const RunInput& run, Claims& claims, SharedSummary& summary,
@@ -145,18 +155,6 @@ void simulate_shards(const RunInput& run, ShardSource& source, ShardWriter& writ
 
 // --- retries ---------------------------------------------------------------------------------
 
-/// Number of retries of each shard that has any.
-using RetryCounts = std::map<std::int64_t, int>;
-
-RetryCounts count_all_retries(const SweepFolder& folder) {
-  RetryCounts counts;
-  for (const std::int64_t shard : list_shards(folder)) {
-    const int count = count_retries(folder, shard);
-    if (count > 0) counts[shard] = count;
-  }
-  return counts;
-}
-
 /// Returns no rows, and notes the error, if the shard is damaged.
 ShardRows read_rows(const RunInput& run, std::int64_t shard, SharedSummary& summary) {
   try {
@@ -219,12 +217,13 @@ template <class Act>
 void for_each_present(const RunInput& run, SharedSummary& summary, const Act& act) {
   const ShardRecords records(run.folder, run.extent);
   const std::int64_t end = run.options.find_end_shard(run.plan);
-  for (const std::int64_t shard : list_shards(run.folder)) {
-    if (shard < run.options.first_shard || shard >= end) continue;
-    try {
-      act(shard, records.get(shard));
-    } catch (const InputError& e) {  // one bad file must not stop the others
-      summary.add_damaged(shard, e.what());
+  std::vector<std::int64_t> shards = list_shards(run.folder);
+  std::erase_if(shards, [&](std::int64_t s) { return s < run.options.first_shard || s >= end; });
+  for (const FoundShard& found : records.read(shards)) {
+    if (found.entry) {
+      act(found.shard, *found.entry);
+    } else {  // one bad file must not stop the others
+      summary.add_damaged(found.shard, found.fault);
     }
   }
 }
@@ -251,7 +250,7 @@ RunSummary run_sweep(const SweepFolder& folder, const Plan& plan, const RunOptio
                      RunProgress& progress, std::atomic<bool>& halt) {
   const RunInput run{folder, plan, options, progress, halt, plan.make_schema(), plan.make_extent()};
   prepare_folder(folder);
-  Claims claims(folder.open(folder.claims()), options.claims);
+  Claims claims(folder.open(folder.claims()), make_claim_options(run));
   clean_up(folder, claims);
   const RetryCounts before = options.retry_failed ? count_all_retries(folder) : RetryCounts();
 
@@ -261,8 +260,10 @@ RunSummary run_sweep(const SweepFolder& folder, const Plan& plan, const RunOptio
       run, claims, shared, [&](const JournalEntry& entry) { count_written(entry, progress); },
       [&](ShardWriter& writer) { simulate_shards(run, source, writer, shared); });
   std::int64_t retries_written = 0;
+  bool none_fails = false;
   if (options.retry_failed && !halt) {
     const std::vector<std::int64_t> shards = list_failing_shards(run, shared);
+    none_fails = shards.empty();
     std::atomic<std::size_t> next{0};
     retries_written = run_writing_team(
         run, claims, shared, [](const JournalEntry&) {},
@@ -272,7 +273,7 @@ RunSummary run_sweep(const SweepFolder& folder, const Plan& plan, const RunOptio
   }
 
   const bool stopped = halt;
-  const std::int64_t failed = count_failed(run, shared);
+  const std::int64_t failed = none_fails ? 0 : count_failed(run, shared);
   RunSummary summary = shared.take();
   summary.stopped = stopped;
   summary.shards_written = shards_written;

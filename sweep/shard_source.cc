@@ -29,14 +29,15 @@ ShardSource::ShardSource(const SweepFolder& folder, const Plan& plan, const RunO
 }
 
 void ShardSource::scan(std::int64_t first, std::int64_t end) {
-  const std::vector<std::int64_t> existing = list_shards(folder_);
-  auto present = std::lower_bound(existing.begin(), existing.end(), first);
+  std::vector<std::int64_t> existing = list_shards(folder_);
+  std::erase_if(existing, [&](std::int64_t shard) { return shard < first || shard >= end; });
+  const std::vector<std::string> faults = find_seal_faults(folder_, plan_, existing);
+  std::size_t present = 0;
   for (std::int64_t shard = first; shard < end; ++shard) {
     const std::int64_t cases = plan_.shard_size(shard);
     progress_.cases += cases;
-    if (present != existing.end() && *present == shard) {
-      ++present;
-      const std::string fault = find_seal_fault(folder_, plan_, shard);
+    if (present < existing.size() && existing[present] == shard) {
+      const std::string& fault = faults[present++];
       if (fault.empty()) {
         progress_.present += cases;
         continue;

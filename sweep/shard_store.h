@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,22 +18,36 @@ namespace strut {
 /// empty if it may match.
 std::string find_seal_fault(const SweepFolder& folder, const Plan& plan, std::int64_t shard);
 
+/// find_seal_fault of each of these shards.
+std::vector<std::string> find_seal_faults(const SweepFolder& folder, const Plan& plan,
+                                          const std::vector<std::int64_t>& shards);
+
 /// Moves a file to `quarantine/`, under a free name. Nothing is deleted.
 void quarantine(const SweepFolder& folder, const std::filesystem::path& file);
+
+/// A shard with its record, or why it has none.
+struct FoundShard {
+  std::int64_t shard;
+  std::optional<JournalEntry> entry;
+  std::string fault;
+};
 
 /// The record of each shard: from the journal, or from the file if the journal has none.
 class ShardRecords {
  public:
   ShardRecords(const SweepFolder& folder, SweepExtent extent);
 
-  /// The record of an existing shard, with the failures that remain after the last retry. Throws
-  /// InputError if its seal or size is wrong or does not match the plan or the journal.
-  JournalEntry get(std::int64_t shard) const;
+  /// The records of existing shards, with the failures that remain after the last retry. A fault is
+  /// that a shard's seal or size is wrong or does not match the plan or the journal.
+  std::vector<FoundShard> read(const std::vector<std::int64_t>& shards) const;
   /// Returns why a file with this seal, a shard or a retry of it, does not match the plan or the
   /// journal; empty if it matches. A runner that simulates a quarantined shard again and dies
   /// before it writes the journal leaves a different file with the same rows, which matches.
   std::string find_fault(const std::filesystem::path& file, std::int64_t shard,
                          const ShardSeal& seal) const;
+  /// The rows of a shard after its retries. Throws InputError if a file is damaged.
+  ShardRows read_rows(std::int64_t shard, ShardParts parts = ShardParts::kAll) const;
+  bool has_retries(std::int64_t shard) const { return retries_.count(shard) > 0; }
   /// Number of malformed lines, and of entries for work done twice.
   std::size_t bad_lines() const { return journal_.bad_lines; }
   std::int64_t duplicates() const { return duplicates_; }
@@ -40,10 +55,12 @@ class ShardRecords {
 
  private:
   const JournalEntry* find_entry(const std::filesystem::path& file) const;  // null: none
+  JournalEntry get(std::int64_t shard, const ShardSeal& seal) const;
 
   SweepFolder folder_;
   SweepExtent extent_;
   Journal journal_;
+  RetryCounts retries_;
   std::map<std::string, std::size_t> last_entries_;  // file -> index of its last entry
   std::int64_t duplicates_ = 0;
 };

@@ -12,4 +12,8 @@ namespace strut {
 LaneResults simulate_case(const PreparedCase& c, const SolverOptions& integrate = {},
                           double interval = 0.0);
 
+/// The same with another plan and kernel. Where a sensor is on, plan.recorded must be empty.
+LaneResults simulate_case(const PreparedCase& c, const SolverOptions& integrate,
+                          const SamplePlan& plan, const Kernel& kernel = list_kernels().front());
+
 }  // namespace strut

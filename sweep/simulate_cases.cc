@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
-#include "model/error/model_error.h"
-#include "model/sensor/read_out.h"
 #include "sweep/timer.h"
 
 namespace strut {
@@ -23,11 +19,9 @@ IntegrateOptions make_retry_options(const IntegrateOptions& options, int attempt
   return finer;
 }
 
-ReadOut make_read_out(const std::vector<const PreparedCase*>& lanes) {
-  std::vector<const EffectSettings*> sensors;
-  sensors.reserve(lanes.size());
-  for (const PreparedCase* c : lanes) sensors.push_back(&c->sensors);
-  return ReadOut(list_car_channels(), sensors);
+BatchPlan make_batch_plan(const SweepRequest& request) {
+  return {request.integrate, make_sample_plan(request), request.snapshot.offset,
+          get_start_method(request)};
 }
 
 void fail(ShardRows& rows, std::size_t row, RunStatus status, double time, std::string reason) {
@@ -61,23 +55,22 @@ SimulationSeconds& SimulationSeconds::operator+=(const SimulationSeconds& other)
 }
 
 CaseSimulator::CaseSimulator(const Plan& plan, const Kernel& kernel)
-    : plan_(plan), kernel_(kernel), samples_(make_sample_plan(plan.request())) {}
-
-std::size_t CaseSimulator::batch_size() const {
-  const bool in_lanes = plan_.request().integrate.solver == Solver::kLanes;
-  return in_lanes ? static_cast<std::size_t>(kernel_.lanes) : 1;
-}
+    : plan_(plan), batches_(make_batch_plan(plan.request()), kernel) {}
 
 bool CaseSimulator::simulate(std::span<const std::int64_t> cases, ShardRows& rows,
                              std::size_t first_row, const std::atomic<bool>& stop) {
-  std::vector<Ready> ready;
+  std::vector<ReadyCase> ready;
   {
     const Timer timer(seconds_.prepare);
-    ready = prepare_all(cases, rows, first_row);
+    ready = prepare(cases, rows, first_row);
   }
+  const auto record_row = [&](std::size_t i, const LaneResults& results, int lane) {
+    record(results, lane, rows, first_row + i);
+  };
   for (std::size_t begin = 0; begin < ready.size();) {
     if (stop) return false;
-    begin += run_group(std::span(ready).subspan(begin), rows);
+    const Timer timer(seconds_.integrate);
+    begin += batches_.run_group(std::span(ready).subspan(begin), record_row);
   }
   if (plan_.request().integrate.solver == Solver::kCvode) return true;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -90,19 +83,11 @@ bool CaseSimulator::simulate(std::span<const std::int64_t> cases, ShardRows& row
 
 void CaseSimulator::retry(std::int64_t case_id, int attempt, ShardRows& rows, std::size_t row) {
   const Timer timer(seconds_.retry);
-  const std::vector<Ready> ready = prepare_all({&case_id, 1}, rows, row);
+  const std::vector<ReadyCase> ready = prepare({&case_id, 1}, rows, row);
   rows.attempt[row] = attempt;
   if (ready.empty()) return;
-  const PreparedCase& prepared = ready.front().prepared;
-  const SolverOptions& integrate = plan_.request().integrate;
-  const LaneResults results =
-      simulate_readings(make_read_out({&prepared}), samples_, [&](const SamplePlan& samples) {
-        return integrate.solver == Solver::kCvode
-                   ? run_cvode(prepared, integrate.reference, samples)
-                   : kernel_.run_scalar(prepared, make_retry_options(integrate.options, attempt),
-                                        samples);
-      });
-  record(results, 0, rows, row);
+  const IntegrateOptions options = make_retry_options(plan_.request().integrate.options, attempt);
+  record(batches_.run_alone(ready.front().prepared, options), 0, rows, row);
 }
 
 /// Writes parameters and stratum of a row; resets everything else.
@@ -124,75 +109,14 @@ void CaseSimulator::start_row(std::int64_t case_id, ShardRows& rows, std::size_t
   }
 }
 
-std::optional<PreparedCase> CaseSimulator::assemble(std::int64_t case_id, ShardRows& rows,
-                                                    std::size_t row) {
-  try {
-    return preparer_.assemble(plan_.make_case(case_id), plan_.request().snapshot.offset);
-  } catch (const ModelError& e) {
-    const bool is_road = e.fault() == ModelFault::kRoad;
-    fail(rows, row, is_road ? RunStatus::kImpossible : RunStatus::kNoEquilibrium, 0.0, e.what());
-  }
-  return std::nullopt;
-}
-
-std::vector<CaseSimulator::Ready> CaseSimulator::prepare_all(std::span<const std::int64_t> cases,
-                                                             ShardRows& rows,
-                                                             std::size_t first_row) {
-  std::vector<Ready> ready;
-  ready.reserve(cases.size());
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    start_row(cases[i], rows, first_row + i);
-    std::optional<PreparedCase> assembled = assemble(cases[i], rows, first_row + i);
-    if (assembled) ready.push_back({std::move(*assembled), first_row + i});
-  }
-  return keep_started(std::move(ready), rows);
-}
-
-/// Finds the starts. Returns the cases that have one; sets the failure of the others.
-std::vector<CaseSimulator::Ready> CaseSimulator::keep_started(std::vector<Ready> ready,
-                                                              ShardRows& rows) const {
-  std::vector<PreparedCase*> cases;
-  cases.reserve(ready.size());
-  for (Ready& r : ready) cases.push_back(&r.prepared);
-  const std::vector<std::string> reasons =
-      find_starts(kernel_, cases, get_start_method(plan_.request()));
-  std::vector<Ready> started;
-  started.reserve(ready.size());
-  for (std::size_t i = 0; i < ready.size(); ++i) {
-    if (reasons[i].empty()) {
-      started.push_back(std::move(ready[i]));
-    } else {
-      fail(rows, ready[i].row, RunStatus::kNoEquilibrium, 0.0, reasons[i]);
-    }
-  }
-  return started;
-}
-
-/// Runs the first of `ready` together with as many of its successors as may share lanes with it;
-/// returns their number.
-std::size_t CaseSimulator::run_group(std::span<const Ready> ready, ShardRows& rows) {
-  const Timer timer(seconds_.integrate);
-  const SolverOptions& integrate = plan_.request().integrate;
-  std::vector<const PreparedCase*> lanes;
-  lanes.reserve(batch_size());
-  for (const Ready& next : ready) {
-    if (lanes.size() == batch_size() ||
-        !may_share_lanes(ready[0].prepared, next.prepared, integrate.options.closure)) {
-      break;
-    }
-    lanes.push_back(&next.prepared);
-  }
-  const auto count = static_cast<int>(lanes.size());
-  const LaneResults results =
-      simulate_readings(make_read_out(lanes), samples_, [&](const SamplePlan& samples) {
-        return integrate.solver == Solver::kCvode
-                   ? run_cvode(*lanes[0], integrate.reference, samples)
-                   : kernel_.run_lanes(lanes.data(), count, integrate.options, samples);
+std::vector<ReadyCase> CaseSimulator::prepare(std::span<const std::int64_t> cases, ShardRows& rows,
+                                              std::size_t first_row) {
+  for (std::size_t i = 0; i < cases.size(); ++i) start_row(cases[i], rows, first_row + i);
+  return batches_.prepare(
+      cases.size(), [&](std::size_t i) { return plan_.make_case(cases[i]); },
+      [&](std::size_t i, RunStatus status, const std::string& reason) {
+        fail(rows, first_row + i, status, 0.0, reason);
       });
-  for (int lane = 0; lane < count; ++lane) {
-    record(results, lane, rows, ready[static_cast<std::size_t>(lane)].row);
-  }
-  return lanes.size();
 }
 
 void CaseSimulator::record(const LaneResults& results, int lane, ShardRows& rows,

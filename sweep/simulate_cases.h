@@ -3,12 +3,12 @@
 
 #include <atomic>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/store/shard.h"
+#include "sweep/batch_simulator.h"
 #include "sweep/plan.h"
 
 namespace strut {
@@ -37,7 +37,7 @@ class CaseSimulator {
   CaseSimulator(const Plan& plan, const Kernel& kernel);
 
   /// Number of cases that fill one batch of lanes.
-  std::size_t batch_size() const;
+  std::size_t batch_size() const { return batches_.batch_size(); }
 
   /// Simulates `cases` (ids) into the rows from `first_row` on. A case that fails in lanes is
   /// retried at once (attempt 1 of `retry`). A case's row depends neither on the other cases nor on
@@ -52,23 +52,13 @@ class CaseSimulator {
   const SimulationSeconds& seconds() const { return seconds_; }
 
  private:
-  struct Ready {
-    PreparedCase prepared;
-    std::size_t row;
-  };
-
   void start_row(std::int64_t case_id, ShardRows& rows, std::size_t row) const;
-  std::optional<PreparedCase> assemble(std::int64_t case_id, ShardRows& rows, std::size_t row);
-  std::vector<Ready> prepare_all(std::span<const std::int64_t> cases, ShardRows& rows,
+  std::vector<ReadyCase> prepare(std::span<const std::int64_t> cases, ShardRows& rows,
                                  std::size_t first_row);
-  std::vector<Ready> keep_started(std::vector<Ready> ready, ShardRows& rows) const;
-  std::size_t run_group(std::span<const Ready> ready, ShardRows& rows);
   void record(const LaneResults& results, int lane, ShardRows& rows, std::size_t row) const;
 
   const Plan& plan_;
-  const Kernel& kernel_;
-  const SamplePlan samples_;
-  CasePreparer preparer_;
+  BatchSimulator batches_;
   SimulationSeconds seconds_;
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error/input_error.h"
+#include "model/integrate/run_status.h"
 #include "sweep/shard_store.h"
 #include "sweep/simulate_cases.h"
 
@@ -42,23 +43,46 @@ std::int64_t count_mendable(const JournalEntry& entry) {
   return count;
 }
 
-void add_shard(const SweepFolder& folder, const ShardRecords& records, const Plan& plan,
-               std::int64_t shard, SweepStatus& status) {
+/// Sets the first case of a status to the first one in a shard, unless the shard is damaged.
+void find_first_case(const ShardRecords& records, std::int64_t shard, const std::string& status,
+                     FailureCount& count) {
   try {
-    const JournalEntry entry = records.get(shard);
-    for (const auto& [reason, cases] : entry.failures) status.failures[reason] += cases;
-    const std::int64_t failed = count_failures(entry);
-    status.failed += failed;
-    if (failed > 0 && count_retries(folder, shard) == 0) status.untried += count_mendable(entry);
-    status.done += entry.cases - failed;
-    status.bytes += entry.bytes;
-    status.simulation_seconds += entry.seconds;
-    status.digest.add(DataDigest::parse(entry.digest));
-    ++status.shards_present;
-  } catch (const InputError& e) {
-    status.faults.emplace_back(e.what());
-    status.left += plan.shard_size(shard);
+    const ShardRows rows = records.read_rows(shard, ShardParts::kTables);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (get_run_status_name(rows.status[row]) != status) continue;
+      count.first_case = rows.case_id[row];
+      count.first_reason = rows.reason[row];
+      return;
+    }
+  } catch (const std::runtime_error&) {  // its seal was right; verify checks every byte
   }
+}
+
+void add_shard(const ShardRecords& records, const Plan& plan, const FoundShard& found,
+               SweepStatus& status) {
+  const auto add_fault = [&](const std::string& fault) {
+    status.faults.push_back(fault);
+    status.left += plan.shard_size(found.shard);
+  };
+  if (!found.entry) return add_fault(found.fault);
+  const JournalEntry& entry = *found.entry;
+  try {
+    status.digest.add(DataDigest::parse(entry.digest));
+  } catch (const InputError& e) {
+    return add_fault(e.what());
+  }
+  for (const auto& [reason, cases] : entry.failures) {
+    FailureCount& count = status.failures[reason];
+    if (count.cases == 0) find_first_case(records, found.shard, reason, count);
+    count.cases += cases;
+  }
+  const std::int64_t failed = count_failures(entry);
+  status.failed += failed;
+  if (failed > 0 && !records.has_retries(found.shard)) status.untried += count_mendable(entry);
+  status.done += entry.cases - failed;
+  status.bytes += entry.bytes;
+  status.simulation_seconds += entry.seconds;
+  ++status.shards_present;
 }
 
 }  // namespace
@@ -80,21 +104,32 @@ SweepStatus read_status(const SweepFolder& folder, const Plan& plan) {
                                         folder.shard(*foreign).string(), kShardSeal.remedy));
   }
   shards.erase(end, shards.end());
-  for (const std::int64_t shard : shards) {
-    present += plan.shard_size(shard);
-    add_shard(folder, records, plan, shard, status);
+  for (const FoundShard& found : records.read(shards)) {
+    present += plan.shard_size(found.shard);
+    add_shard(records, plan, found, status);
   }
   status.left += status.cases - present;
+  std::map<std::string, std::int64_t> running;  // cases in unpublished shards, by runner
+  std::map<std::string, std::uint64_t> work;
   for (const ClaimInfo& claim : status.claims) {
     const std::int64_t shard = SweepFolder::parse_shard_name(claim.unit);
     const bool open = shard >= 0 && shard < status.shards &&
                       !std::binary_search(shards.begin(), shards.end(), shard);
-    if (open) status.running += plan.shard_size(shard);
+    if (!open) continue;
+    running[claim.runner] += plan.shard_size(shard);
+    work[claim.runner] = claim.work;
+  }
+  for (const auto& [runner, cases] : running) {
+    status.running += cases;
+    // A shard may have been published since the heartbeat.
+    const std::uint64_t simulated = std::min(static_cast<std::uint64_t>(cases), work[runner]);
+    status.simulated += static_cast<std::int64_t>(simulated);
   }
   status.duplicates = records.duplicates();
   status.rate = status.running > 0 ? calc_rate(records.journal()) : 0.0;
-  status.seconds_left = status.rate > 0.0 ? static_cast<double>(status.left) / status.rate
-                                          : std::numeric_limits<double>::quiet_NaN();
+  status.seconds_left = status.rate > 0.0
+                            ? static_cast<double>(status.left - status.simulated) / status.rate
+                            : std::numeric_limits<double>::quiet_NaN();
   return status;
 }
 

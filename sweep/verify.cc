@@ -80,23 +80,34 @@ void add_damage(const VerifyInput& input, const fs::path& file, const std::strin
 
 // --- shards ----------------------------------------------------------------------------------
 
-/// Checks bytes, plan, number and journal of one file; returns false, and reports the fault, if it
-/// does not match. Throws InputError if it is damaged.
-bool check_file(const VerifyInput& input, const fs::path& file, std::int64_t shard,
-                VerifyReport& report) {
-  const SealCheck check = check_sealed_file(file, kShardSeal);
-  if (!check.fault.empty()) throw InputError(file.string() + ": " + check.fault);
-  const std::string fault = input.records.find_fault(file, shard, make_shard_seal(check.seal));
+/// Reads a file once and checks its seal against its bytes. Throws InputError if it is damaged,
+/// without the remedy, which `strut verify` states once for all files.
+SealedBytes read_checked(const fs::path& file) {
+  try {
+    return read_sealed(file, kShardSeal);
+  } catch (const InputError&) {
+    const SealCheck check = check_sealed_file(file, kShardSeal);
+    if (!check.fault.empty()) throw InputError(file.string() + ": " + check.fault);
+    throw;
+  }
+}
+
+/// Checks plan, number and journal of one file; returns false, and reports the fault, if it does
+/// not match.
+bool check_seal_of(const VerifyInput& input, const fs::path& file, const SealedBytes& sealed,
+                   std::int64_t shard, VerifyReport& report) {
+  const std::string fault = input.records.find_fault(file, shard, make_shard_seal(sealed.seal));
   if (!fault.empty()) add_damage(input, file, fault, report);
   return fault.empty();
 }
 
 /// Checks the overlays of a shard. A damaged one is reported under its own name, not its shard's.
 bool check_retries(const VerifyInput& input, std::int64_t shard, VerifyReport& report) {
+  if (!input.records.has_retries(shard)) return true;
   for (int round = 0; round < count_retries(input.folder, shard); ++round) {
     const fs::path file = input.folder.retry(shard, round);
     try {
-      if (!check_file(input, file, shard, report)) return false;
+      if (!check_seal_of(input, file, read_checked(file), shard, report)) return false;
     } catch (const InputError& e) {
       add_damage(input, file, e.what(), report);
       return false;
@@ -143,14 +154,15 @@ std::int64_t check_shard(const VerifyInput& input, std::int64_t shard, VerifyRep
                          DataDigest& digest) {
   const fs::path file = input.folder.shard(shard);
   const bool planned = shard < input.plan.shard_count();
-  if (!planned || !check_file(input, file, shard, report)) {
-    report.foreign += static_cast<std::int64_t>(read_shard(file).rows.size());
+  const SealedBytes sealed = read_checked(file);
+  if (!planned || !check_seal_of(input, file, sealed, shard, report)) {
+    report.foreign += static_cast<std::int64_t>(read_shard(file, sealed).rows.size());
     if (!planned) add_damage(input, file, "the plan has no such shard", report);
     return 0;
   }
   if (!check_retries(input, shard, report)) return 0;
-  Shard mended = read_shard(file);
-  apply_retries(input.folder, mended);
+  Shard mended = read_shard(file, sealed);
+  if (input.records.has_retries(shard)) apply_retries(input.folder, mended);
   ++report.shards;
   if (!same_schema(mended.schema, input.schema)) {
     add_damage(input, file, "its columns do not match the plan", report);

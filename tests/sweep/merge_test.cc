@@ -89,6 +89,15 @@ MergeReport merge(const SweepFolder& sweep, const fs::path& output, bool partial
   return merge_sweep(sweep, make_input(), output, options, [](std::int64_t) { return true; });
 }
 
+/// Reasons are stored by character.
+std::vector<std::string> read_reasons(const Hdf5Reader& file) {
+  const std::vector<std::string> characters = file.read_texts("/reason");
+  const std::size_t length = file.read_shape("/reason").back();
+  std::vector<std::string> reasons(characters.size() / length);
+  for (std::size_t i = 0; i < characters.size(); ++i) reasons[i / length] += characters[i];
+  return reasons;
+}
+
 void check_content(const fs::path& path, const ShardRows& rows) {
   const Hdf5Reader file(path);
   CHECK(file.read_integers("/case_id") == rows.case_id);
@@ -98,7 +107,7 @@ void check_content(const fs::path& path, const ShardRows& rows) {
   CHECK(same_bits(file.read("/failure_time").values, rows.failure_time));
   CHECK(same_bits(file.read("/history/body_acceleration_z").values, rows.history[1]));
   CHECK(same_bits(file.read("/history/pitch_rate").values, rows.history[0]));
-  CHECK(file.read_texts("/reason") == rows.reason);
+  CHECK(read_reasons(file) == rows.reason);
   const auto attempts = file.read_integers("/attempt");
   CHECK(std::equal(attempts.begin(), attempts.end(), rows.attempt.begin(), rows.attempt.end()));
   CHECK(file.read_label("/snapshot").names ==

@@ -91,6 +91,32 @@ TEST_CASE("A stopped sweep continues where it stopped and ends with the same dat
   CHECK(read_journal(stopped.folder().journal()).entries.size() == 6);
 }
 
+TEST_CASE("A sweep half done here and finished in a copy elsewhere ends with the same data",
+          "[unit][property][io]") {
+  const PlannedSweep whole, begun;
+  whole.run();
+  RunOptions options = make_options(1);
+  options.end_shard = 2;
+  RunProgress here, there;
+  std::atomic<bool> halt{false};
+  run_sweep(begun.folder(), begun.plan(), options, here, halt);
+  REQUIRE(here.written < 27);
+
+  const test::TemporaryFolder elsewhere;
+  const SweepFolder copy{elsewhere / "moved"};
+  fs::copy(begun.folder().root, copy.root, fs::copy_options::recursive);
+  fs::rename(begun.folder().root, elsewhere / "gone");  // its paths lead nowhere
+  const Plan plan = open_sweep_folder(copy);
+  options = make_options(2);
+  run_sweep(copy, plan, options, there, halt);
+  CHECK(there.present == here.written);
+  CHECK(there.present + there.written == 27);
+  const VerifyReport report =
+      verify_sweep(copy, plan, {.fallback = &list_kernels().front()}, [](std::int64_t) {});
+  CHECK(report.ok());
+  CHECK(report.data_digest == get_digest(whole));
+}
+
 TEST_CASE("Running a complete sweep again does nothing", "[unit]") {
   const PlannedSweep sweep;
   CHECK(sweep.run().shards_written == 6);
@@ -324,6 +350,50 @@ TEST_CASE("Status counts finished cases from the files alone", "[unit]") {
   status = read_status(sweep.folder(), sweep.plan());
   CHECK(status.done == 25);
   CHECK(status.left == 2);
+}
+
+TEST_CASE("Status tells how many cases of claimed shards are simulated", "[unit]") {
+  SweepText text;
+  text.shard_cases = 10;
+  const PlannedSweep sweep(text);
+  ClaimOptions options{std::chrono::milliseconds(5), std::chrono::milliseconds(1000000)};
+  std::atomic<std::uint64_t> work{0};
+  options.count_work = [&] { return work.load(); };
+  Claims claims(Folder(sweep.folder().root).make_folder("claims"), options);
+  REQUIRE(claims.claim(SweepFolder::shard_name(1)) == Claims::Answer::kMine);
+  const auto wait_for = [&](std::int64_t simulated) {
+    for (int i = 0; i < 2000; ++i) {
+      if (read_status(sweep.folder(), sweep.plan()).simulated == simulated) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  };
+  CHECK(wait_for(0));
+  CHECK(read_status(sweep.folder(), sweep.plan()).running == 10);
+  work = 7;
+  CHECK(wait_for(7));
+  work = 1000;  // the heartbeat of a shard that was published since
+  CHECK(wait_for(10));
+}
+
+TEST_CASE("Runners tell the cases that they simulated and did not publish", "[unit][threads]") {
+  SweepText text;
+  text.shard_cases = 27;
+  const PlannedSweep sweep(text);
+  RunOptions options = make_options(1);
+  options.claims.heartbeat = std::chrono::milliseconds(1);
+  RunProgress progress;
+  std::atomic<bool> halt{false};
+  std::thread run([&] { run_sweep(sweep.folder(), sweep.plan(), options, progress, halt); });
+  bool is_inside = false;  // a shard
+  while (!is_inside && progress.written == 0) {
+    const SweepStatus status = read_status(sweep.folder(), sweep.plan());
+    is_inside = status.simulated > 0 && status.simulated < status.running;
+  }
+  halt = true;
+  run.join();
+  CHECK(is_inside);
+  CHECK(read_status(sweep.folder(), sweep.plan()).simulated == 0);
 }
 
 }  // namespace
