@@ -68,7 +68,7 @@ Case make_base_point(const Case& base, const Grid& grid, const std::vector<std::
     set_parameter(c, axis.name, 0.5 * (axis.from + axis.last()));
   }
   for (const std::string& setting : at) {
-    check_axis(grid, parse_setting(setting).first);
+    check_axis(grid, parse_setting(setting).name);
     apply_setting(c, setting);
   }
   for (const std::string& setting : settings) apply_setting(c, setting);
@@ -77,6 +77,7 @@ Case make_base_point(const Case& base, const Grid& grid, const std::vector<std::
 
 SolverOptions make_accurate(const SolverOptions& requested) {
   SolverOptions accurate;
+  accurate.options.symmetry = true;
   StepOptions& step = accurate.options.step;
   if (requested.solver == Solver::kLanes) {
     step.step = std::min(step.step, requested.options.step.step);

@@ -31,13 +31,11 @@ RearWheel make_rear_wheel(const PreparedCase& c, int corner) {
 double solve_coordinate(const RearWheel& wheel, double deflection, double q) {
   constexpr int kIterations = 6;
   constexpr double kTolerance = 1e-12;  // m, far below any effect on an instant
-  double length = 0.0, slope = 0.0;
-  double* const none = nullptr;
   for (int i = 0; i < kIterations; ++i) {
-    evaluate_group<1, 1>(wheel.table->once, kSpringFunction, wheel.degree, q, &length, &slope,
-                         none);
-    const double error = length - (wheel.nominal_length - deflection);
-    q -= error / slope;
+    const auto [length, slope] =
+        evaluate_functions<1, 1>(wheel.table->once, kSpringFunction, wheel.degree, q);
+    const double error = length[0] - (wheel.nominal_length - deflection);
+    q -= error / slope[0];
     if (std::abs(error) < kTolerance) break;
   }
   return q;
@@ -45,9 +43,8 @@ double solve_coordinate(const RearWheel& wheel, double deflection, double q) {
 
 /// Center of the wheel in chassis axes.
 Vec3<double> calc_center(const RearWheel& wheel, double q) {
-  double center[3], unused[3];
-  double* const none = nullptr;
-  evaluate_group<1, 3>(wheel.table->once, kCenterFunction, wheel.degree, q, center, unused, none);
+  const auto [center] =
+      evaluate_functions<0, 3>(wheel.table->once, kCenterFunction, wheel.degree, q);
   return {center[0], center[1], center[2]};
 }
 

@@ -5,12 +5,13 @@
 
 namespace strut {
 
-/// RK4 with steps of 1 ms, 4 ms away from the bump, and located contact events. Corners are
-/// tabulated, which takes half the time of closing the loops, changes estimates by less than
-/// 1e-6 sigma, and lets cases with different hardpoints share lanes.
+/// RK4 with steps of 1 ms, 4 ms away from the bump, and located contact events; one side of a car
+/// that moves symmetrically. Corners are tabulated, which takes half the time of closing the loops,
+/// changes estimates by less than 1e-6 sigma, and lets cases with different hardpoints share lanes.
 inline SolverOptions make_fit_integration() {
   SolverOptions request;
   request.options.closure = Closure::kTable;
+  request.options.symmetry = true;
   request.options.step.coarse_step = 4e-3;
   return request;
 }

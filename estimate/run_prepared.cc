@@ -27,7 +27,8 @@ std::vector<Group> group_cases(const std::vector<PreparedCase>& cases,
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const auto fits = [&](const Group& group) {
       const PreparedCase& first = cases[group.front()];
-      return group.size() < width && may_share_lanes(first, cases[i], options.closure) &&
+      return group.size() < width && first.duration == cases[i].duration &&
+             may_share_lanes(first, cases[i], options) &&
              choose_steps(options.step, first) == choose_steps(options.step, cases[i]);
     };
     const auto found = std::find_if(groups.begin(), groups.end(), fits);

@@ -74,11 +74,14 @@ SensorNoise make_default_noise() { return make_sigmas(kBodyNoise, kCornerNoise);
 SensorNoise make_default_bias() { return make_sigmas(kBodyBias, kCornerBias); }
 
 void apply_noise(SensorNoise& noise, const std::string& setting) {
-  const auto [name, sigma] = parse_setting(setting);
-  const auto channel = static_cast<std::size_t>(find_car_channel(name));
-  const Range allowed = above(0.0, list_car_channels()[channel].unit);
+  const NamedValue given = parse_setting(setting);
+  const auto channel = static_cast<std::size_t>(find_car_channel(given.name));
+  const std::string& unit = list_car_channels()[channel].unit;
+  const double sigma = given.to_si(unit);
+  const Range allowed = above(0.0, unit);
   if (!allowed.contains(sigma)) {
-    throw InputError(fmt::format("{} = {}: {}", name, format_number(sigma), allowed.describe()));
+    throw InputError(
+        fmt::format("{} = {}: {}", given.name, format_number(sigma), allowed.describe()));
   }
   noise[channel] = sigma;
 }

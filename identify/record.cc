@@ -76,8 +76,7 @@ TimeGrid find_grid(const WindowTransform& window, const Measurement& measurement
   const std::vector<double>& times = measurement.values(kTimeColumn);
   const double interval = window.grid.interval;
   const bool aligned = window.grid.lags > 0;
-  const std::size_t needed_samples =
-      aligned ? window.grid.samples + 2 * ShiftStencil::kBefore + 2 : window.grid.samples;
+  const std::size_t needed_samples = window.minimum_samples();
   const bool on_grid = is_on_grid(times, interval);
   const std::size_t edge = on_grid ? 0 : ShiftStencil::kBefore;
   TimeGrid grid;

@@ -9,10 +9,6 @@
 namespace strut {
 namespace {
 
-/// Maximum excess of a record's residual outside of the model's directions over its mean, in
-/// standard deviations.
-constexpr double kMaxResidualDeviations = 5.0;
-
 std::vector<OutsideChannel> list_outside(const TrainedModel& model, const MeasuredRecord& record,
                                          const WindowReading& reading,
                                          const std::vector<double>& components) {
@@ -28,8 +24,7 @@ std::vector<OutsideChannel> list_outside(const TrainedModel& model, const Measur
     outside.push_back({"alignment", "s", begin, std::nan(""), std::nan(""), 0.0});
     return outside;  // the components of a misaligned window are meaningless
   }
-  const double limit = window.residual_mean + kMaxResidualDeviations * window.residual_deviation;
-  check("leftover", "1", reading.residual, 0.0, limit, 0.0);
+  check("leftover", "1", reading.residual, 0.0, calc_residual_limit(window), 0.0);
   for (std::size_t k = 0; k < components.size(); ++k) {
     check(model.inputs[k].name, model.inputs[k].unit, components[k], model.input_map.low()[k],
           model.input_map.high()[k], kNormal95);

@@ -11,6 +11,7 @@
 #include "base/text/nearest_name.h"
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
+#include "model_files/file_kind.h"
 #include "model_files/read_model.h"
 
 namespace strut {
@@ -223,7 +224,7 @@ std::vector<std::filesystem::path> Campaign::list_files() const {
 
 Campaign read_campaign(const std::filesystem::path& path) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kCampaignFile);
   Campaign campaign;
   campaign.path = path;
   campaign.model = root.file("model");

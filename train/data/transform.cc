@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error/input_error.h"
 #include "train/data/shift.h"
@@ -19,8 +20,9 @@ ConstMap map_values(const double* first, std::size_t count) {
   return {first, static_cast<Eigen::Index>(count)};
 }
 
-/// Squared distance of a record's window at `begin` from the reference, without the squared norm of
-/// the reference, a constant.
+/// Squared distance of a record's window at `begin`, whitened and without its mean, from the
+/// reference. Summed as it stands: the difference of larger sums would lose the digits that place
+/// the window.
 double calc_distance(const WindowTransform& transform, const RecordView& record,
                      std::size_t begin) {
   const std::size_t n = transform.grid.samples;
@@ -28,20 +30,19 @@ double calc_distance(const WindowTransform& transform, const RecordView& record,
   for (std::size_t c = 0; c < transform.channels.size(); ++c) {
     const ConstMap y = map_values(record.channel(c).data() + begin, n);
     const ConstMap reference = map_values(transform.reference.data() + c * n, n);
-    // Relative to the first sample, which loses fewer digits to cancellation than y itself.
-    const auto x = y - y(0);
-    const double sum = x.sum(), squares = x.square().sum(), product = (x * reference).sum();
-    const double sigma = transform.noise.sigma[c];
-    const double spread = squares - sum * sum / static_cast<double>(n);
-    distance += spread / (sigma * sigma) - 2.0 * product / sigma;
+    const double mean = y.mean(), factor = 1.0 / transform.noise.sigma[c];
+    distance += ((y - mean) * factor - reference).square().sum();
   }
   return distance;
 }
 
+double calc_mean_share(double sigma, double bias, std::size_t n) {
+  return 1.0 - 1.0 / std::sqrt(1.0 + static_cast<double>(n) * (bias / sigma) * (bias / sigma));
+}
+
 void whiten(double sigma, double bias, std::span<double> window) {
   MutableMap y(window.data(), static_cast<Eigen::Index>(window.size()));
-  const auto n = static_cast<double>(window.size());
-  const double q = 1.0 - 1.0 / std::sqrt(1.0 + n * (bias / sigma) * (bias / sigma));
+  const double q = calc_mean_share(sigma, bias, window.size());
   const double mean = y.mean();
   y = (y - q * mean) / sigma;
 }
@@ -50,9 +51,32 @@ void whiten(double sigma, double bias, std::span<double> window) {
 
 std::size_t WindowGrid::margin() const { return lags > 0 ? lags + ShiftStencil::kBefore : 0; }
 
+std::vector<double> calc_mean_shares(const WindowTransform& transform) {
+  const NoiseModel& noise = transform.noise;
+  std::vector<double> shares;
+  shares.reserve(noise.sigma.size());
+  for (std::size_t c = 0; c < noise.sigma.size(); ++c) {
+    shares.push_back(calc_mean_share(noise.sigma[c], noise.bias[c], transform.grid.samples));
+  }
+  return shares;
+}
+
+double calc_residual_limit(const WindowTransform& transform) {
+  constexpr double kMaxDeviations = 5.0;
+  return transform.residual_mean + kMaxDeviations * transform.residual_deviation;
+}
+
+double WindowTransform::residual_degrees() const {
+  return std::max(static_cast<double>(window_size() - components()), 1.0);
+}
+
+std::size_t WindowTransform::minimum_samples() const {
+  return grid.samples + (grid.lags > 0 ? 2 * ShiftStencil::kBefore + 2 : 0);
+}
+
 WindowAlignment find_alignment(const WindowTransform& transform, const RecordView& record) {
   const WindowGrid& grid = transform.grid;
-  const std::size_t needed = grid.samples + (grid.lags > 0 ? 2 * ShiftStencil::kBefore + 2 : 0);
+  const std::size_t needed = transform.minimum_samples();
   if (record.samples < needed) {
     throw InputError(fmt::format("a record of {} samples; the window needs at least {}",
                                  record.samples, needed));
@@ -63,7 +87,10 @@ WindowAlignment find_alignment(const WindowTransform& transform, const RecordVie
   std::vector<double> distances;
   distances.reserve(last - first + 1);
   for (std::size_t begin = first; begin <= last; ++begin) {
-    distances.push_back(calc_distance(transform, record, begin));
+    // Huge samples overflow: their windows are the farthest.
+    const double distance = calc_distance(transform, record, begin);
+    constexpr double kMax = std::numeric_limits<double>::max();
+    distances.push_back(distance <= kMax ? distance : kMax);
   }
   const auto min = std::min_element(distances.begin(), distances.end());
   const auto begin = static_cast<double>(first) + static_cast<double>(min - distances.begin());
@@ -97,8 +124,7 @@ WindowReading project_window(const WindowTransform& transform, std::span<double>
     components[k] = (map_values(transform.basis.data() + k * size, size) * x).sum();
     residual -= components[k] * components[k];
   }
-  const auto free = static_cast<double>(size - transform.components());
-  return {{}, std::max(residual, 0.0) / std::max(free, 1.0)};
+  return {{}, std::max(residual, 0.0) / transform.residual_degrees()};
 }
 
 WindowReading read_components(const WindowTransform& transform, const RecordView& record,

@@ -50,6 +50,10 @@ struct WindowTransform {
   std::size_t window_size() const { return channels.size() * grid.samples; }
   std::size_t record_size() const { return channels.size() * grid.record_samples(); }
   std::size_t components() const { return basis.size() / window_size(); }
+  /// Degrees of freedom of a residual.
+  double residual_degrees() const;
+  /// Least number of samples of a record that the window is read from.
+  std::size_t minimum_samples() const;
 };
 
 /// Start of the window in a record.
@@ -80,6 +84,11 @@ struct RecordView {
 /// Throws InputError if the record is shorter than the window and the samples that interpolation
 /// needs.
 WindowAlignment find_alignment(const WindowTransform& transform, const RecordView& record);
+
+/// Share q of its mean that whitening removes from each channel, and the largest residual of a
+/// record like those of the training: five standard deviations above their mean.
+std::vector<double> calc_mean_shares(const WindowTransform& transform);
+double calc_residual_limit(const WindowTransform& transform);
 
 /// Reads and whitens the window at `begin`: a channel's y becomes (y - q mean(y)) / s with
 /// q = 1 - 1 / sqrt(1 + n (b / s)^2), which is (s^2 I + b^2 1 1')^(-1/2) y.

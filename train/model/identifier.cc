@@ -82,10 +82,14 @@ double calc_excess(double x, double low, double high) {
   return 0.0;
 }
 
+double calc_parameter_margin(const TrainedModel& model, std::size_t t, double half_width) {
+  return half_width + kParameterMargin * (model.target_map.high()[t] - model.target_map.low()[t]);
+}
+
 bool is_parameter_in_range(const TrainedModel& model, std::size_t t, double value,
                            double half_width) {
   const double low = model.target_map.low()[t], high = model.target_map.high()[t];
-  const double margin = half_width + kParameterMargin * (high - low);
+  const double margin = calc_parameter_margin(model, t, half_width);
   return value + margin >= low && value - margin <= high;
 }
 

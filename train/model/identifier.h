@@ -37,6 +37,9 @@ double calc_excess(double x, double low, double high);
 /// simulation exceeds that of the network.
 inline constexpr double kParameterMargin = 0.01;
 
+/// That distance and the half width of the interval of target `t`, in its unit.
+double calc_parameter_margin(const TrainedModel& model, std::size_t t, double half_width);
+
 /// False if the whole interval value ± half_width lies outside of the range of target `t`, extended
 /// by kParameterMargin, or if the value is NaN.
 bool is_parameter_in_range(const TrainedModel& model, std::size_t t, double value,
