@@ -13,9 +13,16 @@ namespace {
 
 /// Returns the lines that set $program to this program or to a node's copy of it. Only an identical
 /// copy that this user owns is trusted: others may write to a node's folder as well.
-std::vector<std::string> make_preparation(const std::string& scratch) {
+std::vector<std::string> make_preparation(const ScriptOptions& options) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   std::vector<std::string> lines = {"program=" + quote_word(program)};
+  if (!options.prologue.empty()) {
+    // Scripts of sites read variables that are not set.
+    lines.emplace_back("launcher=(); set +u");
+    lines.push_back(options.prologue);
+    lines.emplace_back("set -u");
+  }
+  const std::string& scratch = options.scratch;
   if (scratch.empty()) return lines;
   lines.push_back(fmt::format("set +u; copy=\"{}/strut-$UID\"; set -u", scratch));
   lines.emplace_back(
@@ -62,8 +69,9 @@ std::vector<TaskArray> list_task_arrays(const SweepFolder& folder, const Submiss
   const auto make_task = [&](const std::string& part, const std::string& command) {
     TaskArray task;
     task.name = submission.job_name(part);
-    task.preparation = make_preparation(options.scratch);
-    task.program = fmt::format("\"$program\" {}", command);
+    task.preparation = make_preparation(options);
+    const char* const launcher = options.prologue.empty() ? "" : "\"${launcher[@]}\" ";
+    task.program = fmt::format("{}\"$program\" {}", launcher, command);
     task.is_array = false;
     task.resources = options.resources;
     task.folder = folder.logs();

@@ -21,6 +21,9 @@ struct ScriptOptions {
   /// Node-local folder for a copy of the program on each node, as a text in double quotes of bash;
   /// see check_scratch(). "": none.
   std::string scratch;
+  /// Lines of bash before the program, which may set an array `launcher`, the words before it:
+  /// module load gcc; launcher=(apptainer exec strut.sif).
+  std::string prologue = {};
 };
 
 /// Throws InputError if a scratch folder is not absolute, or if bash would expand more in it than

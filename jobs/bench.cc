@@ -12,6 +12,7 @@
 #include "base/text/quote_word.h"
 #include "jobs/bench/find_example.h"
 #include "jobs/bench/measure.h"
+#include "jobs/bench/page.h"
 #include "jobs/cli/command.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/messages.h"
@@ -109,12 +110,15 @@ Arguments describe_bench() {
                        "instruction set, one that --version lists (default: widest)");
   arguments.add_option("scratch", ArgumentValue::folder("DIR"),
                        "folder for the temporary files of the sweep (default: the system's)");
+  arguments.add_option("report", ArgumentValue::folder("DIR"),
+                       "also write a page to DIR: speed over error, beside other simulators");
   arguments.add_switch("quick", "a tenth of the time, less precise figures");
   return arguments;
 }
 
 int run_bench(const Arguments& arguments) {
   const BenchRequest request = read_request(arguments);
+  if (arguments.has("report")) check_bench_page(arguments.text("report"));
   std::optional<Baseline> baseline;
   if (arguments.has("baseline")) baseline = read_baseline(arguments.text("baseline"));
 
@@ -130,7 +134,12 @@ int run_bench(const Arguments& arguments) {
       baseline ? compare(result, *baseline) : std::vector<FigureRatio>{};
   arguments.is_on("json") ? print_json(std::cout, result, ratios)
                           : print_table(std::cout, result, ratios);
-  suggest_next_step(arguments);
+  if (arguments.has("report")) {
+    write_bench_page(arguments.text("report"), result, ratios);
+    suggest_page((std::filesystem::path(arguments.text("report")) / "report.html").string());
+  } else {
+    suggest_next_step(arguments);
+  }
   return kExitDone;
 }
 

@@ -13,6 +13,7 @@
 #include "jobs/evaluate.h"
 #include "jobs/export.h"
 #include "jobs/identify.h"
+#include "jobs/init.h"
 #include "jobs/inspect.h"
 #include "jobs/list.h"
 #include "jobs/man_page.h"
@@ -40,6 +41,8 @@ int print_manual(const Arguments& arguments) { return run_man_page(arguments, li
 
 const CommandTable& list_commands() {
   static const CommandTable commands = {
+      {"init", "write a commented vehicle, maneuver and sweep to begin with", &describe_init,
+       &run_init},
       {"simulate", "drive a car through a maneuver, or write its suspension kinematics",
        &describe_simulate, &run_simulate},
       {"plan", "create the folder of a sweep: its cases, divided into shards", &describe_plan,

@@ -47,6 +47,10 @@ std::string make_text(const Arguments& arguments, const TrainedModel& model,
   const bool is_onnx = format == ExportFormat::kOnnx;
   if (is_onnx && arguments.has("name")) throw arguments.usage_error("--name: only for .h and .c");
   if (!is_onnx && arguments.is_on("float")) throw arguments.usage_error("--float: only for .onnx");
+  if (arguments.is_on("float") && model.window) {
+    throw InputError(
+        "--float: single precision cannot align a record of a network over windows; leave it out");
+  }
   if (is_onnx) {
     const OnnxNumber number = arguments.is_on("float") ? OnnxNumber::kFloat : OnnxNumber::kDouble;
     return make_onnx(model, number, make_provenance());
@@ -56,7 +60,8 @@ std::string make_text(const Arguments& arguments, const TrainedModel& model,
 }
 
 /// Suggests how other programs read or call the exported file.
-void suggest_next_step(const Arguments& arguments, const fs::path& output) {
+void suggest_next_step(const Arguments& arguments, const TrainedModel& model,
+                       const fs::path& output) {
   const std::string file = output.string();
   if (find_format(output) == ExportFormat::kOnnx) {
     suggest_next(
@@ -65,7 +70,8 @@ void suggest_next_step(const Arguments& arguments, const fs::path& output) {
     return;
   }
   const std::string call =
-      fmt::format("then call strut_identify_{}(in, out)", find_name(arguments, output));
+      fmt::format("then call strut_identify_{}({}, out)", find_name(arguments, output),
+                  model.window ? "record, samples" : "in");
   if (find_format(output) == ExportFormat::kHeader) {
     suggest_next({"cc", "-x", "c", "-fsyntax-only", file}, "#include it, " + call);
   } else {
@@ -79,7 +85,9 @@ Arguments describe_export() {
   Arguments arguments(
       "strut export MODEL -o model.onnx|model.h|model.c [OPTIONS]",
       "Writes the network in MODEL for other programs, in the units of its columns: as an ONNX\n"
-      "model, or as C source that needs nothing but tanh, for C99 and C++.",
+      "model, or as C source that needs nothing but tanh, for C99 and C++. That of a window takes "
+      "a\n"
+      "record of its channels, in which it searches for the window.",
       "  strut export model.h5 -o model.onnx\n"
       "  strut export model.h5 -o strut_identify.h --name sedan");
   arguments.add_operand(ArgumentValue::file("MODEL", {"h5"}));
@@ -96,15 +104,9 @@ int run_export(const Arguments& arguments) {
   const std::string& file = arguments.only_operand(", a file of `strut train`");
   const fs::path output = find_output_file(arguments, {file});
   const TrainedModel model = load_model(file);
-  if (model.window) {
-    throw InputError(fmt::format(
-        "{}: a network over windows: its inputs are not channels but components of an aligned "
-        "window, so it cannot be exported; train one without --window",
-        file));
-  }
   write_text_file(output, make_text(arguments, model, output));
   std::cout << output.string() << "\n";
-  suggest_next_step(arguments, output);
+  suggest_next_step(arguments, model, output);
   return kExitDone;
 }
 

@@ -79,6 +79,7 @@ Arguments describe_merge() {
 int run_merge(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
   const fs::path output = find_output_file(arguments, {});
+  refuse_source("output", output);
   MergeOptions options;
   options.partial = arguments.is_on("partial");
   const BuildInfo& build = get_build_info();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -15,6 +17,7 @@
 #include "jobs/cli/step_warning.h"
 #include "model_files/parameters.h"
 #include "sweep/case_order.h"
+#include "sweep/choose_settings.h"
 #include "sweep/folder.h"
 
 namespace strut {
@@ -57,24 +60,49 @@ void print_strata(const Plan& plan) {
   }
 }
 
-void print_text(const Plan& plan, const SweepEstimate& estimate) {
+/// "abm4 1 ms, table, given" or with the error by which it was chosen.
+std::string describe_setting(const Plan& plan, const std::optional<IntegratorChoice>& choice,
+                             const std::optional<double>& step_error) {
+  const SweepRequest& request = plan.request();
+  const std::string setting = describe_integrator(request.integrate);
+  if (!choice && request.accuracy > 0.0) return setting + ", as it was planned";
+  if (!choice && !step_error) return setting + ", as the file says";
+  if (!choice) {
+    return fmt::format(
+        "{}, as the file says; a quarter of the step changes results by {:.1e} of what a channel "
+        "moves in a run",
+        setting, *step_error);
+  }
+  if (choice->cases == 0) return setting + ", since none of a few cases has a result";
+  if (std::isinf(choice->error)) return setting + ", since no candidate is stable";
+  return fmt::format(
+      "{}: error {:.1e} of what a channel moves in a run ({} the {:g} asked), on {} cases", setting,
+      choice->error, choice->error <= request.accuracy ? "below" : "above", request.accuracy,
+      choice->cases);
+}
+
+void print_text(const Plan& plan, const std::optional<IntegratorChoice>& choice,
+                const std::optional<double>& step_error, const SweepEstimate& estimate) {
   std::cout << fmt::format("cases     {}\n", describe_cases(plan));
   print_strata(plan);
   std::cout << fmt::format(
       "order     {}\n"
       "runs      {}\n"
+      "setting   {}\n"
       "shards    {} of up to {} cases\n"
-      "time      about {} on {} cores (an estimate, from {} cases)\n"
-      "size      about {} (an estimate, before compression)\n"
+      "time      about {}, {} on {} cores (an estimate, from {} cases)\n"
+      "size      about {} (an estimate)\n"
       "plan      {}\n",
       describe_order(plan),
       ends_at_snapshot(plan.request()) ? "each until its snapshot; nothing after it is recorded"
                                        : "each for its duration",
-      plan.shard_count(), plan.request().shard_cases, format_duration(estimate.seconds),
+      describe_setting(plan, choice, step_error), plan.shard_count(), plan.request().shard_cases,
+      describe_core_seconds(estimate.core_seconds), format_duration(estimate.seconds()),
       estimate.cores, estimate.measured, format_bytes(estimate.bytes), plan.hash());
 }
 
-void print_json(const Plan& plan, const SweepEstimate& estimate,
+void print_json(const Plan& plan, const std::optional<IntegratorChoice>& choice,
+                const std::optional<double>& step_error, const SweepEstimate& estimate,
                 const std::optional<SweepFolder>& folder) {
   Json layers = Json::array();
   for (const Stratum& stratum : plan.strata()) {
@@ -83,19 +111,26 @@ void print_json(const Plan& plan, const SweepEstimate& estimate,
                           {"population", stratum.population},
                           {"drawn", stratum.drawn}});
   }
-  std::cout << format_json(Json{{"points", plan.point_count()},
-                                {"cases", plan.case_count()},
-                                {"by", plan.request().sample.by},
-                                {"layers", layers},
-                                {"shuffled", plan.request().shuffle},
-                                {"until_snapshot", ends_at_snapshot(plan.request())},
-                                {"shards", plan.shard_count()},
-                                {"shard_cases", plan.request().shard_cases},
-                                {"estimated_seconds", estimate.seconds},
-                                {"estimated_bytes", estimate.bytes},
-                                {"cores", estimate.cores},
-                                {"plan_hash", plan.hash()},
-                                {"folder", folder ? Json(folder->root.string()) : Json()}})
+  std::cout << format_json(
+                   Json{{"points", plan.point_count()},
+                        {"cases", plan.case_count()},
+                        {"by", plan.request().sample.by},
+                        {"layers", layers},
+                        {"shuffled", plan.request().shuffle},
+                        {"until_snapshot", ends_at_snapshot(plan.request())},
+                        {"setting", describe_integrator(plan.request().integrate)},
+                        {"setting_error",
+                         choice && std::isfinite(choice->error) ? Json(choice->error) : Json()},
+                        {"step_error",
+                         step_error && std::isfinite(*step_error) ? Json(*step_error) : Json()},
+                        {"shards", plan.shard_count()},
+                        {"shard_cases", plan.request().shard_cases},
+                        {"estimated_seconds", estimate.seconds()},
+                        {"estimated_core_hours", estimate.core_seconds / 3600.0},
+                        {"estimated_bytes", estimate.bytes},
+                        {"cores", estimate.cores},
+                        {"plan_hash", plan.hash()},
+                        {"folder", folder ? Json(folder->root.string()) : Json()}})
             << "\n";
 }
 
@@ -108,6 +143,15 @@ void warn_of_step(const SweepRequest& request) {
                              "some cases", longest);
   };
   if (!warn("step", step.step)) warn("coarse_step", step.coarse_step);
+}
+
+void warn_of_step_error(const std::optional<double>& error) {
+  constexpr double kLarge = 0.01;
+  if (!error || *error <= kLarge) return;
+  print_note(fmt::format(
+      "warning: the step that the file gives is too long: results change by {} of what a channel "
+      "moves in a run if it is quartered; without the keys of [integrate], plan chooses a setting",
+      std::isfinite(*error) ? fmt::format("{:.2g}", *error) : "all"));
 }
 
 void warn(const SweepEstimate& estimate) {
@@ -123,6 +167,15 @@ void warn(const SweepEstimate& estimate) {
                     "reports the cause",
                     estimate.measured));
   }
+}
+
+/// Chooses what the sweep file leaves open, by simulating a few cases.
+std::optional<IntegratorChoice> choose(SweepRequest& request) {
+  const Stage stage("choose");
+  const ProgressLine line(request.accuracy > 0.0
+                              ? "measuring the error of integrators on a few cases"
+                              : "choosing the size of shards");
+  return choose_settings(request);
 }
 
 /// Simulates a few cases for the estimate.
@@ -157,15 +210,25 @@ int run_plan(const Arguments& arguments) {
     throw arguments.usage_error("--output: missing; name the folder to write with -o");
 
   if (!dry) check_output_folder("output", arguments.text("output"));
-  Plan plan(read_request(sweep));
+  SweepRequest request = read_request(sweep);
+  // A folder that is planned keeps its choices.
+  const bool is_planned =
+      !dry && std::filesystem::exists(SweepFolder{arguments.text("output")}.plan());
+  const std::optional<IntegratorChoice> choice = is_planned ? std::nullopt : choose(request);
+  Plan plan(request);
   check_plan(plan);
   std::optional<SweepFolder> folder;
   if (!dry) {
     folder = make_sweep_folder(arguments.text("output"), plan);
     plan = open_sweep_folder(*folder);  // an earlier version may have planned it
   }
+  const bool is_given = !is_planned && !choice;
+  const std::optional<double> step_error =
+      is_given ? measure_step_error(plan.request()) : std::nullopt;
   const SweepEstimate estimate = estimate_time(plan);
-  arguments.is_on("json") ? print_json(plan, estimate, folder) : print_text(plan, estimate);
+  arguments.is_on("json") ? print_json(plan, choice, step_error, estimate, folder)
+                          : print_text(plan, choice, step_error, estimate);
+  warn_of_step_error(step_error);
   warn_of_step(plan.request());
   warn(estimate);
   if (folder) {

@@ -62,12 +62,12 @@ fs::path report(const FolderContent& content, const fs::path& root) {
 Arguments describe_report() {
   Arguments arguments("strut report DIR",
                       "Writes DIR/report.html, a self-contained page about the study, sweep, "
-                      "comparison, diagnosis or\n"
-                      "simulated run in DIR, from existing data: no network is trained, and no "
-                      "case simulated but the\n"
-                      "few runs for the sensitivities of a sweep. DIR/figures contains the numbers "
-                      "of the charts as\n"
-                      "CSV.",
+                      "comparison, diagnosis,\n"
+                      "simulated run or benchmark in DIR, from existing data: no network is "
+                      "trained, and no case\n"
+                      "simulated but the few runs for the sensitivities of a sweep. DIR/figures "
+                      "contains the numbers of\n"
+                      "the charts as CSV.",
                       "  strut report study\n  strut report cars\n  strut report diagnosis");
   arguments.add_operand(ArgumentValue::folder("DIR"));
   return arguments;

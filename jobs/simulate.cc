@@ -65,8 +65,10 @@ Arguments describe_simulate() {
                        "wheel spin: exponential (default), stable at any speed; or explicit");
   arguments.add_switch("no-events", "do not end steps at events (lift-off, kinks)");
   arguments.add_option("rate", "HZ", "samples per second in FILE [Hz] (default 1000)");
-  arguments.add_list("set", ArgumentValue::setting(),
-                     "set a parameter, e.g. front_stiffness=38000; may be repeated");
+  arguments.add_list(
+      "set", ArgumentValue::setting(),
+      "set a parameter, e.g. front_stiffness=38000 or speed=72km/h; may be repeated");
+  arguments.add_option("channels", "A,B", "channels in FILE, beside the time (default: all)");
   arguments.add_option("report", ArgumentValue::folder("DIR"),
                        "also write DIR/report.html: the car crossing the bump, and its curves");
   arguments.add_switch("force", "replace FILE if it exists");

@@ -21,6 +21,16 @@
 namespace strut {
 namespace {
 
+/// The parameters of a case by name.
+std::vector<std::pair<std::string, double>> list_values(const Plan& plan, std::int64_t case_id) {
+  const std::vector<Axis>& axes = plan.request().grid.axes();
+  std::vector<double> values(axes.size());
+  plan.calc_parameters(case_id, values);
+  std::vector<std::pair<std::string, double>> named;
+  for (std::size_t i = 0; i < axes.size(); ++i) named.emplace_back(axes[i].name, values[i]);
+  return named;
+}
+
 /// A submission and its progress.
 struct Followed {
   Submission submission;
@@ -85,13 +95,23 @@ std::string describe(const Followed& followed) {
   return text;
 }
 
-Json make_json(const SweepStatus& status, const Submissions& submissions) {
+Json make_first_failures(const Plan& plan, const SweepStatus& status) {
+  Json first = Json::object();
+  for (const auto& [reason, count] : status.failures) {
+    if (count.first_case < 0) continue;
+    Json parameters = Json::object();
+    for (const auto& [name, value] : list_values(plan, count.first_case)) parameters[name] = value;
+    first[reason] =
+        Json{{"case", count.first_case}, {"parameters", parameters}, {"why", count.first_reason}};
+  }
+  return first;
+}
+
+Json make_json(const Plan& plan, const SweepStatus& status, const Submissions& submissions) {
   Json jobs = Json::array();
   for (const Followed& followed : submissions.followed) jobs.push_back(make_json(followed));
   Json failures = Json::object(), faults = Json::array(), runners = Json::array();
-  for (const auto& [reason, cases] : status.failures) {
-    failures[reason] = cases;
-  }
+  for (const auto& [reason, count] : status.failures) failures[reason] = count.cases;
   for (const std::string& fault : status.faults) faults.push_back(fault);
   for (const std::string& fault : submissions.faults) faults.push_back(fault);
   for (const ClaimInfo& claim : status.claims) {
@@ -102,11 +122,13 @@ Json make_json(const SweepStatus& status, const Submissions& submissions) {
   json["done"] = status.done;
   json["failed"] = status.failed;
   json["running"] = status.running;
+  json["simulated"] = status.simulated;
   json["left"] = status.left;
   json["rate_per_s"] = status.rate > 0.0 ? Json(status.rate) : Json();
   json["seconds_left"] = status.seconds_left;
   json["complete"] = status.complete();
   json["failures"] = failures;
+  json["first_failures"] = make_first_failures(plan, status);
   json["shards"] = status.shards_present;
   json["shards_planned"] = status.shards;
   json["bytes"] = status.bytes;
@@ -118,18 +140,33 @@ Json make_json(const SweepStatus& status, const Submissions& submissions) {
   return json;
 }
 
-void print_text(const SweepStatus& status, const Submissions& submissions) {
+/// "  diverged: 12, first case 123 with mass=900: a state is not finite"
+std::string describe_failures(const Plan& plan, const std::string& reason,
+                              const FailureCount& count) {
+  std::string text = fmt::format("  {}: {}", reason, format_count(count.cases));
+  if (count.first_case < 0) return text;
+  text += fmt::format(", first case {} with", count.first_case);
+  for (const auto& [name, value] : list_values(plan, count.first_case)) {
+    text += fmt::format(" {}={}", name, value);
+  }
+  return text + ": " + count.first_reason;
+}
+
+void print_text(const Plan& plan, const SweepStatus& status, const Submissions& submissions) {
   const auto line = [](const char* name, const std::string& value) {
     std::cout << fmt::format("{:<10}{}\n", name, value);
   };
   line("cases", format_count(status.cases));
   line("done", format_count(status.done));
-  std::string failed = format_count(status.failed);
-  for (const auto& [reason, cases] : status.failures) {
-    failed += fmt::format("  {}: {}", reason, format_count(cases));
+  line("failed", format_count(status.failed));
+  for (const auto& [reason, count] : status.failures) {
+    std::cout << describe_failures(plan, reason, count) << '\n';
   }
-  line("failed", failed);
-  line("running", format_count(status.running));
+  std::string running = format_count(status.running);
+  if (status.running > 0) {
+    running += fmt::format(", {} of them simulated", format_count(status.simulated));
+  }
+  line("running", running);
   line("left", format_count(status.left));
   if (status.rate > 0.0) {
     line("rate", fmt::format("{}/s, {} to go", format_count(std::llround(status.rate)),
@@ -198,9 +235,9 @@ int run_status(const Arguments& arguments) {
     if (look % kAskEvery == 0) submissions = follow_all(sweep.folder);
     if (arguments.is_on("watch") && on_terminal) print_control("\033[H\033[J");
     if (arguments.is_on("json")) {
-      std::cout << format_json(make_json(status, submissions)) << std::endl;
+      std::cout << format_json(make_json(sweep.plan, status, submissions)) << std::endl;
     } else {
-      print_text(status, submissions);
+      print_text(sweep.plan, status, submissions);
       std::cout << std::flush;
     }
     if (!arguments.is_on("watch") || status.complete()) {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/text/quote_word.h"
+#include "cluster/slurm.h"
 #include "io/format/json.h"
 #include "io/store/claims.h"
 #include "jobs/cli/command.h"
@@ -83,6 +84,13 @@ void print_queued(const QueuedSubmission& queued, const TaskPlan& plan, const Mi
   }
 }
 
+/// Whether the scheduler is there; notes it if not.
+bool can_ask(const Dispatcher& dispatcher) {
+  if (dispatcher.name() != SlurmDispatcher::kName || SlurmDispatcher::is_available()) return true;
+  print_note("Slurm is not on this machine: limits and partitions of the site are not checked");
+  return false;
+}
+
 /// The command line of a dry run without --dry-run.
 std::vector<std::string> make_real_command(const Arguments& arguments) {
   std::vector<std::string> words = {"strut", "submit"};
@@ -95,7 +103,7 @@ std::vector<std::string> make_real_command(const Arguments& arguments) {
 
 Arguments describe_submit() {
   Arguments arguments(
-      "strut submit DIR --to slurm|local [OPTIONS]",
+      "strut submit DIR --to slurm|local|list [OPTIONS]",
       "Queues the missing shards of the sweep in DIR as arrays of tasks of a few minutes each.\n"
       "Submitting again queues only shards that neither exist nor are queued. Tasks near their "
       "time\n"
@@ -106,8 +114,9 @@ Arguments describe_submit() {
       "  strut submit cars --to slurm --partition short --time 30 --threads 8 --at-once 50\n"
       "  strut status cars\n  strut cancel cars");
   arguments.add_operand(ArgumentValue::folder("DIR"));
-  arguments.add_option("to", ArgumentValue::one_of(list_dispatchers()),
-                       "dispatcher that runs the tasks");
+  arguments.add_option("to", ArgumentValue::one_of(list_targets()),
+                       "dispatcher that runs the tasks; list prints a command for each, for any "
+                       "other scheduler");
   arguments.add_option("partition", "P", "partition of the cluster (default: the site's)");
   arguments.add_option("account", "A", "account to be charged");
   arguments.add_option("constraint", "C", "constraint on nodes");
@@ -124,6 +133,10 @@ Arguments describe_submit() {
   arguments.add_option("scratch", ArgumentValue::folder("PATH"),
                        "node-local folder where each node keeps a copy of the program; $NAME and "
                        "${NAME} are expanded on the node");
+  arguments.add_option(
+      "prologue", ArgumentValue::file("FILE", {}),
+      "lines of bash before the program, as `module load gcc`; an array `launcher` "
+      "in it is put before the program, as (apptainer exec strut.sif)");
   arguments.add_switch("shared",
                        "all nodes can access DIR, although it is on a disk of this machine (which "
                        "exports it)");
@@ -142,10 +155,12 @@ int run_submit(const Arguments& arguments) {
   const OpenSweep sweep = open_canonical_sweep(arguments);
   const std::unique_ptr<Dispatcher> dispatcher = read_dispatcher(arguments);
   const SubmitRequest request = read_submit_request(arguments, *dispatcher);
-  SiteLimits limits = dispatcher->check(request.resources, sweep.folder.root);
+  const bool is_list = arguments.text("to") == kToList;
+  const bool is_dry = arguments.is_on("dry-run") || is_list;
+  const bool asks_scheduler = !is_dry || can_ask(*dispatcher);
+  SiteLimits limits;
+  if (asks_scheduler) limits = dispatcher->check(request.resources, sweep.folder.root);
   limits.tasks = std::min(request.max_tasks, limits.tasks);
-
-  const bool is_dry = arguments.is_on("dry-run");
   std::optional<Claims> claims;
   if (!is_dry) claim_submit(sweep.folder, claims);
   const MissingWork work = find_missing_work(sweep, request, is_dry);
@@ -154,16 +169,27 @@ int run_submit(const Arguments& arguments) {
     return kExitDone;
   }
   const int threads = request.resources.threads;
-  const double shard_seconds = estimate_shard_seconds(sweep, work.status, threads);
+  const WorkEstimate estimate = estimate_work(sweep, work);
+  const double shard_seconds =
+      estimate.case_seconds * static_cast<double>(sweep.plan.shard_size(0)) / threads;
   const TaskPlan plan = plan_tasks(work, shard_seconds, request, limits, *dispatcher);
   print_detail(
       fmt::format("a shard takes about {} on {} threads", format_duration(shard_seconds), threads));
 
-  Submission submission = make_submission_request(sweep, plan, work, request, *dispatcher);
-  const ScriptOptions options{plan.resources, request.at_once, request.scratch};
+  if (is_list) {
+    print_commands(sweep, plan, work, request);
+    print_note(describe_tasks(plan, work) + "; " + describe_work(estimate));
+    suggest_next({"strut", "status", sweep.folder.root.string(), "--watch"},
+                 "once a scheduler of your own runs these lines, in any order, the last ones last");
+    return kExitDone;
+  }
+  Submission submission =
+      make_submission_request(sweep, plan, work, request, *dispatcher,
+                              asks_scheduler ? dispatcher->find_cluster_name() : "");
+  const ScriptOptions options{plan.resources, request.at_once, request.scratch, request.prologue};
   if (is_dry) {
-    std::cout << describe_tasks(plan, work) << "\n";
-    print_tasks(sweep, std::move(submission), options, *dispatcher);
+    std::cout << describe_tasks(plan, work) << "\n" << describe_work(estimate) << "\n";
+    print_tasks(sweep, std::move(submission), options, *dispatcher, asks_scheduler);
     suggest_next(make_real_command(arguments));
     return kExitDone;
   }

@@ -279,6 +279,7 @@ int run_train(const Arguments& arguments) {
   if (names.empty())
     throw arguments.usage_error("DATA: missing; name a sweep folder, shards or a merged file");
   const fs::path output = find_output_file(arguments, names);
+  refuse_source("output", output);
   const fs::path checkpoint = find_checkpoint(arguments, {names.begin(), names.end()}, output);
   TrainingRequest request = read_request(arguments, output);
   DatasetOptions options;

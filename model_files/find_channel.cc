@@ -11,13 +11,16 @@
 
 namespace strut {
 
-int find_car_channel(const std::string& name) {
-  const int found = find_channel(get_car_info(), name);
+int require_channel(const ModelInfo& model, const std::string& name) {
+  const int found = find_channel(model, name);
   if (found >= 0) return found;
   std::vector<std::string> names;
-  for (const ChannelInfo& info : list_car_channels()) names.push_back(info.name);
+  names.reserve(model.channels.size());
+  for (const ChannelInfo& info : model.channels) names.push_back(info.name);
   throw InputError(fmt::format("unknown channel '{}'{}; channels: {}", name,
                                suggest_name(name, names), join_names(names)));
 }
+
+int find_car_channel(const std::string& name) { return require_channel(get_car_info(), name); }
 
 }  // namespace strut

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "base/text/format_number.h"
-#include "base/text/parse_number.h"
 #include "base/text/range.h"
+#include "io/table/units.h"
 #include "model/car/car_info.h"
 #include "model/effects/catalogue.h"
 #include "model_files/read_effects.h"
@@ -295,20 +297,39 @@ void set_parameter(Case& c, const std::string& name, double value) {
   parameter.set(c, value);
 }
 
-std::pair<std::string, double> parse_setting(const std::string& setting) {
+double NamedValue::to_si(const std::string& si) const {
+  if (unit.empty()) return value;
+  if (si.empty()) {
+    throw InputError(
+        fmt::format("{} = {} {}: must be a number in SI units", name, format_number(value), unit));
+  }
+  try {
+    const UnitScale scale = find_unit_scale(unit, si);
+    return scale.factor * value + scale.offset;
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{} = {} {}: {}", name, format_number(value), unit, e.what()));
+  }
+}
+
+NamedValue parse_setting(const std::string& setting) {
   const auto equals = setting.find('=');
   if (equals == std::string::npos) {
     throw InputError(
         fmt::format("'{}': must be name=value, for example front_stiffness=38000", setting));
   }
   const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
-  if (const auto value = parse_number<double>(text)) return {name, *value};
-  throw InputError(fmt::format("{} = '{}': must be a number", name, text));
+  NamedValue parsed{name};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), parsed.value);
+  if (error != std::errc()) {
+    throw InputError(fmt::format("{} = '{}': must be a number", name, text));
+  }
+  parsed.unit = normalize_unit(std::string_view(stop, text.data() + text.size()));
+  return parsed;
 }
 
 void apply_setting(Case& c, const std::string& setting) {
-  const auto [name, value] = parse_setting(setting);
-  set_parameter(c, name, value);
+  const NamedValue given = parse_setting(setting);
+  set_parameter(c, given.name, given.to_si(find_parameter(given.name).unit));
 }
 
 }  // namespace strut

@@ -33,10 +33,23 @@ double get_parameter(const Case& c, const std::string& name);
 /// Throws InputError with name, value and allowed range.
 void set_parameter(Case& c, const std::string& name, double value);
 
-/// Name and value of "name=value". Throws InputError where the text has another form.
-std::pair<std::string, double> parse_setting(const std::string& setting);
+/// A number as it was given: "speed=36km/h".
+struct NamedValue {
+  std::string name;
+  double value = 0.0;
+  std::string unit = {};  // behind the number; empty: SI
 
-/// Applies "name=value". Throws InputError as parse_setting and set_parameter.
+  /// The value in the SI unit `si`; empty: of a quantity whose unit is not known here. Throws
+  /// InputError for a unit of something else.
+  double to_si(const std::string& si) const;
+};
+
+/// Takes "name=value" or "name=value unit" apart. Throws InputError where the text has another
+/// form.
+NamedValue parse_setting(const std::string& setting);
+
+/// Applies "name=value", in the parameter's unit or the one given. Throws InputError as
+/// parse_setting and set_parameter.
 void apply_setting(Case& c, const std::string& setting);
 
 }  // namespace strut

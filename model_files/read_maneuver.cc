@@ -10,6 +10,7 @@
 #include "io/table/csv.h"
 #include "model/error/model_error.h"
 #include "model_files/choices.h"
+#include "model_files/file_kind.h"
 #include "model_files/parameters.h"
 
 namespace strut {
@@ -71,7 +72,7 @@ void read_bump(const Table& bump, ManeuverSpec& maneuver) {
 
 ManeuverSpec read_maneuver(const std::filesystem::path& path) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kManeuverFile);
   ManeuverSpec maneuver;
   maneuver.speed = read_parameter(root, "speed", "speed");
   maneuver.duration = read_parameter(root, "duration", "duration");

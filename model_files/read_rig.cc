@@ -12,6 +12,8 @@
 #include "model/error/model_error.h"
 #include "model/rig/rig_system.h"
 #include "model_files/choices.h"
+#include "model_files/file_kind.h"
+#include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
 #include "model_files/read_force_curve.h"
@@ -156,7 +158,7 @@ std::optional<RigKind> find_rig_kind(const std::filesystem::path& path) {
 
 RigSpec read_rig(const std::filesystem::path& path) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kModelFile);
   RigSpec spec;
   spec.kind = static_cast<RigKind>(root.choice("type", list_type_names()));
   spec.name = root.text_or("name", path.stem().string());
@@ -202,9 +204,14 @@ void set_rig_parameter(RigSpec& spec, const std::string& name, double value) {
   parameter.set(spec, value);
 }
 
+void apply_rig_setting(RigSpec& spec, const std::string& setting) {
+  const NamedValue given = parse_setting(setting);
+  set_rig_parameter(spec, given.name, given.to_si(find_rig_parameter(spec.kind, given.name).unit));
+}
+
 RigManeuver read_rig_maneuver(const std::filesystem::path& path, RigKind kind) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kRigManeuverFile);
   RigManeuver maneuver;
   if (root.has("duration")) maneuver.duration = root.number("duration", kDuration);
   const double given = maneuver.duration;

@@ -40,6 +40,8 @@ const RigParameter& find_rig_parameter(RigKind kind, const std::string& name);
 
 /// Throws InputError with name, value and allowed range, or with the nearest known name.
 void set_rig_parameter(RigSpec& spec, const std::string& name, double value);
+/// Applies "name=value", in the parameter's unit or the one given. Throws InputError likewise.
+void apply_rig_setting(RigSpec& spec, const std::string& setting);
 
 /// Reads the maneuver of a rig: `duration` [s] and, for each input that drives it, a table
 ///

@@ -10,6 +10,7 @@
 #include "io/format/toml_document.h"
 #include "model/model.h"
 #include "model_files/choices.h"
+#include "model_files/file_kind.h"
 #include "model_files/parameters.h"
 #include "model_files/read_effects.h"
 #include "model_files/read_fitted.h"
@@ -292,7 +293,7 @@ const std::vector<std::string>& list_preloads() {
 
 VehicleSpec read_vehicle(const std::filesystem::path& path) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kModelFile);
   if (root.choice("type", list_types()) != 0) {
     throw InputError(
         fmt::format("{}: type: a rig; allowed here: {}", path.string(), get_car_info().name));

@@ -15,11 +15,13 @@ inline constexpr FolderContent kStudyContent{"study", "study.toml"};
 inline constexpr FolderContent kSweepContent{"sweep", "plan.h5"};
 inline constexpr FolderContent kDiagnosisContent{"diagnosis", "verdict.json"};
 inline constexpr FolderContent kComparisonContent{"comparison", "compare.json"};
-/// Recognized last: comparisons and diagnoses also have a report.json.
+inline constexpr FolderContent kBenchContent{"benchmark", "bench.json"};
+/// Recognized last: the three above also have a report.json.
 inline constexpr FolderContent kRunContent{"simulated run", "report.json"};
 
-inline constexpr const FolderContent* kFolderContents[] = {
-    &kStudyContent, &kSweepContent, &kDiagnosisContent, &kComparisonContent, &kRunContent};
+inline constexpr const FolderContent* kFolderContents[] = {&kStudyContent,     &kSweepContent,
+                                                           &kDiagnosisContent, &kComparisonContent,
+                                                           &kBenchContent,     &kRunContent};
 
 /// The kind of a folder; nullptr where `strut report` cannot report on it.
 const FolderContent* find_content(const std::filesystem::path& folder);

@@ -74,11 +74,11 @@ ReportTable read_table(const Json& tree) {
           tree.at("text_columns").get<std::size_t>()};
 }
 
-/// Names of the figures and tables of comparisons, diagnoses and simulated runs, except those of a
-/// single run, run_NUMBER_...: a report.json can have no other files removed.
-constexpr std::array<const char*, 9> kNames = {"channels",      "curves", "force_law",
-                                               "force_map",     "gain",   "motion",
-                                               "probabilities", "states", "balance"};
+/// Names of the figures and tables of comparisons, diagnoses, runs and benchmarks, except those of
+/// a single run, run_NUMBER_...: a report.json can have no other files removed.
+constexpr std::array<const char*, 10> kNames = {
+    "channels", "curves",        "force_law", "force_map", "gain",
+    "motion",   "probabilities", "states",    "balance",   "work_precision"};
 
 bool is_page_name(const std::string& name) {
   constexpr std::string_view kRun = "run_";
@@ -230,8 +230,8 @@ void write_page_again(const PageFolder& folder) {
     const FigureDrawer drawer(Folder(folder.root));
     write_text_file_inside(folder.root, folder.report(), make_html(read_page(tree, drawer)));
   } catch (const Json::exception& e) {
-    throw InputError(fmt::format("{}: {}; must be as strut compare, diagnose or simulate wrote it",
-                                 folder.page().string(), explain(e)));
+    throw InputError(
+        fmt::format("{}: {}; must be as strut wrote it", folder.page().string(), explain(e)));
   }
 }
 

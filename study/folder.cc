@@ -10,6 +10,7 @@
 #include "io/file/atomic_file.h"
 #include "io/file/read_text_file.h"
 #include "io/format/toml_text.h"
+#include "sweep/choose_settings.h"
 #include "sweep/facts.h"
 #include "sweep/folder.h"
 #include "sweep/freeze_inputs.h"
@@ -164,7 +165,7 @@ Plan plan_once(const StudyFolder& folder, const SweepFolder& sweep, const Make& 
   Folder(folder.root)
       .make_folder(folder.sweeps().filename().string())
       .make_folder(sweep.root.filename().string());
-  if (!fs::exists(sweep.plan())) make_sweep_folder(sweep.root, Plan(read_request(make())));
+  if (!fs::exists(sweep.plan())) make_sweep_folder(sweep.root, make_plan(make()));
   return open_sweep_folder(sweep);
 }
 

@@ -10,6 +10,7 @@
 #include "base/text/nearest_name.h"
 #include "base/text/range.h"
 #include "io/format/toml_document.h"
+#include "model_files/file_kind.h"
 #include "model_files/read_vehicle.h"
 #include "sweep/plan.h"
 #include "train/network/network.h"
@@ -213,7 +214,7 @@ void check_published(const StudyRequest& request, const std::vector<std::string>
 
 StudyRequest read_study(const std::filesystem::path& path) {
   const Document document(path);
-  const Table root = document.root();
+  const Table root = open_root(document, kStudyFile);
   StudyRequest request;
   request.path = path;
   request.title = root.text_or("title", path.stem().string());

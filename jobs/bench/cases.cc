@@ -10,6 +10,7 @@
 #include "jobs/cli/clock.h"
 #include "model_files/parameters.h"
 #include "sweep/choices.h"
+#include "sweep/choose_settings.h"
 
 namespace strut {
 namespace {
@@ -49,20 +50,14 @@ double calc_relative_error(const std::vector<double>& values,
   return std::sqrt(difference / size);
 }
 
-/// "rk4 1 ms, newton, exponential spin, events located"
-std::string describe(const IntegrateOptions& options) {
-  const StepOptions& step = options.step;
-  const std::string coarse =
-      step.coarse_step > 0.0
-          ? fmt::format(" ({} ms off the bump)", format_number(1e3 * step.coarse_step))
-          : "";
-  return fmt::format("{} {} ms{}, {}, {} spin, events {}", get_name(step.stepper),
-                     format_number(1e3 * step.step), coarse, find_name(kClosures, options.closure),
-                     find_name(kSpins, options.spin),
-                     step.locate_events ? "located" : "not located");
-}
-
 }  // namespace
+
+std::string describe(const IntegrateOptions& options) {
+  return fmt::format("{}, {} spin, events {}{}", describe_integrator({Solver::kLanes, options, {}}),
+                     find_name(kSpins, options.spin),
+                     options.step.locate_events ? "located" : "not located",
+                     options.symmetry ? ", one side" : "");
+}
 
 BenchCases make_bench_cases(const CaseSource& source, int count) {
   BenchCases bench;
@@ -111,13 +106,20 @@ double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchS
   return worst;
 }
 
+double count_right_hand_sides(const BenchCases& bench, const Kernel& kernel,
+                              const BenchSetting& setting) {
+  return static_cast<double>(run_cases(bench, kernel, setting, {}).derivative_count);
+}
+
 std::vector<BenchSetting> list_standard_settings() {
-  IntegrateOptions newton, table;
-  newton.step.step = table.step.step = 1e-3;
+  IntegrateOptions newton, table, side;
+  newton.step.step = table.step.step = side.step.step = 1e-3;
   table.closure = Closure::kTable;
+  side.symmetry = true;
   return {{"double", describe(newton), newton, false},
           {"lanes", describe(newton), newton},
-          {"lanes_tabulated", describe(table), table}};
+          {"lanes_tabulated", describe(table), table},
+          {"lanes_one_side", describe(side), side}};
 }
 
 std::vector<BenchSetting> list_fast_settings(bool quick) {
@@ -132,6 +134,7 @@ std::vector<BenchSetting> list_fast_settings(bool quick) {
           IntegrateOptions options;
           options.step = {stepper, step, events, coarse};
           options.closure = Closure::kTable;
+          options.symmetry = true;
           settings.push_back({"candidate", describe(options), options});
         }
       }

@@ -16,6 +16,9 @@ struct BenchSetting {
   bool in_lanes = true;
 };
 
+/// "rk4 1 ms, newton, exponential spin, events located, one side"
+std::string describe(const IntegrateOptions& options);
+
 /// Prepared cases whose springs and dampers vary over the ranges of the paper; the nominal one
 /// first.
 struct BenchCases {
@@ -38,10 +41,15 @@ LaneResults run_cases(const BenchCases& bench, const Kernel& kernel, const Bench
 /// the reference; maximum over the cases that run_cases() runs. Infinite if one fails.
 double measure_error(const BenchCases& bench, const Kernel& kernel, const BenchSetting& setting);
 
-/// The fixed settings: double, lanes, lanes_tabulated.
+/// Right-hand sides of a run, of a lane together with those beside it.
+double count_right_hand_sides(const BenchCases& bench, const Kernel& kernel,
+                              const BenchSetting& setting);
+
+/// The fixed settings, all of the whole car but the last: double, lanes, lanes_tabulated,
+/// lanes_one_side.
 std::vector<BenchSetting> list_standard_settings();
 
-/// Candidates for the fastest setting.
+/// Candidates for the fastest setting; one side of a car that moves symmetrically.
 std::vector<BenchSetting> list_fast_settings(bool quick);
 
 }  // namespace strut

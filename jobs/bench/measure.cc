@@ -4,9 +4,11 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
 #include "base/parallel/team.h"
+#include "jobs/bench/instructions.h"
 #include "jobs/cli/clock.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
@@ -43,17 +45,36 @@ Figure measure(const BenchCases& bench, const Kernel& kernel, const BenchSetting
     figure.spin_control = 0.5 * (spin_before + measure_spin()) / best_spin;
   }
   figure.real_time_factor = bench.duration * figure.runs_per_s;
+  figure.rhs_per_run = count_right_hand_sides(bench, kernel, setting);
+  figure.flops_per_run =
+      figure.rhs_per_run *
+      static_cast<double>(count_flops(bench.cases[0], setting.options).arithmetic);
+  const auto instructions = count_instructions([&] { run_cases(bench, kernel, setting, {}); });
+  if (instructions) figure.instructions_per_run = *instructions / cases;
+  figure.error = measure_error(bench, kernel, setting);
   return figure;
 }
 
-/// Finds the setting that is accurate enough and, in short trials, fastest.
-BenchSetting find_fastest(const BenchCases& bench, const Kernel& kernel, bool quick) {
-  BenchSetting best = list_standard_settings().back();
-  double best_rate = 0.0;
+/// Measures all candidates in short trials. Returns early once `halt` is true.
+std::vector<Figure> measure_candidates(const BenchCases& bench, const Kernel& kernel, bool quick,
+                                       double best_spin, const std::atomic<bool>& halt) {
+  std::vector<Figure> figures;
   for (const BenchSetting& setting : list_fast_settings(quick)) {
-    if (!(measure_error(bench, kernel, setting) <= kMaxError)) continue;
-    const double rate = measure(bench, kernel, setting, {0.02, 3}, 1.0).runs_per_s;
-    if (rate > best_rate) best_rate = rate, best = setting;
+    if (halt) break;
+    figures.push_back(measure(bench, kernel, setting, {0.02, 2}, best_spin));
+  }
+  return figures;
+}
+
+/// The setting that is accurate enough and has the fewest operations, so that no other program
+/// decides.
+BenchSetting find_fastest(const std::vector<Figure>& candidates) {
+  BenchSetting best = list_standard_settings().back();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Figure& f : candidates) {
+    if (!(f.error <= kMaxError) || f.flops_per_run >= least) continue;
+    least = f.flops_per_run;
+    best = f.setting;
   }
   return best;
 }
@@ -113,7 +134,6 @@ void measure_single_core(const BenchCases& bench, const BenchRequest& request, c
   const Kernel& kernel = *request.kernel;
   const auto add = [&](const BenchSetting& setting) {
     result.single_core.push_back(measure(bench, kernel, setting, effort, spin));
-    result.single_core.back().error = measure_error(bench, kernel, setting);
   };
   for (const BenchSetting& setting : list_standard_settings()) {
     if (halt) return;
@@ -122,7 +142,13 @@ void measure_single_core(const BenchCases& bench, const BenchRequest& request, c
   }
   if (halt) return;
   progress.begin("searching for the fastest setting");
-  BenchSetting fastest = find_fastest(bench, kernel, request.quick);
+  result.candidates = measure_candidates(bench, kernel, request.quick, spin, halt);
+  BenchSetting fastest = find_fastest(result.candidates);
+  BenchSetting both_sides = fastest;
+  both_sides.options.symmetry = false;
+  both_sides.label = "fastest_both_sides";
+  both_sides.text = describe(both_sides.options);
+  add(both_sides);
   fastest.label = "fastest";
   add(fastest);
 }
@@ -160,8 +186,10 @@ BenchResult run_benchmark(const BenchRequest& request, std::atomic<bool>& halt) 
   result.seconds_to_prepare = bench.seconds_to_prepare;
   const double spin = calibrate_spin();
   result.peak = measure_peak(kernel);
-  result.newton = count_flops(bench.cases[0], Closure::kNewton);
-  result.table = count_flops(bench.cases[0], Closure::kTable);
+  IntegrateOptions whole;
+  result.newton = count_flops(bench.cases[0], whole);
+  whole.closure = Closure::kTable;
+  result.table = count_flops(bench.cases[0], whole);
 
   measure_single_core(bench, request, effort, spin, halt, progress, result);
   if (halt) return result;

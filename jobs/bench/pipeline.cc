@@ -10,6 +10,7 @@
 #include "jobs/cli/clock.h"
 #include "jobs/cli/machine.h"
 #include "jobs/cli/scratch_folder.h"
+#include "sweep/choose_settings.h"
 #include "sweep/run.h"
 
 namespace strut {
@@ -68,7 +69,7 @@ PipelineFigure measure(const Plan& plan, const Kernel& kernel, int threads, doub
 PipelineResult measure_pipeline(const fs::path& file, std::int64_t cases, int cores,
                                 double best_spin, const fs::path& scratch,
                                 std::atomic<bool>& halt) {
-  const Plan plan(read_request(file));
+  const Plan plan = make_plan(file);
   PipelineResult result;
   result.sweep = file.filename().string();
   const std::int64_t shard = plan.request().shard_cases;

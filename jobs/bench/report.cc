@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <ostream>
 
 #include "base/error/input_error.h"
@@ -10,20 +12,33 @@
 namespace strut {
 namespace {
 
+constexpr char kRhsPerRun[] = "rhs_per_run", kFlopsPerRun[] = "flops_per_run",
+               kInstructionsPerRun[] = "instructions_per_run";
+
+Json make_json(const Figure& f) {
+  return Json{
+      {"runs_per_s", f.runs_per_s},
+      {"real_time_factor", f.real_time_factor},
+      {"setting", f.setting.text},
+      {"body_acceleration_rms_relative", f.error},
+      {"spin_control", f.spin_control},
+      {kRhsPerRun, f.rhs_per_run},
+      {kFlopsPerRun, f.flops_per_run},
+      {kInstructionsPerRun, f.instructions_per_run ? Json(*f.instructions_per_run) : Json()}};
+}
+
 Json make_json(const BenchResult& result) {
   Json single = Json::object();
   for (const Figure& f : result.single_core) {
-    Json figure = Json{{"runs_per_s", f.runs_per_s},
-                       {"real_time_factor", f.real_time_factor},
-                       {"setting", f.setting.text},
-                       {"body_acceleration_rms_relative", f.error},
-                       {"share_of_peak", result.fraction_of_peak(f)},
-                       {"spin_control", f.spin_control}};
+    Json figure = make_json(f);
+    figure["share_of_peak"] = result.fraction_of_peak(f);
     if (f.setting.label == "lanes") {
       figure["speedup_over_double"] = result.speedup_over_double(f);
     }
     single[f.setting.label] = figure;
   }
+  Json candidates = Json::array();
+  for (const Figure& f : result.candidates) candidates.push_back(make_json(f));
   Json threads = Json::array();
   for (const ThreadFigure& t : result.threads) {
     threads.push_back(Json{
@@ -31,6 +46,7 @@ Json make_json(const BenchResult& result) {
   }
   return Json{
       {"single_core", single},
+      {"work_precision", candidates},
       {"threads", threads},
       {"accuracy", Json{{"body_acceleration_rms_relative", result.single_core.back().error}}},
       {"flops_per_rhs", result.newton.arithmetic},
@@ -53,13 +69,34 @@ const Json& get_member(const Json& json, const std::string& key) {
 }
 
 void print_single_core(std::ostream& stream, const BenchResult& result) {
-  stream << fmt::format("{:<16} {:>10} {:>9} {:>12} {:>12} {:>8} {:>6}  {}\n", "one core", "runs/s",
-                        "x double", "x real time", "error [1]", "of peak", "spin", "setting");
+  stream << fmt::format("{:<18} {:>8} {:>8} {:>11} {:>9} {:>7} {:>5} {:>8} {:>9} {:>7}  {}\n",
+                        "one core", "runs/s", "x double", "x real time", "error [1]", "of peak",
+                        "spin", "rhs/run", "Mflop/run", "M instr", "setting");
   for (const Figure& f : result.single_core) {
-    stream << fmt::format("{:<16} {:>10.1f} {:>9.2f} {:>12.1f} {:>12.2e} {:>7.1f}% {:>6.2f}  {}\n",
-                          f.setting.label, f.runs_per_s, result.speedup_over_double(f),
-                          f.real_time_factor, f.error, 100.0 * result.fraction_of_peak(f),
-                          f.spin_control, f.setting.text);
+    const std::string instructions =
+        f.instructions_per_run ? fmt::format("{:.2f}", 1e-6 * *f.instructions_per_run) : "-";
+    stream << fmt::format(
+        "{:<18} {:>8.1f} {:>8.2f} {:>11.1f} {:>9.2e} {:>6.1f}% {:>5.2f} {:>8.0f} {:>9.2f} {:>7}  "
+        "{}\n",
+        f.setting.label, f.runs_per_s, result.speedup_over_double(f), f.real_time_factor, f.error,
+        100.0 * result.fraction_of_peak(f), f.spin_control, f.rhs_per_run, 1e-6 * f.flops_per_run,
+        instructions, f.setting.text);
+  }
+}
+
+/// The settings that no other beats in both error and operations, from the most accurate on.
+void print_work_precision(std::ostream& stream, const BenchResult& result) {
+  std::vector<Figure> sorted = result.candidates;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Figure& a, const Figure& b) { return a.flops_per_run < b.flops_per_run; });
+  stream << fmt::format("\n{:<18} {:>8} {:>9} {:>9}  {}\n", "work over error", "runs/s",
+                        "Mflop/run", "error [1]", "setting");
+  double least = std::numeric_limits<double>::infinity();
+  for (const Figure& f : sorted) {
+    if (!(f.error < least)) continue;
+    least = f.error;
+    stream << fmt::format("{:<18} {:>8.1f} {:>9.2f} {:>9.2e}  {}\n", "", f.runs_per_s,
+                          1e-6 * f.flops_per_run, f.error, f.setting.text);
   }
 }
 
@@ -72,12 +109,30 @@ void print_threads(std::ostream& stream, const BenchResult& result) {
   }
 }
 
+void print_ratios(std::ostream& stream, const std::vector<FigureRatio>& ratios) {
+  stream << fmt::format("\n{:<44} {:>10} {:>18}\n", "new / old", "ratio", "corrected by spin");
+  bool is_all_corrected = true;
+  for (const FigureRatio& r : ratios) {
+    is_all_corrected = is_all_corrected && (r.is_count || r.corrected);
+    stream << fmt::format("{:<44} {:>10.3f} {:>18}\n", r.name, r.ratio,
+                          r.is_count    ? "a count"
+                          : r.corrected ? fmt::format("{:.3f}", *r.corrected)
+                                        : "cannot be");
+  }
+  if (is_all_corrected) return;
+  stream << "cannot be corrected: a measurement without spin control, or below half an undisturbed "
+            "core; judge by the counts\n";
+}
+
 void print_explanations(std::ostream& stream, const BenchResult& result) {
   const FlopCount &newton = result.newton, &table = result.table;
   stream
       << "\nerror: rms of the body acceleration's error over the run, relative to CVODE at 1e-12; "
          "worst lane\n"
-         "spin: speed of a fixed loop timed at the same time; 1: nobody else uses this machine\n";
+         "spin: speed of a fixed loop timed at the same time; 1: nobody else uses this machine\n"
+         "rhs, Mflop, M instr: right-hand sides, 1e6 operations and, where the system counts them, "
+         "1e6 "
+         "instructions of a run, which depend on no other program\n";
   stream << fmt::format(
       "right-hand side: {} operations closed by Newton, {} tabulated; {}, {} calls of sin, cos, "
       "atan, "
@@ -96,12 +151,12 @@ void print_table(std::ostream& stream, const BenchResult& result,
   stream << fmt::format("{}, {} cores, {}, {}, {}\n\n", machine.cpu, machine.cores, machine.isa,
                         machine.compiler, machine.commit);
   print_single_core(stream, result);
+  print_work_precision(stream, result);
   print_threads(stream, result);
   print_explanations(stream, result);
   if (result.pipeline) print_pipeline(stream, *result.pipeline);
   if (ratios.empty()) return;
-  stream << fmt::format("\n{:<16} {:>10}\n", "new / old", "ratio");
-  for (const FigureRatio& r : ratios) stream << fmt::format("{:<16} {:>10.3f}\n", r.name, r.ratio);
+  print_ratios(stream, ratios);
 }
 
 void print_json(std::ostream& stream, const BenchResult& result,
@@ -109,8 +164,13 @@ void print_json(std::ostream& stream, const BenchResult& result,
   Json json = make_json(result);
   if (!ratios.empty()) {
     Json members = Json::object();
-    for (const FigureRatio& r : ratios) members[r.name] = r.ratio;
+    Json corrected = Json::object();
+    for (const FigureRatio& r : ratios) {
+      members[r.name] = r.ratio;
+      if (!r.is_count) corrected[r.name] = r.corrected ? Json(*r.corrected) : Json();
+    }
     json["ratios"] = members;
+    json["ratios_corrected_by_spin"] = corrected;
   }
   stream << format_json(json) << "\n";
 }
@@ -131,20 +191,56 @@ Baseline read_baseline(const std::string& path) {
   return baseline;
 }
 
+namespace {
+
+/// Spin controls below it are those of a machine that runs something else: speeds then depend on
+/// more than the processor's clock.
+constexpr double kBusy = 0.5;
+
+/// The ratio of two speeds and, where their spin controls allow it, of the speeds that an
+/// undisturbed machine would have.
+FigureRatio make_speed_ratio(const std::string& name, double old, double old_spin, double value,
+                             double spin) {
+  FigureRatio ratio{name, value / old};
+  if (old_spin >= kBusy && spin >= kBusy) ratio.corrected = ratio.ratio * old_spin / spin;
+  return ratio;
+}
+
+/// The number of a member; 0 where there is none.
+double get_number(const Json& json, const std::string& key) {
+  const Json& member = get_member(json, key);
+  return member.is_number() ? member.get<double>() : 0.0;
+}
+
+}  // namespace
+
 std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& baseline) {
   std::vector<FigureRatio> ratios;
-  const auto add = [&](const std::string& name, const Json& old, double value) {
-    if (old.is_number() && old > 0.0) ratios.push_back({name, value / old.get<double>()});
+  const auto add_speed = [&](const std::string& name, const Json& old, double value, double spin,
+                             int threads) {
+    const double was = get_number(old, "runs_per_s");
+    if (!(was > 0.0)) return;
+    ratios.push_back(make_speed_ratio(name, was, get_number(old, "spin_control") / threads, value,
+                                      spin / threads));
+  };
+  const auto add_count = [&](const std::string& name, double old, double value) {
+    if (old > 0.0) ratios.push_back({name, value / old, {}, true});
   };
   const Json& single = get_member(baseline, "single_core");
   for (const Figure& f : result.single_core) {
     const std::string& label = f.setting.label;
-    add(label, get_member(get_member(single, label), "runs_per_s"), f.runs_per_s);
+    const Json& old = get_member(single, label);
+    add_speed(label, old, f.runs_per_s, f.spin_control, 1);
+    add_count(label + ", " + kRhsPerRun, get_number(old, kRhsPerRun), f.rhs_per_run);
+    add_count(label + ", " + kFlopsPerRun, get_number(old, kFlopsPerRun), f.flops_per_run);
+    if (!f.instructions_per_run) continue;
+    add_count(label + ", " + kInstructionsPerRun, get_number(old, kInstructionsPerRun),
+              *f.instructions_per_run);
   }
   for (const ThreadFigure& t : result.threads) {
     for (const Json& old : get_member(baseline, "threads")) {
       if (get_member(old, "threads") != t.threads) continue;
-      add(fmt::format("{} threads", t.threads), get_member(old, "runs_per_s"), t.runs_per_s);
+      add_speed(fmt::format("{} threads", t.threads), old, t.runs_per_s, t.spin_control, t.threads);
     }
   }
   const Json& runs = get_member(get_member(baseline, "pipeline"), "runs");
@@ -152,12 +248,12 @@ std::vector<FigureRatio> compare(const BenchResult& result, const Baseline& base
   for (const PipelineFigure& f : sweeps) {
     for (const Json& old : runs) {
       if (get_member(old, "isa") != f.isa || get_member(old, "threads") != f.threads) continue;
-      add(fmt::format("sweep, {}, {} threads", f.isa, f.threads), get_member(old, "runs_per_s"),
-          f.runs_per_s);
+      add_speed(fmt::format("sweep, {}, {} threads", f.isa, f.threads), old, f.runs_per_s,
+                f.spin_control, f.threads);
     }
   }
-  add("flops_per_rhs", get_member(baseline, "flops_per_rhs"),
-      static_cast<double>(result.newton.arithmetic));
+  add_count("flops_per_rhs", get_number(baseline, "flops_per_rhs"),
+            static_cast<double>(result.newton.arithmetic));
   return ratios;
 }
 

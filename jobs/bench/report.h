@@ -9,9 +9,9 @@
 
 #include "io/format/read_json.h"
 #include "jobs/bench/cases.h"
-#include "jobs/bench/count_flops.h"
 #include "jobs/bench/pipeline.h"
 #include "jobs/cli/machine.h"
+#include "model/kernel/count_flops.h"
 
 namespace strut {
 
@@ -22,6 +22,10 @@ struct Figure {
   double error = 0.0;         // measure_error()
   double spin_control = 0.0;  // during the best repeat; 1: undisturbed machine
   double rhs_per_s = 0.0;     // right-hand sides of single cases per second
+  // Independent of other programs on the machine:
+  double rhs_per_run = 0.0;  // count_right_hand_sides()
+  double flops_per_run = 0.0;
+  std::optional<double> instructions_per_run = {};  // where the system counts them
 };
 
 struct ThreadFigure {
@@ -33,6 +37,7 @@ struct ThreadFigure {
 
 struct BenchResult {
   std::vector<Figure> single_core;
+  std::vector<Figure> candidates;  // speed over error: all that were tried for the fastest
   std::vector<ThreadFigure> threads;
   FlopCount newton, table;
   double peak = 0.0;  // peak of one core [flop/s]
@@ -48,8 +53,7 @@ struct BenchResult {
     return f.runs_per_s / figure("double").runs_per_s;
   }
   double fraction_of_peak(const Figure& f) const {
-    const FlopCount& flops = f.setting.options.closure == Closure::kNewton ? newton : table;
-    return static_cast<double>(flops.arithmetic) * f.rhs_per_s / peak;
+    return f.flops_per_run / f.rhs_per_run * f.rhs_per_s / peak;
   }
 };
 
@@ -63,6 +67,10 @@ Baseline read_baseline(const std::string& path);
 struct FigureRatio {
   std::string name;
   double ratio = 0.0;
+  /// The ratio of speeds on undisturbed processors, by spin control; nothing where a measurement
+  /// has no spin control, or one below half of an undisturbed core.
+  std::optional<double> corrected = {};
+  bool is_count = false;  // that no other program changes
 };
 
 /// The ratios of all figures that both results have.

@@ -1,6 +1,8 @@
 // Checks a plan and estimates time and size of its sweep from the first cases.
 #pragma once
 
+#include <string>
+
 #include "sweep/plan.h"
 
 namespace strut {
@@ -10,16 +12,22 @@ namespace strut {
 void check_plan(const Plan& plan);
 
 struct SweepEstimate {
-  int cores = 1;
-  int measured = 0;       // cases simulated for the estimate
-  int without_event = 0;  // among `measured`: cases that never reach the snapshot's line
-  int failed = 0;         // among `measured`: cases without a result for other reasons
-  double seconds = 0.0;   // for the whole sweep on all cores
-  double bytes = 0.0;     // size of all rows, before compression
+  int cores = 1;              // of this machine, all of which measured at once
+  int measured = 0;           // cases simulated for the estimate
+  int without_event = 0;      // among `measured`: cases that never reach the snapshot's line
+  int failed = 0;             // among `measured`: cases without a result for other reasons
+  double core_seconds = 0.0;  // processor time of the whole sweep
+  double bytes = 0.0;         // of all shards' files
+
+  double seconds() const { return core_seconds / cores; }
 };
 
-/// Simulates a batch of the plan's first cases with the plan's settings; with CVODE only the first.
+/// Simulates the plan's first cases with the plan's settings on all cores, at least a batch on each
+/// and some 0.2 s, and compresses their rows.
 SweepEstimate estimate_sweep(const Plan& plan, const Kernel& kernel);
+
+/// "1.2 core-hours"; seconds below 0.1 core-hours.
+std::string describe_core_seconds(double core_seconds);
 
 /// Size of the row of one case [bytes], before compression.
 double calc_row_bytes(const ShardSchema& schema);

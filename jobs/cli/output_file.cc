@@ -85,6 +85,13 @@ void check_output_file(const std::string& option, const fs::path& output,
     throw InputError(fmt::format("{}exists; {}", start, remedy));
 }
 
+void refuse_source(const std::string& option, const fs::path& output) {
+  const std::string ending = output.extension().string();
+  if (ending != ".toml" && ending != ".tir") return;
+  throw InputError(name_option(option, output) +
+                   "the name of a vehicle, maneuver, sweep or tire; must be another, as FILE.h5");
+}
+
 std::vector<fs::path> list_files_read(const std::vector<fs::path>& toml_files) {
   std::vector<fs::path> files = toml_files;
   for (const fs::path& file : toml_files) {

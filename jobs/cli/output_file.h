@@ -18,6 +18,10 @@ void check_output_file(const std::string& option, const std::filesystem::path& o
                        const std::vector<std::filesystem::path>& inputs, bool may_replace,
                        const std::string& remedy = "--force replaces it");
 
+/// Refuses a name that vehicles, maneuvers, sweeps and tires have, for a command that writes HDF5.
+/// Throws InputError.
+void refuse_source(const std::string& option, const std::filesystem::path& output);
+
 /// Checks a folder, which may be missing, into which a command writes. Throws InputError, which
 /// names the option, if it is a file or lies in a subfolder of a sweep.
 void check_output_folder(const std::string& option, const std::filesystem::path& folder);

@@ -42,8 +42,9 @@ void apply_settings(const std::string& option, const std::vector<std::string>& s
                     const std::vector<std::string>& names, std::vector<double>& values) {
   name_option(option, [&] {
     for (const std::string& setting : settings) {
-      const auto [name, value] = parse_setting(setting);
-      double& place = values[find_index(name, names)];
+      const NamedValue given = parse_setting(setting);
+      double& place = values[find_index(given.name, names)];
+      const double value = given.to_si("");
       if (!std::isfinite(value)) {
         throw InputError(fmt::format("{}: not finite; must be a number", setting));
       }

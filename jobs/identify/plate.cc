@@ -103,10 +103,7 @@ int identify_by_plate(const Arguments& arguments, const fs::path& path,
   }
   RigSpec rig = read_rig(path);
   for (const std::string& setting : arguments.list("set")) {
-    name_option("set", [&] {
-      const auto [name, value] = parse_setting(setting);
-      set_rig_parameter(rig, name, value);
-    });
+    name_option("set", [&] { apply_rig_setting(rig, setting); });
   }
   const PlateRecord record = read_plate_record(arguments, files.front());
   const std::vector<PlateResponse> responses = calc_plate_responses(record);

@@ -185,7 +185,7 @@ Chart make_failure_chart(const SweepStatus& status) {
   for (const auto& [reason, count] : status.failures) {
     panel.x.categories.push_back(reason);
     bars.x.push_back(static_cast<double>(panel.x.categories.size()));
-    bars.y.push_back(static_cast<double>(count));
+    bars.y.push_back(static_cast<double>(count.cases));
   }
   panel.series.push_back(std::move(bars));
   Chart chart{"failures", {std::move(panel)}};
@@ -200,9 +200,11 @@ ReportSection make_failures(const SweepStatus& status, const FigureDrawer& drawe
     return section;
   }
   drawer.draw_all({make_failure_chart(status)}, section);
-  ReportTable table{"Failed cases", {"reason", "cases"}, {}};
+  ReportTable table{"Failed cases", {"reason", "cases", "first case", "its reason"}, {}};
   for (const auto& [reason, count] : status.failures) {
-    table.rows.push_back({reason, format_count(count)});
+    const bool is_known = count.first_case >= 0;
+    table.rows.push_back({reason, format_count(count.cases),
+                          is_known ? std::to_string(count.first_case) : "", count.first_reason});
   }
   section.tables.push_back(table);
   return section;

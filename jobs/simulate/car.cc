@@ -16,6 +16,7 @@
 #include "jobs/simulate/run_file.h"
 #include "jobs/simulate/run_report.h"
 #include "jobs/simulate/step_check.h"
+#include "model/car/car_info.h"
 #include "model/longest_step.h"
 #include "model_files/parameters.h"
 #include "sweep/simulate_case.h"
@@ -154,6 +155,7 @@ int run_car(const Arguments& arguments, const SimulateOptions& given) {
 
   RunRecord run;
   run.channels = &list_car_channels();
+  run.kept = list_kept(get_car_info(), options.channels);
   const double start = now();
   {
     const ProgressLine line("simulating " + format_duration(duration));

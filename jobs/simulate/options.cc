@@ -7,6 +7,7 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
+#include "jobs/cli/lists.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/step_warning.h"
 #include "model/longest_step.h"
@@ -79,12 +80,13 @@ SimulateOptions read_simulate_options(const Arguments& arguments) {
     throw arguments.usage_error("--output: missing; name the file to write with -o");
   options.output = arguments.text("output");
   if (arguments.has("report")) options.report = arguments.text("report");
+  if (arguments.has("channels")) options.channels = split_list(arguments.text("channels"));
   if (!options.report.empty()) check_report(options);
   if (options.kinematics) {
-    refuse_options(
-        arguments,
-        {"integrator", "step", "coarse-step", "closure", "spin", "no-events", "rate", "report"},
-        "--kinematics does not simulate over time; allowed without it");
+    refuse_options(arguments,
+                   {"integrator", "step", "coarse-step", "closure", "spin", "no-events", "rate",
+                    "channels", "report"},
+                   "--kinematics does not simulate over time; allowed without it");
   }
   read_integration(arguments, options);
   return options;

@@ -23,8 +23,9 @@ struct SimulateOptions {
   std::filesystem::path report;  // folder; empty: none
   Integrator integrator = Integrator::kRk4;
   IntegrateOptions integrate;
-  bool chose_step = false;  // --step is given
-  double rate = 1000.0;     // Hz
+  bool chose_step = false;            // --step is given
+  double rate = 1000.0;               // Hz
+  std::vector<std::string> channels;  // in the output beside the time; empty: all
   bool kinematics = false, json = false;
   bool force = false;  // the output may be replaced
 

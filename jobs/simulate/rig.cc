@@ -20,8 +20,7 @@ namespace {
 RigSpec load_rig(const CaseSource& source) {
   RigSpec rig = read_rig(source.vehicle);
   for (const std::string& setting : source.settings) {
-    const auto [name, value] = parse_setting(setting);
-    set_rig_parameter(rig, name, value);
+    apply_rig_setting(rig, setting);
   }
   return rig;
 }
@@ -82,6 +81,7 @@ int run_rig(const Arguments& arguments, const SimulateOptions& given) {
 
   RunRecord run;
   run.channels = &get_rig_info(rig.kind).channels;
+  run.kept = list_kept(get_rig_info(rig.kind), options.channels);
   const double start = now();
   const ReadOut out(*run.channels, {&rig.effects});
   {
@@ -97,7 +97,7 @@ int run_rig(const Arguments& arguments, const SimulateOptions& given) {
   describe_run(options, rig, run);
   write_run(options.output, format, run);
   print_note(fmt::format("{}: {} samples of {} channels; {:.4g} s simulated in {:.3g} s",
-                         options.output.string(), run.results.sample_count, run.channels->size(),
+                         options.output.string(), run.results.sample_count, run.kept.size(),
                          maneuver.duration, seconds));
   suggest_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
                "to compare measured runs with this rig");

@@ -2,20 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+#include <set>
+
 #include "base/text/build_info.h"
 #include "io/format/hdf5.h"
 #include "io/table/csv.h"
 #include "jobs/cli/interrupt.h"
+#include "jobs/cli/settings.h"
+#include "model_files/find_channel.h"
 
 namespace strut {
 namespace {
 
+const std::string kHistory = "/history/", kTime = "time";
+
 void write_run_csv(const std::filesystem::path& path, const RunRecord& run) {
   std::vector<CsvColumn> columns;
   const std::vector<ChannelInfo>& channels = *run.channels;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    columns.push_back(
-        {channels[c].name, channels[c].unit, run.results.get_history(static_cast<int>(c))});
+  for (const int c : run.kept) {
+    const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
+    columns.push_back({channel.name, channel.unit, run.results.get_history(c)});
   }
   write_csv(path, columns);
 }
@@ -28,15 +35,19 @@ void write_one(Hdf5Writer& file, const std::string& name, double value, const st
 void write_run_hdf5(const std::filesystem::path& path, const RunRecord& run) {
   Hdf5Writer file(path);
   const std::vector<ChannelInfo>& channels = *run.channels;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    file.write("/history/" + channels[c].name, run.results.get_history(static_cast<int>(c)),
-               {channels[c].unit, channels[c].description, {}});
+  std::vector<std::string> curves;
+  for (const int c : run.kept) {
+    const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
+    file.write(kHistory + channel.name, run.results.get_history(c),
+               {channel.unit, channel.description, {}});
+    if (channel.name != kTime) curves.push_back(kHistory + channel.name);
   }
+  file.attach_scale(kHistory + kTime, 0, curves);
   if (run.results.has_snapshot()) {
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-      write_one(file, "/snapshot/" + channels[c].name,
-                run.results.get_snapshot(static_cast<int>(c)), channels[c].unit,
-                channels[c].description);
+    for (const int c : run.kept) {
+      const ChannelInfo& channel = channels[static_cast<std::size_t>(c)];
+      write_one(file, "/snapshot/" + channel.name, run.results.get_snapshot(c), channel.unit,
+                channel.description);
     }
     write_one(file, "/snapshot/event_time", run.results.get_event_time(), "s",
               "time at which the rear wheel centers are over the bump's center");
@@ -49,6 +60,18 @@ void write_run_hdf5(const std::filesystem::path& path, const RunRecord& run) {
 }
 
 }  // namespace
+
+std::vector<int> list_kept(const ModelInfo& model, const std::vector<std::string>& names) {
+  std::set<int> kept;
+  name_option("channels", [&] {
+    for (const std::string& name : names) kept.insert(require_channel(model, name));
+  });
+  kept.insert(require_channel(model, kTime));
+  if (!names.empty()) return {kept.begin(), kept.end()};
+  std::vector<int> all(model.channels.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
 
 RunFormat find_run_format(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();

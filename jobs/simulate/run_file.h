@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "jobs/case/load_case.h"
+#include "model/info/model_info.h"
 
 namespace strut {
 
@@ -24,11 +25,16 @@ struct RunParameter {
 /// A finished run of a car or a rig.
 struct RunRecord {
   const std::vector<ChannelInfo>* channels = nullptr;
-  LaneResults results;  // one lane, with history of all channels
+  std::vector<int> kept = {};  // those in the output, ascending
+  LaneResults results;         // one lane, with history of all channels
   std::vector<RunParameter> parameters;
   /// Provenance as (name, text), in the order of the file.
   std::vector<std::pair<std::string, std::string>> provenance;
 };
+
+/// The numbers of the channels named and of the time, ascending; of all where none is named. Throws
+/// InputError.
+std::vector<int> list_kept(const ModelInfo& model, const std::vector<std::string>& names);
 
 /// Version, commit, compiler and instruction set of this program, and the files of the run.
 std::vector<std::pair<std::string, std::string>> describe_program(const CaseSource& source);

@@ -31,10 +31,10 @@ std::vector<T> list_dependencies(const Submission& s, std::size_t part, const st
 
 Submission make_submission_request(const OpenSweep& sweep, const TaskPlan& plan,
                                    const MissingWork& work, const SubmitRequest& request,
-                                   const Dispatcher& dispatcher) {
+                                   const Dispatcher& dispatcher, const std::string& cluster) {
   Submission s;
   s.dispatcher = dispatcher.name();
-  s.cluster_name = dispatcher.find_cluster_name();
+  s.cluster_name = cluster;
   s.job_prefix = "strut-" + sweep.plan.hash().substr(0, 8);
   s.arrays = plan.arrays;
   s.retries = work.retries;
@@ -72,7 +72,7 @@ QueuedSubmission queue_tasks(const OpenSweep& sweep, Submission submission,
 }
 
 void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOptions& options,
-                 const Dispatcher& dispatcher) {
+                 const Dispatcher& dispatcher, bool asks_scheduler) {
   Submission& s = submission;
   s.folder = sweep.folder.root / "jobs" / "NEXT";
   s.job_prefix += "-NEXT";
@@ -84,7 +84,7 @@ void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOpti
     std::cout << fmt::format("\n--- {}\n$", s.job_name(parts[i]));
     for (const std::string& word : command) std::cout << " " << quote_if_needed(word);
     std::cout << "\n" << dispatcher.make_script(tasks[i]);
-    const std::string answer = i == 0 ? dispatcher.dry_run(tasks[i]) : "";
+    const std::string answer = i == 0 && asks_scheduler ? dispatcher.dry_run(tasks[i]) : "";
     if (!answer.empty()) std::cout << fmt::format("({} says: {})\n", dispatcher.name(), answer);
   }
   std::cout << "\n";
@@ -96,6 +96,24 @@ void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOpti
     std::cout << fmt::format("{}: after all parts above, however they end (afterany)\n", parts[i]);
   }
   std::cout << "nothing is queued\n";
+}
+
+void print_commands(const OpenSweep& sweep, const TaskPlan& plan, const MissingWork& work,
+                    const SubmitRequest& request) {
+  const std::string root = quote_if_needed(sweep.folder.root.string());
+  const std::string threads = fmt::format(" --threads {}", request.resources.threads);
+  for (const PackedArray& array : plan.arrays) {
+    for (std::int64_t task = 0; task < array.tasks(); ++task) {
+      const ShardRange shards = array.get_task(task);
+      std::cout << fmt::format("strut run {}{} --shards {}:{}\n", root, threads, shards.first,
+                               shards.end);
+    }
+  }
+  if (work.retries) std::cout << fmt::format("strut resume {}{}\n", root, threads);
+  if (request.merges) {
+    const std::string merged = quote_if_needed((sweep.folder.root / kMerged).string());
+    std::cout << fmt::format("strut merge {} -o {} --force\n", root, merged);
+  }
 }
 
 }  // namespace strut

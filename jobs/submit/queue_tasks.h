@@ -9,10 +9,10 @@
 
 namespace strut {
 
-/// The submission of `plan`; it has no folder yet.
+/// The submission of `plan` to a cluster of that name; it has no folder yet.
 Submission make_submission_request(const OpenSweep& sweep, const TaskPlan& plan,
                                    const MissingWork& work, const SubmitRequest& request,
-                                   const Dispatcher& dispatcher);
+                                   const Dispatcher& dispatcher, const std::string& cluster);
 
 /// A submission whose parts are queued; `jobs`: one for each of submission.list_parts().
 struct QueuedSubmission {
@@ -26,8 +26,13 @@ struct QueuedSubmission {
 QueuedSubmission queue_tasks(const OpenSweep& sweep, Submission submission,
                              const ScriptOptions& options, const Dispatcher& dispatcher);
 
-/// Prints scripts, commands and dependencies of the parts.
+/// Prints scripts, commands and dependencies of the parts, and, if it is asked, what the scheduler
+/// says of them.
 void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOptions& options,
-                 const Dispatcher& dispatcher);
+                 const Dispatcher& dispatcher, bool asks_scheduler);
+
+/// Prints a command for each task, and those of the retry and the merge behind them.
+void print_commands(const OpenSweep& sweep, const TaskPlan& plan, const MissingWork& work,
+                    const SubmitRequest& request);
 
 }  // namespace strut

@@ -9,6 +9,7 @@
 #include "cluster/packing.h"
 #include "cluster/scripts.h"
 #include "cluster/slurm.h"
+#include "io/file/read_text_file.h"
 #include "jobs/cli/open_sweep.h"
 
 namespace strut {
@@ -36,7 +37,8 @@ Resources read_resources(const Arguments& arguments, const Dispatcher& dispatche
   resources.memory = arguments.text_or("memory", "");
   resources.extra = arguments.list("option");
   resources.is_shared = arguments.is_on("shared");
-  const bool is_local = dispatcher.name() == LocalDispatcher::kName;
+  const bool is_local =
+      dispatcher.name() == LocalDispatcher::kName && arguments.text("to") != kToList;
   resources.threads = is_local || arguments.has("threads") ? find_threads(arguments) : 1;
   resources.seconds = read_time(arguments);
   return resources;
@@ -44,12 +46,19 @@ Resources read_resources(const Arguments& arguments, const Dispatcher& dispatche
 
 }  // namespace
 
+std::vector<std::string> list_targets() {
+  std::vector<std::string> targets = list_dispatchers();
+  targets.emplace_back(kToList);
+  return targets;
+}
+
 std::unique_ptr<Dispatcher> read_dispatcher(const Arguments& arguments) {
-  const std::vector<std::string> names = list_dispatchers();
+  const std::vector<std::string> names = list_targets();
   if (!arguments.has("to")) {
     throw InputError("--to: missing; must be one of " + join_names(names));
   }
-  return make_dispatcher(names[static_cast<std::size_t>(arguments.choice_or("to", 0))]);
+  const std::string& name = names[static_cast<std::size_t>(arguments.choice_or("to", 0))];
+  return make_dispatcher(name == kToList ? LocalDispatcher::kName : name);
 }
 
 SubmitRequest read_submit_request(const Arguments& arguments, const Dispatcher& dispatcher) {
@@ -57,6 +66,7 @@ SubmitRequest read_submit_request(const Arguments& arguments, const Dispatcher& 
   request.resources = read_resources(arguments, dispatcher);
   request.scratch = arguments.text_or("scratch", "");
   if (arguments.has("scratch")) check_scratch(request.scratch);
+  if (arguments.has("prologue")) request.prologue = read_text_file(arguments.text("prologue"));
   request.max_tasks = arguments.integer_or("tasks", kMaxTasks, 1, kMaxTasks);
   request.task_seconds = 60.0 * arguments.number_or("minutes", kTaskMinutes, above(0.0, "min"));
   request.at_once = arguments.integer_or("at-once", 0, 1, SiteLimits().tasks);

@@ -14,12 +14,17 @@ struct SubmitRequest {
   double task_seconds = 600.0;   // target duration of a task
   std::int64_t at_once = 0;      // tasks of an array that run at once; 0: no limit
   std::string scratch;           // node-local folder; empty: none
+  std::string prologue;          // lines of bash before the program
   bool retries = false;          // --retry
   bool merges = false;           // --merge
   bool ignores_unknown = false;  // --again
 };
 
-/// The dispatcher of --to. Throws InputError.
+/// --to list: the commands, for any other scheduler.
+inline constexpr char kToList[] = "list";
+std::vector<std::string> list_targets();
+
+/// The dispatcher of --to; that of this machine for `list`. Throws InputError.
 std::unique_ptr<Dispatcher> read_dispatcher(const Arguments& arguments);
 
 /// Reads all other options. Throws InputError.

@@ -64,18 +64,33 @@ MissingWork find_missing_work(const OpenSweep& sweep, const SubmitRequest& reque
   return work;
 }
 
-double estimate_shard_seconds(const OpenSweep& sweep, const SweepStatus& status, int threads) {
-  double thread_seconds = 0.0;  // time of a case on one thread
-  const std::int64_t simulated = status.done + status.failed;
+WorkEstimate estimate_work(const OpenSweep& sweep, const MissingWork& work) {
+  std::int64_t missing = 0;
+  for (const ShardRange& range : work.shards) {
+    missing +=
+        sweep.plan.shard_range(range.end - 1).second - sweep.plan.shard_range(range.first).first;
+  }
+  WorkEstimate estimate;
+  double case_bytes = 0.0;
+  const std::int64_t simulated = work.status.done + work.status.failed;
   if (simulated > 0) {
-    thread_seconds = status.simulation_seconds / static_cast<double>(simulated);
+    estimate.case_seconds = work.status.simulation_seconds / static_cast<double>(simulated);
+    case_bytes = static_cast<double>(work.status.bytes) / static_cast<double>(simulated);
   } else {
     const ProgressLine line("simulating a few cases for an estimate");
-    const SweepEstimate estimate = estimate_sweep(sweep.plan, list_kernels().front());
-    thread_seconds =
-        estimate.seconds * estimate.cores / static_cast<double>(sweep.plan.case_count());
+    const SweepEstimate whole = estimate_sweep(sweep.plan, list_kernels().front());
+    const auto cases = static_cast<double>(sweep.plan.case_count());
+    estimate.case_seconds = whole.core_seconds / cases;
+    case_bytes = whole.bytes / cases;
   }
-  return thread_seconds * static_cast<double>(sweep.plan.shard_size(0)) / threads;
+  estimate.core_seconds = estimate.case_seconds * static_cast<double>(missing);
+  estimate.bytes = case_bytes * static_cast<double>(missing);
+  return estimate;
+}
+
+std::string describe_work(const WorkEstimate& estimate) {
+  return fmt::format("about {} and {}", describe_core_seconds(estimate.core_seconds),
+                     format_bytes(estimate.bytes));
 }
 
 std::int64_t TaskPlan::count_tasks() const {

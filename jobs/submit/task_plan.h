@@ -27,9 +27,15 @@ struct MissingWork {
 /// the request ignores that.
 MissingWork find_missing_work(const OpenSweep& sweep, const SubmitRequest& request, bool is_dry);
 
-/// Wall clock of one shard on `threads` threads [s]: from the shards that exist, or, without any,
-/// from a few cases simulated now.
-double estimate_shard_seconds(const OpenSweep& sweep, const SweepStatus& status, int threads);
+/// Time and size of the missing work: from the shards that exist, or, without any, from a few cases
+/// simulated now.
+struct WorkEstimate {
+  double case_seconds = 0.0;  // processor time of a case
+  double core_seconds = 0.0;  // of all missing cases
+  double bytes = 0.0;         // of their shards' files
+};
+
+WorkEstimate estimate_work(const OpenSweep& sweep, const MissingWork& work);
 
 struct TaskPlan {
   std::vector<PackedArray> arrays;
@@ -46,5 +52,7 @@ TaskPlan plan_tasks(const MissingWork& work, double shard_seconds, const SubmitR
 
 /// "12 tasks in 1 array, each 5 shards, about 10 min 0 s on 8 threads, walltime 00:21:00"
 std::string describe_tasks(const TaskPlan& plan, const MissingWork& work);
+/// "about 15.2 core-hours and 71 MB"
+std::string describe_work(const WorkEstimate& estimate);
 
 }  // namespace strut

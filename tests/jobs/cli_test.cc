@@ -6,9 +6,7 @@
 #include "io/format/hdf5.h"
 #include "io/format/json.h"
 #include "io/table/csv.h"
-#include "jobs/bench/cases.h"
 #include "model/channel/car_channels.h"
-#include "tests/jobs/check_hint.h"
 #include "tests/jobs/parse_json.h"
 #include "tests/jobs/run_program.h"
 #include "tests/support/temporary_folder.h"
@@ -131,6 +129,21 @@ TEST_CASE("HDF5 holds the same run as CSV, with parameters and provenance", "[io
     CHECK(json.get<double>(std::string("snapshot.") + name) ==
           reader.read(std::string("/snapshot/") + name).values.front());
   }
+}
+
+TEST_CASE("simulate writes the channels that are named, and the time", "[io]") {
+  const TemporaryFolder folder;
+  const std::string command = "simulate " + kSedan + " " + kBump + " --rate 50 ";
+  const std::string csv = folder / "some.csv", h5 = folder / "some.h5";
+  const std::string named = "--channels pitch_rate,body_position_z -o ";
+  REQUIRE(run(command + named + csv).code == 0);
+  CHECK_THAT(test::read_text(csv), Catch::StartsWith("time,body_position_z,pitch_rate\n"));
+  REQUIRE(run(command + named + h5).code == 0);
+  CHECK(Hdf5Reader(h5).list("/history") ==
+        std::vector<std::string>{"body_position_z", "pitch_rate", "time"});
+  const Outcome unknown = run(command + "--channels pitch_rat -o " + (folder / "no.csv").string());
+  CHECK(unknown.code == 2);
+  CHECK_THAT(unknown.messages, Contains("--channels") && Contains("did you mean 'pitch_rate'?"));
 }
 
 TEST_CASE("Integrators and closures agree on the snapshot", "[io]") {
@@ -379,60 +392,6 @@ TEST_CASE("SIGINT and SIGTERM end a run with 130 and 143 and leave nothing", "[i
     CHECK(outcome.code == code);
     CHECK(folder.file_count() == 0);
   }
-}
-
-TEST_CASE("The benchmark's error is that of the worst lane", "[io]") {
-  BenchCases bench = make_bench_cases({kSedan, kBump, {}}, 2);
-  REQUIRE(bench.acceleration.size() == 2);
-  const Kernel& kernel = list_kernels().front();
-  BenchSetting lanes, scalar;
-  scalar.in_lanes = false;
-  CHECK(measure_error(bench, kernel, lanes) < 1e-3);  // the benchmark's limit of an exact run
-  for (double& value : bench.acceleration[1]) value *= 2.0;
-  // Against twice the truth: |1 - 2| / 2, to the error that both runs have.
-  CHECK(measure_error(bench, kernel, lanes) == Approx(0.5).epsilon(1e-3));
-  CHECK(measure_error(bench, kernel, scalar) < 1e-3);
-}
-
-TEST_CASE("The benchmark prints the agreed keys and compares with itself", "[io][slow]") {
-  const TemporaryFolder folder;
-  const std::string file = folder / "old.json";
-  const Outcome first = run("bench --quick --json");
-  REQUIRE(first.code == 0);
-  CHECK(test::check_hint(first.messages)[1] == "bench");
-  folder.write("old.json", first.out);
-  const test::JsonTree json = test::parse_json(first.out);
-  for (const char* name : {"double", "lanes", "lanes_tabulated", "fastest"}) {
-    const std::string figure = std::string("single_core.") + name;
-    const double runs = json.get<double>(figure + ".runs_per_s");
-    CHECK(runs > 0.0);
-    CHECK(json.get<double>(figure + ".real_time_factor") == Approx(3.0 * runs));
-  }
-  CHECK(json.get<double>("single_core.lanes.speedup_over_double") ==
-        Approx(json.get<double>("single_core.lanes.runs_per_s") /
-               json.get<double>("single_core.double.runs_per_s")));
-  CHECK(!json.get<std::string>("single_core.fastest.setting").empty());
-  CHECK(json.get_child("threads").front().second.get<int>("threads") == 1);
-  CHECK(json.get<double>("accuracy.body_acceleration_rms_relative") <= 1e-3);
-  CHECK(json.get<long>("flops_per_rhs") > json.get<long>("flops_per_rhs_tabulated"));
-  const double share = json.get<double>("share_of_peak");
-  CHECK((share > 0.0 && share < 1.0));
-  CHECK(json.get<int>("bytes_per_case") > 0);
-  for (const char* name : {"cpu", "cores", "isa", "compiler", "commit"}) {
-    CHECK(json.get_optional<std::string>(std::string("machine.") + name));
-  }
-  const Outcome second = run("bench --quick --baseline " + file);
-  CHECK(second.code == 0);
-  CHECK_THAT(second.out, Contains("new / old") && Contains("flops_per_rhs         1.000"));
-}
-
-TEST_CASE("A baseline that is no benchmark is refused", "[io]") {
-  const TemporaryFolder folder;
-  const std::string file = folder.write("old.json", "{\"a\": 1}");
-  const Outcome outcome = run("bench --quick --baseline " + file);
-  CHECK(outcome.code == 2);
-  CHECK_THAT(outcome.messages, Contains(file) && Contains("strut bench --json"));
-  CHECK(run("bench --baseline /nowhere.json").code == 2);
 }
 
 TEST_CASE("JSON escapes text, nests, and has no number that is not finite", "[unit]") {

@@ -58,25 +58,6 @@ TEST_CASE("export writes what the file's name asks for, and nothing over another
   CHECK(!fs::exists(desk.file("y.h")));
 }
 
-TEST_CASE("export refuses a network over windows, whose inputs are no channels", "[io]") {
-  const Desk desk;
-  TrainedModel model = test::make_random_model();
-  WindowTransform window;
-  window.channels = {{"imu_rate_y", "rad/s", "pitch rate"}};
-  window.noise = {{1e-3}, {0.02}};
-  window.grid = {0.005, 0, 5, 0};
-  window.mean.assign(5, 0.0);
-  window.basis.assign(4 * 5, 0.0);  // a component for each of the network's inputs
-  for (std::size_t k = 0; k < 4; ++k) window.basis[6 * k] = 1.0;
-  model.window = window;
-  write_trained_model(desk.file("window.h5"), model);
-  const std::string file = desk.file(GENERATE("w.onnx", "w.h", "w.c"));
-  const Outcome outcome = run_program("export " + desk.file("window.h5") + " -o " + file);
-  CHECK(outcome.code == 2);
-  CHECK_THAT(outcome.messages, Contains("window.h5: a network over windows"));
-  CHECK(!fs::exists(file));
-}
-
 /// The block of the guide that begins with ```LANGUAGE.
 std::string read_snippet(const std::string& language) {
   const std::string text = test::read_text(STRUT_SOURCE_DIR "/docs/identify.md");

@@ -269,7 +269,7 @@ TEST_CASE("For files that are not shards of a sweep, their removal is suggested"
 
 TEST_CASE("An interrupted sweep suggests once how to continue", "[io]") {
   const TemporaryFolder folder;
-  const std::string sweep = plan_sweep(folder, test::make_coarse_sweep(8, "", "1e-4"));
+  const std::string sweep = plan_sweep(folder, test::make_coarse_sweep(8, "", "2e-5"));
   const Outcome outcome = run_shell(
       "timeout --preserve-status -s INT 0.4 " STRUT_PROGRAM " resume --threads 1 " + sweep);
   CHECK(outcome.code == 130);

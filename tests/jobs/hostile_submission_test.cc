@@ -180,7 +180,7 @@ TEST_CASE("cancel stops only processes that bear the mark of the job", "[io]") {
 }
 
 TEST_CASE("Cancelling a copy of a folder does not stop the original sweep", "[io]") {
-  static const ProgramSweep slow(test::make_coarse_sweep(8, "", "1e-4"));
+  static const ProgramSweep slow(test::make_coarse_sweep(8, "", "5e-5"));
   const fs::path sweep = slow.copy("running"), copy = slow / "copied";
   REQUIRE(run_sweep_command("submit", sweep, "--to local --threads 1").code == 0);
   fs::copy(sweep, copy, fs::copy_options::recursive);

@@ -21,27 +21,11 @@ except ImportError:
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from run_commands import run
+from window_sweep import RATE, run_window_sweep
 
 sys.path.insert(0, str(pathlib.Path(sys.argv[2]) / "examples/python"))
 sys.dont_write_bytecode = True
 from identify_with_network import calc_outputs, read_csv
-
-SWEEP = """
-vehicle = "{examples}/vehicles/paper_sedan.toml"
-maneuver = "{examples}/maneuvers/bump_20mps.toml"
-[grid]
-front_stiffness = {{ from = 40000, to = 35500 }}
-speed = {{ from = 19.5, to = 20.5 }}
-[sample]
-method = "sobol"
-strata = 1
-count = 60
-[integrate]
-step = 2e-3
-closure = "table"
-[record]
-history = {{ rate = 250, channels = ["imu_acceleration_z", "imu_rate_y"] }}
-"""
 
 
 def find_begin(y, reference, n):
@@ -86,13 +70,11 @@ def main():
     examples = pathlib.Path(sys.argv[2]) / "examples"
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        (folder / "sweep.toml").write_text(SWEEP.format(examples=examples))
-        run(strut, "plan", folder / "sweep.toml", "-o", folder / "sweep")
-        run(strut, "run", folder / "sweep")
+        run_window_sweep(strut, examples, folder, 60)
         run(strut, "train", folder / "sweep", "-o", folder / "m.h5", "--window", "0.4:1.6",
             "--hidden", "5,4", "--epochs", "10", "--targets", "front_stiffness")
         run(strut, "simulate", examples / "vehicles/paper_sedan.toml",
-            examples / "maneuvers/bump_20mps.toml", "-o", folder / "run.csv", "--rate", "250",
+            examples / "maneuvers/bump_20mps.toml", "-o", folder / "run.csv", "--rate", RATE,
             "--set", "front_stiffness=37654", "--set", "bump_distance=10.234")
         told = json.loads(run(strut, "identify", folder / "m.h5", folder / "run.csv", "--json",
                               codes=(0, 1)))

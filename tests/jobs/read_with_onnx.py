@@ -17,7 +17,6 @@ import tempfile
 try:
     import numpy
     import onnx
-    from onnx import numpy_helper
 except ImportError:
     print("skipped: no onnx (Debian: python3-onnx)")
     sys.exit(77)
@@ -28,32 +27,11 @@ except ImportError:
     cv2 = None
     print("not checked: OpenCV (Debian: python3-opencv)")
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from run_commands import check
+from run_onnx import run_graph
+
 FLOAT_STEP = 2.0**-24  # largest relative error of rounding to single precision
-
-
-def check(good, what):
-    if not good:
-        sys.exit(f"failed: {what}")
-
-
-def run_graph(graph, inputs):
-    """The values of a graph by the definitions of its operators, in the precision of `inputs`."""
-    values = {tensor.name: numpy_helper.to_array(tensor) for tensor in graph.initializer}
-    values[graph.input[0].name] = inputs
-    for node in graph.node:
-        arguments = [values[name] for name in node.input]
-        flags = {attribute.name: onnx.helper.get_attribute_value(attribute)
-                 for attribute in node.attribute}
-        if node.op_type == "Gemm":
-            a, b, c = arguments
-            check(flags == {"transB": 1}, "Gemm has other attributes than transB")
-            result = a @ b.T + c
-        else:
-            check(not flags, f"{node.op_type} has attributes")
-            result = {"Sub": numpy.subtract, "Mul": numpy.multiply, "Add": numpy.add,
-                      "Tanh": numpy.tanh}[node.op_type](*arguments)
-        values[node.output[0]] = result
-    return values[graph.output[0].name]
 
 
 def read_properties(model):
@@ -103,9 +81,9 @@ def check_model(folder, stem, precision):
     rounded = 2 * FLOAT_STEP * numpy.abs(jacobians) @ numpy.maximum(abs(low), abs(high))
     single = rounded + 50 * FLOAT_STEP * width + 4 * FLOAT_STEP * abs(outputs)
     if precision == "double":
-        answers, allowed = run_graph(model.graph, inputs), 1e-12 * width
+        answers, allowed = run_graph(model.graph, inputs)["parameters"], 1e-12 * width
     else:
-        answers = run_graph(model.graph, inputs.astype(numpy.float32))
+        answers = run_graph(model.graph, inputs.astype(numpy.float32))["parameters"]
         allowed = single
         check(answers.dtype == numpy.float32, f"{name}: not single precision")
     check(answers.shape == outputs.shape, f"{name}: shape of the answers")

@@ -34,7 +34,7 @@ int count_files(const fs::path& folder) {
 
 /// Six shards of a full batch each, which takes a good tenth of a second.
 const ProgramSweep& get_slow_sweep() {
-  static const ProgramSweep sweep(test::make_coarse_sweep(8, "", "2e-4"));
+  static const ProgramSweep sweep(test::make_coarse_sweep(8, "", "1e-4"));
   return sweep;
 }
 
@@ -253,6 +253,27 @@ TEST_CASE("Cases that fail are data: exit code 1, and status says why", "[io]") 
         status.get<int>("failures.impossible") + status.get<int>("failures.no_equilibrium"));
   CHECK(status.get<int>("done") + status.get<int>("failed") == 24);
   CHECK(status.get<int>("done") > 0);
+
+  // The first failed case of each reason fails alone with the same words.
+  for (const auto& [reason, first] : status.get_child("first_failures")) {
+    std::string settings;
+    for (const auto& [name, value] : first.get_child("parameters")) {
+      settings += " --set " + name + "=" + value.get_value<std::string>();
+    }
+    const auto why = first.get<std::string>("why");
+    INFO(reason + settings + ": " + why);
+    CHECK_THAT(told.out, Contains(reason + ": " + status.get<std::string>("failures." + reason) +
+                                  ", first case " + first.get<std::string>("case") + " with") &&
+                             Contains(why));
+    REQUIRE(!why.empty());
+    const std::string inputs = (sweep / "request/").string();
+    const Outcome alone =
+        run_program("simulate " + inputs + "paper_sedan.toml " + inputs + "one_sided.toml" +
+                    settings + " -o " + (origin / "alone.csv").string());
+    CHECK(alone.code != 0);
+    CHECK_THAT(alone.messages, Contains(why));
+  }
+  CHECK(status.get_child("first_failures").size() == status.get_child("failures").size());
   CHECK(run_sweep_command("verify", sweep, "--sample 24").code == 0);
 }
 

@@ -26,7 +26,7 @@ using test::wait_until;
 
 /// A sweep with tasks of some seconds.
 const ProgramSweep& get_sweep() {
-  static const ProgramSweep sweep(test::make_coarse_sweep(4, "", "8e-6"));
+  static const ProgramSweep sweep(test::make_coarse_sweep(4, "", "4e-6"));
   return sweep;
 }
 
@@ -146,7 +146,7 @@ TEST_CASE("A task warned of its time limit continues in its next attempt", "[clu
 
 TEST_CASE("Slurm warns a task of its time limit", "[cluster][slow]") {
   const SlurmCluster cluster(1);
-  static const ProgramSweep slow(test::make_coarse_sweep(4, "", "5e-6"));
+  static const ProgramSweep slow(test::make_coarse_sweep(4, "", "2.5e-6"));
   const fs::path sweep = slow.copy("slow");
   // One minute, of which the warning leaves ten seconds or, since Slurm checks rarely, none; the
   // second attempt may take as long as it needs.

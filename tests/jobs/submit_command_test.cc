@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,7 +22,7 @@ using test::ProgramSweep;
 using test::run_sweep_command;
 
 const ProgramSweep& get_sweep() {
-  static const ProgramSweep sweep(test::make_coarse_sweep(8, "", "2e-4"));
+  static const ProgramSweep sweep(test::make_coarse_sweep(8, "", "5e-5"));
   return sweep;
 }
 
@@ -108,6 +110,54 @@ TEST_CASE("A dry run shows the scripts and queues nothing", "[io]") {
                               Contains("merged.h5") && Contains("--force") &&
                               !Contains("--virtual") && Contains("nothing is queued"));
   CHECK_FALSE(fs::exists(sweep / "jobs"));
+}
+
+TEST_CASE("Commands for any other scheduler do the work of a submission", "[io]") {
+  const fs::path sweep = get_sweep().copy("listed");
+  const Outcome outcome = run_sweep_command("submit", sweep, "--to list --minutes 1e-6 --merge");
+  INFO(outcome.messages);
+  REQUIRE(outcome.code == 0);
+  CHECK_FALSE(fs::exists(sweep / "jobs"));
+  std::istringstream lines(outcome.out);
+  int runs = 0;
+  for (std::string line; std::getline(lines, line);) {
+    INFO(line);
+    REQUIRE(line.starts_with("strut "));
+    runs += line.starts_with("strut run ") ? 1 : 0;
+    CHECK(test::run_shell(STRUT_PROGRAM + line.substr(std::string("strut").size())).code == 0);
+  }
+  CHECK(runs == 6);
+  get_sweep().check_whole(sweep);
+  CHECK(fs::exists(sweep / "merged.h5"));
+}
+
+TEST_CASE("A prologue runs before the program, and may put words before it", "[io]") {
+  const fs::path sweep = get_sweep().copy("prologue");
+  const fs::path prologue = sweep.parent_path() / "prologue.sh",
+                 mark = sweep.parent_path() / "mark";
+  std::ofstream(prologue) << "echo \"$NOT_SET\" > " << mark.string()
+                          << "\nlauncher=(env STRUT_LAUNCHED=1)\n";
+  const std::string options = "--to local --prologue " + prologue.string();
+  const Outcome dry = run_sweep_command("submit", sweep, options + " --dry-run");
+  CHECK_THAT(dry.out, Contains("launcher=(env STRUT_LAUNCHED=1)") &&
+                          Contains("\"${launcher[@]}\" \"$program\" run"));
+  REQUIRE(run_sweep_command("submit", sweep, options).code == 0);
+  test::run_shell("for i in $(seq 200); do " STRUT_PROGRAM " status " + sweep.string() +
+                  " | grep -q '^left *0' && break; sleep 0.05; done");
+  get_sweep().check_whole(sweep);
+  CHECK(fs::exists(mark));
+  CHECK(run_sweep_command("submit", sweep, "--to local --prologue /nowhere").code == 2);
+}
+
+TEST_CASE("A dry run needs no scheduler", "[io]") {
+  const fs::path sweep = get_sweep().copy("away");
+  const Outcome outcome =
+      run_sweep_command("submit", sweep, "--to slurm --dry-run --partition x", "PATH=/nowhere");
+  INFO(outcome.messages);
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.messages, Contains("Slurm is not on this machine"));
+  CHECK_THAT(outcome.out, Contains("sbatch --parsable") && Contains("nothing is queued"));
+  CHECK(run_sweep_command("submit", sweep, "--to slurm", "PATH=/nowhere").code == 3);
 }
 
 TEST_CASE("A sweep warned of its time limit finishes the current shard", "[io]") {

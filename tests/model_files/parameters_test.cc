@@ -113,6 +113,21 @@ TEST_CASE("Drive shares always add up to one", "[unit]") {
   CHECK(c.vehicle.suspension[kRear].drive_share == 0.75);
 }
 
+TEST_CASE("A setting may have a unit", "[unit]") {
+  Case c = read_paper_case();
+  apply_setting(c, "speed=36km/h");
+  CHECK(c.maneuver.speed == Approx(10.0).epsilon(1e-15));
+  apply_setting(c, "front_stiffness=38 N/mm");
+  CHECK(get_parameter(c, "front_stiffness") == 38000.0);
+  apply_setting(c, "rear_damping=1.9 kN s/m");
+  CHECK(get_parameter(c, "rear_damping") == Approx(1900.0).epsilon(1e-15));
+  apply_setting(c, "bump_height=30mm");
+  CHECK(c.maneuver.road.height == Approx(0.03).epsilon(1e-15));
+  CHECK_THROWS_WITH(apply_setting(c, "speed=36 mm"),
+                    Contains("speed = 36 mm: unit \"mm\": unknown for a quantity in m/s"));
+  CHECK_THROWS_WITH(apply_setting(c, "mass=5 stones"), Contains("allowed: kg"));
+}
+
 TEST_CASE("A bad setting says what is allowed", "[unit]") {
   Case c = read_paper_case();
   const Case before = c;
@@ -121,8 +136,8 @@ TEST_CASE("A bad setting says what is allowed", "[unit]") {
       Contains("unknown parameter 'front_stifness'; did you mean 'front_stiffness'?"));
   CHECK_THROWS_WITH(apply_setting(c, "mass=-5"), "mass = -5: must lie in [200, 20000] kg");
   CHECK_THROWS_WITH(apply_setting(c, "mass=heavy"), Contains("mass = 'heavy': must be a number"));
-  for (const char* setting :
-       {"mass", "mass=", "=5", "mass=1155kg", "mass=nan", "speed=inf", "mass= 1155", "x_y_z_q=1"}) {
+  for (const char* setting : {"mass", "mass=", "=5", "mass=1155 kg m", "mass=nan", "speed=inf",
+                              "mass= 1155", "x_y_z_q=1"}) {
     INFO(setting);
     CHECK_THROWS_AS(apply_setting(c, setting), InputError);
   }
