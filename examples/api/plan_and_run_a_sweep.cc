@@ -5,13 +5,13 @@
 #include <thread>
 
 #include "io/store/dataset.h"
+#include "sweep/choose_settings.h"
 #include "sweep/run.h"
 
 namespace {
 
 int run(const char* request, const char* directory) {
-  const strut::SweepFolder folder =
-      strut::make_sweep_folder(directory, strut::Plan(strut::read_request(request)));
+  const strut::SweepFolder folder = strut::make_sweep_folder(directory, strut::make_plan(request));
   const strut::Plan plan = strut::open_sweep_folder(folder);
 
   strut::RunOptions options;

@@ -15,9 +15,18 @@ TABLES = ("case_id", "parameters", "snapshot", "layer", "status", "attempt", "ev
 
 
 def read_file(path):
-    """Returns the tables of a shard or a merged file by name: arrays with a row for each case."""
+    """Returns the tables and histories of a shard or a merged file by name, "history/pitch_rate": arrays
+    with a row for each case."""
     with h5py.File(path) as file:
-        return {name: file[name][()] for name in TABLES if name in file}
+        histories = file["history"].attrs["names"].astype(str) if "history" in file else []
+        names = TABLES + tuple(f"history/{name}" for name in histories)
+        return {name: file[name][()] for name in names if name in file}
+
+
+def calc_times(path, histories):
+    """Returns the time of each column of a history [s]."""
+    with h5py.File(path) as file:
+        return np.arange(histories.shape[1]) * file.attrs["history_interval"]
 
 
 def list_columns(path, table):
@@ -64,6 +73,10 @@ def main():
             continue
         for (name, unit), values in zip(list_columns(columns, table), tables[table][done].T):
             print(f"{name:24} {values.min():14.8g} to {values.max():14.8g} {unit}")
+    for name, values in tables.items():
+        if name.startswith("history/"):
+            times = calc_times(columns, values)
+            print(f"{name:24} {len(times)} samples from {times[0]:g} to {times[-1]:g} s")
 
 
 if __name__ == "__main__":

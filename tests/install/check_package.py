@@ -12,6 +12,7 @@ import os
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -68,6 +69,28 @@ def check_program(root, folder, version):
     check(verdict["ok"] and verdict["cases"] == 20 and verdict["missing"] == 0, verdict)
 
 
+def check_python(package, root, version):
+    """The package of Python beside that of the program, both unpacked."""
+    control = read_control(package)
+    check(control["Package"] == "python3-strut" and control["Version"] == version, control)
+    check(f"strut (= {version})" in control["Depends"] and "python3-numpy" in control["Depends"],
+          control["Depends"])
+    run("dpkg-deb", "-x", package, root)
+    check("not stripped" not in run("file", next(root.glob("usr/lib/python3/dist-packages/strut/_core*"))),
+          "the module is not stripped")
+    script = (
+        "import strut, sys; examples = sys.argv[1]\n"
+        "car = strut.load(examples + '/vehicles/paper_sedan.toml')\n"
+        "print(car.simulate(examples + '/maneuvers/bump_20mps.toml').status)\n"
+        "print(strut.Sweep(sys.argv[2]).status()['done'])\n")
+    environment = {key: value for key, value in os.environ.items() if key != "STRUT_PROGRAM"}
+    environment["PYTHONPATH"] = str(root / "usr/lib/python3/dist-packages")
+    said = subprocess.run(
+        ["/usr/bin/python3", "-c", script, root / "usr/share/strut/examples", root.parent / "sweep"],
+        env=environment, capture_output=True, text=True, check=False)
+    check(said.stdout.split() == ["done", "20"], said.stdout + said.stderr)
+
+
 def main():
     build, version = pathlib.Path(sys.argv[1]), sys.argv[2]
     for tool in ("dpkg-deb", "dpkg-shlibdeps", "file"):
@@ -85,6 +108,9 @@ def main():
         run("dpkg-deb", "-x", package, root)
         check_files(package, root, build)
         check_program(root, folder, version)
+        python = folder / f"python3-strut_{version}_{architecture}.deb"
+        if (build / "python/strut").is_dir():
+            check_python(python, root, version)
 
 
 main()
