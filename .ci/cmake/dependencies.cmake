@@ -22,7 +22,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 # Otherwise Eigen's products use their own threads wherever OpenMP is on: more than --threads allows, and
 # with blocks, and therefore bits, that depend on the number of threads.
 set_property(TARGET Eigen3::Eigen APPEND PROPERTY INTERFACE_COMPILE_DEFINITIONS EIGEN_DONT_PARALLELIZE)
-find_package(HDF5 1.10 REQUIRED COMPONENTS C)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C HL)
 find_package(SUNDIALS 6.4 REQUIRED
   COMPONENTS kinsol cvode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
 find_package(tomlplusplus 3.3 REQUIRED)

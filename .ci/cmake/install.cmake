@@ -27,7 +27,7 @@ install(CODE "file(CREATE_LINK ${strut_examples_link}
 
 # Headers that are not installed, since they need libraries that only our sources link.
 set(strut_inner_headers
-  base/math/matrix_map base/math/xsimd_backend base/parallel/team model/kernel/run_cases
+  base/math/matrix_map base/math/xsimd_backend base/parallel/team model/kernel/run_cases model/kernel/run_derivatives
   model/integrate/sundials train/network/block_layers io/format/hdf5_calls io/format/json io/format/parse_toml
   io/format/read_json io/format/toml_source)
 list(JOIN strut_inner_headers "|" strut_inner_headers)

@@ -50,6 +50,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC's own AVX-512 header sets off these two (GCC bug 105593); the same sources are compiled with
   # them for the other instruction sets.
   list(APPEND STRUT_avx512_FLAGS -Wno-uninitialized -Wno-maybe-uninitialized)
+  # Structs of lanes are copied lane by lane: a vector read from where two narrower moves have just
+  # written half of it each waits for both.
+  if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
+    list(APPEND STRUT_avx2_FLAGS -mmove-max=256 -mstore-max=256)
+    list(APPEND STRUT_avx512_FLAGS -mmove-max=512 -mstore-max=512)
+  endif()
 endif()
 
 # strut_add_isa_kernels(TARGET NAME LINK lib ... SOURCES file ... FLAGS flag ...)

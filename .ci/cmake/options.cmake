@@ -10,6 +10,10 @@ target_compile_options(strut_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -fno-math-errno
   $<$<BOOL:${STRUT_WARNINGS_AS_ERRORS}>:-Werror>)
 
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # No function is replaced at load time: position-independent code inlines as other code does.
+  target_compile_options(strut_options INTERFACE -fno-semantic-interposition)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # False positives on "text" + std::string (GCC bug 105651).
   target_compile_options(strut_options INTERFACE -Wno-restrict)

@@ -62,6 +62,8 @@ def make_clone(folder, strut, sources):
         shutil.copytree(sources, folder, ignore=leave_out, dirs_exist_ok=True)
     (folder / "build/release").mkdir(parents=True, exist_ok=True)
     (folder / "build/release/strut").symlink_to(strut)
+    if (strut.parent / "python/strut").is_dir():
+        (folder / "build/release/python").symlink_to(strut.parent / "python")
 
 
 NUMBER = re.compile(r"(?<![\w.])-?\d[\d,]*(?:\.\d+)?(?:e[-+]\d+)?(?![\w])")
@@ -230,6 +232,7 @@ class Document:
         environment = dict(os.environ)
         # The system's Python comes first: that one has Debian's h5py.
         environment["PATH"] = f"{self.folder}/build/release:/usr/bin:{environment['PATH']}"
+        environment["PYTHONPATH"] = f"{self.folder}/build/release/python"
         environment.pop("CDPATH", None)
         result = subprocess.run(
             command, cwd=self.folder, env=environment, stdin=subprocess.DEVNULL,
