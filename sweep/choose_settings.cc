@@ -113,8 +113,7 @@ double calc_error(const SweepRequest& request, const ShardRows& rows, const Shar
 std::vector<SolverOptions> list_candidates(const SweepRequest& request) {
   const SolverOptions& given = request.integrate;
   const double longest_step = find_longest_step(request);
-  const bool is_rough = !request.base.maneuver.rough[0].coefficients.empty() ||
-                        !request.base.maneuver.rough[1].coefficients.empty();
+  const bool is_rough = request.base.maneuver.profile.data != nullptr;
   std::vector<SolverOptions> candidates;
   for (const double step : {2e-3, 1.5e-3, 1e-3, 0.75e-3, 0.5e-3, 0.25e-3, 0.125e-3, 0.0625e-3}) {
     const bool too_many = !find_step_count_fault(find_longest_duration(request), step).empty();

@@ -212,13 +212,25 @@ void add_inputs(const CampaignData& data, const MeasuredTable& table, MeasuredRu
   }
 }
 
+/// The diagnosis finds a rough road as an unknown; one that is known has no place beside it.
+ManeuverSpec read_campaign_maneuver(const std::filesystem::path& file) {
+  ManeuverSpec maneuver = read_maneuver(file);
+  if (maneuver.profile.data) {
+    throw InputError(
+        fmt::format("{}: road: a campaign finds the roughness of the road itself; "
+                    "leave the table out",
+                    file.string()));
+  }
+  return maneuver;
+}
+
 void make_runs(CampaignData& data) {
   const Model model = read_model(data.campaign.model);
   for (std::size_t r = 0; r < data.run_count(); ++r) {
     const CampaignRun& entry = data.campaign.runs[r];
     const MeasuredTable& table = data.tables[r];
     MeasuredRun run{table.name, model, table.times, make_channels(data, table), true};
-    if (!data.has_inputs()) run.setup.car().maneuver = read_maneuver(entry.maneuver);
+    if (!data.has_inputs()) run.setup.car().maneuver = read_campaign_maneuver(entry.maneuver);
     switch_on(data.campaign.effects.on, run.setup);
     name_table(data, "fit.fix", [&] {
       for (const auto& [name, value] : data.campaign.fit.fix) set_parameter(run.setup, name, value);

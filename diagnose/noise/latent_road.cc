@@ -8,9 +8,9 @@
 
 #include "base/error/check.h"
 #include "base/least_squares/cholesky.h"
-#include "diagnose/noise/road_density.h"
 #include "diagnose/noise/smooth_road.h"
 #include "model/car/state.h"
+#include "model/scenario/road_density.h"
 
 namespace strut {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "base/error/input_error.h"
 #include "base/math/all_finite.h"
-#include "diagnose/noise/road_density.h"
 #include "diagnose/noise/smooth_road.h"
 #include "estimate/simulate_run.h"
+#include "model/scenario/road_density.h"
 
 namespace strut {
 namespace {

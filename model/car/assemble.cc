@@ -182,9 +182,12 @@ void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneu
   numbers.drive_reaction = maneuver.drive_reaction;
 }
 
+ContactGeometry make_contact(const VehicleSpec& spec) {
+  return {spec.tire.contact, spec.tire.unloaded_radius, spec.tire.footprint};
+}
+
 Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver) {
-  return make_surface(maneuver.road, ContactGeometry{spec.tire.contact, spec.tire.unloaded_radius,
-                                                     spec.tire.footprint});
+  return make_surface(maneuver.road, make_contact(spec));
 }
 
 double calc_bump_center(const AssembledVehicle& car, const ManeuverSpec& maneuver) {

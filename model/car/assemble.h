@@ -45,6 +45,9 @@ void set_operating_parameters(const VehicleSpec& spec, const ManeuverSpec& maneu
 /// it to kTableTolerance. Throws ModelError where kTableTerms do not suffice.
 VehicleTables<double> tabulate_corners(const AssembledVehicle& car);
 
+/// The properties of the car's tires that determine their effective road.
+ContactGeometry make_contact(const VehicleSpec& spec);
+
 /// The effective road under this car's wheels, by tire radius and contact model.
 Surface make_surface(const VehicleSpec& spec, const ManeuverSpec& maneuver);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/error/check.h"
 #include "model/car/assemble_effects.h"
 #include "model/car/car_info.h"
 #include "model/kernel/mechanism.h"
@@ -22,7 +23,8 @@ Case strip_to_mechanism(const Case& c) {
   key.maneuver.duration = neutral.duration;
   key.maneuver.drive_torque = neutral.drive_torque;
   key.maneuver.drive_reaction = neutral.drive_reaction;
-  key.maneuver.bump_distance = neutral.bump_distance;
+  // A profile counts from the front wheels, its tracks from the bump.
+  if (!key.maneuver.profile.data) key.maneuver.bump_distance = neutral.bump_distance;
   key.maneuver.trim = neutral.trim;
   key.maneuver.lead_time = neutral.lead_time;
   key.maneuver.lead_speed = neutral.lead_speed;
@@ -30,10 +32,19 @@ Case strip_to_mechanism(const Case& c) {
   return key;
 }
 
-bool shares_surface(const Mechanism& other, const Case& key) {
+bool has_equal_tires(const Mechanism& other, const Case& key) {
   const auto &a = other.vehicle.tire, &b = key.vehicle.tire;
-  return other.maneuver.road == key.maneuver.road && a.contact == b.contact &&
-         a.unloaded_radius == b.unloaded_radius && a.footprint == b.footprint;
+  return a.contact == b.contact && a.unloaded_radius == b.unloaded_radius &&
+         a.footprint == b.footprint;
+}
+
+bool shares_surface(const Mechanism& other, const Case& key) {
+  return other.maneuver.road == key.maneuver.road && has_equal_tires(other, key);
+}
+
+bool shares_tracks(const Mechanism& other, const Case& key) {
+  return other.maneuver.profile == key.maneuver.profile &&
+         other.maneuver.bump_distance == key.maneuver.bump_distance && has_equal_tires(other, key);
 }
 
 /// `other`: a mechanism whose parts are reused where they are equal, or null.
@@ -47,6 +58,12 @@ std::shared_ptr<const Mechanism> make_mechanism(const Case& c, const Case& key,
   mechanism->tables = has_tables ? other->tables : tabulate_corners(mechanism->car);
   mechanism->surface =
       other && shares_surface(*other, key) ? other->surface : make_surface(c.vehicle, c.maneuver);
+  if (const RoadProfile* profile = key.maneuver.profile.data.get()) {
+    mechanism->rough =
+        other && shares_tracks(*other, key)
+            ? other->rough
+            : follow_profile(*profile, make_contact(c.vehicle), key.maneuver.bump_distance);
+  }
   return mechanism;
 }
 
@@ -119,7 +136,9 @@ PreparedCase CasePreparer::assemble(const Case& given, double snapshot_offset) {
   prepared.starts_driven = c.maneuver.trim != TrimKind::kStatic;
   const Surface* surface = &mechanism_->surface;
   vehicle.road = make_road<double>(&surface, &prepared.bump_center);
-  prepared.rough = c.maneuver.rough;
+  STRUT_CHECK(!c.maneuver.profile.data || c.maneuver.rough == ManeuverSpec{}.rough,
+              "a road has a profile or tracks, not both");
+  prepared.rough = c.maneuver.profile.data ? mechanism_->rough : c.maneuver.rough;
   for (std::size_t side = 0; side < 2; ++side) {
     const RoughTrack* track = &prepared.rough[side];
     vehicle.road.rough[side] = make_rough_tracks<double>(&track);

@@ -1,6 +1,7 @@
 // Simulation of cases: from specifications to results. Instruction sets are hidden behind Kernel.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <string>
@@ -30,6 +31,7 @@ struct Mechanism {
   AssembledVehicle car;
   VehicleTables<double> tables;
   Surface surface;
+  std::array<RoughTrack, 2> rough;  // the maneuver's profile as the tires follow it
 };
 
 /// Whether two mechanisms have the same tables, which gravity enters by the car's trim; the roads

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "model/scenario/road.h"
+#include "model/scenario/road_profile.h"
 #include "model/scenario/rough_track.h"
 
 namespace strut {
@@ -24,7 +25,8 @@ struct ManeuverSpec {
   TrimKind trim = TrimKind::kSteady;
   double gravity = 9.81;  // m/s^2
   RoadSpec road;
-  std::array<RoughTrack, 2> rough;  // left, right
+  SharedProfile profile;            // roughness by height; the tires' contact follows it
+  std::array<RoughTrack, 2> rough;  // left, right: roughness as tires follow it; needs no profile
   bool operator==(const ManeuverSpec&) const = default;
 };
 

@@ -97,6 +97,13 @@ void add_kinked_segment(const std::vector<Branch>& branches, std::size_t first, 
   add_segment(cells, begin, (end - begin) / static_cast<double>(cells.size()), end, surface);
 }
 
+void require_few_segments(const Surface& surface) {
+  require(
+      surface.segments.size() <= 66, "road, number of kinks",
+      static_cast<double>(surface.segments.size() - 1),
+      "at most 65 events per crossing; set a footprint above 0, which needs none, or fewer bumps");
+}
+
 Surface make_kinked_surface(const std::vector<Branch>& branches) {
   Surface surface;
   surface.reach_begin = branches.front().begin;
@@ -109,9 +116,7 @@ Surface make_kinked_surface(const std::vector<Branch>& branches) {
     add_kinked_segment(branches, first, last, surface);
   }
   add_segment({RoadCell{}}, surface.reach_end, 1.0, 1e300, surface);
-  require(surface.segments.size() <= 66, "road, number of kinks",
-          static_cast<double>(surface.segments.size() - 1),
-          "at most 65 events per crossing; set a footprint above 0, which needs none");
+  require_few_segments(surface);
   return surface;
 }
 
@@ -135,6 +140,36 @@ Surface make_smooth_surface(const std::vector<Branch>& branches, double footprin
   return surface;
 }
 
+/// The surface of one bump again and again; all have the same cells.
+Surface repeat_surface(const Surface& one, const RoadSpec& spec) {
+  const double reach = one.reach_end - one.reach_begin;
+  require(spec.spacing >= reach, "road.spacing", spec.spacing,
+          fmt::format("the tire touches one bump over {:.3f} m, and the next must begin behind it; "
+                      "give closer bumps as a table",
+                      reach));
+  Surface row;
+  row.cells = one.cells;
+  row.reach_begin = one.reach_begin;
+  RoadSegment flat = one.segments.front();
+  flat.last_cell = 0.0;  // level before the bump, kinked or smooth
+  for (int i = 0; i < spec.count; ++i) {
+    const double shift = i * spec.spacing;
+    flat.end = one.reach_begin + shift;
+    row.segments.push_back(flat);
+    for (RoadSegment segment : one.segments) {
+      if (segment.end <= one.reach_begin || segment.origin >= one.reach_end) continue;
+      segment.origin += shift;
+      segment.end = std::min(segment.end, one.reach_end) + shift;
+      row.segments.push_back(segment);
+      row.reach_end = segment.end;
+    }
+  }
+  flat.end = 1e300;
+  row.segments.push_back(flat);
+  require_few_segments(row);
+  return row;
+}
+
 Surface make_flat_surface() {
   Surface surface;
   add_segment({RoadCell{}}, 0.0, 1.0, 1e300, surface);
@@ -145,6 +180,8 @@ Surface make_flat_surface() {
 
 void validate(const RoadSpec& spec) {
   if (spec.shape == BumpShape::kNone) return;
+  require(spec.count >= 1 && spec.count <= 20, "road.count", spec.count, "must lie in [1, 20]");
+  if (spec.count > 1) require_range("road.spacing", spec.spacing, 0.01, 200.0);
   if (spec.shape == BumpShape::kTable) return validate_table(spec);
   require_range("road.length", spec.length, 0.001, 20.0);
   require_range("road.height", spec.height, 0.0, 0.5);
@@ -168,14 +205,18 @@ double calc_profile_height(const RoadSpec& spec, double x) {
   validate(spec);
   const Profile profile = make_profile(spec);
   const std::vector<double>& ends = profile.ends;
+  if (spec.count > 1) {
+    x -= spec.spacing * std::clamp(std::round(x / spec.spacing), 0.0, spec.count - 1.0);
+  }
   if (ends.empty() || x <= ends.front() || x >= ends.back()) return 0.0;
   const auto above = std::upper_bound(ends.begin(), ends.end(), x);
   return profile.calc(static_cast<std::size_t>(above - ends.begin()) - 1, x).value;
 }
 
-Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact) {
-  validate(spec);
-  validate(contact);
+namespace {
+
+/// The surface of the first bump.
+Surface make_one_surface(const RoadSpec& spec, const ContactGeometry& contact) {
   const Profile profile = make_profile(spec);
   if (profile.ends.empty()) return make_flat_surface();
   if (contact.kind == ContactKind::kPoint) {
@@ -188,6 +229,15 @@ Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact) {
   if (branches.empty()) return make_flat_surface();
   return contact.footprint > 0.0 ? make_smooth_surface(branches, contact.footprint)
                                  : make_kinked_surface(branches);
+}
+
+}  // namespace
+
+Surface make_surface(const RoadSpec& spec, const ContactGeometry& contact) {
+  validate(spec);
+  validate(contact);
+  const Surface one = make_one_surface(spec, contact);
+  return spec.count > 1 && one.reach_end > one.reach_begin ? repeat_surface(one, spec) : one;
 }
 
 std::size_t add_surface(const Surface& surface, std::vector<RoadSegment>& segments,

@@ -1,4 +1,4 @@
-// The road: one speed bump, in the form in which it acts on each wheel.
+// The road: a speed bump or a row of equal ones, in the form in which it acts on each wheel.
 //
 // A tire does not follow the profile point by point. The default contact (kEnvelope) rolls a rigid
 // disc of the free tire radius over the profile and averages the height of its center over the
@@ -20,13 +20,16 @@ namespace strut {
 enum class BumpShape { kNone, kArc, kHalfSine, kCosine, kTrapezoid, kTable };
 enum class BumpSide { kBoth, kLeft, kRight };
 
-/// One bump on a flat road; x runs forward from the bump's center, z up from the road.
+/// One bump, or a row of equal bumps, on a flat road; x runs forward from the center of the first
+/// bump, z up from the road.
 struct RoadSpec {
   BumpShape shape = BumpShape::kArc;
   double height = 0.05;                  // m, [0, 0.5]; an arc at most length / 2
   double length = 0.4;                   // m, [0.001, 20]
   double ramp = 0.1;                     // m, length of each flank of a trapezoid, (0, length / 2]
   BumpSide side = BumpSide::kBoth;       // the wheels that cross it; evaluated by the caller
+  int count = 1;                         // bumps in the row, [1, 20]
+  double spacing = 2.0;                  // m from one bump's center to the next, (0, 200]
   std::vector<double> table_x, table_z;  // m, kTable: natural cubic spline, flat road outside
   bool operator==(const RoadSpec&) const = default;
   /// Whether height, length and ramp describe the bump.

@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct RoughTrack {
 template <class T>
 struct RoughTracks {
   bool is_rough = false;  // in any lane
-  /// Of all lanes, one after the other, each between three zeros.
+  /// Of all distinct tracks, one after the other, each between three zeros.
   std::vector<double> coefficients;
   T begin = T(0.0), inverse_spacing = T(1.0);  // m, 1/m
   T first = T(0.0), cells = T(0.0);            // offset in `coefficients`, number of cells
@@ -50,24 +51,30 @@ void add_roughness(const RoughTracks<T>& tracks, const T& x, T& height, T& slope
   slope += select(inside, tracks.inverse_spacing * z_t, T(0.0));
 }
 
+/// Appends the coefficients of a track between three zeros, four zeros if it has none.
+inline void add_padded(const std::vector<double>& coefficients, std::vector<double>& list) {
+  list.insert(list.end(), coefficients.empty() ? 1 : 3, 0.0);
+  list.insert(list.end(), coefficients.begin(), coefficients.end());
+  list.insert(list.end(), 3, 0.0);
+}
+
+/// Lanes with the same coefficients share them.
 template <class T>
 RoughTracks<T> make_rough_tracks(const RoughTrack* const tracks[]) {
   RoughTracks<T> out;
-  for (int lane = 0; lane < kLaneCount<T>; ++lane) {
+  std::array<std::size_t, kLaneCount<T>> first;
+  for (std::size_t lane = 0; lane < first.size(); ++lane) {
     const RoughTrack& track = *tracks[lane];
-    set_lane(out.first, lane, static_cast<double>(out.coefficients.size()));
-    if (track.coefficients.empty()) {
-      out.coefficients.insert(out.coefficients.end(), 4, 0.0);
-      continue;
-    }
+    std::size_t equal = 0;  // the first lane with these coefficients
+    while (tracks[equal]->coefficients != track.coefficients) ++equal;
+    first[lane] = equal < lane ? first[equal] : out.coefficients.size();
+    set_lane(out.first, static_cast<int>(lane), static_cast<double>(first[lane]));
+    if (equal == lane) add_padded(track.coefficients, out.coefficients);
+    if (track.coefficients.empty()) continue;
     out.is_rough = true;
-    out.coefficients.insert(out.coefficients.end(), 3, 0.0);
-    out.coefficients.insert(out.coefficients.end(), track.coefficients.begin(),
-                            track.coefficients.end());
-    out.coefficients.insert(out.coefficients.end(), 3, 0.0);
-    set_lane(out.begin, lane, track.begin);
-    set_lane(out.inverse_spacing, lane, 1.0 / track.spacing);
-    set_lane(out.cells, lane, static_cast<double>(track.coefficients.size() + 3));
+    set_lane(out.begin, static_cast<int>(lane), track.begin);
+    set_lane(out.inverse_spacing, static_cast<int>(lane), 1.0 / track.spacing);
+    set_lane(out.cells, static_cast<int>(lane), static_cast<double>(track.coefficients.size() + 3));
   }
   return out;
 }

@@ -1,4 +1,4 @@
-#include "diagnose/noise/road_density.h"
+#include "model/scenario/road_density.h"
 
 #include <algorithm>
 #include <cmath>
