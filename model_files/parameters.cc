@@ -205,6 +205,10 @@ void add_bump(Parameters& list, const std::string& name, double default_value, c
   };
 }
 
+constexpr char kBumpSpacing[] = "bump_spacing";
+
+bool has_bump_row(const Case& c) { return c.maneuver.road.count > 1; }
+
 void add_maneuver(Parameters& list) {
   add_number(
       list, "speed", 20.0, between(0.5, 100.0, "m/s"), "initial forward speed", kPaperText,
@@ -235,6 +239,17 @@ void add_maneuver(Parameters& list) {
   add_bump(
       list, "bump_ramp", 0.1, between(0.0005, 10.0, "m"), "length of each flank of a trapezoid",
       [](auto& c) -> auto& { return c.maneuver.road.ramp; });
+  add_number(
+      list, kBumpSpacing, 2.0, between(0.01, 200.0, "m"),
+      "from one bump's center to the next, in a row of bumps", kStrutChoice,
+      [](auto& c) -> auto& { return c.maneuver.road.spacing; });
+  list.back().set = [](Case& c, double value) {
+    if (!has_bump_row(c)) {
+      throw InputError(
+          fmt::format("{}: cannot be set, the maneuver has no row of bumps (count)", kBumpSpacing));
+    }
+    c.maneuver.road.spacing = value;
+  };
 }
 
 void add_effect(Parameters& list, const EffectInfo& effect, const std::string& place) {
@@ -280,6 +295,7 @@ const std::vector<ParameterInfo>& list_parameters() {
 std::vector<const ParameterInfo*> list_parameters_in_use(const Case& c) {
   std::vector<const ParameterInfo*> used;
   for (const ParameterInfo& p : list_parameters()) {
+    if (p.name == kBumpSpacing && !has_bump_row(c)) continue;
     if (!p.is_effect || p.get(c) != p.default_value) used.push_back(&p);
   }
   return used;

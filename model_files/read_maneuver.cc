@@ -3,12 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
 #include "io/format/toml_document.h"
 #include "io/table/csv.h"
+#include "io/table/units.h"
 #include "model/error/model_error.h"
+#include "model/scenario/iso_road.h"
 #include "model_files/choices.h"
 #include "model_files/file_kind.h"
 #include "model_files/parameters.h"
@@ -21,20 +31,34 @@ double read_parameter(const Table& table, const std::string& key, const std::str
   return table.number(key, find_parameter(parameter).allowed);
 }
 
+/// A column of lengths in its own unit, without one in meters.
+std::vector<double> read_meters(const CsvTable& csv, const std::string& name) {
+  const CsvColumn& column = csv.column(name);
+  const UnitScale unit = find_unit_scale(column.unit, "m");
+  std::vector<double> values = column.values;
+  for (double& value : values) value = unit.factor * value + unit.offset;
+  return values;
+}
+
+/// Throws InputError unless the positions ascend. Called last, so that a missing column is named.
+std::vector<double> read_positions(const CsvTable& csv) {
+  std::vector<double> x = read_meters(csv, "position");
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    if (x[i] > x[i - 1]) continue;
+    throw InputError(fmt::format("{}:{}: position = {}: must be > {} m, the previous position",
+                                 csv.path.string(), csv.lines[i], format_number(x[i]),
+                                 format_number(x[i - 1])));
+  }
+  if (x.size() < 3) {
+    throw InputError(fmt::format("{}: {} rows: must be at least 3", csv.path.string(), x.size()));
+  }
+  return x;
+}
+
 void read_profile(const Table& bump, RoadSpec& road) {
   const CsvTable csv = read_csv(bump.file("file"));
-  road.table_x = csv.column("position").values;
-  road.table_z = csv.column("height").values;
-  for (std::size_t i = 1; i < road.table_x.size(); ++i) {
-    if (road.table_x[i] > road.table_x[i - 1]) continue;
-    throw InputError(fmt::format("{}:{}: position = {}: must be > {} m, the previous position",
-                                 csv.path.string(), csv.lines[i], format_number(road.table_x[i]),
-                                 format_number(road.table_x[i - 1])));
-  }
-  if (road.table_x.size() < 2) {
-    throw InputError(
-        fmt::format("{}: {} rows: must be at least 3", csv.path.string(), road.table_x.size()));
-  }
+  road.table_z = read_meters(csv, "height");
+  road.table_x = read_positions(csv);
   road.height = *std::max_element(road.table_z.begin(), road.table_z.end());
   road.length = road.table_x.back() - road.table_x.front();
 }
@@ -61,10 +85,79 @@ void read_bump(const Table& bump, ManeuverSpec& maneuver) {
   if (road.shape == BumpShape::kNone) return;
   road.side = static_cast<BumpSide>(bump.choice_or("side", 0, list_names(kBumpSides)));
   maneuver.bump_distance = read_parameter(bump, "distance", "bump_distance");
+  road.count = static_cast<int>(bump.integer_or("count", 1, 1, 20));
+  if (road.count > 1) road.spacing = read_parameter(bump, "spacing", "bump_spacing");
   try {
     validate(road);
   } catch (const ModelError& e) {
     throw bump.error(e.what());
+  }
+}
+
+constexpr std::array<const char*, 8> kIsoClasses = {"A", "B", "C", "D", "E", "F", "G", "H"};
+
+/// By its class, or by the density itself.
+double read_roughness(const Table& road) {
+  if (!road.has("class")) return road.number("roughness", between(0.0, 1.0, "m^3"));
+  if (road.has("roughness")) {
+    throw road.error("class and roughness are both given: give one of them");
+  }
+  return 16e-6 * std::pow(4.0, road.choice("class", {kIsoClasses.begin(), kIsoClasses.end()}));
+}
+
+RoadProfile read_iso_road(const Table& road) {
+  IsoRoad iso;
+  iso.roughness = read_roughness(road);
+  iso.length = road.number_or("length", iso.length, between(20.0, 2000.0, "m"));
+  iso.begin = road.number_or("begin", iso.begin, between(0.0, 1000.0, "m"));
+  iso.track_width = road.number_or("track_width", iso.track_width, between(0.1, 5.0, "m"));
+  iso.seed = static_cast<std::uint64_t>(
+      road.integer_or("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+  return make_iso_road(iso);
+}
+
+/// Heights at equally spaced points, linear between those of the file.
+std::vector<double> resample(const std::vector<double>& x, const std::vector<double>& z,
+                             double spacing, std::size_t count) {
+  std::vector<double> heights;
+  for (std::size_t i = 0, j = 1; i < count; ++i) {
+    const double at = std::min(x.front() + spacing * static_cast<double>(i), x.back());
+    while (j + 1 < x.size() && x[j] < at) ++j;
+    heights.push_back(std::lerp(z[j - 1], z[j], (at - x[j - 1]) / (x[j] - x[j - 1])));
+  }
+  return heights;
+}
+
+/// A survey has its own zero of height and may end anywhere: heights count from the first on the
+/// left, and both ends fade into the level road.
+RoadProfile read_survey(const Table& road) {
+  const CsvTable csv = read_csv(road.file("file"));
+  const double fade = road.number_or("fade", 1.0, between(0.0, 100.0, "m"));
+  const bool has_tracks = csv.has("left") || csv.has("right");
+  const std::vector<double> left = read_meters(csv, has_tracks ? "left" : "height");
+  const std::vector<double> right = read_meters(csv, has_tracks ? "right" : "height");
+  const std::vector<double> x = read_positions(csv);
+  double closest = x.back() - x.front();
+  for (std::size_t i = 1; i < x.size(); ++i) closest = std::min(closest, x[i] - x[i - 1]);
+  const double points = std::ceil((x.back() - x.front()) / std::clamp(closest, 0.005, 0.05) - 1e-6);
+  RoadProfile profile{x.front(), (x.back() - x.front()) / points, {}};
+  const auto count = static_cast<std::size_t>(points) + 1;
+  profile.height = {resample(x, left, profile.spacing, count),
+                    resample(x, right, profile.spacing, count)};
+  for (std::vector<double>& track : profile.height) {
+    for (double& height : track) height -= left.front();
+  }
+  fade_ends(profile, fade);
+  return profile;
+}
+
+void read_road(const Table& road, ManeuverSpec& maneuver) {
+  try {
+    RoadProfile profile = road.has("file") ? read_survey(road) : read_iso_road(road);
+    validate(profile);
+    maneuver.profile.data = std::make_shared<const RoadProfile>(std::move(profile));
+  } catch (const ModelError& e) {
+    throw road.error(e.what());
   }
 }
 
@@ -81,7 +174,12 @@ ManeuverSpec read_maneuver(const std::filesystem::path& path) {
                                            find_parameter("drive_reaction").allowed);
   maneuver.gravity = root.number_or("gravity", maneuver.gravity, find_parameter("gravity").allowed);
   maneuver.trim = static_cast<TrimKind>(root.choice_or("trim", 0, list_names(kTrims)));
-  read_bump(root.table("bump"), maneuver);
+  if (root.has("road")) read_road(root.table("road"), maneuver);
+  if (root.has("bump") || !root.has("road")) {
+    read_bump(root.table("bump"), maneuver);
+  } else {
+    maneuver.road.shape = BumpShape::kNone;
+  }
   document.check_all_read();
   return maneuver;
 }

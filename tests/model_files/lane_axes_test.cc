@@ -37,6 +37,7 @@ std::vector<PreparedCase> prepare_axis(const ParameterInfo& parameter, int count
   std::vector<PreparedCase> cases;
   for (const double value : list_values(parameter, make_base(), count)) {
     Case c = make_base();
+    if (parameter.name == "bump_spacing") c.maneuver.road.count = 2;
     parameter.set(c, value);
     cases.push_back(test::prepare(c));
   }

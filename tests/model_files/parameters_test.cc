@@ -68,6 +68,7 @@ TEST_CASE("A parameter that is set reads back and moves nothing it does not cont
   for (const ParameterInfo& parameter : list_parameters()) {
     const double value = choose_other_value(parameter);
     Case changed = paper;
+    changed.maneuver.road.count = 2;  // of which bump_spacing is the distance
     set_parameter(changed, parameter.name, value);
     INFO(parameter.name);
     CHECK(get_parameter(changed, parameter.name) == value);
