@@ -10,11 +10,12 @@ namespace {
 // px
 constexpr double kLeftLabel = 85.0, kRightEdge = 25.0, kValueScale = 95.0;
 constexpr double kBottomLabel = 60.0, kTics = 28.0, kTitle = 30.0, kNoTitle = 12.0;
-constexpr int kLegendRow = 26, kLegendColumns = 5;
+constexpr int kLegendRow = 26, kLegendEntry = 200;
 
 int calc_legend_height(const Chart& chart) {
   const int entries = static_cast<int>(chart.list_legend().size());
-  return entries == 0 ? 0 : kLegendRow * (1 + (entries - 1) / kLegendColumns) + kLegendRow / 2;
+  const int columns = std::max(1, chart.width / kLegendEntry);
+  return entries == 0 ? 0 : kLegendRow * (1 + (entries - 1) / columns) + kLegendRow / 2;
 }
 
 /// Indices of the minimum, the maximum and a gap, if any, of y[begin, end).

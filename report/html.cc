@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 
 #include "base/text/fill_template.h"
@@ -50,16 +52,41 @@ std::string make_cells(const std::vector<std::string>& cells, const std::string&
   return text + "</tr>\n";
 }
 
+/// Content that is hidden until its summary is opened; a print shows it (page.js).
+std::string fold(const std::string& summary, const std::string& content) {
+  return fmt::format("<details class=\"fold\"><summary>{}</summary>\n{}</details>\n",
+                     escape_html(summary), content);
+}
+
 std::string make_table(const ReportTable& table) {
-  std::string text = fmt::format(
-      "<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead>{}</thead>\n<tbody>\n",
-      escape_html(table.caption), make_cells(table.header, "th", table.text_columns));
+  std::string text = "<div class=\"wide\"><table>\n";
+  if (!table.is_folded) text += fmt::format("<caption>{}</caption>\n", escape_html(table.caption));
+  text += fmt::format("<thead>{}</thead>\n<tbody>\n",
+                      make_cells(table.header, "th", table.text_columns));
   for (const auto& row : table.rows) text += make_cells(row, "td", table.text_columns);
   text += "</tbody></table>\n";
   for (const std::string& note : table.notes) {
     text += fmt::format("<p class=\"note\">{}</p>\n", escape_html(note));
   }
-  return text + "</div>\n";
+  text += "</div>\n";
+  return table.is_folded ? fold(table.caption, text) : text;
+}
+
+std::string make_badge(const ReportBadge& badge) {
+  if (badge.text.empty()) return "";
+  static constexpr std::array<const char*, 4> kTones = {"neutral", "good", "warning", "bad"};
+  return fmt::format("<p class=\"badge {}\">{}</p>\n", kTones[static_cast<std::size_t>(badge.tone)],
+                     escape_html(badge.text));
+}
+
+std::string make_key_numbers(const std::vector<KeyNumber>& numbers) {
+  if (numbers.empty()) return "";
+  std::string text = "<dl class=\"keys\">\n";
+  for (const KeyNumber& number : numbers) {
+    text += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escape_html(number.label),
+                        escape_html(number.value));
+  }
+  return text + "</dl>\n";
 }
 
 std::string make_paragraphs(const std::vector<std::string>& paragraphs) {
@@ -106,8 +133,16 @@ std::string make_section(const ReportSection& section, const std::string& id) {
   text += fmt::format("\n<h2 id=\"{}\">{}</h2>\n{}", id, escape_html(section.heading),
                       make_paragraphs(section.paragraphs));
   for (const ReportMotion& motion : section.motions) text += make_motion_figure(motion);
-  for (const ReportTable& table : section.tables) text += make_table(table);
+  for (const ReportTable& table : section.tables) {
+    if (!table.is_folded) text += make_table(table);
+  }
   for (const ReportFigure& figure : section.figures) text += make_figure(figure);
+  for (const ReportTable& table : section.tables) {
+    if (table.is_folded) text += make_table(table);
+  }
+  for (const std::string& file : section.files) {
+    text += "<pre class=\"file\">" + escape_html(file) + "</pre>\n";
+  }
   return text + "</section>\n";
 }
 
@@ -193,6 +228,8 @@ std::string make_html(const ReportPage& page) {
   }
   return fill_template(embedded::page_html, {{"title", escape_html(page.title)},
                                              {"style", std::string(embedded::page_css)},
+                                             {"badge", make_badge(page.badge)},
+                                             {"keys", make_key_numbers(page.key_numbers)},
                                              {"lead", make_paragraphs(page.lead)},
                                              {"contents", make_contents(page.sections)},
                                              {"sections", sections},

@@ -27,6 +27,7 @@ struct ReportTable {
   std::vector<std::vector<std::string>> rows = {};
   std::vector<std::string> notes = {};  // below the table
   std::size_t text_columns = 1;         // number of leading columns of text; numbers follow
+  bool is_folded = false;               // shown by its caption until it is opened
 };
 
 struct ReportFigure {
@@ -50,6 +51,20 @@ struct ReportSection {
   std::vector<ReportTable> tables = {};
   std::vector<ReportFigure> figures = {};
   std::vector<ReportMotion> motions = {};
+  std::vector<std::string> files = {};  // texts as their files have them
+};
+
+enum class Tone { kNeutral, kGood, kWarning, kBad };
+
+/// The result in a word or two, beside the title.
+struct ReportBadge {
+  std::string text;  // "": none
+  Tone tone = Tone::kNeutral;
+};
+
+/// One of the few numbers that matter: "38.2 N/mm" above "front stiffness".
+struct KeyNumber {
+  std::string value, label;
 };
 
 struct ReportPage {
@@ -59,6 +74,8 @@ struct ReportPage {
   std::string footer;
   std::vector<std::string> tables = {};  // CSV files beside it: "channels" for channels.csv
   std::string of = {};                   // FolderContent::name of its folder
+  ReportBadge badge = {};
+  std::vector<KeyNumber> key_numbers = {};  // below the title
 };
 
 /// Returns the page, for light and dark screens and for paper. The library that draws its charts is

@@ -33,7 +33,8 @@ Json make_table_json(const ReportTable& table) {
               {"header", table.header},
               {"rows", table.rows},
               {"notes", table.notes},
-              {"text_columns", table.text_columns}};
+              {"text_columns", table.text_columns},
+              {"is_folded", table.is_folded}};
 }
 
 /// The entry of a figure or motion; its content is in the file of its name.
@@ -50,10 +51,19 @@ Json make_section_json(const ReportSection& section) {
               {"motions", make_list(section.motions, &make_named<ReportMotion>)}};
 }
 
+Json make_key_json(const KeyNumber& number) {
+  return Json{{"value", number.value}, {"label", number.label}};
+}
+
 Json make_page_json(const ReportPage& page) {
-  return Json{{"of", page.of},         {"title", page.title},
-              {"lead", page.lead},     {"sections", make_list(page.sections, &make_section_json)},
-              {"tables", page.tables}, {"footer", page.footer}};
+  return Json{{"of", page.of},
+              {"title", page.title},
+              {"badge", Json{{"text", page.badge.text}, {"tone", page.badge.tone}}},
+              {"key_numbers", make_list(page.key_numbers, &make_key_json)},
+              {"lead", page.lead},
+              {"sections", make_list(page.sections, &make_section_json)},
+              {"tables", page.tables},
+              {"footer", page.footer}};
 }
 
 /// Maps `read` over the list `key`.
@@ -69,9 +79,22 @@ std::string read_text(const Json& tree) { return tree.get<std::string>(); }
 std::vector<std::string> read_row(const Json& tree) { return tree.get<std::vector<std::string>>(); }
 
 ReportTable read_table(const Json& tree) {
-  return {tree.at("caption").get<std::string>(), read_list(tree, "header", &read_text),
-          read_list(tree, "rows", &read_row), read_list(tree, "notes", &read_text),
-          tree.at("text_columns").get<std::size_t>()};
+  return {tree.at("caption").get<std::string>(),      read_list(tree, "header", &read_text),
+          read_list(tree, "rows", &read_row),         read_list(tree, "notes", &read_text),
+          tree.at("text_columns").get<std::size_t>(), tree.value("is_folded", false)};
+}
+
+/// Pages of earlier versions have none; a tone that strut does not write is neutral.
+ReportBadge read_badge(const Json& page) {
+  if (!page.contains("badge")) return {};
+  const Json& badge = page.at("badge");
+  const auto tone = badge.at("tone").get<int>();
+  const bool is_known = tone >= 0 && tone <= static_cast<int>(Tone::kBad);
+  return {badge.at("text").get<std::string>(), is_known ? static_cast<Tone>(tone) : Tone::kNeutral};
+}
+
+KeyNumber read_key_number(const Json& tree) {
+  return {tree.at("value").get<std::string>(), tree.at("label").get<std::string>()};
 }
 
 /// Names of the figures and tables of comparisons, diagnoses, runs and benchmarks, except those of
@@ -159,6 +182,10 @@ ReportPage read_page(const Json& tree, const FigureDrawer& drawer) {
   ReportPage page;
   page.of = tree.at("of").get<std::string>();
   page.title = tree.at("title").get<std::string>();
+  page.badge = read_badge(tree);
+  if (tree.contains("key_numbers")) {
+    page.key_numbers = read_list(tree, "key_numbers", &read_key_number);
+  }
   page.lead = read_list(tree, "lead", &read_text);
   page.footer = tree.at("footer").get<std::string>();
   page.tables = read_list(tree, "tables", &read_text);

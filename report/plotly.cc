@@ -136,25 +136,29 @@ void set_values(const ChartSeries& s, Json& trace) {
   }
 }
 
-/// The color scale of points with values, from blue to orange, which is readable on light and dark
-/// pages, and its bar beside the panel.
-Json make_value_scale(const Chart& chart, std::size_t panel, const ChartSeries& s) {
+/// The bar of a panel's color scale, beside it.
+Json make_color_bar(const Chart& chart, std::size_t panel) {
   const PanelPlace place = calc_place(chart, panel);
   const Json title = Json{
       {"text", chart.panels[panel].value_label}, {"side", "right"}, {"font", Json{{"size", 12}}}};
-  const Json bar = Json{{"x", round(place.right)},
-                        {"xanchor", "left"},
-                        {"y", round(0.5 * (place.bottom + place.top))},
-                        {"len", round(place.top - place.bottom)},
-                        {"thickness", 12},
-                        {"title", title}};
+  return Json{{"x", round(place.right)},
+              {"xanchor", "left"},
+              {"y", round(0.5 * (place.bottom + place.top))},
+              {"len", round(place.top - place.bottom)},
+              {"thickness", 12},
+              {"title", title}};
+}
+
+/// The color scale of points with values, from blue to orange, which is readable on light and dark
+/// pages.
+Json make_value_scale(const Chart& chart, std::size_t panel, const ChartSeries& s) {
   const Json colors =
       Json::array({Json::array({0.0, get_color(1)}), Json::array({0.5, get_color(4)}),
                    Json::array({1.0, get_color(5)})});
   return Json{{"color", make_numbers(s.value)},
               {"colorscale", colors},
               {"showscale", true},
-              {"colorbar", bar}};
+              {"colorbar", make_color_bar(chart, panel)}};
 }
 
 /// Suffix of a panel's axes in plotly.js: "" for the first panel, then "2", "3", ...
@@ -251,14 +255,30 @@ Json make_layout(const Chart& chart) {
   return layout;
 }
 
+constexpr int kNarrowWidth = 380;  // px, of a phone
+
+/// The same chart with its panels below each other: height, layout and, by trace, the bar of its
+/// color scale or null.
+Json make_narrow(Chart chart) {
+  chart.columns = 1;
+  chart.width = kNarrowWidth;
+  Json bars = Json::array();
+  for (std::size_t p = 0; p < chart.panels.size(); ++p) {
+    for (const ChartSeries& s : chart.panels[p].series) {
+      bars.push_back(s.value.empty() ? Json() : make_color_bar(chart, p));
+    }
+  }
+  return Json{{"height", calc_height(chart)},
+              {"layout", make_layout(chart)},
+              {"colorbars", std::move(bars)}};
+}
+
 }  // namespace
 
 Json make_plotly(const Chart& chart) {
-  return Json{{"name", chart.name},
-              {"height", calc_height(chart)},
-              {"width", chart.width},
-              {"data", make_traces(chart)},
-              {"layout", make_layout(chart)}};
+  return Json{{"name", chart.name},           {"height", calc_height(chart)},
+              {"width", chart.width},         {"data", make_traces(chart)},
+              {"layout", make_layout(chart)}, {"narrow", make_narrow(chart)}};
 }
 
 }  // namespace strut

@@ -6,9 +6,10 @@
 
 namespace strut {
 
-/// Returns {"name", "height" [px], "width" [px], "data", "layout"}, the latter two the traces and
-/// layout of plotly.js. The color "ink" stands for that of the page's text, which the page
-/// substitutes. Numbers have seven digits, more than a figure resolves.
+/// Returns {"name", "height" [px], "width" [px], "data", "layout", "narrow"}: traces and layout of
+/// plotly.js, and height, layout and color bars for pages too narrow for `width`. The color "ink"
+/// stands for that of the page's text, which the page substitutes. Numbers have seven digits, more
+/// than a figure resolves.
 Json make_plotly(const Chart& chart);
 
 }  // namespace strut

@@ -1,5 +1,6 @@
-// Animation of a car crossing its bump: a side view that moves with the car, with a slider over
-// time. make_motion() (jobs/simulate/motion.h) writes the scene; x forward, z up, in meters.
+// Animation of a car on its road: a side view that moves with the car, its rear axle from behind, and
+// a slider over time. make_motion() (jobs/simulate/motion.h) writes the scene; x forward, y to the
+// left, z up, in meters.
 "use strict";
 
 const svgSpace = "http://www.w3.org/2000/svg";
@@ -7,6 +8,8 @@ const viewHeight = 2.4;      // m
 const margin = 1.6;          // m ahead of the front and behind the rear wheels
 const coils = 7;
 const dashes = "0.04 0.03";  // line style of the far (left) side
+const dots = "0.01 0.03";    // of another run
+const rimPoints = 72;        // of a tire
 
 function addShape(parent, name, attributes) {
   const shape = document.createElementNS(svgSpace, name);
@@ -29,6 +32,14 @@ function makeOutline(scene) {
   return shape.map(([fraction, z]) => [scene.rear.wheel[0] + fraction * base, z - scene.nominal_height]);
 }
 
+// The same from behind: y to the left, z from the reference point.
+function makeRearOutline(scene) {
+  const half = scene.rear.half_track + 0.1;
+  const shape = [[-half, 0.35], [-half, 0.9], [-0.8 * half, 0.98], [-0.62 * half, 1.42], [-0.4 * half, 1.46]];
+  const other = shape.map(([y, z]) => [-y, z]).reverse();
+  return [...shape, ...other].map(([y, z]) => [y, z - scene.nominal_height]);
+}
+
 // A zigzag between two points, straight at its ends.
 function makeSpring([x0, z0], [x1, z1]) {
   const length = Math.hypot(x1 - x0, z1 - z0);
@@ -49,19 +60,46 @@ function integrate(time, speed) {
   return speed.map((w, i) => angle += i === 0 ? 0 : 0.5 * (w + speed[i - 1]) * (time[i] - time[i - 1]));
 }
 
+// The first index of an ascending list whose value is at least `wanted`; its length if there is none.
+function findFirst(count, get, wanted) {
+  let [low, high] = [0, count];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (get(middle) < wanted) low = middle + 1; else high = middle;
+  }
+  return low;
+}
+
+// Height of a track's road at world x; level outside of its points.
+function getHeight(track, x) {
+  const i = findFirst(track.length, (k) => track[k][0], x);
+  if (i === 0 || i === track.length) return 0;
+  const [[x0, z0], [x1, z1]] = [track[i - 1], track[i]];
+  return z0 + (z1 - z0) * (x - x0) / (x1 - x0);
+}
+
 class MotionView {
   constructor(root) {
     this.scene = JSON.parse(root.querySelector("script").textContent);
     this.last = this.scene.time.length - 1;
     this.turned = this.scene.wheel_speed.map((speed) => integrate(this.scene.time, speed));
     this.outline = makeOutline(this.scene);
+    this.rearOutline = makeRearOutline(this.scene);
     this.enlarged = 1;
+    this.slowness = 5;
     this.makePicture(root);
+    this.makeRearView(root);
     this.makeControls(root);
     const at = this.scene.snapshot_time;
-    const frame = at === null ? 0 : this.scene.time.findIndex((t) => t >= at);
-    this.show(frame < 0 ? this.last : frame);
+    this.show(at === null ? 0 : this.findFrame(at));
+    for (const {div} of strutCharts) {
+      div.on("plotly_click", (event) => { this.stop(); this.show(this.findFrame(event.points[0].x)); });
+    }
     root.dataset.motion = "drawn";
+  }
+
+  findFrame(time) {
+    return Math.min(findFirst(this.last + 1, (i) => this.scene.time[i], time), this.last);
   }
 
   makePicture(root) {
@@ -73,9 +111,10 @@ class MotionView {
                                       role: "img", "aria-label": "side view of the car"});
     const line = {fill: "none", stroke: "var(--ink)", "stroke-width": 0.012, "stroke-linejoin": "round"};
     const ground = {...line, "stroke-width": 0.02, stroke: "var(--soft)"};
-    const side = this.scene.road_side;
-    this.road = addShape(this.svg, "polyline", side === "left" ? {...ground, "stroke-dasharray": dashes} : ground);
-    if (side !== "both") addShape(this.svg, "line", {...ground, x1: -1, y1: 0, x2: width + 1, y2: 0});
+    const [leftTrack, rightTrack] = this.scene.road;
+    const areEqual = JSON.stringify(leftTrack) === JSON.stringify(rightTrack);
+    this.farRoad = areEqual ? null : addShape(this.svg, "polyline", {...ground, "stroke-dasharray": dashes});
+    this.road = addShape(this.svg, "polyline", ground);
     this.marks = addShape(this.svg, "path", {...line, stroke: "var(--soft)"});
     this.body = addShape(this.svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
     this.reference = addShape(this.svg, "circle", {r: 0.03, fill: "var(--ink)"});
@@ -84,10 +123,25 @@ class MotionView {
     const far = {"stroke-dasharray": dashes, opacity: 0.5};
     this.wheels = [0, 1, 2, 3].map((corner) => {
       const look = corner % 2 === 0 ? far : {};
-      return {rim: addShape(this.svg, "circle", {...line, "stroke-width": 0.03, ...look}),
+      return {rim: addShape(this.svg, "polygon", {...line, class: "rim", "stroke-width": 0.03, ...look}),
               spoke: addShape(this.svg, "line", {...line, ...look}),
               spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...look})};
     });
+    if (!this.scene.other) return;
+    const dotted = {...line, stroke: "var(--other)", "stroke-width": 0.02, "stroke-dasharray": dots, "stroke-linecap": "round"};
+    this.otherBody = addShape(this.svg, "polygon", dotted);
+    this.otherWheels = [1, 3].map(() => addShape(this.svg, "circle", {...dotted, r: this.scene.radius}));
+  }
+
+  makeRearView(root) {
+    const half = this.scene.rear.half_track + 0.5;
+    this.rearSvg = addShape(root, "svg", {viewBox: `${-half} ${-1.75} ${2 * half} ${2.0}`, class: "rear",
+                                          role: "img", "aria-label": "the rear axle from behind"});
+    const line = {fill: "none", stroke: "var(--ink)", "stroke-width": 0.012, "stroke-linejoin": "round"};
+    this.rearGround = [0, 1].map(() => addShape(this.rearSvg, "line", {...line, stroke: "var(--soft)", "stroke-width": 0.02}));
+    this.rearBody = addShape(this.rearSvg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
+    this.rearWheels = [0, 1].map(() => addShape(this.rearSvg, "rect", {...line, "stroke-width": 0.03, rx: 0.05, width: 0.2}));
+    this.rearStruts = [0, 1].map(() => addShape(this.rearSvg, "line", {...line, stroke: "var(--accent)"}));
   }
 
   makeControls(root) {
@@ -101,46 +155,71 @@ class MotionView {
     this.slider.setAttribute("aria-label", "instant");
     this.slider.addEventListener("input", () => { this.stop(); this.show(Number(this.slider.value)); });
     this.output = document.createElement("output");
-    this.scale = document.createElement("select");
-    this.scale.setAttribute("aria-label", "how much the motion is enlarged");
-    for (const times of [1, 3, 10]) this.scale.append(new Option(`motion x ${times}`, times));
-    this.scale.addEventListener("change", () => { this.enlarged = Number(this.scale.value); this.show(this.frame); });
-    bar.append(this.button, this.slider, this.output, this.scale);
+    this.scale = this.makeChoice("how much the motion is enlarged", [1, 3, 10].map((times) => [`motion x ${times}`, times]),
+                                 (times) => { this.enlarged = times; this.show(this.frame); });
+    // A car crosses a bump in a tenth of a second.
+    this.speed = this.makeChoice("speed of playback", [["1/20 speed", 20], ["1/5 speed", 5], ["real time", 1]],
+                                 (slowness) => { this.slowness = slowness; if (this.playing) this.play(); });
+    this.speed.value = this.slowness;
+    bar.append(this.button, this.slider, this.output, this.speed, this.scale);
     root.append(bar);
     this.stop();
   }
 
+  makeChoice(label, options, use) {
+    const choice = document.createElement("select");
+    choice.setAttribute("aria-label", label);
+    for (const [text, value] of options) choice.append(new Option(text, value));
+    choice.addEventListener("change", () => use(Number(choice.value)));
+    return choice;
+  }
+
   // Enlarges the deviation from the first instant.
   enlarge(values, frame) { return values[0] + this.enlarged * (values[frame] - values[0]); }
+
+  getRoad(side, x) { return this.enlarged * getHeight(this.scene.road[side], x); }
 
   show(frame) {
     const scene = this.scene;
     this.frame = frame;
     const x = scene.forward[frame];
     const z = this.enlarge(scene.height, frame);
-    const pitch = this.enlarge(scene.pitch, frame);
-    const [cos, sin] = [Math.cos(pitch), Math.sin(pitch)];
-    // Positive pitch is nose down, so points ahead move down.
-    const place = ([px, pz]) => [px * cos + pz * sin - this.view.left, z - px * sin + pz * cos];
+    const place = this.makePlace(z, this.enlarge(scene.pitch, frame));
     this.body.setAttribute("points", toPoints(this.outline.map(place)));
     const [cx, cz] = place([0, 0]);
     setAll(this.reference, {cx, cy: -cz});
     this.wheels.forEach((wheel, corner) => this.placeWheel(wheel, corner, place, frame));
     this.placeRoad(x);
+    this.placeRear(frame, z);
+    if (scene.other) this.placeOther(frame);
     this.slider.value = frame;
     this.output.textContent = `${scene.time[frame].toFixed(3)} s, ${x.toFixed(2)} m`;
     markInstant(scene.time[frame]);
+  }
+
+  // Of a point of the body in the view. Positive pitch is nose down, so points ahead move down.
+  makePlace(z, pitch) {
+    const [cos, sin] = [Math.cos(pitch), Math.sin(pitch)];
+    return ([px, pz]) => [px * cos + pz * sin - this.view.left, z - px * sin + pz * cos];
   }
 
   placeWheel({rim, spoke, spring}, corner, place, frame) {
     const scene = this.scene;
     const axle = corner < 2 ? scene.front : scene.rear;
     const [cx] = place(axle.wheel);
-    const cy = -this.enlarge(scene.wheel_height[corner], frame);
-    setAll(rim, {cx, cy, r: scene.radius});
+    const cz = this.enlarge(scene.wheel_height[corner], frame);
+    // The tire is flat where it stands on the road.
+    const shift = scene.forward[frame] + this.view.left;
+    const points = [];
+    for (let i = 0; i < rimPoints; ++i) {
+      const angle = 2 * Math.PI * i / rimPoints;
+      const x = cx + scene.radius * Math.cos(angle);
+      points.push([x, Math.max(cz + scene.radius * Math.sin(angle), this.getRoad(corner % 2, x + shift))]);
+    }
+    rim.setAttribute("points", toPoints(points));
     const angle = this.turned[corner][frame];
-    const [dx, dy] = [0.8 * scene.radius * Math.cos(angle), 0.8 * scene.radius * Math.sin(angle)];
-    setAll(spoke, {x1: cx - dx, y1: cy - dy, x2: cx + dx, y2: cy + dy});
+    const [dx, dz] = [0.8 * scene.radius * Math.cos(angle), 0.8 * scene.radius * Math.sin(angle)];
+    setAll(spoke, {x1: cx - dx, y1: -cz - dz, x2: cx + dx, y2: -cz + dz});
     const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
     // Enlarged motion may compress the spring beyond its length.
     const ratio = Math.max(0.15, 1 - this.enlarge(scene.deflection[corner], frame) / length);
@@ -151,24 +230,76 @@ class MotionView {
 
   placeRoad(forward) {
     const shift = forward + this.view.left;
-    const bump = this.scene.road.map(([x, z]) => [x - shift, this.enlarged * z]);
-    this.road.setAttribute("points", toPoints([[-1, 0], ...bump.filter(([x]) => x > -1), [this.view.width + 1, 0]]
-        .sort((a, b) => a[0] - b[0])));
+    this.placeTrack(this.road, 1, shift);
+    if (this.farRoad) this.placeTrack(this.farRoad, 0, shift);
     let path = "";  // one mark per meter
     for (let x = Math.ceil(shift); x < shift + this.view.width; ++x) path += `M${(x - shift).toFixed(3)} 0.05v0.08`;
     this.marks.setAttribute("d", path);
   }
 
+  placeTrack(shape, side, shift) {
+    const track = this.scene.road[side];
+    const end = this.view.width + 1;
+    const points = [[-1, this.getRoad(side, shift - 1)]];
+    for (let i = findFirst(track.length, (k) => track[k][0], shift - 1); i < track.length; ++i) {
+      const x = track[i][0] - shift;
+      if (x > end) break;
+      points.push([x, this.enlarged * track[i][1]]);
+    }
+    points.push([end, this.getRoad(side, shift + end)]);
+    shape.setAttribute("points", toPoints(points));
+  }
+
+  // From behind: left on the left. Positive roll is left side up.
+  placeRear(frame, z) {
+    const scene = this.scene;
+    const roll = this.enlarge(scene.roll, frame);
+    const [cos, sin] = [Math.cos(roll), Math.sin(roll)];
+    // The reference point is between the axles: the body above the rear one moves by the pitch, too.
+    const height = z - scene.rear.wheel[0] * Math.sin(this.enlarge(scene.pitch, frame));
+    const place = ([y, pz]) => [-(y * cos - pz * sin), height + y * sin + pz * cos];
+    this.rearBody.setAttribute("points", toPoints(this.rearOutline.map(place)));
+    const x = scene.forward[frame] + scene.rear.wheel[0];
+    const half = scene.rear.half_track;
+    [2, 3].forEach((corner, side) => {
+      const y = side === 0 ? half : -half;
+      const center = this.enlarge(scene.wheel_height[corner], frame);
+      const ground = this.getRoad(side, x);
+      const bottom = Math.max(center - scene.radius, ground);
+      setAll(this.rearWheels[side], {x: -y - 0.1, y: -(center + scene.radius), height: Math.max(0.01, center + scene.radius - bottom)});
+      const [sx, sz] = place([y * 0.75, scene.rear.upper[1]]);
+      setAll(this.rearStruts[side], {x1: sx, y1: -sz, x2: -y * 0.85, y2: -center});
+      setAll(this.rearGround[side], {x1: side === 0 ? -half - 0.5 : 0, x2: side === 0 ? 0 : half + 0.5, y1: -ground, y2: -ground});
+    });
+  }
+
+  // Another run at the same time, as far as its file has channels.
+  placeOther(frame) {
+    const {other, front, rear} = this.scene;
+    const read = (values) => values && values[frame] !== null && values[frame] !== undefined
+        ? values[0] + this.enlarged * (values[frame] - values[0]) : null;
+    const z = read(other.height);
+    this.otherBody.style.display = z === null ? "none" : "";
+    const ahead = other.forward && other.forward[frame] !== null ? other.forward[frame] - this.scene.forward[frame] : 0;
+    const place = this.makePlace(z ?? 0, read(other.pitch) ?? 0);
+    if (z !== null) this.otherBody.setAttribute("points", toPoints(this.outline.map(place).map(([x, pz]) => [x + ahead, pz])));
+    [1, 3].forEach((corner, i) => {
+      const center = read(other.wheel_height[corner]);
+      this.otherWheels[i].style.display = center === null ? "none" : "";
+      const [cx] = place((corner < 2 ? front : rear).wheel);
+      if (center !== null) setAll(this.otherWheels[i], {cx: cx + ahead, cy: -center});
+    });
+  }
+
   play() {
     if (this.frame >= this.last) this.frame = 0;
     this.button.textContent = "Pause";
-    this.playing = true;
-    const slow = 5;  // slow motion: the car crosses a bump in a tenth of a second
+    const run = this.playing = {};  // an earlier one ends
     const begin = performance.now();
     const from = this.scene.time[this.frame];
     const step = (now) => {
-      if (!this.playing) return;
-      const time = from + (now - begin) / 1000 / slow;
+      if (this.playing !== run) return;
+      const time = from + (now - begin) / 1000 / this.slowness;
       while (this.frame < this.last && this.scene.time[this.frame] < time) ++this.frame;
       this.show(this.frame);
       this.frame < this.last ? requestAnimationFrame(step) : this.stop();
@@ -177,7 +308,7 @@ class MotionView {
   }
 
   stop() {
-    this.playing = false;
+    this.playing = null;
     this.button.textContent = "Play";
   }
 }

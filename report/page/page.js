@@ -10,7 +10,7 @@ const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a", "--paper": "#ffffff"};
 const paperWidth = 980;  // px
 const buttonHeight = 30;  // px above the legend
-const minWidthRatio = 0.8;  // to a chart's nominal width; a narrower page scrolls
+const minWidthRatio = 0.8;  // to a chart's nominal width; on a narrower page panels are below each other
 let isForPaper = false;
 
 function readColor(name) {
@@ -89,27 +89,53 @@ function explain(div, text) {
   div.append(note);
 }
 
-async function drawChart(div) {
-  const chart = JSON.parse(div.querySelector("script").textContent);
-  div.style.height = chart.height + buttonHeight + "px";
-  div.style.minWidth = minWidthRatio * chart.width + "px";
-  const margin = {...chart.layout.margin, t: buttonHeight};
+// The chart's traces and layout for the width of its place. Pages of earlier versions have one form.
+function makeFigure(chart, narrow) {
+  const form = narrow ? chart.narrow : chart;
+  const data = !narrow ? chart.data : chart.data.map((trace, i) => chart.narrow.colorbars[i] === null ? trace
+      : {...trace, marker: {...trace.marker, colorbar: chart.narrow.colorbars[i]}});
   // On a touch screen, scrolling the page must not zoom a chart.
   const isTouched = window.matchMedia("(pointer: coarse)").matches;
-  const layout = {...chart.layout, margin, ...(isTouched && {dragmode: false}), template: makeTemplate()};
-  await Plotly.newPlot(div, paint(chart.data, readColor("--ink")), layout, makeConfig(chart));
-  strutCharts.push({div, chart});
+  const margin = {...form.layout.margin, t: buttonHeight};
+  return {data: paint(data, readColor("--ink")), height: form.height + buttonHeight,
+          layout: {...form.layout, margin, ...(isTouched && {dragmode: false}), template: makeTemplate(),
+                   uirevision: narrow ? "narrow" : "wide"}};  // while this stays, what the reader zoomed and hid stays
+}
+
+const isNarrow = (div, chart) => chart.narrow !== undefined && div.parentElement.clientWidth < minWidthRatio * chart.width;
+
+async function drawChart(div) {
+  const chart = JSON.parse(div.querySelector("script").textContent);
+  const shown = {div, chart, isNarrow: isNarrow(div, chart)};
+  const figure = makeFigure(chart, shown.isNarrow);
+  div.style.height = figure.height + "px";
+  if (!shown.isNarrow) div.style.minWidth = minWidthRatio * chart.width + "px";
+  await Plotly.newPlot(div, figure.data, figure.layout, makeConfig(chart));
+  strutCharts.push(shown);
+}
+
+// Redraws a chart for its place or for paper; the line at an instant stays.
+function redraw(shown) {
+  const {div, chart} = shown;
+  shown.isNarrow = !isForPaper && isNarrow(div, chart);
+  const figure = makeFigure(chart, shown.isNarrow);
+  div.style.height = figure.height + "px";
+  div.style.minWidth = shown.isNarrow ? "" : minWidthRatio * chart.width + "px";
+  const size = isForPaper ? {autosize: false, width: paperWidth, height: figure.height} : {autosize: true};
+  Plotly.react(div, figure.data, {...figure.layout, shapes: div.layout.shapes, ...size}, makeConfig(chart));
+}
+
+// Redraws the charts whose place has become too narrow for them, or wide enough again.
+function fitAll() {
+  for (const shown of strutCharts) {
+    if (!isForPaper && isNarrow(shown.div, shown.chart) !== shown.isNarrow) redraw(shown);
+  }
 }
 
 // Redraws all charts in the colors of the screen, light or dark, or of paper.
 function repaintAll(forPaper) {
   isForPaper = forPaper;
-  for (const {div, chart} of strutCharts) {
-    const size = forPaper ? {autosize: false, width: paperWidth, height: chart.height + buttonHeight} : {autosize: true};
-    Plotly.react(div, paint(chart.data, readColor("--ink")),
-                 {...div.layout, width: undefined, height: undefined, ...size, template: makeTemplate()},
-                 makeConfig(chart));
-  }
+  for (const shown of strutCharts) redraw(shown);
 }
 
 async function drawAll() {
@@ -128,5 +154,9 @@ async function drawAll() {
 }
 
 darkMode.addEventListener("change", () => repaintAll(false));
-window.addEventListener("beforeprint", () => repaintAll(true));
+window.addEventListener("resize", fitAll);
+window.addEventListener("beforeprint", () => {
+  document.querySelectorAll("details.fold").forEach((fold) => { fold.open = true; });
+  repaintAll(true);
+});
 window.addEventListener("afterprint", () => repaintAll(false));
