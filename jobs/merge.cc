@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "base/text/build_info.h"
+#include "io/file/file_seal.h"
 #include "io/format/json.h"
 #include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
@@ -78,7 +79,7 @@ Arguments describe_merge() {
 
 int run_merge(const Arguments& arguments) {
   const OpenSweep sweep = open_sweep(arguments);
-  const fs::path output = find_output_file(arguments, {});
+  const fs::path output = find_output_file(arguments, {}, kMergedSeal.name);
   refuse_source("output", output);
   MergeOptions options;
   options.partial = arguments.is_on("partial");

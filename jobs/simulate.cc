@@ -71,6 +71,9 @@ Arguments describe_simulate() {
   arguments.add_option("channels", "A,B", "channels in FILE, beside the time (default: all)");
   arguments.add_option("report", ArgumentValue::folder("DIR"),
                        "also write DIR/report.html: the car crossing the bump, and its curves");
+  arguments.add_option("beside", ArgumentValue::file("RUN", {}),
+                       "draw another run over this one in the report: a file of simulate, or a "
+                       "recording with its channels' names");
   arguments.add_switch("force", "replace FILE if it exists");
   arguments.add_switch("json", "print the snapshot as JSON");
   arguments.add_switch("kinematics", "write the suspension's kinematics instead of a run");
@@ -82,7 +85,7 @@ int run_simulate(const Arguments& arguments) {
   if (options.kinematics) return run_kinematics(options);
   print_detail(fmt::format("integrator {}", options.integrator_name()));
   if (read_model_info(options.source.vehicle).is_driven_by_inputs()) {
-    refuse_options(arguments, {"coarse-step", "closure", "spin", "report"},
+    refuse_options(arguments, {"coarse-step", "closure", "spin", "report", "beside"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");
     return run_rig(arguments, options);
   }

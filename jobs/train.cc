@@ -11,6 +11,7 @@
 
 #include "base/text/parse_number.h"
 #include "base/text/range.h"
+#include "io/file/file_seal.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
@@ -101,7 +102,7 @@ fs::path find_checkpoint(const Arguments& arguments, const std::vector<fs::path>
   }
   check_output_file("checkpoint", checkpoint, data,
                     arguments.is_on("resume") || arguments.is_on("force"),
-                    "--resume continues from it, --force replaces it");
+                    "--resume continues from it, --force replaces it", kCheckpointSeal.name);
   return checkpoint;
 }
 
@@ -278,7 +279,7 @@ int run_train(const Arguments& arguments) {
   const auto& names = arguments.positional();
   if (names.empty())
     throw arguments.usage_error("DATA: missing; name a sweep folder, shards or a merged file");
-  const fs::path output = find_output_file(arguments, names);
+  const fs::path output = find_output_file(arguments, names, kModelSeal.name);
   refuse_source("output", output);
   const fs::path checkpoint = find_checkpoint(arguments, {names.begin(), names.end()}, output);
   TrainingRequest request = read_request(arguments, output);

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "io/file/atomic_file.h"
+#include "io/file/file_seal.h"
 #include "io/store/sweep_folder.h"
 #include "model_files/named_files.h"
 #include "report/page_file.h"
@@ -66,7 +67,7 @@ void check_output_folder(const std::string& option, const fs::path& folder) {
 
 void check_output_file(const std::string& option, const fs::path& output,
                        const std::vector<fs::path>& inputs, bool may_replace,
-                       const std::string& remedy) {
+                       const std::string& remedy, const std::string& seal) {
   const std::string start = name_option(option, output);
   if (fs::is_directory(output)) throw InputError(start + "is a folder; must be a file");
   if (fs::exists(output) && !fs::is_regular_file(output)) {
@@ -83,6 +84,12 @@ void check_output_file(const std::string& option, const fs::path& output,
   }
   if (!may_replace && fs::exists(output))
     throw InputError(fmt::format("{}exists; {}", start, remedy));
+  if (!fs::exists(output)) return;
+  const std::string found = find_seal_kind(output);
+  if (!found.empty() && found != seal) {
+    throw InputError(fmt::format(
+        "{}is a {} file, which this command does not write; name another file", start, found));
+  }
 }
 
 void refuse_source(const std::string& option, const fs::path& output) {
@@ -100,7 +107,8 @@ std::vector<fs::path> list_files_read(const std::vector<fs::path>& toml_files) {
   return files;
 }
 
-fs::path find_output_file(const Arguments& arguments, const std::vector<std::string>& inputs) {
+fs::path find_output_file(const Arguments& arguments, const std::vector<std::string>& inputs,
+                          const std::string& seal) {
   if (!arguments.has("output"))
     throw arguments.usage_error("--output: missing; name the file to write with -o");
   fs::path output = arguments.text("output");
@@ -110,7 +118,7 @@ fs::path find_output_file(const Arguments& arguments, const std::vector<std::str
   const std::vector<fs::path> named = list_files_read({toml, read.end()});
   read.erase(toml, read.end());
   read.insert(read.end(), named.begin(), named.end());
-  check_output_file("output", output, read, arguments.is_on("force"));
+  check_output_file("output", output, read, arguments.is_on("force"), "--force replaces it", seal);
   return output;
 }
 

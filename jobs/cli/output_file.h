@@ -13,10 +13,13 @@ namespace strut {
 /// Checks, before any work is done, that a command can and may write `output`. Throws InputError,
 /// which names the option, if `output` is a folder or device, part of a sweep, or one of `inputs`
 /// (the files that the command reads), or if it exists and `may_replace` is false; the message then
-/// ends with `remedy`. Throws EnvironmentError if its folder is missing.
+/// ends with `remedy`. What may be replaced is a result of the same kind: a file with a seal of
+/// another kind than `seal`, the one that the command writes, is refused. Throws EnvironmentError
+/// if the folder is missing.
 void check_output_file(const std::string& option, const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs, bool may_replace,
-                       const std::string& remedy = "--force replaces it");
+                       const std::string& remedy = "--force replaces it",
+                       const std::string& seal = "");
 
 /// Refuses a name that vehicles, maneuvers, sweeps and tires have, for a command that writes HDF5.
 /// Throws InputError.
@@ -32,9 +35,10 @@ std::vector<std::filesystem::path> list_files_read(
 
 /// Returns the value of --output, which may be an existing file with --force. `inputs`: the files
 /// that the command reads, without those that the TOML files among them name. Throws InputError if
-/// the option is missing, and as check_output_file does.
+/// the option is missing, and as check_output_file does, which `seal` is for.
 std::filesystem::path find_output_file(const Arguments& arguments,
-                                       const std::vector<std::string>& inputs);
+                                       const std::vector<std::string>& inputs,
+                                       const std::string& seal = "");
 
 /// Returns the folder of --output, created if missing, for a page and `files` beside it. Throws
 /// InputError if the option is missing; if the folder is a file, part of a sweep, or already

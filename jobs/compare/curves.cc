@@ -38,7 +38,6 @@ void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
   ChartPanel residuals{{"time [s]"}, {make_label("residual", info.unit)}, {}};
   curves.about = label + " over time [s]";
   residuals.about = "residual of " + curves.about;
-  curves.series.push_back(make_curve("measured", SeriesKind::kLine, 1, times, c.values));
   for (const ModelCurves& model : models) {
     const std::vector<double>& simulated = get_curve(model, c.channel);
     curves.series.push_back(
@@ -46,6 +45,9 @@ void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
     residuals.series.push_back(
         make_curve(model.name, SeriesKind::kLine, model.color, times, calc_residual(c, simulated)));
   }
+  // Drawn last, above the models.
+  curves.series.push_back(
+      make_curve("measured", SeriesKind::kLine, kMeasuredColor, times, c.values));
   panels.push_back(std::move(curves));
   panels.push_back(std::move(residuals));
 }

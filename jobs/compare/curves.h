@@ -10,9 +10,13 @@
 
 namespace strut {
 
+/// Colors of one thing in all charts of comparisons and diagnoses.
+inline constexpr int kMeasuredColor = kInk, kNominalColor = 6, kCalibratedColor = 5;
+inline constexpr int kExtendedColor = 1, kNoiseColor = 4;
+
 struct ModelCurves {
   std::string name;  // "calibrated"
-  int color = 1;     // in charts
+  int color = kCalibratedColor;
   const RunEvaluation* evaluation = nullptr;
 
   bool is_simulated() const {

@@ -1,7 +1,10 @@
 #include "jobs/compare/report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "base/math/normal.h"
 #include "jobs/compare/figures.h"
 #include "jobs/compare/tables.h"
 #include "report/figures.h"
@@ -21,7 +24,37 @@ ReportSection make_run_section(const CampaignData& data, const RunComparison& ru
   }
   drawer.draw_all(make_run_charts(data, run), section);
   section.tables = make_run_tables(data, run);
+  for (ReportTable& table : section.tables) table.is_folded = true;
   return section;
+}
+
+/// How many readings agree, how far the worst is off, and the first calibrated parameter.
+std::vector<KeyNumber> make_key_numbers(const CampaignData& data, const Comparison& comparison) {
+  std::size_t channels = 0, adequate = 0;
+  double worst = 0.0;
+  std::string name;
+  for (const RunComparison& run : comparison.runs) {
+    for (const ChannelComparison& c : run.calibrated.channels) {
+      ++channels;
+      adequate += c.is_adequate() ? 1 : 0;
+      const double ratio = c.adequacy.calc_times_noise();
+      if (ratio > worst) name = data.info(c.channel).name;
+      worst = std::max(worst, ratio);
+    }
+  }
+  std::vector<KeyNumber> numbers = {
+      {fmt::format("{} of {}", adequate, channels), "channels of all runs within their noise"}};
+  if (!name.empty()) {
+    numbers.push_back({format_short(worst) + " x noise", "largest residual: " + make_words(name)});
+  }
+  const Baseline& baseline = comparison.baseline;
+  if (baseline.is_fitted && baseline.shared_count() > 0) {
+    const Unknown& u = baseline.calibrated.unknowns[0];
+    numbers.push_back({fmt::format("{} \u00b1 {} {}", format_short(baseline.calibrated.values[0]),
+                                   format_short(kNormal95 * baseline.calc_sigma(0)), u.unit),
+                       make_words(u.name)});
+  }
+  return numbers;
 }
 
 }  // namespace
@@ -32,6 +65,9 @@ void write_compare_report(const CompareFolder& folder, const CampaignData& data,
   ReportPage page;
   page.title = "Measured against simulated: " + data.campaign.path.filename().string();
   page.lead = {make_verdict_text(data, comparison)};
+  page.badge = comparison.is_adequate() ? ReportBadge{"adequate", Tone::kGood}
+                                        : ReportBadge{"not adequate", Tone::kBad};
+  page.key_numbers = make_key_numbers(data, comparison);
   std::vector<std::string> notes = data.notes;
   notes.insert(notes.end(), comparison.notes.begin(), comparison.notes.end());
   page.sections.push_back({"Overview", notes, make_compare_tables(data, comparison)});

@@ -181,7 +181,8 @@ const ChannelComparison* find_channel(const ModelComparison& model, int channel)
 }
 
 std::vector<ModelCurves> list_model_curves(const RunComparison& run) {
-  return {{"nominal", 5, &run.nominal.evaluation}, {"calibrated", 2, &run.calibrated.evaluation}};
+  return {{"nominal", kNominalColor, &run.nominal.evaluation},
+          {"calibrated", kCalibratedColor, &run.calibrated.evaluation}};
 }
 
 std::string make_verdict_text(const CampaignData& data, const Comparison& comparison) {

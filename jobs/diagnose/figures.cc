@@ -136,7 +136,7 @@ void add_measured_force(const CampaignData& data, const DiagnosedRun& run,
     if (c.channel != model.stand_force) continue;
     auto panel = panels.begin();
     for (const ChannelSum& sum : {model.struts[0].deflection, model.struts[0].velocity}) {
-      ChartSeries points{"measured", SeriesKind::kPoints, 1};
+      ChartSeries points{"measured", SeriesKind::kPoints, kMeasuredColor};
       add_points(calc_sum(sum, run.before.evaluation.curves.channel), c.values, points);
       (panel++)->series.push_back(std::move(points));
     }
@@ -152,7 +152,6 @@ Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
   for (const ForceLaw& law : list_laws(data, run.before.evaluation.curves)) {
     chart.panels.push_back({{law.x_label}, {law.y_label}, {}});
   }
-  add_measured_force(data, run, chart.panels);
   for (const ModelCurves& model : list_model_curves(diagnosis, run)) {
     if (!model.is_simulated()) continue;
     std::size_t panel = 0;
@@ -162,6 +161,7 @@ Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
       chart.panels[panel++].series.push_back(std::move(law.points));
     }
   }
+  add_measured_force(data, run, chart.panels);  // drawn last, above the models
   return chart;
 }
 
@@ -239,8 +239,9 @@ std::vector<Chart> make_improvement_charts(const Diagnosis& diagnosis) {
   if (diagnosis.improvement.channels.empty() || !diagnosis.is_extended()) return {};
   constexpr double kWidth = 0.26;
   ChartPanel panel{{""}, {"rms error on held-out runs [% of spread]"}, {}};
-  ChartSeries before{"calibrated", SeriesKind::kBars, 2}, after{"extended", SeriesKind::kBars, 3},
-      noise{"noise", SeriesKind::kBars, 6};
+  ChartSeries before{"calibrated", SeriesKind::kBars, kCalibratedColor};
+  ChartSeries after{"extended", SeriesKind::kBars, kExtendedColor};
+  ChartSeries noise{"noise", SeriesKind::kBars, kNoiseColor};
   before.width = after.width = noise.width = kWidth;
   for (const ChannelImprovement& c : diagnosis.improvement.channels) {
     panel.x.categories.push_back(make_words(c.channel));
@@ -264,7 +265,11 @@ std::vector<Chart> make_map_charts(const Diagnosis& diagnosis) {
   return {make_force_map_chart(*diagnosis.force)};
 }
 
-std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis& diagnosis) {
+namespace {
+
+/// The held-out runs that every model could simulate.
+std::vector<const DiagnosedRun*> list_simulated(const CampaignData& data,
+                                                const Diagnosis& diagnosis) {
   std::vector<const DiagnosedRun*> runs;
   for (const DiagnosedRun* run : list_held_out(data, diagnosis)) {
     const std::vector<ModelCurves> models = list_model_curves(diagnosis, *run);
@@ -273,6 +278,19 @@ std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis&
       runs.push_back(run);
     }
   }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<Chart> make_law_charts(const CampaignData& data, const Diagnosis& diagnosis) {
+  const std::vector<const DiagnosedRun*> runs = list_simulated(data, diagnosis);
+  if (runs.empty()) return {};
+  return {make_law_chart(data, diagnosis, *runs.front())};
+}
+
+std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis& diagnosis) {
+  const std::vector<const DiagnosedRun*> runs = list_simulated(data, diagnosis);
   if (runs.empty()) return {};
   Chart states{"states", {}};
   states.caption = "Mean residuals of the models on the held-out runs, by the motion.";
@@ -285,7 +303,7 @@ std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis&
     add_state_lines(data, pooled, list_model_curves(diagnosis, *runs.front())[m], states.panels);
     states.columns = choose_columns(pooled.begin()->second.size());
   }
-  return {states, make_law_chart(data, diagnosis, *runs.front())};
+  return {states};
 }
 
 }  // namespace strut

@@ -24,8 +24,12 @@ std::vector<Chart> make_run_charts(const CampaignData& data, const Diagnosis& di
 /// The force map; empty where there is none.
 std::vector<Chart> make_map_charts(const Diagnosis& diagnosis);
 
-/// All held-out runs together: residuals over deflection and velocity; forces of spring and damper
-/// over them. Empty where none could be simulated.
+/// Forces of spring and damper over their motion in the first held-out run, as the models have them
+/// and as measured where a stand does. Empty where none could be simulated.
+std::vector<Chart> make_law_charts(const CampaignData& data, const Diagnosis& diagnosis);
+
+/// All held-out runs together: residuals over deflection and velocity. Empty where none could be
+/// simulated.
 std::vector<Chart> make_motion_charts(const CampaignData& data, const Diagnosis& diagnosis);
 
 }  // namespace strut

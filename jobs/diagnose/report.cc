@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "jobs/diagnose/figures.h"
 #include "jobs/diagnose/tables.h"
 #include "report/figures.h"
@@ -11,8 +13,7 @@ namespace strut {
 namespace {
 
 std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
-  std::vector<std::string> lead = {
-      fmt::format("[{}] {}", get_badge(diagnosis.verdict.kind), diagnosis.sentence)};
+  std::vector<std::string> lead = {diagnosis.sentence};
   for (const std::string& line : describe_effects(diagnosis.verdict)) lead.push_back(line);
   const std::string where = make_where_text(diagnosis.where);
   if (!where.empty()) lead.push_back(where);
@@ -44,13 +45,76 @@ void add_list(const std::string& heading, const std::vector<std::string>& texts,
   if (!texts.empty()) sections.push_back({heading, texts});
 }
 
+/// The verdict in a few words; of one cause or group, with its probability.
+ReportBadge make_badge(const Verdict& verdict) {
+  const std::string probability =
+      verdict.positions.size() == 1
+          ? fmt::format(", probability {:.2f}", verdict.positions.front().calc_claimed())
+          : "";
+  switch (verdict.kind) {
+    case VerdictKind::kAdequate:
+      return {"model adequate", Tone::kGood};
+    case VerdictKind::kNamed:
+      return {"cause found" + probability, Tone::kGood};
+    case VerdictKind::kGroup:
+      return {"one of a group" + probability, Tone::kWarning};
+    case VerdictKind::kFormIncomplete:
+      return {"cause found, form incomplete", Tone::kWarning};
+    case VerdictKind::kUnknown:
+      break;
+  }
+  return {"cause unknown", Tone::kBad};
+}
+
+/// The first cause's size, the improvement, and the residual beside the noise.
+std::vector<KeyNumber> make_key_numbers(const Diagnosis& diagnosis) {
+  std::vector<KeyNumber> numbers;
+  if (!diagnosis.verdict.positions.empty()) {
+    const CausePosition& position = diagnosis.verdict.positions.front();
+    const Cause& cause = position.get_cause();
+    const std::string name =
+        make_words(cause.effect + (cause.place.empty() ? "" : ", ") + cause.place);
+    if (!cause.parameters.empty()) {
+      const CauseParameter& p = cause.parameters.front();
+      const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
+      numbers.push_back({describe_interval(p.value, p.low, p.high) + unit,
+                         fmt::format("{}: {}", name, make_words(p.key))});
+    }
+  }
+  if (const auto& explained = diagnosis.improvement.explained; explained) {
+    numbers.push_back({fmt::format("{:.0f} %", 100.0 * *explained),
+                       "of the excess error on held-out runs removed"});
+  }
+  double worst = 0.0;
+  std::string channel;
+  for (const ChannelImprovement& c : diagnosis.improvement.channels) {
+    const double ratio = c.noise_floor > 0.0 ? c.rms_after / c.noise_floor : 0.0;
+    if (ratio > worst) channel = c.channel;
+    worst = std::max(worst, ratio);
+  }
+  if (!channel.empty()) {
+    numbers.push_back({fmt::format("{:.2g} x noise", worst),
+                       "residual on held-out runs, worst channel: " + make_words(channel)});
+  }
+  return numbers;
+}
+
 ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
                      const FigureDrawer& drawer) {
   ReportPage page{"Diagnosis: " + data.campaign.path.filename().string(),
                   make_lead(diagnosis),
                   {},
                   make_report_footer()};
+  page.badge = make_badge(diagnosis.verdict);
+  page.key_numbers = make_key_numbers(diagnosis);
   std::vector<ReportSection>& sections = page.sections;
+  ReportSection proof{"Before and after"};
+  drawer.draw_all(make_law_charts(data, diagnosis), proof);
+  drawer.draw_all(make_improvement_charts(diagnosis), proof);
+  ReportTable improvement = make_improvement_table(data, diagnosis);
+  improvement.is_folded = !proof.figures.empty();
+  proof.tables.push_back(std::move(improvement));
+  sections.push_back(std::move(proof));
   const std::vector<ReportTable> causes = make_cause_tables(diagnosis);
   if (!causes.empty()) {
     sections.push_back({"Causes", {}, causes});
@@ -59,9 +123,6 @@ ReportPage make_page(const CampaignData& data, const Diagnosis& diagnosis,
   ReportSection map{"Force map"};
   drawer.draw_all(make_map_charts(diagnosis), map);
   if (!map.figures.empty()) sections.push_back(std::move(map));
-  sections.push_back(
-      {"Improvement on held-out runs", {}, {make_improvement_table(data, diagnosis)}});
-  drawer.draw_all(make_improvement_charts(diagnosis), sections.back());
   for (const DiagnosedRun& run : diagnosis.runs) {
     if (data.campaign.runs[run.run].use != RunUse::kHoldOut) continue;
     sections.push_back(make_run_section(data, diagnosis, run, drawer));

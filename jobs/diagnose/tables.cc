@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxOnTerminal = 4;  // runners-up
 
-/// "0.300 (0.298 to 0.302)": to the second digit of the interval.
+}  // namespace
+
 std::string describe_interval(double value, double low, double high) {
   if (!std::isfinite(value)) return "";
   if (!std::isfinite(low) || !std::isfinite(high)) return format_significant(value) + " (open)";
@@ -24,6 +25,8 @@ std::string describe_interval(double value, double low, double high) {
   return fmt::format("{} ({} to {})", format_to_error(value, error), format_to_error(low, error),
                      format_to_error(high, error));
 }
+
+namespace {
 
 std::string describe_parameters(const Cause& cause) {
   if (cause.change == EffectChange::kRemoved) return "not there";
@@ -238,8 +241,9 @@ std::string make_diagnose_text(const CampaignData& data, const Diagnosis& diagno
 }
 
 std::vector<ModelCurves> list_model_curves(const Diagnosis& diagnosis, const DiagnosedRun& run) {
-  std::vector<ModelCurves> models = {{"calibrated", 5, &run.before.evaluation}};
-  if (diagnosis.is_extended()) models.push_back({"extended", 2, &run.after.evaluation});
+  std::vector<ModelCurves> models = {{"calibrated", kCalibratedColor, &run.before.evaluation}};
+  if (diagnosis.is_extended())
+    models.push_back({"extended", kExtendedColor, &run.after.evaluation});
   return models;
 }
 

@@ -11,6 +11,9 @@
 
 namespace strut {
 
+/// "0.300 (0.298 to 0.302)": to the second digit of the interval.
+std::string describe_interval(double value, double low, double high);
+
 /// One sentence on where the residual is largest; empty where there is none.
 std::string make_where_text(const Where& where);
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/math/random.h"
 #include "io/file/atomic_file.h"
+#include "io/file/folder.h"
 #include "io/store/dataset.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/unsealed.h"
@@ -174,6 +176,7 @@ ReportTable make_stratum_table(const Plan& plan) {
 ReportTable make_fact_table(const Plan& plan) {
   ReportTable table{"Everything that changes a result", {"key", "value"}, {}, {}, 2};
   for (const auto& [name, value] : plan.facts()) table.rows.push_back({name, value});
+  table.is_folded = true;
   return table;
 }
 
@@ -226,6 +229,24 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
   return section;
 }
 
+ReportBadge make_badge(const SweepStatus& s) {
+  if (!s.faults.empty()) return {"damaged", Tone::kBad};
+  if (!s.complete()) return {"not complete", Tone::kWarning};
+  return {"complete", Tone::kGood};
+}
+
+std::vector<KeyNumber> make_key_numbers(const SweepStatus& s) {
+  std::vector<KeyNumber> numbers = {
+      {format_count(s.done) + " of " + format_count(s.cases), "cars simulated"},
+      {format_count(s.failed), "failed"}};
+  const auto simulated = static_cast<double>(s.done + s.failed);
+  if (simulated > 0.0 && s.simulation_seconds > 0.0) {
+    numbers.push_back(
+        {format_cell("{:.3g} ms", 1e3 * s.simulation_seconds / simulated), "of one thread a car"});
+  }
+  return numbers;
+}
+
 }  // namespace
 
 void write_sweep_report(const SweepFolder& folder) {
@@ -238,6 +259,8 @@ void write_sweep_report(const SweepFolder& folder) {
   page.lead = {format_count(status.done) + " of " + format_count(status.cases) + " cases of " +
                plan.request().base.vehicle.name + " are simulated, " + format_count(status.failed) +
                " failed."};
+  page.badge = make_badge(status);
+  page.key_numbers = make_key_numbers(status);
   page.sections = {make_progress(folder, plan, status), make_strata(plan),
                    make_failures(status, drawer)};
   if (status.shards_present > 0) {
@@ -250,7 +273,14 @@ void write_sweep_report(const SweepFolder& folder) {
   if (plan.request().snapshot.on) {
     page.sections.push_back(make_sensitivity_section(plan.request(), drawer));
   }
-  page.sections.push_back({"Plan", {}, {make_fact_table(plan)}});
+  ReportSection request{"Plan", {}, {make_fact_table(plan)}};
+  // As a person wrote it. The folder may come from elsewhere: a link is not followed.
+  constexpr std::size_t kMaxBytes = 100'000;
+  const std::string name = folder.request().filename().string();
+  if (auto text = Folder(folder.root).read_if_present(name, kMaxBytes)) {
+    request.files = {std::move(*text)};
+  }
+  page.sections.push_back(std::move(request));
   page.footer = make_report_footer();
   write_text_file_inside(folder.root, folder.root / "report.html", make_html(page));
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "base/text/format_number.h"
 #include "io/format/json.h"
@@ -150,6 +151,8 @@ int run_car(const Arguments& arguments, const SimulateOptions& given) {
   const double duration = input.maneuver.duration;
   check_rate(options.rate, duration);
   check_step_count(options, duration);
+  std::optional<OtherRun> other;
+  if (!options.beside.empty()) other = read_other_run(options.beside);
   const PreparedCase prepared = prepare_case(options.source, input);
   check_steps(prepared, options);
 
@@ -170,7 +173,7 @@ int run_car(const Arguments& arguments, const SimulateOptions& given) {
   run.provenance = describe_run(options, run.results);
   write_run(options.output, format, run);
   if (!options.report.empty()) {
-    write_run_report(options.report, options.source, input, run);
+    write_run_report(options.report, options.source, input, run, options.rate, other);
     suggest_page((options.report / "report.html").string());
   }
   options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);

@@ -4,17 +4,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 
+#include "base/error/input_error.h"
+#include "io/store/column_map.h"
 #include "model/car/assemble.h"
 #include "model/scenario/profile.h"
-#include "model_files/choices.h"
+#include "model/scenario/road.h"
 
 namespace strut {
 namespace {
 
 constexpr std::size_t kMaxFrames = 1200;
-constexpr std::size_t kRoadPoints = 200;
+constexpr std::size_t kRoadPoints = 200;  // of a bump
+constexpr double kProfileSpacing = 0.05;  // m, of a rough road
 
 std::vector<double> get_channel(const LaneResults& results, std::size_t channel) {
   return results.get_history(static_cast<int>(channel));
@@ -31,7 +35,9 @@ std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) 
   const WholeCarSpec& whole = c.vehicle.whole;
   const auto road = list_profile(c.maneuver.road);
   const double bump_begin = road.empty() ? 0.0 : road.front()[0];
-  const double bump_end = road.empty() ? 0.0 : road.back()[0];
+  const RoadSpec& spec = c.maneuver.road;
+  const double row = (spec.count - 1) * spec.spacing;
+  const double bump_end = road.empty() ? 0.0 : road.back()[0] + row;
   const double first = calc_bump_center(c) + bump_begin - whole.centroid_to_front - kBefore;
   const double last = calc_bump_center(c) + bump_end + whole.centroid_to_rear + kAfter;
 
@@ -87,7 +93,8 @@ Json make_point(double x, double z) {
   return point;
 }
 
-/// Wheel center and ends of the spring, relative to the reference point of the body.
+/// Wheel center and ends of the spring, relative to the reference point of the body; half the
+/// track.
 Json make_axle(const Case& c, int axle) {
   const SuspensionSpec& suspension = c.vehicle.suspension[static_cast<std::size_t>(axle)];
   const Vec3<double> wheel = calc_wheel_reference(c.vehicle, c.maneuver.gravity, 2 * axle);
@@ -96,15 +103,103 @@ Json make_axle(const Case& c, int axle) {
   };
   return Json{{"wheel", make_point(wheel.x, wheel.z)},
               {"upper", place(suspension.spring_upper.position)},
-              {"lower", place(suspension.spring_lower.position)}};
+              {"lower", place(suspension.spring_lower.position)},
+              {"half_track", suspension.wheel_center_y}};
 }
 
-Json make_road(const Case& c) {
+/// The points of the bumps under one track, by world x.
+Json make_bump_points(const Case& c) {
   Json points = Json::array();
-  for (const auto& [x, z] : list_profile(c.maneuver.road)) {
-    points.push_back(make_point(calc_bump_center(c) + x, z));
+  const RoadSpec& road = c.maneuver.road;
+  for (int i = 0; i < road.count; ++i) {
+    for (const auto& [x, z] : list_profile(road)) {
+      points.push_back(make_point(calc_bump_center(c) + x + i * road.spacing, z));
+    }
   }
   return points;
+}
+
+/// The points of a rough road with its bumps. Heights have a tenth of a millimeter.
+Json make_profile_points(const Case& c, const RoadProfile& profile, std::size_t side,
+                         bool has_bump) {
+  Json points = Json::array();
+  const std::vector<double>& heights = profile.height[side];
+  const auto stride =
+      static_cast<std::size_t>(std::max(1.0, std::round(kProfileSpacing / profile.spacing)));
+  for (std::size_t i = 0; i < heights.size(); i += stride) {
+    const double ahead = profile.begin + profile.spacing * static_cast<double>(i);
+    const double x = c.vehicle.whole.centroid_to_front + ahead;
+    const double z = has_bump ? calc_profile_height(c.maneuver.road, x - calc_bump_center(c)) : 0.0;
+    points.push_back(
+        make_point(1e-3 * std::round(1e3 * x), 1e-4 * std::round(1e4 * (z + heights[i]))));
+  }
+  return points;
+}
+
+/// The road under the left and the right wheels.
+Json make_road(const Case& c) {
+  Json tracks = Json::array();
+  for (std::size_t side = 0; side < 2; ++side) {
+    const BumpSide other = side == 0 ? BumpSide::kRight : BumpSide::kLeft;
+    const bool has_bump = c.maneuver.road.side != other;
+    const RoadProfile* profile = c.maneuver.profile.data.get();
+    if (profile != nullptr) {
+      tracks.push_back(make_profile_points(c, *profile, side, has_bump));
+    } else {
+      tracks.push_back(has_bump ? make_bump_points(c) : Json::array());
+    }
+  }
+  return tracks;
+}
+
+/// The values of another run at these times, by lines between its samples; null outside of them.
+Json resample(const OtherRun& other, const std::vector<double>& values,
+              const std::vector<double>& times) {
+  Json list = Json::array();
+  std::size_t i = 1;
+  for (const double t : times) {
+    while (i + 1 < other.times.size() && other.times[i] < t) ++i;
+    if (t < other.times.front() || t > other.times.back()) {
+      list.push_back(nullptr);
+      continue;
+    }
+    const double fraction = (t - other.times[i - 1]) / (other.times[i] - other.times[i - 1]);
+    const double value = std::lerp(values[i - 1], values[i], fraction);
+    list.push_back(std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr));
+  }
+  return list;
+}
+
+Json make_other(const OtherRun& other, const std::vector<double>& times) {
+  Json json = Json::object();
+  json["name"] = other.name;
+  const auto add = [&](const char* name, const std::vector<double>& values) {
+    if (!values.empty()) json[name] = resample(other, values, times);
+  };
+  add("forward", other.forward);
+  add("height", other.height);
+  add("pitch", other.pitch);
+  Json wheels = Json::array();
+  for (const std::vector<double>& height : other.wheel_height) {
+    wheels.push_back(height.empty() ? Json() : resample(other, height, times));
+  }
+  json["wheel_height"] = wheels;
+  return json;
+}
+
+constexpr int kOtherColor = 5;
+
+const std::vector<double>* find_values(const OtherRun& other, int channel) {
+  switch (channel) {
+    case CarChannel::kBodyPositionZ:
+      return &other.height;
+    case CarChannel::kPitchAngle:
+      return &other.pitch;
+    case CarChannel::kBodyAccelerationZ:
+      return &other.acceleration;
+    default:
+      return nullptr;
+  }
 }
 
 struct CurvePanel {
@@ -133,7 +228,51 @@ std::vector<std::array<double, 2>> list_profile(const RoadSpec& road) {
   return points;
 }
 
-Json make_motion(const Case& c, const LaneResults& results) {
+OtherRun read_other_run(const std::filesystem::path& file) {
+  const std::vector<ChannelInfo>& channels = list_car_channels();
+  const auto name = [&](std::size_t channel) { return channels[channel].name; };
+  const auto describe = [&](std::size_t channel) {
+    return ColumnInfo{channels[channel].name, channels[channel].unit,
+                      channels[channel].description};
+  };
+  std::vector<ColumnInfo> optional = {
+      describe(CarChannel::kForwardPosition), describe(CarChannel::kBodyPositionZ),
+      describe(CarChannel::kPitchAngle), describe(CarChannel::kBodyAccelerationZ)};
+  for (int corner = 0; corner < kCorners; ++corner) {
+    optional.push_back(describe(get_corner_channel(corner, CarChannel::kWheelPositionZ)));
+  }
+  const Measurement run =
+      read_channels(file, MeasuredPart::kHistory, {describe(CarChannel::kTime)}, optional, {});
+  const auto find = [&](std::size_t channel) {
+    const CsvColumn* column = run.find(name(channel));
+    return column == nullptr ? std::vector<double>{} : column->values;
+  };
+  OtherRun other{file.filename().string(), run.values(name(CarChannel::kTime)), {}, {}, {}, {}, {}};
+  other.forward = find(CarChannel::kForwardPosition);
+  other.height = find(CarChannel::kBodyPositionZ);
+  other.pitch = find(CarChannel::kPitchAngle);
+  other.acceleration = find(CarChannel::kBodyAccelerationZ);
+  for (int corner = 0; corner < kCorners; ++corner) {
+    other.wheel_height[static_cast<std::size_t>(corner)] =
+        find(get_corner_channel(corner, CarChannel::kWheelPositionZ));
+  }
+  if (other.height.empty() && other.acceleration.empty()) {
+    throw InputError(fmt::format("{}: has neither {} nor {}; must have one of them to be drawn",
+                                 file.string(), name(CarChannel::kBodyPositionZ),
+                                 name(CarChannel::kBodyAccelerationZ)));
+  }
+  if (other.times.size() < 2) {
+    throw InputError(
+        fmt::format("{}: {} sample; must have at least 2", file.string(), other.times.size()));
+  }
+  for (std::size_t i = 1; i < other.times.size(); ++i) {
+    if (other.times[i] > other.times[i - 1]) continue;
+    throw InputError(fmt::format("{}: time does not ascend", run.locate(i)));
+  }
+  return other;
+}
+
+Json make_motion(const Case& c, const LaneResults& results, const std::optional<OtherRun>& other) {
   const std::vector<std::size_t> frames = list_frames(c, results);
   const auto add = [&](Json& json, const char* name, std::size_t channel) {
     json[name] = make_values(get_channel(results, channel), frames);
@@ -143,6 +282,7 @@ Json make_motion(const Case& c, const LaneResults& results) {
   add(json, "forward", CarChannel::kForwardPosition);
   add(json, "height", CarChannel::kBodyPositionZ);
   add(json, "pitch", CarChannel::kPitchAngle);
+  add(json, "roll", CarChannel::kRollAngle);
   json["wheel_height"] = make_corners(results, CarChannel::kWheelPositionZ, frames);
   json["deflection"] = make_corners(results, CarChannel::kSuspensionDeflection, frames);
   json["wheel_speed"] = make_corners(results, CarChannel::kWheelSpeed, frames);
@@ -151,12 +291,17 @@ Json make_motion(const Case& c, const LaneResults& results) {
   json["radius"] = c.vehicle.tire.unloaded_radius;
   json["nominal_height"] = c.vehicle.whole.centroid_height;
   json["road"] = make_road(c);
-  json["road_side"] = find_name(kBumpSides, c.maneuver.road.side);
+  if (other) {
+    std::vector<double> times;
+    const std::vector<double> all = get_channel(results, CarChannel::kTime);
+    for (const std::size_t frame : frames) times.push_back(all[frame]);
+    json["other"] = make_other(*other, times);
+  }
   json["snapshot_time"] = results.has_snapshot() ? Json(results.get_event_time()) : Json();
   return json;
 }
 
-Chart make_motion_curves(const LaneResults& results) {
+Chart make_motion_curves(const LaneResults& results, const std::optional<OtherRun>& other) {
   static constexpr std::array<CurvePanel, 6> kPanels = {
       {{"height [m]", CarChannel::kBodyPositionZ},
        {"pitch, nose down [rad]", CarChannel::kPitchAngle},
@@ -173,8 +318,7 @@ Chart make_motion_curves(const LaneResults& results) {
   chart.caption =
       "Body, suspension and tires over time; right wheels solid, left dashed. Compression is "
       "relative to nominal trim; damper forces are positive in compression. The vertical line "
-      "marks "
-      "the instant of the slider.";
+      "marks the instant of the slider; click a curve to move it there.";
   const std::vector<double> time = get_channel(results, CarChannel::kTime);
   for (const CurvePanel& curves : kPanels) {
     ChartPanel panel{{&curves == &kPanels.back() ? "time [s]" : ""}, {curves.label}, {}};
@@ -183,6 +327,11 @@ Chart make_motion_curves(const LaneResults& results) {
     };
     if (curves.channel >= 0) {
       add("body", SeriesKind::kLine, kInk, static_cast<std::size_t>(curves.channel));
+      const std::vector<double>* values = other ? find_values(*other, curves.channel) : nullptr;
+      if (values != nullptr && !values->empty()) {
+        panel.series.push_back(
+            make_curve(other->name, SeriesKind::kLine, kOtherColor, other->times, *values));
+      }
     }
     for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
       add(kNames[static_cast<std::size_t>(corner)],

@@ -1,9 +1,13 @@
-// A simulated car on a page: a side view of the car crossing its bump, and curves over time.
+// A simulated car on a page: a side and a rear view of the car on its road, and curves over time.
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "base/names/corners.h"
 #include "io/format/json.h"
 #include "model/car/case.h"
 #include "model/kernel/simulation.h"
@@ -15,13 +19,26 @@ namespace strut {
 /// road.
 std::vector<std::array<double, 2>> list_profile(const RoadSpec& road);
 
+/// Another run over the same time, of a simulation or measured: drawn over the first one.
+struct OtherRun {
+  std::string name;           // "worn.h5"
+  std::vector<double> times;  // s
+  /// By channel: values [SI] at the times; empty where its file does not have the channel.
+  std::vector<double> forward, height, pitch, acceleration;
+  std::array<std::vector<double>, kCorners> wheel_height;
+};
+
+/// Reads the channels of another run from a file of any format. Throws InputError without times or
+/// the body's height or acceleration.
+OtherRun read_other_run(const std::filesystem::path& file);
+
 /// The scene that report/page/motion.js draws: the motion over time [s, m, rad], the positions of
-/// wheels and struts on the car, and the profile of the road. Struts are drawn between their mounts
-/// at nominal trim, shortened by their deflection. The history of `results` holds all channels of a
-/// car.
-Json make_motion(const Case& c, const LaneResults& results);
+/// wheels and struts on the car, and the road under both tracks. Struts are drawn between their
+/// mounts at nominal trim, shortened by their deflection. The history of `results` holds all
+/// channels of a car.
+Json make_motion(const Case& c, const LaneResults& results, const std::optional<OtherRun>& other);
 
 /// Motion of body and suspension, forces of dampers and tires, over time.
-Chart make_motion_curves(const LaneResults& results);
+Chart make_motion_curves(const LaneResults& results, const std::optional<OtherRun>& other);
 
 }  // namespace strut

@@ -80,6 +80,12 @@ SimulateOptions read_simulate_options(const Arguments& arguments) {
     throw arguments.usage_error("--output: missing; name the file to write with -o");
   options.output = arguments.text("output");
   if (arguments.has("report")) options.report = arguments.text("report");
+  if (arguments.has("beside")) {
+    options.beside = arguments.text("beside");
+    if (options.report.empty()) {
+      throw arguments.usage_error("--beside: draws a run in the report; needs --report DIR");
+    }
+  }
   if (arguments.has("channels")) options.channels = split_list(arguments.text("channels"));
   if (!options.report.empty()) check_report(options);
   if (options.kinematics) {
@@ -123,6 +129,12 @@ RunFormat check_output(const SimulateOptions& options) {
   check_output_file("output", options.output,
                     list_files_read({options.source.vehicle, options.source.maneuver}),
                     options.force);
+  std::error_code ignored;
+  if (!options.beside.empty() &&
+      std::filesystem::equivalent(options.output, options.beside, ignored)) {
+    throw InputError(fmt::format("--output = {}: is the run of --beside; name another file",
+                                 options.output.string()));
+  }
   return format;
 }
 

@@ -21,6 +21,7 @@ struct SimulateOptions {
   CaseSource source;
   std::filesystem::path output;
   std::filesystem::path report;  // folder; empty: none
+  std::filesystem::path beside;  // another run, drawn over this one in the report; empty: none
   Integrator integrator = Integrator::kRk4;
   IntegrateOptions integrate;
   bool chose_step = false;            // --step is given

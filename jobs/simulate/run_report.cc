@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "jobs/simulate/motion.h"
+#include "jobs/simulate/ride.h"
+#include "model_files/parameters.h"
 #include "report/figures.h"
 #include "report/page_file.h"
 
@@ -12,16 +14,63 @@ namespace strut {
 namespace {
 
 ReportTable make_parameter_table(const RunRecord& run) {
-  ReportTable table{"Parameters", {"name", "description", "value", "unit"}, {}, {}, 2};
+  ReportTable table{"All parameters", {"name", "description", "value", "unit"}, {}, {}, 2};
   for (const RunParameter& p : run.parameters) {
     table.rows.push_back({p.name, p.description, format_short(p.value), p.unit});
   }
+  table.is_folded = true;
   return table;
+}
+
+/// The parameters that --set changed; without rows where it changed none.
+ReportTable make_change_table(const CaseSource& source, const Case& c) {
+  ReportTable table{"Changed by --set", {"name", "description", "file", "here", "unit"}, {}, {}, 2};
+  if (source.settings.empty()) return table;
+  const Case file = load_case({source.vehicle, source.maneuver, {}});
+  for (const ParameterInfo* p : list_parameters_in_use(c)) {
+    const double before = p->get(file), after = p->get(c);
+    if (before == after || (std::isnan(before) && std::isnan(after))) continue;
+    table.rows.push_back(
+        {p->name, p->description, format_short(before), format_short(after), p->unit});
+  }
+  return table;
+}
+
+ReportTable make_ride_table(const Ride& ride) {
+  ReportTable table{"Figures of merit", {"quantity", "value", "unit"}};
+  const auto add = [&](const std::string& quantity, double value, const char* unit) {
+    table.rows.push_back({quantity, format_short(value), unit});
+  };
+  add("peak vertical acceleration of the body", ride.peak, "m/s\u00b2");
+  add("its root mean square", ride.rms, "m/s\u00b2");
+  if (ride.weighted) {
+    add("weighted by ISO 2631-1 (W_k), root mean square", *ride.weighted, "m/s\u00b2");
+  }
+  for (int axle = 0; axle < kAxles; ++axle) {
+    const AxleRide& a = ride.axles[static_cast<std::size_t>(axle)];
+    const std::string name = std::string(" ") + kAxleNames[static_cast<std::size_t>(axle)];
+    add("suspension travel," + name + " (of \u00b1100 mm)", 1e3 * a.travel, "mm");
+    add("tire load variation," + name + " (rms over mean)", 100.0 * a.load_variation, "%");
+    add("a wheel off the road," + name, 1e3 * a.airborne, "ms");
+  }
+  return table;
+}
+
+std::vector<KeyNumber> make_key_numbers(const Ride& ride) {
+  std::vector<KeyNumber> numbers = {
+      {fmt::format("{:.2f} m/s\u00b2", ride.peak), "peak vertical acceleration"}};
+  if (ride.weighted) {
+    numbers.push_back({fmt::format("{:.2f} m/s\u00b2", *ride.weighted), "weighted by ISO 2631-1"});
+  }
+  const double travel = std::max(ride.axles[kFront].travel, ride.axles[kRear].travel);
+  numbers.push_back({fmt::format("{:.0f} mm", 1e3 * travel), "suspension travel used of 100 mm"});
+  return numbers;
 }
 
 ReportTable make_source_table(const RunRecord& run) {
   ReportTable table{"Provenance", {"name", "value"}, {}, {}, 2};
   for (const auto& [name, value] : run.provenance) table.rows.push_back({name, value});
+  table.is_folded = true;
   return table;
 }
 
@@ -35,7 +84,10 @@ std::string describe_road(const RoadSpec& road) {
   std::string text;
   constexpr double kMinHole = 5e-5;  // m; the spline of a table overshoots its points by less
   if (high > 0.0 || low > -kMinHole) {
-    text = fmt::format("a bump of {} mm", format_short(1e3 * high));
+    const std::string bumps = road.count > 1 ? fmt::format("{} bumps, {} m apart,", road.count,
+                                                           format_short(road.spacing))
+                                             : "a bump";
+    text = fmt::format("{} of {} mm", bumps, format_short(1e3 * high));
   }
   if (low <= -kMinHole) {
     text += fmt::format("{}a hole of {} mm", text.empty() ? "" : " and ", format_short(-1e3 * low));
@@ -47,32 +99,43 @@ std::string describe_road(const RoadSpec& road) {
 
 std::string describe(const Case& c) {
   const RoadSpec& road = c.maneuver.road;
-  const std::string where =
-      road.shape == BumpShape::kNone ? "on a flat road" : "over " + describe_road(road);
+  const bool is_rough = c.maneuver.profile.data != nullptr;
+  std::string where = is_rough ? "on a rough road" : "on a flat road";
+  if (road.shape != BumpShape::kNone) {
+    where = "over " + describe_road(road) + (is_rough ? " on a rough road" : "");
+  }
   return fmt::format("{} at {} m/s {}.", c.vehicle.name, format_short(c.maneuver.speed), where);
 }
 
 }  // namespace
 
 void write_run_report(const std::filesystem::path& folder, const CaseSource& source, const Case& c,
-                      const RunRecord& run) {
+                      const RunRecord& run, double rate, const std::optional<OtherRun>& other) {
   const PageFolder out{folder};
   clear_page_folder(out, out.page());
   const FigureDrawer drawer(out.make());
   ReportSection motion{"Motion"};
-  motion.motions = {drawer.draw_motion(make_motion(c, run.results), "motion",
-                                       "The car drives to the right; the wheels of its right side "
-                                       "are solid, those of its left side, "
-                                       "which is farther away, dashed. Springs have their "
-                                       "simulated length; their mounts are drawn at "
-                                       "their positions at nominal trim.")};
-  drawer.draw_all({make_motion_curves(run.results)}, motion);
-  ReportPage page{
-      "Run of " + source.vehicle.filename().string(),
-      {describe(c)},
-      {std::move(motion), {"Parameters", {}, {make_parameter_table(run), make_source_table(run)}}},
-      make_report_footer()};
+  std::string caption =
+      "The car drives to the right; the wheels of its right side are solid, those of its left "
+      "side, "
+      "which is farther away, dashed. Springs have their simulated length; their mounts are drawn "
+      "at their positions at nominal trim. Below, the rear axle from behind.";
+  if (other) caption += fmt::format(" {} is drawn over it, dotted.", other->name);
+  motion.motions = {drawer.draw_motion(make_motion(c, run.results, other), "motion", caption)};
+  drawer.draw_all({make_motion_curves(run.results, other)}, motion);
+  const Ride ride = calc_ride(run.results, rate);
+  ReportSection parameters{"Parameters"};
+  if (ReportTable changes = make_change_table(source, c); !changes.rows.empty()) {
+    parameters.tables.push_back(std::move(changes));
+  }
+  parameters.tables.push_back(make_parameter_table(run));
+  parameters.tables.push_back(make_source_table(run));
+  ReportPage page{"Run of " + source.vehicle.filename().string(),
+                  {describe(c)},
+                  {std::move(motion), {"Ride", {}, {make_ride_table(ride)}}, std::move(parameters)},
+                  make_report_footer()};
   page.of = kRunContent.name;
+  page.key_numbers = make_key_numbers(ride);
   write_page(out, page);
 }
 

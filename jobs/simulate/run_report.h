@@ -2,16 +2,17 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
+#include <optional>
 
+#include "jobs/simulate/motion.h"
 #include "jobs/simulate/run_file.h"
 #include "model/car/case.h"
 
 namespace strut {
 
-/// Writes FOLDER/report.html and its figures. Throws EnvironmentError.
+/// Writes FOLDER/report.html and its figures; `rate` [Hz]: of the run's history; `other`: a run to
+/// be drawn over it. Throws EnvironmentError.
 void write_run_report(const std::filesystem::path& folder, const CaseSource& source, const Case& c,
-                      const RunRecord& run);
+                      const RunRecord& run, double rate, const std::optional<OtherRun>& other);
 
 }  // namespace strut

@@ -197,6 +197,18 @@ void note_unsealed_files(const StudyFolder& folder, const StudyRequest& request)
   }
 }
 
+std::vector<KeyNumber> make_key_numbers(const StudySummary& s) {
+  std::vector<KeyNumber> numbers;
+  if (s.errors > 0) {
+    numbers.push_back({fmt::format("{} of {}", s.errors_held, s.errors),
+                       "errors at most a tenth of the published ones, " + s.preload});
+    numbers.push_back(
+        {fmt::format("{:.2g}", s.median_ratio), "of the published error, in the median"});
+  }
+  numbers.push_back({fmt::format("{} of {}", s.gaps_held, s.gaps), "with 1 - R2 at most 1e-4"});
+  return numbers;
+}
+
 }  // namespace
 
 StudyResults write_study_output(const StudyFolder& folder, const StudyRequest& request) {
@@ -206,8 +218,9 @@ StudyResults write_study_output(const StudyFolder& folder, const StudyRequest& r
   const FigureDrawer drawer(Folder(folder.root));
   ReportPage page;
   page.title = request.title;
-  for (const StudySummary& s : summarize(request, results))
-    page.lead.push_back(describe_summary(s));
+  const std::vector<StudySummary> summaries = summarize(request, results);
+  for (const StudySummary& s : summaries) page.lead.push_back(describe_summary(s));
+  if (!summaries.empty()) page.key_numbers = make_key_numbers(summaries.front());
   page.sections = {make_summary_section(request, results), make_method(folder, request)};
   for (std::size_t p = 0; p < request.preloads.size(); ++p) {
     page.sections.push_back(make_preload_section(folder, request, results, p, drawer));

@@ -68,17 +68,24 @@ const waiting = setInterval(() => {
   if (!root) return;
   clearInterval(waiting);
   const scene = JSON.parse(root.querySelector("script").textContent);
-  const [slider, scale] = [root.querySelector("input"), root.querySelector("select")];
+  const findScale = (at) => at.querySelector("select[aria-label^='how much']");
+  const [slider, scale] = [root.querySelector("input"), findScale(root)];
   const expect = (holds, ...words) => holds || console.error(slider.value, scale.value, ...words);
   const isNear = (a, b, width) => Math.abs(a - b) < width;
   const readPoints = (shape) => shape.getAttribute("points").trim().split(" ").map((p) => p.split(",").map(Number));
-  const readCircle = (circle) => ["cx", "cy", "r"].map((key) => Number(circle.getAttribute(key)));
+  // Center and radius of a tire, which is flat where it stands on the road.
+  const readWheel = (rim) => {
+    const points = readPoints(rim), xs = points.map(([x]) => x), ys = points.map(([, y]) => y);
+    const radius = 0.5 * (Math.max(...xs) - Math.min(...xs));
+    return [0.5 * (Math.max(...xs) + Math.min(...xs)), Math.min(...ys) + radius, radius];
+  };
   const isDashed = (shape) => shape.hasAttribute("stroke-dasharray");
   const read = (at = root) => {
-    const rims = [...at.querySelectorAll("circle")].filter((circle) => readCircle(circle)[2] > 0.2);
-    const [road, ...springs] = [...at.querySelectorAll("polyline")];
-    return {wheels: rims.map(readCircle), dashed: [road, ...rims].map(isDashed), road: readPoints(road),
-            springs: springs.map(readPoints), body: readPoints(at.querySelector("polygon"))};
+    const side = at.querySelector("svg");
+    const rims = [...side.querySelectorAll(".rim")];
+    const [road, ...springs] = [...side.querySelectorAll("polyline")];
+    return {wheels: rims.map(readWheel), dashed: [road, ...rims].map(isDashed), road: readPoints(road),
+            springs: springs.map(readPoints), body: readPoints(side.querySelector("polygon"))};
   };
   const show = (frame, times) => {
     scale.value = times;
@@ -99,10 +106,20 @@ const waiting = setInterval(() => {
   const top = first.road.reduce((a, b) => b[1] < a[1] ? b : a);
   const rear = Math.min(...first.wheels.map(([x]) => x));
   expect(isNear(rear, top[0], 0.025), "rear wheels are on the bump", rear, top);
+  const findRoad = (x) => {
+    const i = first.road.findIndex(([at]) => at > x);
+    const [[x0, y0], [x1, y1]] = [first.road[i - 1], first.road[i]];
+    return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+  };
+  for (const rim of root.querySelectorAll("svg:not(.rear) .rim")) {
+    for (const [x, y] of readPoints(rim)) expect(y < findRoad(x) + 2e-3, "tires do not sink into the road", x, y);
+  }
   for (const [x, y, r] of first.wheels) {
     const ground = isNear(x, rear, 0.01) ? top[1] : 0;
-    expect(y + r > ground && y + r < ground + 0.05, "tires are pressed into the road", x, y + r, ground);
+    expect(y + r > ground && y + r < ground + 0.05, "tires are pressed onto the road", x, y + r, ground);
   }
+  const behind = [...root.querySelectorAll("svg.rear rect")].map((rect) => Number(rect.getAttribute("x")));
+  expect(isNear(behind[1] - behind[0], 2 * scene.rear.half_track, 1e-6), "track from behind", behind);
 
   const down = scene.pitch.indexOf(Math.max(...scene.pitch));
   expect(scene.pitch[down] > 0.005, "pitch");
@@ -117,7 +134,7 @@ const waiting = setInterval(() => {
     for (let corner = 0; corner < 4; ++corner) {
       const axle = corner < 2 ? scene.front : scene.rear;
       const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
-      expect(isNear(shown.wheels[corner][1], -enlarge(scene.wheel_height[corner], times), 1e-9), "wheel", corner);
+      expect(isNear(shown.wheels[corner][1], -enlarge(scene.wheel_height[corner], times), 2e-4), "wheel", corner);
       expect(isNear(measure(shown.springs[corner]), length - enlarge(scene.deflection[corner], times), 3e-4), "spring", corner);
     }
   }
@@ -130,7 +147,7 @@ const waiting = setInterval(() => {
   text.textContent = JSON.stringify({...scene, deflection: far});
   deep.append(text);
   new MotionView(deep);
-  const choice = deep.querySelector("select");
+  const choice = findScale(deep);
   choice.value = 10;
   choice.dispatchEvent(new Event("change"));
   for (const spring of read(deep).springs) expect(spring[0][1] < spring.at(-1)[1], "springs hang below their mounts");
@@ -337,7 +354,9 @@ TEST_CASE("A run beside its report is no part of it", "[io]") {
   REQUIRE(test::run_program(simulate).code == 0);
   CHECK_THAT(test::read_text(folder / "report.html"),
              Contains("over a bump of 50 mm under the left wheels."));
-  CHECK_THAT(test::read_text(folder / "figures/motion.json"), Contains("\"road_side\": \"left\""));
+  const auto scene = test::parse_json(test::read_text(folder / "figures/motion.json"));
+  CHECK(scene.get_child("road").front().second.size() > 10);  // under the left wheels
+  CHECK(scene.get_child("road").back().second.empty());
   CHECK_THAT(test::read_text(folder / "figures/curves.csv"),
              Contains("\"height [m] over time [s]\""));
   const std::string run = test::read_text(folder / "run.csv");
@@ -353,6 +372,40 @@ TEST_CASE("A run beside its report is no part of it", "[io]") {
       make_simulate_command("one_sided", folder / "figures/curves.csv", folder / ""));
   CHECK(among.code == 2);
   CHECK_THAT(among.messages, Contains("among the figures of --report"));
+}
+
+TEST_CASE("Another run is drawn over a simulated one", "[io]") {
+  const TemporaryFolder folder;
+  const std::string simulate =
+      make_simulate_command("three_bumps", folder / "worn.csv", folder / "worn") +
+      " --set front_damping=900 --beside ";
+  folder.write("measured.csv",
+               "time [ms],body_position_z [mm],pitch_angle [deg]\n0,540,0.1\n500,545,0.2\n"
+               "1000,550,0.3\n");
+  REQUIRE(test::run_program(simulate + (folder / "measured.csv").string()).code == 0);
+  const std::string figures = folder / "worn/figures/";
+  const auto other = test::parse_json(test::read_text(figures + "motion.json")).get_child("other");
+  CHECK(other.get<std::string>("name") == "measured.csv");
+  CHECK(std::stod(other.get_child("height").front().second.data()) == Approx(0.54));
+  CHECK(other.get_child("height").back().second.data() == "null");  // the record ends at 1 s
+  CHECK(other.get_child("wheel_height").front().second.data() == "null");
+  CHECK_THAT(test::read_text(figures + "curves.csv"), Contains("\"measured.csv\""));
+  const std::string page = test::read_text(folder / "worn/report.html");
+  CHECK_THAT(page,
+             Contains("Changed by --set") && Contains("<td class=\"word\">front_damping</td>"));
+  CHECK_THAT(page,
+             Contains("weighted by ISO 2631-1") && Contains("over 3 bumps, 6 m apart, of 60 mm"));
+  test::check_page(folder / "worn/report.html", 1);
+  const auto refuse = [&](const std::string& text, const std::string& told) {
+    const test::Outcome outcome =
+        test::run_program(simulate + folder.write("other.csv", text).string() + " --force");
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.messages, Contains("other.csv") && Contains(told));
+  };
+  refuse("time,speed\n0,1\n1,2\n", "body_position_z");
+  refuse("time,body_position_z\n0,1\n", "sample");
+  refuse("time,body_position_z\n1,1\n0,2\n", "ascend");
+  refuse("t,body_position_z\n1,1\n2,2\n", "time");
 }
 
 TEST_CASE("A run's report replaces no page but an earlier run's", "[io]") {

@@ -239,6 +239,20 @@ TEST_CASE("A car's crossing is compared axle by axle", "[io]") {
   // A worn rear damper shows when the rear axle crosses, not before.
   CHECK(time.get<double>("ring-down.rms") > 5.0 * time.get<double>("approach.rms"));
   CHECK(json.get<bool>("adequate"));
+
+  const std::string rough = kExamples + "/maneuvers/rough_road.toml";
+  const auto on_rough_road = [&](const std::string& file, const std::string& use) {
+    return "[[run]]\nfile = \"" + file + "\"\nuse = \"" + use + "\"\nmaneuver = \"" + rough +
+           "\"\n";
+  };
+  const auto known = folder.write(
+      "known.toml", "model = \"" + vehicle +
+                        "\"\n[columns]\ntime = {}\nimu_rate_y = { noise = 1e-3 }\n[fit]\n"
+                        "free = [\"rear_damping\"]\n" +
+                        on_rough_road("a.csv", "fit") + on_rough_road("b.h5", "hold_out"));
+  const test::Outcome refused = run_program(compare(known, folder / "road"));
+  CHECK(refused.code == 2);
+  CHECK_THAT(refused.messages, Contains("rough_road.toml: road: a campaign finds"));
 }
 
 }  // namespace

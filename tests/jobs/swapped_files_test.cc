@@ -64,5 +64,29 @@ TEST_CASE("Results never replace a vehicle, maneuver, sweep or tire", "[io]") {
   CHECK(test::read_text(car) == "type = 1");
 }
 
+TEST_CASE("The option --force replaces a result of the same kind, and of no other", "[io]") {
+  const test::TemporaryFolder folder;
+  const std::string sweep = (folder / "sweep").string(), merged = (folder / "cars.h5").string(),
+                    model = (folder / "model.h5").string();
+  const auto run = [](const std::string& command) { return test::run_program(command); };
+  REQUIRE(run("plan " + kExamples + "api/small_sweep.toml -o " + sweep).code == 0);
+  REQUIRE(run("run " + sweep).code == 0);
+  REQUIRE(run("merge " + sweep + " -o " + merged).code == 0);
+  const std::string train = "train " + sweep + " --hidden 3 --epochs 2 -o ";
+  REQUIRE(run(train + model).code == 0);
+  const std::string bytes = test::read_text(model);
+  const std::string simulate = "simulate " + kExamples + "vehicles/paper_sedan.toml " + kExamples +
+                               "maneuvers/bump_20mps.toml --force -o ";
+  for (const std::string& command : {simulate + model, "merge " + sweep + " --force -o " + model}) {
+    const test::Outcome outcome = run(command);
+    INFO(command << "\n" << outcome.messages);
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.messages, Contains("which this command does not write"));
+  }
+  CHECK(test::read_text(model) == bytes);
+  CHECK(run(train + model + " --force").code == 0);
+  CHECK(run("merge " + sweep + " --force -o " + merged).code == 0);
+}
+
 }  // namespace
 }  // namespace strut

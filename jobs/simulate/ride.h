@@ -1,0 +1,36 @@
+// Figures of merit of a ride: comfort by ISO 2631-1, travel, road holding.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "model/car/spec.h"
+#include "model/kernel/simulation.h"
+
+namespace strut {
+
+/// The acceleration [m/s^2] weighted by W_k of ISO 2631-1:1997, Annex A: vertical, for a seated
+/// person. Starts from rest. `rate` in Hz, at least kMinWeightedRate.
+std::vector<double> weight_acceleration(const std::vector<double>& acceleration, double rate);
+
+/// Below, the low-pass at 100 Hz would not be what the standard says.
+inline constexpr double kMinWeightedRate = 400.0;
+
+struct AxleRide {
+  double travel = 0.0;          // m, largest deflection of the suspension from nominal trim
+  double load_variation = 0.0;  // rms of a tire's load about its mean, over the mean
+  double airborne = 0.0;        // s, with at least one wheel off the road
+};
+
+struct Ride {
+  double peak = 0.0;               // m/s^2, of the body, vertical
+  double rms = 0.0;                // m/s^2
+  std::optional<double> weighted;  // m/s^2, rms of the weighted acceleration
+  std::array<AxleRide, kAxles> axles;
+};
+
+/// `rate` [Hz]: of the history of `results`, which holds all channels of a car.
+Ride calc_ride(const LaneResults& results, double rate);
+
+}  // namespace strut
