@@ -7,9 +7,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "base/error/input_error.h"
 #include "base/text/build_info.h"
@@ -19,11 +22,13 @@
 #include "model_files/find_channel.h"
 #include "model_files/parameters.h"
 #include "model_files/read_maneuver.h"
+#include "model_files/read_rig.h"
 #include "model_files/read_vehicle.h"
 #include "python/core/background.h"
 #include "python/core/dataset_arrays.h"
 #include "python/core/many_runs.h"
 #include "python/core/network.h"
+#include "python/core/rig_run.h"
 #include "python/core/settings.h"
 #include "python/core/single_run.h"
 #include "python/core/sweep_run.h"
@@ -50,6 +55,19 @@ Case make_case(const Car& car, const std::optional<fs::path>& maneuver, const Se
   return c;
 }
 
+/// A rig, without inputs until it is simulated.
+struct RigModel {
+  fs::path path;
+  RigSpec spec;
+};
+
+RigModel read_rig_file(const fs::path& path) {
+  if (!find_rig_kind(path)) {
+    throw InputError(path.string() + ": a vehicle; must be a rig: strut.load reads vehicles");
+  }
+  return {path, read_rig(path)};
+}
+
 /// An array of `values` that lives as long as the array does.
 template <class Number>
 py::array own(std::vector<Number> values, std::vector<py::ssize_t> shape) {
@@ -68,6 +86,11 @@ struct Run {
     return direction < 0 ? *results : results->slopes.at(static_cast<std::size_t>(direction));
   }
   /// Samples of the `column`-th channel, or of its derivative along a direction.
+  double get_snapshot(int channel, int direction) const {
+    const LaneResults& from = get(direction);
+    return from.snapshot.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                 : from.get_snapshot(channel);
+  }
   py::array view(int column, int direction) const {
     const LaneResults& from = get(direction);
     const auto row = py::ssize_t{from.recorded_count()} * from.lanes;
@@ -120,6 +143,57 @@ Run simulate(const Car& car, const fs::path& maneuver, const Settings& settings,
     run.results = std::make_shared<const LaneResults>(simulate_single(request));
   });
   return run;
+}
+
+/// A recorded input: name, times [s], values [SI].
+using RecordedInput = std::tuple<std::string, std::vector<double>, std::vector<double>>;
+
+/// Without a maneuver's file the inputs are those given, as splines, until the last of them ends.
+Run simulate_rig_file(const RigModel& rig, const std::optional<fs::path>& maneuver,
+                      const std::vector<RecordedInput>& inputs, std::optional<double> duration,
+                      const Settings& settings, double rate,
+                      const std::vector<std::string>& channels, const IntegrationWords& words) {
+  RigSpec spec = rig.spec;
+  for (const auto& [name, value] : settings) set_rig_parameter(spec, name, value);
+  RigManeuver drive;
+  if (maneuver) drive = read_rig_maneuver(*maneuver, spec.kind);
+  for (const auto& [name, times, values] : inputs) {
+    drive.inputs.push_back(make_signal(name, times, values, Interpolation::kSpline));
+    drive.duration = std::max(drive.duration, drive.inputs.back().end);
+  }
+  if (duration) drive.duration = *duration;
+  if (!(drive.duration > 0.0)) {
+    throw InputError(fmt::format("duration = {} s: must be > 0", drive.duration));
+  }
+  check_samples(rate, drive.duration, static_cast<double>(channels.size()));
+  Run run{nullptr, {}, 1.0 / rate};
+  for (const std::string& name : channels) {
+    run.channels.push_back(require_channel(get_rig_info(spec.kind), name));
+  }
+  run_in_background([&](std::atomic<bool>&) {
+    run.results =
+        std::make_shared<const LaneResults>(simulate_rig_run(spec, drive, words, run.interval));
+  });
+  return run;
+}
+
+py::list list_rig_parameter_table(const RigModel& rig) {
+  py::list list;
+  for (const RigParameter& p : list_rig_parameters(rig.spec.kind)) {
+    list.append(py::make_tuple(p.name, p.unit, p.description, p.get(rig.spec), p.allowed.low,
+                               p.allowed.high, false));
+  }
+  return list;
+}
+
+/// name, unit, description.
+template <class Infos>
+py::list list_infos(const Infos& infos) {
+  py::list list;
+  for (const auto& info : infos) {
+    list.append(py::make_tuple(info.name, info.unit, info.description));
+  }
+  return list;
 }
 
 py::dict simulate_cases(const Car& car, const fs::path& maneuver, const Settings& settings,
@@ -176,13 +250,7 @@ py::list list_case_parameters(const Car& car, const std::optional<fs::path>& man
   return list;
 }
 
-py::list list_channels() {
-  py::list list;
-  for (const ChannelInfo& c : list_car_channels()) {
-    list.append(py::make_tuple(c.name, c.unit, c.description));
-  }
-  return list;
-}
+py::list list_channels() { return list_infos(list_car_channels()); }
 
 py::list list_statuses() {
   py::list list;
@@ -233,6 +301,7 @@ void translate_errors() {
 PYBIND11_MODULE(_core, m) {
   using strut::Car;
   using strut::IntegrationWords;
+  using strut::RigModel;
   using strut::Run;
   m.doc() = "The rooms of strut; use the package strut.";
   strut::translate_errors();
@@ -259,6 +328,22 @@ PYBIND11_MODULE(_core, m) {
            py::arg("parameters"), py::arg("values"), py::arg("channels"), py::arg("snapshot"),
            py::arg("rate"), py::arg("offset"), py::arg("threads"), py::arg("integration"));
 
+  py::class_<RigModel>(m, "Rig")
+      .def(py::init(&strut::read_rig_file), py::arg("path"))
+      .def_readonly("path", &RigModel::path)
+      .def("list_parameters", &strut::list_rig_parameter_table)
+      .def("list_channels",
+           [](const RigModel& r) {
+             return strut::list_infos(strut::get_rig_info(r.spec.kind).channels);
+           })
+      .def("list_inputs",
+           [](const RigModel& r) {
+             return strut::list_infos(strut::get_rig_info(r.spec.kind).inputs);
+           })
+      .def("simulate", &strut::simulate_rig_file, py::arg("maneuver"), py::arg("inputs"),
+           py::arg("duration"), py::arg("settings"), py::arg("rate"), py::arg("channels"),
+           py::arg("integration"));
+
   py::class_<Run>(m, "Run")
       .def("view", &Run::view, py::arg("column"), py::arg("direction") = -1)
       .def_readonly("interval", &Run::interval)
@@ -270,12 +355,7 @@ PYBIND11_MODULE(_core, m) {
           "event_time",
           [](const Run& r, int direction) { return r.get(direction).get_event_time(); },
           py::arg("direction") = -1)
-      .def(
-          "snapshot",
-          [](const Run& r, int channel, int direction) {
-            return r.get(direction).get_snapshot(channel);
-          },
-          py::arg("channel"), py::arg("direction") = -1);
+      .def("snapshot", &Run::get_snapshot, py::arg("channel"), py::arg("direction") = -1);
 
   m.def("list_channels", &strut::list_channels);
   m.def("list_statuses", &strut::list_statuses);

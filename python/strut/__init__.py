@@ -14,6 +14,7 @@ from . import _core
 from ._car import CHANNELS, PAPER_CHANNELS, STATUSES, Car, Channel, Parameter, Run, Runs, load
 from ._car import simulate_many
 from ._errors import EnvironmentError, Error, InputError
+from ._rig import Rig, load_rig
 from ._network import Network, compare, diagnose, evaluate, identify, train
 from ._sweep import Dataset, Sweep, read_dataset
 
@@ -22,6 +23,6 @@ __version__: str = _core.version
 
 __all__ = [
     "CHANNELS", "Car", "Channel", "Dataset", "EnvironmentError", "Error", "InputError", "Network",
-    "PAPER_CHANNELS", "Parameter", "Run", "Runs", "STATUSES", "Sweep", "compare", "diagnose",
-    "evaluate", "identify", "load", "read_dataset", "simulate_many", "train",
+    "PAPER_CHANNELS", "Parameter", "Rig", "Run", "Runs", "STATUSES", "Sweep", "compare", "diagnose",
+    "evaluate", "identify", "load", "load_rig", "read_dataset", "simulate_many", "train",
 ]

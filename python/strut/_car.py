@@ -51,12 +51,13 @@ _REASONS = dict(_core.list_statuses())
 _INDEX = {name: i for i, name in enumerate(CHANNELS)}
 
 
-def _list_channels(channels: str | Iterable[str] | None) -> list[str]:
-    names = list(CHANNELS) if channels is None else [channels] if isinstance(
+def list_names(channels: str | Iterable[str] | None, known: Mapping[str, Channel]) -> list[str]:
+    """The channels asked for, all if None. Raises InputError for an unknown one."""
+    names = list(known) if channels is None else [channels] if isinstance(
         channels, str) else list(channels)
     for name in names:
-        if name not in CHANNELS:
-            _refuse("channel", name, CHANNELS)
+        if name not in known:
+            _refuse("channel", name, known)
     return names
 
 
@@ -92,7 +93,7 @@ def make_array(
     return array
 
 
-def _make_number(name: str, value: SupportsFloat) -> float:
+def make_number(name: str, value: SupportsFloat) -> float:
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
@@ -103,15 +104,15 @@ def count_threads(threads: int | None) -> int:
     """The number given, or one for each processor. Raises InputError."""
     if threads is None:
         return len(os.sched_getaffinity(0))
-    number = _make_number("threads", threads)
+    number = make_number("threads", threads)
     if not 1 <= number <= 1024 or number != int(number):
         raise InputError(f"threads = {threads}: must be a whole number in [1, 1024]")
     return int(number)
 
 
-def _make_settings(settings: Mapping[str, SupportsFloat]) -> list[tuple[str, float]]:
+def make_settings(settings: Mapping[str, SupportsFloat]) -> list[tuple[str, float]]:
     """Numbers by name; everything that float() takes, but no arrays."""
-    return [(name, _make_number(name, value)) for name, value in settings.items()]
+    return [(name, make_number(name, value)) for name, value in settings.items()]
 
 
 def load(path: Path) -> Car:
@@ -179,16 +180,16 @@ class Car:
         Raises:
             InputError: unknown name, value out of range, a car that cannot stand or roll.
         """
-        names = _list_channels(channels)
+        names = list_names(channels, CHANNELS)
         derivatives = [derivatives] if isinstance(derivatives, str) else list(derivatives)
         if derivatives and closure is None:
             closure = "table"
         integration = _core.Integration(
             integrator=integrator, step=step, coarse_step=coarse_step, closure=closure, spin=spin,
             events=events)
-        settings = _make_settings(parameters)
+        settings = make_settings(parameters)
         run = self._core.simulate(
-            os.fspath(maneuver), settings, _make_number("rate", rate), names, derivatives, integration)
+            os.fspath(maneuver), settings, make_number("rate", rate), names, derivatives, integration)
         return Run(run, names, derivatives, dict(settings))
 
 
@@ -203,13 +204,14 @@ class Run(Mapping[str, npt.NDArray[np.float64]]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         stored = _StoredRun(self._core, len(self._columns), len(self._directions))
-        return Run, (stored, list(self._columns), list(self._directions), self.parameters)
+        return Run, (stored, list(self._columns), list(self._directions), self.parameters, self.channels)
 
     def __init__(
         self, core: _core.Run | _StoredRun, channels: Sequence[str], derivatives: Sequence[str],
-        parameters: dict[str, float]
+        parameters: dict[str, float], known: Mapping[str, Channel] = CHANNELS
     ) -> None:
         self._core = core
+        self.channels = dict(known)  # of the model, by name: units
         self.parameters = parameters  # as given, by name
         self._columns = {name: i for i, name in enumerate(channels)}
         self._directions = {name: i for i, name in enumerate(derivatives)}
@@ -265,7 +267,7 @@ class Run(Mapping[str, npt.NDArray[np.float64]]):
 
     @property
     def snapshot(self) -> dict[str, float]:
-        """Every channel at that time, by name."""
+        """Every channel of a car at that time, by name; NaN where there is none."""
         return {name: self._core.snapshot(i) for name, i in _INDEX.items()}
 
     def snapshot_derivative(self, parameter: str) -> dict[str, float]:
@@ -284,7 +286,7 @@ class Run(Mapping[str, npt.NDArray[np.float64]]):
         names = [name for name in self._columns if name != "time"]
         frame = pandas.DataFrame({name: self[name] for name in names},
                                  index=pandas.Index(self.time, name="time"))
-        frame.attrs["units"] = {name: CHANNELS[name].unit for name in names}
+        frame.attrs["units"] = {name: self.channels[name].unit for name in names}
         return frame
 
     def to_xarray(self) -> xarray.Dataset:
@@ -292,7 +294,7 @@ class Run(Mapping[str, npt.NDArray[np.float64]]):
         import xarray
 
         return xarray.Dataset(
-            {name: ("time", self[name], describe_column(CHANNELS[name])) for name in self._columns
+            {name: ("time", self[name], describe_column(self.channels[name])) for name in self._columns
              if name != "time"},
             coords={"time": ("time", self.time, {"units": "s"})},
             attrs={"status": self.status, **self.parameters})
@@ -376,19 +378,19 @@ def simulate_many(
             raise InputError(f"{name}: given twice, as array and as number")
     if not snapshot and rate is None:
         raise InputError("rate: must be given where snapshot is False, or nothing is recorded")
-    rate = None if rate is None else _make_number("rate", rate)
-    offset = _make_number("offset", offset)
+    rate = None if rate is None else make_number("rate", rate)
+    offset = make_number("offset", offset)
     if not np.isfinite(offset):
         raise InputError(f"offset = {offset} m: must be finite")
     threads = count_threads(threads)
     car = car if isinstance(car, Car) else load(car)
-    names = _list_channels(PAPER_CHANNELS if channels is None else channels)
+    names = list_names(PAPER_CHANNELS if channels is None else channels, CHANNELS)
     integration = _core.Integration(
         integrator=integrator, step=step, coarse_step=coarse_step, closure=closure, spin=spin,
         events=events)
     values = np.column_stack(list(arrays.values()))
     results = car._core.simulate_many(
-        os.fspath(maneuver), _make_settings(common), list(arrays), values, names, bool(snapshot),
+        os.fspath(maneuver), make_settings(common), list(arrays), values, names, bool(snapshot),
         rate, offset, threads, integration)
     return Runs(results, arrays, names, 0.0 if rate is None else 1.0 / rate)
 

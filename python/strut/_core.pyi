@@ -50,6 +50,23 @@ class Car:
         integration: Integration,
     ) -> dict[str, Any]: ...
 
+class Rig:
+    path: os.PathLike[str]
+    def __init__(self, path: str) -> None: ...
+    def list_parameters(self) -> list[tuple[str, str, str, float, float, float, bool]]: ...
+    def list_channels(self) -> list[tuple[str, str, str]]: ...
+    def list_inputs(self) -> list[tuple[str, str, str]]: ...
+    def simulate(
+        self,
+        maneuver: Optional[str],
+        inputs: Sequence[tuple[str, npt.NDArray[np.float64], npt.NDArray[np.float64]]],
+        duration: Optional[float],
+        settings: Sequence[tuple[str, float]],
+        rate: float,
+        channels: Sequence[str],
+        integration: Integration,
+    ) -> Run: ...
+
 class Run:
     interval: float
     sample_count: int
