@@ -10,12 +10,23 @@ namespace {
 // px
 constexpr double kLeftLabel = 85.0, kRightEdge = 25.0, kValueScale = 95.0;
 constexpr double kBottomLabel = 60.0, kTics = 28.0, kTitle = 30.0, kNoTitle = 12.0;
-constexpr int kLegendRow = 26, kLegendEntry = 200;
+constexpr int kLegendRow = 26, kLegendLine = 55;
+constexpr double kLegendLetter = 7.0;
 
 int calc_legend_height(const Chart& chart) {
-  const int entries = static_cast<int>(chart.list_legend().size());
-  const int columns = std::max(1, chart.width / kLegendEntry);
-  return entries == 0 ? 0 : kLegendRow * (1 + (entries - 1) / columns) + kLegendRow / 2;
+  const std::vector<const ChartSeries*> entries = chart.list_legend();
+  if (entries.empty()) return 0;
+  int rows = 1;
+  double used = 0.0;  // px of the row
+  for (const ChartSeries* entry : entries) {
+    const double width = kLegendLine + kLegendLetter * static_cast<double>(entry->name.size());
+    if (used > 0.0 && used + width > chart.width - kLeftLabel) {
+      ++rows;
+      used = 0.0;
+    }
+    used += width;
+  }
+  return kLegendRow * rows + kLegendRow / 2;
 }
 
 /// Indices of the minimum, the maximum and a gap, if any, of y[begin, end).

@@ -40,13 +40,21 @@ std::string make_cell(const std::string& text) {
                      escape_html(text.substr(end + 1)));
 }
 
+/// Tables with more columns become lists of their rows on a narrow screen, each cell behind the
+/// name of its column.
+constexpr std::size_t kMaxNarrowColumns = 3;
+
+/// `names`: of the columns, for narrow screens; empty: none.
 std::string make_cells(const std::vector<std::string>& cells, const std::string& tag,
-                       std::size_t text_columns) {
+                       std::size_t text_columns, const std::vector<std::string>& names = {}) {
   std::string text = "<tr>";
   for (std::size_t c = 0; c < cells.size(); ++c) {
     std::string classes = c < text_columns ? "word" : "";
     if (cells[c].size() > kLongText) classes += " long";
-    const std::string attribute = classes.empty() ? "" : fmt::format(" class=\"{}\"", classes);
+    std::string attribute = classes.empty() ? "" : fmt::format(" class=\"{}\"", classes);
+    if (c < names.size() && !cells[c].empty()) {
+      attribute += fmt::format(" data-name=\"{}\"", escape_html(replace_all(names[c], "\n", " ")));
+    }
     text += fmt::format("<{0}{1}>{2}</{0}>", tag, attribute, make_cell(cells[c]));
   }
   return text + "</tr>\n";
@@ -59,11 +67,16 @@ std::string fold(const std::string& summary, const std::string& content) {
 }
 
 std::string make_table(const ReportTable& table) {
-  std::string text = "<div class=\"wide\"><table>\n";
+  const bool becomes_list = table.header.size() > kMaxNarrowColumns;
+  std::string text =
+      fmt::format("<div class=\"wide\"><table{}>\n", becomes_list ? " class=\"list\"" : "");
   if (!table.is_folded) text += fmt::format("<caption>{}</caption>\n", escape_html(table.caption));
   text += fmt::format("<thead>{}</thead>\n<tbody>\n",
                       make_cells(table.header, "th", table.text_columns));
-  for (const auto& row : table.rows) text += make_cells(row, "td", table.text_columns);
+  for (const auto& row : table.rows) {
+    text += make_cells(row, "td", table.text_columns,
+                       becomes_list ? table.header : std::vector<std::string>{});
+  }
   text += "</tbody></table>\n";
   for (const std::string& note : table.notes) {
     text += fmt::format("<p class=\"note\">{}</p>\n", escape_html(note));

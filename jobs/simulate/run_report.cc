@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "jobs/simulate/ride.h"
 #include "model_files/parameters.h"
@@ -27,11 +26,10 @@ ReportTable make_change_table(const CaseSource& source, const Case& c) {
   ReportTable table{"Changed by --set", {"name", "description", "file", "here", "unit"}, {}, {}, 2};
   if (source.settings.empty()) return table;
   const Case file = load_case({source.vehicle, source.maneuver, {}});
-  for (const ParameterInfo* p : list_parameters_in_use(c)) {
-    const double before = p->get(file), after = p->get(c);
-    if (before == after || (std::isnan(before) && std::isnan(after))) continue;
+  for (const std::string& setting : source.settings) {
+    const ParameterInfo& p = find_parameter(parse_setting(setting).name);
     table.rows.push_back(
-        {p->name, p->description, format_short(before), format_short(after), p->unit});
+        {p.name, p.description, format_short(p.get(file)), format_short(p.get(c)), p.unit});
   }
   return table;
 }

@@ -5,7 +5,8 @@
 
 In the text: tags that close, names that are there once, nothing fetched from elsewhere, numbers that
 are JSON. In headless Chromium: every chart drawn and every series of it, the car in
-motion where there is one, nothing said on the console, no button that would send the numbers away.
+motion where there is one, nothing said on the console, no button that would send the numbers away; nothing
+that a screen of 420 px cuts.
 Exit 77: Chromium is not there; the text was checked.
 """
 
@@ -88,13 +89,37 @@ def find_browser():
     return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
-def draw(browser, path):
+# A page as a phone shows it. Says in data-cut what is wider than its place.
+PHONE = """<!DOCTYPE html><meta charset="utf-8"><iframe src="{page}" style="width:420px;height:900px"></iframe><script>
+const frame = document.querySelector("iframe");
+const waiting = setInterval(() => {{
+  const page = frame.contentDocument;
+  if (!page || !page.body || ({has_charts} && !page.body.dataset.charts)) return;
+  clearInterval(waiting);
+  const wide = [...page.querySelectorAll(".wide, figure, .keys, header")].filter((e) => e.scrollWidth > e.clientWidth + 1);
+  const cut = wide.map((e) => e.textContent.trim().slice(0, 60) + ": " + e.scrollWidth);
+  if (page.documentElement.scrollWidth > 421) cut.push("the page: " + page.documentElement.scrollWidth);
+  document.body.dataset.cut = cut.join("; ") || "nothing";
+}}, 50);
+</script>"""
+
+
+def draw_on_phone(browser, path, has_charts):
+    """What a screen of 420 px cuts."""
+    with tempfile.TemporaryDirectory() as folder:
+        phone = pathlib.Path(folder, "phone.html")
+        phone.write_text(PHONE.format(page=path.resolve().as_uri(), has_charts="true" if has_charts else "false"))
+        dom, _ = draw(browser, phone, "--allow-file-access-from-files")
+    return html.unescape(re.search(r'data-cut="([^"]*)"', dom).group(1))
+
+
+def draw(browser, path, *options):
     """The page after its scripts have run, and what they said."""
     with tempfile.TemporaryDirectory() as profile:
         done = subprocess.run(
             [browser, "--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--no-first-run",
              f"--user-data-dir={profile}", "--host-resolver-rules=MAP * ~NOTFOUND",
-             "--virtual-time-budget=120000", "--enable-logging=stderr", "--log-level=0", "--dump-dom",
+             "--virtual-time-budget=120000", "--enable-logging=stderr", "--log-level=0", "--dump-dom", *options,
              path.resolve().as_uri()],
             capture_output=True, text=True, timeout=240, check=True)
     said = [line for line in done.stderr.splitlines() if "CONSOLE" in line and not HARMLESS.search(line)]
@@ -120,6 +145,8 @@ def main():
     assert drawn == page.motions, f"{drawn} of {page.motions} motions drawn"
     assert dom.count('data-title="Numbers as CSV"') == wanted
     assert 'data-title="Share' not in dom, "a button sends the chart away"
+    cut = draw_on_phone(browser, path, bool(wanted))
+    assert cut == "nothing", f"wider than a screen of 420 px: {cut}"
     print(f"{wanted} charts with {series} flat series, {page.motions} motions")
     return 0
 
