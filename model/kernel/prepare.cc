@@ -125,7 +125,8 @@ PreparedCase CasePreparer::assemble(const Case& given, double snapshot_offset) {
   const CornerForceMaps* const maps[] = {&prepared.force_maps};
   fill_strut_elements(vehicle, maps);
   prepared.bump_center = calc_bump_center(car, c.maneuver);
-  prepared.trigger_x = prepared.bump_center + snapshot_offset;
+  const RoadSpec& road = c.maneuver.road;
+  prepared.trigger_x = prepared.bump_center + (road.count - 1) * road.spacing + snapshot_offset;
   prepared.duration = c.maneuver.duration;
   prepared.longest_step = calc_longest_step(c.vehicle, vehicle.numbers.effects);
   prepared.sensors = list_sensor_settings(c.vehicle.effects);

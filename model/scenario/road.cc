@@ -11,49 +11,39 @@
 #include <string>
 #include <vector>
 
-#include "model/error/model_error.h"
 #include "model/scenario/envelope.h"
 #include "model/scenario/footprint.h"
 #include "model/scenario/profile.h"
 #include "model/scenario/road_cells.h"
+#include "model/scenario/road_fault.h"
 
 namespace strut {
 namespace {
 
 // --- validation -----------------------------------------------------------------------------
 
-void require(bool ok, const std::string& field, double value, const std::string& allowed) {
-  if (ok) return;
-  throw ModelError(fmt::format("{} = {:g} is not allowed: {}", field, value, allowed),
-                   ModelFault::kRoad);
-}
-
-void require_range(const std::string& field, double value, double min, double max) {
-  if (value >= min && value <= max) return;
-  require(false, field, value, fmt::format("must lie in [{:g}, {:g}] m", min, max));
-}
-
 void validate_table_point(const RoadSpec& spec, std::size_t i) {
   const double x = spec.table_x[i], z = spec.table_z[i];
   const bool ahead = i == 0 || x - spec.table_x[i - 1] >= 1e-4;
   if (std::fabs(x) <= 20.0 && std::fabs(z) <= 0.5 && ahead) return;
-  require_range(fmt::format("road.table_x[{}]", i), x, -20.0, 20.0);
-  require_range(fmt::format("road.table_z[{}]", i), z, -0.5, 0.5);
-  require(ahead, fmt::format("road.table_x[{}]", i), x,
-          "must exceed the previous point by at least 0.0001 m");
+  require_road_range(fmt::format("road.table_x[{}]", i), x, -20.0, 20.0);
+  require_road_range(fmt::format("road.table_z[{}]", i), z, -0.5, 0.5);
+  require_road(ahead, fmt::format("road.table_x[{}]", i), x,
+               "must exceed the previous point by at least 0.0001 m");
 }
 
 void validate_table(const RoadSpec& spec) {
   const std::vector<double>&x = spec.table_x, &z = spec.table_z;
-  require(x.size() >= 3, "road.table_x, number of points", static_cast<double>(x.size()),
-          "a profile must have at least 3");
-  require(z.size() == x.size(), "road.table_z, number of points", static_cast<double>(z.size()),
-          fmt::format("must equal the {} of road.table_x", x.size()));
+  require_road(x.size() >= 3, "road.table_x, number of points", static_cast<double>(x.size()),
+               "a profile must have at least 3");
+  require_road(z.size() == x.size(), "road.table_z, number of points",
+               static_cast<double>(z.size()),
+               fmt::format("must equal the {} of road.table_x", x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) validate_table_point(spec, i);
-  require(std::fabs(z.front()) <= 1e-6, "road.table_z[0]", z.front(),
-          "a profile must start on the flat road, within 1e-6 m of 0");
-  require(std::fabs(z.back()) <= 1e-6, "road.table_z, last", z.back(),
-          "a profile must end on the flat road, within 1e-6 m of 0");
+  require_road(std::fabs(z.front()) <= 1e-6, "road.table_z[0]", z.front(),
+               "a profile must start on the flat road, within 1e-6 m of 0");
+  require_road(std::fabs(z.back()) <= 1e-6, "road.table_z, last", z.back(),
+               "a profile must end on the flat road, within 1e-6 m of 0");
 }
 
 // --- segments of a surface ------------------------------------------------------------------
@@ -98,7 +88,7 @@ void add_kinked_segment(const std::vector<Branch>& branches, std::size_t first, 
 }
 
 void require_few_segments(const Surface& surface) {
-  require(
+  require_road(
       surface.segments.size() <= 66, "road, number of kinks",
       static_cast<double>(surface.segments.size() - 1),
       "at most 65 events per crossing; set a footprint above 0, which needs none, or fewer bumps");
@@ -143,10 +133,11 @@ Surface make_smooth_surface(const std::vector<Branch>& branches, double footprin
 /// The surface of one bump again and again; all have the same cells.
 Surface repeat_surface(const Surface& one, const RoadSpec& spec) {
   const double reach = one.reach_end - one.reach_begin;
-  require(spec.spacing >= reach, "road.spacing", spec.spacing,
-          fmt::format("the tire touches one bump over {:.3f} m, and the next must begin behind it; "
-                      "give closer bumps as a table",
-                      reach));
+  require_road(
+      spec.spacing >= reach, "road.spacing", spec.spacing,
+      fmt::format("the tire touches one bump over {:.3f} m, and the next must begin behind it; "
+                  "give closer bumps as a table",
+                  reach));
   Surface row;
   row.cells = one.cells;
   row.reach_begin = one.reach_begin;
@@ -180,33 +171,35 @@ Surface make_flat_surface() {
 
 void validate(const RoadSpec& spec) {
   if (spec.shape == BumpShape::kNone) return;
-  require(spec.count >= 1 && spec.count <= 20, "road.count", spec.count, "must lie in [1, 20]");
-  if (spec.count > 1) require_range("road.spacing", spec.spacing, 0.01, 200.0);
+  require_road(spec.count >= 1 && spec.count <= 20, "road.count", spec.count,
+               "must lie in [1, 20]");
+  if (spec.count > 1) require_road_range("road.spacing", spec.spacing, 0.01, 200.0);
   if (spec.shape == BumpShape::kTable) return validate_table(spec);
-  require_range("road.length", spec.length, 0.001, 20.0);
-  require_range("road.height", spec.height, 0.0, 0.5);
+  require_road_range("road.length", spec.length, 0.001, 20.0);
+  require_road_range("road.height", spec.height, 0.0, 0.5);
   if (spec.shape == BumpShape::kArc) {
-    require(spec.height <= 0.5 * spec.length, "road.height", spec.height,
-            fmt::format("the height of an arc must be at most half its length, {:f} m",
-                        0.5 * spec.length));
+    require_road(spec.height <= 0.5 * spec.length, "road.height", spec.height,
+                 fmt::format("the height of an arc must be at most half its length, {:f} m",
+                             0.5 * spec.length));
   }
   if (spec.shape == BumpShape::kTrapezoid) {
-    require_range("road.ramp", spec.ramp, 1e-4, 0.5 * spec.length);
+    require_road_range("road.ramp", spec.ramp, 1e-4, 0.5 * spec.length);
   }
 }
 
 void validate(const ContactGeometry& contact) {
   if (contact.kind == ContactKind::kPoint) return;
-  require_range("tire.radius", contact.radius, 0.05, 2.0);
-  if (contact.footprint != 0.0) require_range("tire.footprint", contact.footprint, 0.02, 1.0);
+  require_road_range("tire.radius", contact.radius, 0.05, 2.0);
+  if (contact.footprint != 0.0) require_road_range("tire.footprint", contact.footprint, 0.02, 1.0);
 }
 
 double calc_profile_height(const RoadSpec& spec, double x) {
   validate(spec);
   const Profile profile = make_profile(spec);
   const std::vector<double>& ends = profile.ends;
-  if (spec.count > 1) {
-    x -= spec.spacing * std::clamp(std::round(x / spec.spacing), 0.0, spec.count - 1.0);
+  if (spec.count > 1 && !ends.empty()) {
+    const double bumps_before = std::floor((x - ends.front()) / spec.spacing);
+    x -= spec.spacing * std::clamp(bumps_before, 0.0, spec.count - 1.0);
   }
   if (ends.empty() || x <= ends.front() || x >= ends.back()) return 0.0;
   const auto above = std::upper_bound(ends.begin(), ends.end(), x);
@@ -221,8 +214,8 @@ Surface make_one_surface(const RoadSpec& spec, const ContactGeometry& contact) {
   if (profile.ends.empty()) return make_flat_surface();
   if (contact.kind == ContactKind::kPoint) {
     const bool upright = spec.shape == BumpShape::kArc && spec.height > 0.45 * spec.length;
-    require(!upright, "road.height", spec.height,
-            "with point contact the height of an arc must be at most 0.45 times its length");
+    require_road(!upright, "road.height", spec.height,
+                 "with point contact the height of an arc must be at most 0.45 times its length");
     return make_kinked_surface(make_point_branches(profile));
   }
   const std::vector<Branch> branches = make_disc_envelope(profile, contact.radius);

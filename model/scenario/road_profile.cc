@@ -8,11 +8,10 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "model/error/model_error.h"
+#include "model/scenario/road_fault.h"
 
 namespace strut {
 namespace {
@@ -20,14 +19,6 @@ namespace {
 /// A disc of 0.3 m touches the road at most half a step from a point of the grid and is then
 /// (1 mm)^2 / (2 x 0.3 m) = 1.7 um too low.
 constexpr double kFineStep = 2e-3;  // m
-constexpr double kMaxHeight = 2.0;  // m
-constexpr std::size_t kMaxPoints = 200'000;
-
-void require(bool ok, const std::string& field, double value, const std::string& allowed) {
-  if (ok) return;
-  throw ModelError(fmt::format("{} = {:g} is not allowed: {}", field, value, allowed),
-                   ModelFault::kRoad);
-}
 
 /// Equally spaced numbers; zero outside.
 struct Samples {
@@ -133,8 +124,11 @@ Samples average(const Samples& road, double footprint) {
 }
 
 RoughTrack follow_track(const Samples& road, const ContactGeometry& contact, double bump_distance) {
-  // The heights themselves as coefficients round off what is shorter than two samples.
-  if (contact.kind == ContactKind::kPoint) return make_track(road, road.values, bump_distance);
+  // The heights themselves as coefficients round off what is shorter than two of them.
+  if (contact.kind == ContactKind::kPoint) {
+    const Samples fine = refine(road, 0.25 * road.spacing);
+    return make_track(fine, fine.values, bump_distance);
+  }
   const Samples disc = roll_disc(refine(road, kFineStep), contact.radius);
   if (!(contact.footprint > 0.0)) return make_track(disc, disc.values, bump_distance);
   const Samples smooth = average(disc, contact.footprint);
@@ -145,18 +139,19 @@ RoughTrack follow_track(const Samples& road, const ContactGeometry& contact, dou
 
 void validate(const RoadProfile& profile) {
   const std::vector<double>& left = profile.height[0];
-  require(profile.begin >= 0.0 && profile.begin <= 10'000.0, "road.begin", profile.begin,
-          "must lie in [0, 10000] m: the car starts on level road");
-  require(profile.spacing > 0.0 && profile.spacing <= 0.5, "road.spacing", profile.spacing,
-          "must lie in (0, 0.5] m");
-  require(left.size() >= 3 && left.size() <= kMaxPoints, "road, number of heights",
-          static_cast<double>(left.size()), fmt::format("must lie in [3, {}]", kMaxPoints));
-  require(profile.height[1].size() == left.size(), "road, number of heights on the right",
-          static_cast<double>(profile.height[1].size()), "must be the number on the left");
+  require_road(profile.begin >= 0.0 && profile.begin <= kMaxRoadBegin, "road.begin", profile.begin,
+               "must lie in [0, 10000] m: the car starts on level road");
+  require_road(profile.spacing > 0.0 && profile.spacing <= 0.5, "road.spacing", profile.spacing,
+               "must lie in (0, 0.5] m");
+  require_road(left.size() >= 3 && left.size() <= kMaxRoadPoints, "road, number of heights",
+               static_cast<double>(left.size()),
+               fmt::format("must lie in [3, {}]", kMaxRoadPoints));
+  require_road(profile.height[1].size() == left.size(), "road, number of heights on the right",
+               static_cast<double>(profile.height[1].size()), "must be the number on the left");
   for (const std::vector<double>& track : profile.height) {
     for (const double height : track) {
-      require(std::fabs(height) <= kMaxHeight, "road, height", height,
-              fmt::format("must lie in [{:g}, {:g}] m", -kMaxHeight, kMaxHeight));
+      require_road(std::fabs(height) <= kMaxRoadHeight, "road, height", height,
+                   fmt::format("must lie in [{:g}, {:g}] m", -kMaxRoadHeight, kMaxRoadHeight));
     }
   }
 }

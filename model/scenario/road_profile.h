@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,10 @@
 #include "model/scenario/rough_track.h"
 
 namespace strut {
+
+inline constexpr std::size_t kMaxRoadPoints = 200'000;  // of a track
+inline constexpr double kMaxRoadHeight = 2.0;           // m
+inline constexpr double kMaxRoadBegin = 10'000.0;       // m
 
 /// Heights at equally spaced points; the road is flat, at height 0, before the first and behind the
 /// last.
@@ -35,9 +40,9 @@ void fade_ends(RoadProfile& profile, double length);
 
 /// Both tracks as a tire follows them: the height of a disc of the free tire radius that rolls over
 /// the profile, averaged over the footprint with the cubic B-spline kernel (road.h); kPoint: the
-/// profile itself. Between the points the road is straight. A track begins
-/// `bump_distance` [m] before its place ahead of the front wheels, as RoughTrack counts from the
-/// bump's center. Throws as both `validate` do.
+/// profile itself, rounded over half a point's spacing. Between the points the road is straight. A
+/// track begins `bump_distance` [m] before its place ahead of the front wheels, as RoughTrack
+/// counts from the bump's center. Throws as both `validate` do.
 std::array<RoughTrack, 2> follow_profile(const RoadProfile& profile, const ContactGeometry& contact,
                                          double bump_distance);
 

@@ -6,9 +6,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <deque>
+#include <memory>
 
 #include "model/effects/catalogue.h"
 #include "model/model.h"
+#include "model/scenario/iso_road.h"
 #include "model_files/parameters.h"
 #include "tests/support/test_car.h"
 #include "tests/support/test_run.h"
@@ -237,6 +239,13 @@ TEST_CASE("Derivatives through relaxing tires, coarse steps and rough roads", "[
   SECTION("coarse steps") { options.step.coarse_step = 5e-3; }
   SECTION("a spin as any other state") { options.spin = SpinTreatment::kExplicit; }
   SECTION("a rough road") { c.maneuver.rough.fill({-1.0, 0.2, {1e-3, -2e-3, 3e-3, 1e-3, -1e-3}}); }
+  SECTION("a random road") {
+    c.maneuver.profile.data = std::make_shared<const RoadProfile>(make_iso_road({16e-6}));
+  }
+  SECTION("a row of bumps") {
+    c.maneuver.road.count = 2;
+    c.maneuver.road.spacing = 3.0;
+  }
   SECTION("a road with kinks") {
     c.vehicle.tire.contact = ContactKind::kPoint;
     c.maneuver.road.shape = BumpShape::kTrapezoid;

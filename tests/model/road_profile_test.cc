@@ -128,6 +128,34 @@ TEST_CASE("A car on a surveyed bump moves as over the bump itself", "[property]"
   CHECK(compare(a, b) < tolerance(3e-3));
 }
 
+TEST_CASE("A preparer makes the tracks anew for another tire, place or road", "[unit]") {
+  Case base = test::make_paper_case();
+  base.maneuver.profile.data = std::make_shared<const RoadProfile>(make_iso_road({}));
+  std::vector<Case> cases(6, base);
+  cases[1].maneuver.bump_distance += 1.0;
+  cases[2].vehicle.tire.unloaded_radius *= 0.9;
+  cases[2].vehicle.pacejka.UNLOADED_RADIUS *= 0.9;
+  cases[3].vehicle.tire.footprint = 0.2;
+  IsoRoad other;
+  other.seed = 2;
+  cases[4].maneuver.profile.data = std::make_shared<const RoadProfile>(make_iso_road(other));
+  cases[5].maneuver.speed = 10.0;
+  CasePreparer preparer;
+  std::vector<PreparedCase> prepared;
+  for (const Case& c : cases) {
+    prepared.push_back(preparer.prepare(c));
+    CHECK(prepared.back().rough == test::prepare(c).rough);
+  }
+  for (std::size_t i = 1; i < 5; ++i) {
+    CAPTURE(i);
+    CHECK_FALSE(prepared[i].rough == prepared[0].rough);
+  }
+  CHECK(prepared[5].rough == prepared[0].rough);
+  // The place in the world stays, whatever the bump's.
+  CHECK(prepared[1].rough[0].begin + prepared[1].bump_center ==
+        Approx(prepared[0].rough[0].begin + prepared[0].bump_center));
+}
+
 TEST_CASE("Lanes over one surveyed road are the runs of each alone", "[property]") {
   Case c = test::make_paper_case();
   c.maneuver = test::make_gentle_maneuver();
@@ -294,6 +322,15 @@ TEST_CASE("A row of bumps is the bump at each of its places", "[unit]") {
     for (int i = 0; i < 3; ++i) expected += calc_height(one, x - 1.7 * i);
     REQUIRE(calc_height(three, x) == Approx(expected).margin(tolerance(1e-13)));
     if (std::abs(x - 3.4) < 0.1) REQUIRE(expected > 0.02);
+  }
+  RoadSpec uneven = row;  // a table that is not centered
+  uneven.shape = BumpShape::kTable;
+  uneven.table_x = {-0.2, 0.0, 1.2};
+  uneven.table_z = {0.0, 0.03, 0.0};
+  RoadSpec single = uneven;
+  single.count = 1;
+  for (const double x : {-0.1, 0.5, 1.1}) {
+    CHECK(calc_profile_height(uneven, x + 3.4) == Approx(calc_profile_height(single, x)));
   }
   CHECK(calc_profile_height(row, 3.4) == Approx(0.03));
   CHECK(calc_profile_height(row, 5.1) == 0.0);

@@ -2,9 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 
 #include "model/effects/catalogue.h"
 #include "model/model.h"
+#include "model/scenario/iso_road.h"
 #include "tests/support/test_car.h"
 #include "tests/support/test_run.h"
 
@@ -149,6 +151,15 @@ TEST_CASE("One side's run is the whole car's with relaxing tires, coarse steps a
   SECTION("the same rough road under both sides") {
     c.maneuver.rough.fill({-1.0, 0.2, {1e-3, -2e-3, 3e-3, 1e-3, -1e-3}});
   }
+  SECTION("the same surveyed road under both sides") {
+    RoadProfile road = make_iso_road({64e-6});
+    road.height[1] = road.height[0];
+    c.maneuver.profile.data = std::make_shared<const RoadProfile>(road);
+  }
+  SECTION("a row of bumps") {
+    c.maneuver.road.count = 2;
+    c.maneuver.road.spacing = 3.0;
+  }
   check_equal_runs(test::prepare(c), options);
 }
 
@@ -186,6 +197,9 @@ TEST_CASE("What differs left and right is seen", "[unit]") {
   SECTION("a damper") { c.vehicle.suspension[kRear].strut[0].damping *= 1.01; }
   SECTION("the steering") { c.vehicle.rack_position = 1e-6; }
   SECTION("the bump") { c.maneuver.road.side = BumpSide::kLeft; }
+  SECTION("the tracks of a surveyed road") {
+    c.maneuver.profile.data = std::make_shared<const RoadProfile>(make_iso_road({64e-6}));
+  }
   SECTION("the road") { c.maneuver.rough[1] = {-1.0, 0.2, {1e-3, -1e-3, 1e-3, 1e-3}}; }
   SECTION("a product of inertia") { c.vehicle.whole.inertia.xy = 1.0; }
   SECTION("the other product of inertia") { c.vehicle.whole.inertia.yz = 1.0; }
