@@ -14,6 +14,7 @@
 
 #include "base/error/input_error.h"
 #include "base/text/format_number.h"
+#include "base/text/nearest_name.h"
 #include "io/format/toml_document.h"
 #include "io/table/csv.h"
 #include "io/table/units.h"
@@ -34,7 +35,13 @@ double read_parameter(const Table& table, const std::string& key, const std::str
 /// A column of lengths in its own unit, without one in meters.
 std::vector<double> read_meters(const CsvTable& csv, const std::string& name) {
   const CsvColumn& column = csv.column(name);
-  const UnitScale unit = find_unit_scale(column.unit, "m");
+  const UnitScale unit = [&] {
+    try {
+      return find_unit_scale(column.unit, "m");
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("{}: column {}: {}", csv.path.string(), name, e.what()));
+    }
+  }();
   std::vector<double> values = column.values;
   for (double& value : values) value = unit.factor * value + unit.offset;
   return values;
@@ -94,6 +101,9 @@ void read_bump(const Table& bump, ManeuverSpec& maneuver) {
   }
 }
 
+/// Of surveys; finer ones keep their own spacing down to a half of it.
+constexpr double kFinestSurvey = 0.01;  // m
+
 constexpr std::array<const char*, 8> kIsoClasses = {"A", "B", "C", "D", "E", "F", "G", "H"};
 
 /// By its class, or by the density itself.
@@ -128,24 +138,89 @@ std::vector<double> resample(const std::vector<double>& x, const std::vector<dou
   return heights;
 }
 
+/// Throws InputError, which names the file and its columns, unless it has positions and one or two
+/// heights.
+std::array<std::string, 2> find_height_columns(const CsvTable& csv) {
+  const bool has_tracks = csv.has("left") && csv.has("right");
+  if (csv.has("position") && (has_tracks || csv.has("height"))) {
+    return has_tracks ? std::array<std::string, 2>{"left", "right"}
+                      : std::array<std::string, 2>{"height", "height"};
+  }
+  std::vector<std::string> names;
+  for (const CsvColumn& column : csv.columns) names.push_back(column.name);
+  throw InputError(fmt::format("{}: columns {}; must have position, and left and right or height",
+                               csv.path.string(), join_names(names)));
+}
+
+/// Throws InputError for a survey that a road cannot have: its message names file, row and column.
+void check_survey(const CsvTable& csv, const std::vector<double>& x, const std::string& name,
+                  const std::vector<double>& z) {
+  const auto refuse = [&](std::size_t row, const std::string& column, double value,
+                          const std::string& allowed) {
+    throw InputError(fmt::format("{}:{}: {} = {} m: {}", csv.path.string(), csv.lines[row], column,
+                                 format_number(value), allowed));
+  };
+  if (x.front() < 0.0 || x.front() > kMaxRoadBegin) {
+    refuse(0, "position", x.front(),
+           fmt::format("must lie in [0, {}] m: it counts from the front wheels at the start",
+                       format_number(kMaxRoadBegin)));
+  }
+  const double longest = kFinestSurvey * static_cast<double>(kMaxRoadPoints - 1);
+  if (x.back() - x.front() > longest) {
+    refuse(x.size() - 1, "position", x.back(),
+           fmt::format("a survey may be {} m long", format_rounded(longest)));
+  }
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    if (std::fabs(z[i] - z.front()) <= kMaxRoadHeight) continue;
+    refuse(
+        i, name, z[i],
+        fmt::format("must be within {} m of the first; heights in another unit need it beside the "
+                    "name, as in \"{} [mm]\"",
+                    format_number(kMaxRoadHeight), name));
+  }
+}
+
+/// Throws InputError where the fading of an end would be a slope that no road has.
+void check_fade(const CsvTable& csv, const std::string& name, double height, double fade,
+                const char* end) {
+  constexpr double kSteepest = 0.2, kStep = 0.02;
+  if (std::fabs(height) <= std::max(kSteepest * fade, kStep)) return;
+  throw InputError(fmt::format(
+      "{}: {} {} {} m above the level road, to which it fades over {} m; give a longer fade, or a "
+      "survey without grade and crossfall",
+      csv.path.string(), name, end, format_rounded(height), format_number(fade)));
+}
+
 /// A survey has its own zero of height and may end anywhere: heights count from the first on the
 /// left, and both ends fade into the level road.
 RoadProfile read_survey(const Table& road) {
+  for (const char* key : {"class", "roughness", "seed", "length", "begin", "track_width"}) {
+    if (road.has(key)) {
+      throw road.error(
+          fmt::format("{} and file are both given: a road is random or surveyed", key));
+    }
+  }
   const CsvTable csv = read_csv(road.file("file"));
   const double fade = road.number_or("fade", 1.0, between(0.0, 100.0, "m"));
-  const bool has_tracks = csv.has("left") || csv.has("right");
-  const std::vector<double> left = read_meters(csv, has_tracks ? "left" : "height");
-  const std::vector<double> right = read_meters(csv, has_tracks ? "right" : "height");
+  const std::array<std::string, 2> names = find_height_columns(csv);
+  std::array<std::vector<double>, 2> heights = {read_meters(csv, names[0]),
+                                                read_meters(csv, names[1])};
   const std::vector<double> x = read_positions(csv);
-  double closest = x.back() - x.front();
+  for (std::size_t side = 0; side < 2; ++side) check_survey(csv, x, names[side], heights[side]);
+  const double length = x.back() - x.front();
+  double closest = length;
   for (std::size_t i = 1; i < x.size(); ++i) closest = std::min(closest, x[i] - x[i - 1]);
-  const double points = std::ceil((x.back() - x.front()) / std::clamp(closest, 0.005, 0.05) - 1e-6);
-  RoadProfile profile{x.front(), (x.back() - x.front()) / points, {}};
-  const auto count = static_cast<std::size_t>(points) + 1;
-  profile.height = {resample(x, left, profile.spacing, count),
-                    resample(x, right, profile.spacing, count)};
-  for (std::vector<double>& track : profile.height) {
-    for (double& height : track) height -= left.front();
+  double points =
+      std::ceil(length / std::clamp(closest, 0.5 * kFinestSurvey, kFinestSurvey) - 1e-6);
+  points = std::clamp(points, 2.0, static_cast<double>(kMaxRoadPoints - 1));
+  RoadProfile profile{x.front(), length / points, {}};
+  const double zero = heights[0].front();
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (double& height : heights[side]) height -= zero;
+    check_fade(csv, names[side], heights[side].front(), fade, "begins");
+    check_fade(csv, names[side], heights[side].back(), fade, "ends");
+    profile.height[side] =
+        resample(x, heights[side], profile.spacing, static_cast<std::size_t>(points) + 1);
   }
   fade_ends(profile, fade);
   return profile;

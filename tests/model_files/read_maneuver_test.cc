@@ -51,13 +51,13 @@ TEST_CASE("A surveyed road has the heights of its file, in their unit, level at 
   const RoadProfile& road = *m.profile.data;
   CHECK(m.road.shape == BumpShape::kCosine);
   CHECK(road.begin == Approx(2.0));
-  CHECK(road.spacing == Approx(0.05));
-  REQUIRE(road.height[0].size() == 201);
-  CHECK(road.height[0][80] == Approx(1e-3));    // row 40, 101 mm above the first row's 100 mm
-  CHECK(road.height[0][81] == Approx(1.5e-3));  // half way to row 41
-  CHECK(road.height[1][100] == Approx(5e-3));
+  CHECK(road.spacing == Approx(0.01));
+  REQUIRE(road.height[0].size() == 1001);
+  CHECK(road.height[0][400] == Approx(1e-3));    // row 40, 101 mm above the first row's 100 mm
+  CHECK(road.height[0][405] == Approx(1.5e-3));  // half way to row 41
+  CHECK(road.height[1][500] == Approx(5e-3));
   CHECK(road.height[1][0] == 0.0);
-  CHECK(road.height[1][200] == Approx(0.0).margin(1e-12));
+  CHECK(road.height[1][1000] == Approx(0.0).margin(1e-12));
   folder.write("bad.csv", "position,height\n0,0\n2,1\n1,0\n");
   const auto read = [&](const std::string& text) {
     return read_maneuver(folder.write("m.toml", kDrive + "[road]\n" + text));
@@ -65,11 +65,21 @@ TEST_CASE("A surveyed road has the heights of its file, in their unit, level at 
   CHECK_THROWS_WITH(read("file = \"bad.csv\"\n"), Contains("bad.csv:4") && Contains("position"));
   CHECK_THROWS_WITH(read("file = \"missing.csv\"\n"), Contains("missing.csv"));
   folder.write("bad.csv", "position,left\n0,0\n1,1\n2,0\n");
-  CHECK_THROWS_WITH(read("file = \"bad.csv\"\n"), Contains("right"));
-  folder.write("bad.csv", "position,height\n-1,0\n1,1\n2,0\n");
-  CHECK_THROWS_WITH(read("file = \"bad.csv\"\n"), Contains("road.begin"));
-  folder.write("bad.csv", "position,height\n0,0\n1,7\n2,0\n");
-  CHECK_THROWS_WITH(read("file = \"bad.csv\"\n"), Contains("road, height"));
+  CHECK_THROWS_WITH(read("file = \"bad.csv\"\n"), Contains("left and right or height"));
+  const auto refuse = [&](const std::string& text, const std::string& told) {
+    folder.write("bad.csv", text);
+    CHECK_THROWS_WITH(read("file = \"bad.csv\"\n"), Contains("bad.csv") && Contains(told));
+  };
+  refuse("x,links,rechts\n0,0,0\n1,1,1\n2,0,0\n", "must have position");
+  refuse("position,height\n-1,0\n1,1\n2,0\n", ":2: position = -1 m");
+  refuse("position,height\n0,0\n1,7\n2,0\n", ":3: height = 7 m");
+  refuse("position,height\n0,0\n1,0.01\n1e7,0\n", ":4: position = 1e+07 m");
+  refuse("position,height\n0,0\n1,0.01\n1e300,0\n", ":4: position");
+  refuse("position,height [furlong]\n0,0\n1,0\n2,0\n", "column height");
+  refuse("position,height\n0,0\n1,0.3\n2,0.6\n", "grade");
+  refuse("position,left,right\n0,0,0.4\n1,0,0.4\n2,0,0\n", "right begins 0.4 m");
+  folder.write("bad.csv", "position,height\n0,0\n1,0\n2,0\n");
+  CHECK_THROWS_WITH(read("file = \"bad.csv\"\nclass = \"C\"\n"), Contains("random or surveyed"));
 }
 
 TEST_CASE("A bump may stand in a row", "[unit]") {
