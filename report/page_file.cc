@@ -88,9 +88,10 @@ ReportTable read_table(const Json& tree) {
 ReportBadge read_badge(const Json& page) {
   if (!page.contains("badge")) return {};
   const Json& badge = page.at("badge");
-  const auto tone = badge.at("tone").get<int>();
-  const bool is_known = tone >= 0 && tone <= static_cast<int>(Tone::kBad);
-  return {badge.at("text").get<std::string>(), is_known ? static_cast<Tone>(tone) : Tone::kNeutral};
+  const auto tone = badge.at("tone").get<double>();
+  const bool is_known = tone >= 0.0 && tone <= static_cast<double>(Tone::kBad);
+  return {badge.at("text").get<std::string>(),
+          is_known ? static_cast<Tone>(static_cast<int>(tone)) : Tone::kNeutral};
 }
 
 KeyNumber read_key_number(const Json& tree) {

@@ -78,17 +78,26 @@ function getHeight(track, x) {
   return z0 + (z1 - z0) * (x - x0) / (x1 - x0);
 }
 
+// A scene of an earlier version has one road with its side, no roll and no track.
+function completeScene(scene) {
+  if (scene.road_side !== undefined) {
+    scene.road = ["right", "left"].map((other) => scene.road_side === other ? [] : scene.road);
+  }
+  scene.roll ??= scene.time.map(() => 0);
+  return scene;
+}
+
 class MotionView {
   constructor(root) {
-    this.scene = JSON.parse(root.querySelector("script").textContent);
+    this.scene = completeScene(JSON.parse(root.querySelector("script").textContent));
     this.last = this.scene.time.length - 1;
     this.turned = this.scene.wheel_speed.map((speed) => integrate(this.scene.time, speed));
     this.outline = makeOutline(this.scene);
-    this.rearOutline = makeRearOutline(this.scene);
     this.enlarged = 1;
     this.slowness = 5;
     this.makePicture(root);
-    this.makeRearView(root);
+    this.hasRear = this.scene.rear.half_track !== undefined;
+    if (this.hasRear) this.makeRearView(root);
     this.makeControls(root);
     const at = this.scene.snapshot_time;
     this.show(at === null ? 0 : this.findFrame(at));
@@ -134,6 +143,7 @@ class MotionView {
   }
 
   makeRearView(root) {
+    this.rearOutline = makeRearOutline(this.scene);
     const half = this.scene.rear.half_track + 0.5;
     this.rearSvg = addShape(root, "svg", {viewBox: `${-half} ${-1.75} ${2 * half} ${2.0}`, class: "rear",
                                           role: "img", "aria-label": "the rear axle from behind"});
@@ -190,14 +200,14 @@ class MotionView {
     setAll(this.reference, {cx, cy: -cz});
     this.wheels.forEach((wheel, corner) => this.placeWheel(wheel, corner, place, frame));
     this.placeRoad(x);
-    this.placeRear(frame, z);
+    if (this.hasRear) this.placeRear(frame, z);
     if (scene.other) this.placeOther(frame);
     this.slider.value = frame;
     this.output.textContent = `${scene.time[frame].toFixed(3)} s, ${x.toFixed(2)} m`;
     markInstant(scene.time[frame]);
   }
 
-  // Of a point of the body in the view. Positive pitch is nose down, so points ahead move down.
+  // Maps a point of the body into the view. Positive pitch is nose down, so points ahead move down.
   makePlace(z, pitch) {
     const [cos, sin] = [Math.cos(pitch), Math.sin(pitch)];
     return ([px, pz]) => [px * cos + pz * sin - this.view.left, z - px * sin + pz * cos];
@@ -276,8 +286,10 @@ class MotionView {
   // Another run at the same time, as far as its file has channels.
   placeOther(frame) {
     const {other, front, rear} = this.scene;
-    const read = (values) => values && values[frame] !== null && values[frame] !== undefined
-        ? values[0] + this.enlarged * (values[frame] - values[0]) : null;
+    const read = (values) => {
+      const first = values?.find((value) => value !== null);  // it may begin later
+      return (values?.[frame] ?? null) === null ? null : first + this.enlarged * (values[frame] - first);
+    };
     const z = read(other.height);
     this.otherBody.style.display = z === null ? "none" : "";
     const ahead = other.forward && other.forward[frame] !== null ? other.forward[frame] - this.scene.forward[frame] : 0;

@@ -8,6 +8,8 @@ const darkMode = window.matchMedia("(prefers-color-scheme: dark)");
 // Colors on paper, which is white even if the screen is dark. During "beforeprint" the computed
 // styles are still those of the screen.
 const paperColors = {"--ink": "#1b1f24", "--line": "#d0d7de", "--soft": "#57606a", "--paper": "#ffffff"};
+// Of charts on a dark page: lighter than on paper, in the same order of hues.
+const darkColors = {"#0072B2": "#4aa3df", "#D55E00": "#f0803c", "#009E73": "#2fc095", "#CC79A7": "#dc93bb"};
 const paperWidth = 980;  // px
 const buttonHeight = 30;  // px above the legend
 const minWidthRatio = 0.8;  // to a chart's nominal width; on a narrower page panels are below each other
@@ -32,11 +34,17 @@ function makeTemplate() {
     hoverlabel: {namelength: -1}}};
 }
 
-// Copies a trace with the color "ink" replaced by that of the page.
+// Copies a trace or layout with the color "ink" replaced by that of the page, and with lighter colors on a
+// dark one. Names are text: plotly.js would take what looks like HTML for it.
 function paint(value, ink) {
   if (value === "ink") return ink;
+  if (typeof value === "string" && value.startsWith("#")) {
+    const isDark = darkMode.matches && !isForPaper;
+    return isDark && darkColors[value.slice(0, 7)] ? darkColors[value.slice(0, 7)] + value.slice(7) : value;
+  }
+  if (typeof value === "string") return value.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
   if (Array.isArray(value)) {
-    return value.some((item) => typeof item === "object" && item) ? value.map((v) => paint(v, ink)) : value;
+    return value.some((item) => typeof item !== "number") ? value.map((v) => paint(v, ink)) : value;
   }
   if (value === null || typeof value !== "object") return value;
   return Object.fromEntries(Object.entries(value).map(([key, v]) => [key, paint(v, ink)]));
@@ -98,7 +106,7 @@ function makeFigure(chart, narrow) {
   const isTouched = window.matchMedia("(pointer: coarse)").matches;
   const margin = {...form.layout.margin, t: buttonHeight};
   return {data: paint(data, readColor("--ink")), height: form.height + buttonHeight,
-          layout: {...form.layout, margin, ...(isTouched && {dragmode: false}), template: makeTemplate(),
+          layout: {...paint(form.layout, readColor("--ink")), margin, ...(isTouched && {dragmode: false}), template: makeTemplate(),
                    uirevision: narrow ? "narrow" : "wide"}};  // while this stays, what the reader zoomed and hid stays
 }
 
@@ -155,8 +163,13 @@ async function drawAll() {
 
 darkMode.addEventListener("change", () => repaintAll(false));
 window.addEventListener("resize", fitAll);
+let opened = [];  // for a print
 window.addEventListener("beforeprint", () => {
-  document.querySelectorAll("details.fold").forEach((fold) => { fold.open = true; });
+  opened = [...document.querySelectorAll("details.fold:not([open])")];
+  opened.forEach((fold) => { fold.open = true; });
   repaintAll(true);
 });
-window.addEventListener("afterprint", () => repaintAll(false));
+window.addEventListener("afterprint", () => {
+  opened.forEach((fold) => { fold.open = false; });
+  repaintAll(false);
+});
