@@ -77,8 +77,8 @@ Arguments describe_compare() {
       "sensors at their limits, copies. --check does only that; the exit code is then 1 if "
       "anything\n"
       "is found.",
-      "  strut compare examples/campaigns/quarter_car.toml --check\n"
-      "  strut compare examples/campaigns/quarter_car.toml -o comparison");
+      "  strut compare examples/campaigns/worn_damper.toml --check\n"
+      "  strut compare examples/campaigns/worn_damper.toml -o comparison");
   arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
   arguments.add_option("output,o", ArgumentValue::folder("DIR"), "output folder of the comparison");
   arguments.add_switch("check", "check the recordings, without a fit");

@@ -80,7 +80,7 @@ Arguments describe_diagnose() {
       "its causes), CSV curves, figures and report.html (docs/diagnosis.md). Ends with code 1 if\n"
       "a held-out run cannot be simulated, or the calibration has not converged and no cause is\n"
       "confirmed.",
-      "  strut diagnose examples/campaigns/quarter_car.toml -o diagnosis");
+      "  strut diagnose examples/campaigns/worn_damper.toml -o diagnosis");
   arguments.add_operand(ArgumentValue::file("CAMPAIGN.toml", {"toml"}));
   arguments.add_option("output,o", ArgumentValue::folder("DIR"), "output folder of the diagnosis");
   arguments.add_option("threads", "N", "threads (default: all processors)");

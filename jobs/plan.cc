@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 
+#include "base/text/format_number.h"
 #include "io/format/json.h"
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/arguments.h"
@@ -154,6 +155,15 @@ void warn_of_step_error(const std::optional<double>& error) {
       std::isfinite(*error) ? fmt::format("{:.2g}", *error) : "all"));
 }
 
+void warn_of_snapshot(const SweepRequest& request) {
+  const ManeuverSpec& maneuver = request.base.maneuver;
+  if (!request.snapshot.on || maneuver.road.shape != BumpShape::kNone) return;
+  print_note(
+      fmt::format("warning: the maneuver has no bump; snapshots are taken where one would be, {} "
+                  "m ahead; record.history keeps whole runs",
+                  format_number(maneuver.bump_distance)));
+}
+
 void warn(const SweepEstimate& estimate) {
   if (estimate.without_event == estimate.measured) {
     print_note(
@@ -230,6 +240,7 @@ int run_plan(const Arguments& arguments) {
                           : print_text(plan, choice, step_error, estimate);
   warn_of_step_error(step_error);
   warn_of_step(plan.request());
+  warn_of_snapshot(plan.request());
   warn(estimate);
   if (folder) {
     print_note(folder->root.string() + ": planned");

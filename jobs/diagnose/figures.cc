@@ -152,6 +152,7 @@ Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
   for (const ForceLaw& law : list_laws(data, run.before.evaluation.curves)) {
     chart.panels.push_back({{law.x_label}, {law.y_label}, {}});
   }
+  add_measured_force(data, run, chart.panels);  // a cloud, under the lines of the models
   for (const ModelCurves& model : list_model_curves(diagnosis, run)) {
     if (!model.is_simulated()) continue;
     std::size_t panel = 0;
@@ -161,7 +162,6 @@ Chart make_law_chart(const CampaignData& data, const Diagnosis& diagnosis,
       chart.panels[panel++].series.push_back(std::move(law.points));
     }
   }
-  add_measured_force(data, run, chart.panels);  // drawn last, above the models
   return chart;
 }
 

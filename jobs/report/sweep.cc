@@ -275,11 +275,10 @@ void write_sweep_report(const SweepFolder& folder) {
   }
   ReportSection request{"Plan", {}, {make_fact_table(plan)}};
   // As a person wrote it. The folder may come from elsewhere: a link is not followed.
-  constexpr std::size_t kMaxBytes = 100'000;
-  const std::string name = folder.request().filename().string();
-  if (auto text = Folder(folder.root).read_if_present(name, kMaxBytes)) {
-    request.files = {std::move(*text)};
-  }
+  constexpr std::size_t kMaxShown = 20'000;  // bytes
+  auto text = Folder(folder.root).read_if_present(folder.request().filename().string());
+  if (text && text->size() > kMaxShown) *text = text->substr(0, kMaxShown) + "\n... and more";
+  if (text) request.files = {std::move(*text)};
   page.sections.push_back(std::move(request));
   page.footer = make_report_footer();
   write_text_file_inside(folder.root, folder.root / "report.html", make_html(page));

@@ -42,7 +42,7 @@ LaneResults integrate(const PreparedCase& c, const SimulateOptions& options,
 
 /// Reports a failed run: throws InputError if a shorter step succeeds; otherwise prints the cause
 /// and returns exit code 1.
-int explain_failure(const Arguments& arguments, const PreparedCase& c,
+int explain_failure(const Arguments& arguments, const Case& given, const PreparedCase& c,
                     const SimulateOptions& options, const LaneResults& results) {
   const std::string at = format_number(results.get_failure_time()) + " s";
   if (options.integrator != Integrator::kCvode) {
@@ -63,9 +63,11 @@ int explain_failure(const Arguments& arguments, const PreparedCase& c,
                                 "a lower bump, a lower "
                                 "speed or a stiffer spring keeps it inside"
                               : "the motion is no longer finite; a shorter --step does not help"));
-  suggest_again_with_setting(arguments, is_out ? "bump_height=VALUE" : "NAME=VALUE",
-                             is_out ? "with a lower bump, or --set speed=VALUE"
-                                    : "with a parameter closer to that of a real car");
+  const bool has_bump = given.maneuver.road.has_formula();
+  suggest_again_with_setting(
+      arguments, !is_out ? "NAME=VALUE" : (has_bump ? "bump_height=VALUE" : "speed=VALUE"),
+      !is_out ? "with a parameter closer to that of a real car"
+              : (has_bump ? "with a lower bump, or --set speed=VALUE" : "or on a smoother road"));
   return kExitNegative;
 }
 
@@ -96,7 +98,11 @@ std::vector<RunParameter> list_case_parameters(const Case& c) {
   return parameters;
 }
 
-void print_snapshot(const LaneResults& results) {
+void print_snapshot(const Case& c, const LaneResults& results) {
+  if (c.maneuver.road.shape == BumpShape::kNone && c.maneuver.profile.data) {
+    std::cout << "snapshot: none, the maneuver has no bump\n";
+    return;
+  }
   if (!results.has_snapshot()) {
     std::cout << "snapshot: the rear wheels do not reach the bump\n";
     return;
@@ -166,7 +172,7 @@ int run_car(const Arguments& arguments, const SimulateOptions& given) {
   }
   const double seconds = now() - start;
   if (!run.results.is_done()) {
-    return explain_failure(arguments, prepared, options, run.results);
+    return explain_failure(arguments, input, prepared, options, run.results);
   }
 
   run.parameters = list_case_parameters(input);
@@ -176,7 +182,7 @@ int run_car(const Arguments& arguments, const SimulateOptions& given) {
     write_run_report(options.report, options.source, input, run, options.rate, other);
     suggest_page((options.report / "report.html").string());
   }
-  options.json ? print_json(run.results, duration, seconds) : print_snapshot(run.results);
+  options.json ? print_json(run.results, duration, seconds) : print_snapshot(input, run.results);
   print_summary(options, run.results, duration, seconds);
   if (options.report.empty()) {
     suggest_next({"strut", "plan", "SWEEP.toml", "-o", "cars"},

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "base/error/input_error.h"
 #include "io/store/column_map.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr std::size_t kMaxFrames = 1200;
 constexpr std::size_t kRoadPoints = 200;  // of a bump
 constexpr double kProfileSpacing = 0.05;  // m, of a rough road
+constexpr double kSeen = 8.0;             // m ahead of the car
 
 std::vector<double> get_channel(const LaneResults& results, std::size_t channel) {
   return results.get_history(static_cast<int>(channel));
@@ -119,32 +121,51 @@ Json make_bump_points(const Case& c) {
   return points;
 }
 
-/// The points of a rough road with its bumps. Heights have a tenth of a millimeter.
-Json make_profile_points(const Case& c, const RoadProfile& profile, std::size_t side,
-                         bool has_bump) {
-  Json points = Json::array();
+/// Height of the profile `ahead` [m] of the front wheels at the start.
+double get_profile_height(const RoadProfile& profile, std::size_t side, double ahead) {
   const std::vector<double>& heights = profile.height[side];
-  const auto stride =
-      static_cast<std::size_t>(std::max(1.0, std::round(kProfileSpacing / profile.spacing)));
-  for (std::size_t i = 0; i < heights.size(); i += stride) {
-    const double ahead = profile.begin + profile.spacing * static_cast<double>(i);
-    const double x = c.vehicle.whole.centroid_to_front + ahead;
-    const double z = has_bump ? calc_profile_height(c.maneuver.road, x - calc_bump_center(c)) : 0.0;
-    points.push_back(
-        make_point(1e-3 * std::round(1e3 * x), 1e-4 * std::round(1e4 * (z + heights[i]))));
+  const double place = (ahead - profile.begin) / profile.spacing;
+  if (!(place >= 0.0) || place >= static_cast<double>(heights.size() - 1)) return 0.0;
+  const auto i = static_cast<std::size_t>(place);
+  return std::lerp(heights[i], heights[i + 1], place - static_cast<double>(i));
+}
+
+/// The points of a rough road, and of its bumps, as far as the car drives, to 0.1 mm.
+Json make_rough_points(const Case& c, const LaneResults& results, std::size_t side, bool has_bump) {
+  const RoadProfile& profile = *c.maneuver.profile.data;
+  const double front = c.vehicle.whole.centroid_to_front;
+  const std::vector<double> forward = get_channel(results, CarChannel::kForwardPosition);
+  const double last = *std::max_element(forward.begin(), forward.end()) + kSeen;
+  const double end =
+      profile.begin + profile.spacing * static_cast<double>(profile.height[side].size());
+  std::map<double, double> heights;  // by world x
+  const Json bumps = has_bump ? make_bump_points(c) : Json::array();
+  const auto is_on_bumps = [&](double x) {
+    return !bumps.empty() && x >= bumps.front()[0].get<double>() &&
+           x <= bumps.back()[0].get<double>();
+  };
+  for (double x = front + profile.begin; x < std::min(front + end, last); x += kProfileSpacing) {
+    if (!is_on_bumps(x)) heights[x] = get_profile_height(profile, side, x - front);
+  }
+  for (const Json& point : bumps) {
+    const auto x = point[0].get<double>();
+    heights[x] = point[1].get<double>() + get_profile_height(profile, side, x - front);
+  }
+  Json points = Json::array();
+  for (const auto& [x, z] : heights) {
+    points.push_back(make_point(1e-3 * std::round(1e3 * x), 1e-4 * std::round(1e4 * z)));
   }
   return points;
 }
 
 /// The road under the left and the right wheels.
-Json make_road(const Case& c) {
+Json make_road(const Case& c, const LaneResults& results) {
   Json tracks = Json::array();
   for (std::size_t side = 0; side < 2; ++side) {
     const BumpSide other = side == 0 ? BumpSide::kRight : BumpSide::kLeft;
     const bool has_bump = c.maneuver.road.side != other;
-    const RoadProfile* profile = c.maneuver.profile.data.get();
-    if (profile != nullptr) {
-      tracks.push_back(make_profile_points(c, *profile, side, has_bump));
+    if (c.maneuver.profile.data) {
+      tracks.push_back(make_rough_points(c, results, side, has_bump));
     } else {
       tracks.push_back(has_bump ? make_bump_points(c) : Json::array());
     }
@@ -290,7 +311,7 @@ Json make_motion(const Case& c, const LaneResults& results, const std::optional<
   json["rear"] = make_axle(c, kRear);
   json["radius"] = c.vehicle.tire.unloaded_radius;
   json["nominal_height"] = c.vehicle.whole.centroid_height;
-  json["road"] = make_road(c);
+  json["road"] = make_road(c, results);
   if (other) {
     std::vector<double> times;
     const std::vector<double> all = get_channel(results, CarChannel::kTime);

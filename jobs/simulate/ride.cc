@@ -53,6 +53,18 @@ double calc_rms(const std::vector<double>& values, double mean = 0.0) {
   return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
+/// Largest root mean square over a second; before it is over, the run counts as preceded by rest.
+double calc_transient(const std::vector<double>& weighted, double rate) {
+  const auto second = static_cast<std::size_t>(std::round(rate));
+  double sum = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < weighted.size(); ++i) {
+    sum += weighted[i] * weighted[i];
+    if (i >= second) sum -= weighted[i - second] * weighted[i - second];
+    largest = std::max(largest, sum);
+  }
+  return std::sqrt(largest / rate);
+}
+
 double calc_peak(const std::vector<double>& values) {
   double peak = 0.0;
   for (const double v : values) peak = std::max(peak, std::fabs(v));
@@ -101,7 +113,11 @@ Ride calc_ride(const LaneResults& results, double rate) {
   Ride ride;
   ride.peak = calc_peak(acceleration);
   ride.rms = calc_rms(acceleration);
-  if (rate >= kMinWeightedRate) ride.weighted = calc_rms(weight_acceleration(acceleration, rate));
+  if (rate >= kMinWeightedRate) {
+    const std::vector<double> weighted = weight_acceleration(acceleration, rate);
+    ride.weighted = calc_rms(weighted);
+    ride.transient = calc_transient(weighted, rate);
+  }
   for (std::size_t axle = 0; axle < kAxles; ++axle) {
     ride.axles[axle] = calc_axle_ride(results, static_cast<int>(axle), rate);
   }

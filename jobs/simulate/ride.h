@@ -24,9 +24,11 @@ struct AxleRide {
 };
 
 struct Ride {
-  double peak = 0.0;               // m/s^2, of the body, vertical
-  double rms = 0.0;                // m/s^2
-  std::optional<double> weighted;  // m/s^2, rms of the weighted acceleration
+  double peak = 0.0;  // m/s^2, of the body, vertical
+  double rms = 0.0;   // m/s^2
+  /// m/s^2, of the acceleration weighted by W_k: root mean square over the run, and the largest
+  /// over any second (ISO 2631-1, 6.3.1, maximum transient vibration value), for single bumps.
+  std::optional<double> weighted, transient;
   std::array<AxleRide, kAxles> axles;
 };
 

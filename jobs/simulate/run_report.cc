@@ -42,7 +42,8 @@ ReportTable make_ride_table(const Ride& ride) {
   add("peak vertical acceleration of the body", ride.peak, "m/s\u00b2");
   add("its root mean square", ride.rms, "m/s\u00b2");
   if (ride.weighted) {
-    add("weighted by ISO 2631-1 (W_k), root mean square", *ride.weighted, "m/s\u00b2");
+    add("weighted by ISO 2631-1, largest rms of a second", *ride.transient, "m/s\u00b2");
+    add("weighted by ISO 2631-1, rms of the whole run", *ride.weighted, "m/s\u00b2");
   }
   for (int axle = 0; axle < kAxles; ++axle) {
     const AxleRide& a = ride.axles[static_cast<std::size_t>(axle)];
@@ -58,7 +59,8 @@ std::vector<KeyNumber> make_key_numbers(const Ride& ride) {
   std::vector<KeyNumber> numbers = {
       {fmt::format("{:.2f} m/s\u00b2", ride.peak), "peak vertical acceleration"}};
   if (ride.weighted) {
-    numbers.push_back({fmt::format("{:.2f} m/s\u00b2", *ride.weighted), "weighted by ISO 2631-1"});
+    numbers.push_back(
+        {fmt::format("{:.2f} m/s\u00b2", *ride.transient), "weighted by ISO 2631-1, worst second"});
   }
   const double travel = std::max(ride.axles[kFront].travel, ride.axles[kRear].travel);
   numbers.push_back({fmt::format("{:.0f} mm", 1e3 * travel), "suspension travel used of 100 mm"});
@@ -82,10 +84,9 @@ std::string describe_road(const RoadSpec& road) {
   std::string text;
   constexpr double kMinHole = 5e-5;  // m; the spline of a table overshoots its points by less
   if (high > 0.0 || low > -kMinHole) {
-    const std::string bumps = road.count > 1 ? fmt::format("{} bumps, {} m apart,", road.count,
-                                                           format_short(road.spacing))
-                                             : "a bump";
+    const std::string bumps = road.count > 1 ? std::to_string(road.count) + " bumps" : "a bump";
     text = fmt::format("{} of {} mm", bumps, format_short(1e3 * high));
+    if (road.count > 1) text += fmt::format(", {} m apart", format_short(road.spacing));
   }
   if (low <= -kMinHole) {
     text += fmt::format("{}a hole of {} mm", text.empty() ? "" : " and ", format_short(-1e3 * low));
@@ -95,12 +96,13 @@ std::string describe_road(const RoadSpec& road) {
   return text;
 }
 
-std::string describe(const Case& c) {
+std::string describe(const CaseSource& source, const Case& c) {
   const RoadSpec& road = c.maneuver.road;
   const bool is_rough = c.maneuver.profile.data != nullptr;
-  std::string where = is_rough ? "on a rough road" : "on a flat road";
+  std::string where = is_rough ? "on the road of " + source.maneuver.filename().string()
+                               : std::string("on a flat road");
   if (road.shape != BumpShape::kNone) {
-    where = "over " + describe_road(road) + (is_rough ? " on a rough road" : "");
+    where = "over " + describe_road(road) + (is_rough ? " " + where : "");
   }
   return fmt::format("{} at {} m/s {}.", c.vehicle.name, format_short(c.maneuver.speed), where);
 }
@@ -114,10 +116,10 @@ void write_run_report(const std::filesystem::path& folder, const CaseSource& sou
   const FigureDrawer drawer(out.make());
   ReportSection motion{"Motion"};
   std::string caption =
-      "The car drives to the right; the wheels of its right side are solid, those of its left "
-      "side, "
-      "which is farther away, dashed. Springs have their simulated length; their mounts are drawn "
-      "at their positions at nominal trim. Below, the rear axle from behind.";
+      "The car drives to the right; its right wheels are solid, its left ones, farther away, "
+      "dashed. "
+      "Springs have their simulated length; their mounts are drawn at their positions at nominal "
+      "trim. Below, the rear axle from behind.";
   if (other) caption += fmt::format(" {} is drawn over it, dotted.", other->name);
   motion.motions = {drawer.draw_motion(make_motion(c, run.results, other), "motion", caption)};
   drawer.draw_all({make_motion_curves(run.results, other)}, motion);
@@ -129,7 +131,7 @@ void write_run_report(const std::filesystem::path& folder, const CaseSource& sou
   parameters.tables.push_back(make_parameter_table(run));
   parameters.tables.push_back(make_source_table(run));
   ReportPage page{"Run of " + source.vehicle.filename().string(),
-                  {describe(c)},
+                  {describe(source, c)},
                   {std::move(motion), {"Ride", {}, {make_ride_table(ride)}}, std::move(parameters)},
                   make_report_footer()};
   page.of = kRunContent.name;

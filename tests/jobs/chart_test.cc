@@ -391,10 +391,9 @@ TEST_CASE("Another run is drawn over a simulated one", "[io]") {
   CHECK(other.get_child("wheel_height").front().second.data() == "null");
   CHECK_THAT(test::read_text(figures + "curves.csv"), Contains("\"measured.csv\""));
   const std::string page = test::read_text(folder / "worn/report.html");
+  CHECK_THAT(page, Contains("Changed by --set") && Contains(">front_damping</td>"));
   CHECK_THAT(page,
-             Contains("Changed by --set") && Contains("<td class=\"word\">front_damping</td>"));
-  CHECK_THAT(page,
-             Contains("weighted by ISO 2631-1") && Contains("over 3 bumps, 6 m apart, of 60 mm"));
+             Contains("weighted by ISO 2631-1") && Contains("over 3 bumps of 60 mm, 6 m apart"));
   test::check_page(folder / "worn/report.html", 1);
   const auto refuse = [&](const std::string& text, const std::string& told) {
     const test::Outcome outcome =

@@ -99,6 +99,12 @@ const waiting = setInterval(() => {{
   const wide = [...page.querySelectorAll(".wide, figure, .keys, header")].filter((e) => e.scrollWidth > e.clientWidth + 1);
   const cut = wide.map((e) => e.textContent.trim().slice(0, 60) + ": " + e.scrollWidth);
   if (page.documentElement.scrollWidth > 421) cut.push("the page: " + page.documentElement.scrollWidth);
+  // Paper has no use for what is clicked.
+  const printed = [...page.styleSheets[0].cssRules].find((rule) => rule.media?.mediaText === "print");
+  for (const name of ["nav", ".modebar-container", ".motion .controls"]) {{
+    const hides = (rule) => rule.style?.display === "none" && rule.selectorText.split(", ").includes(name);
+    if (![...printed.cssRules].some(hides)) cut.push(name + ": printed");
+  }}
   document.body.dataset.cut = cut.join("; ") || "nothing";
 }}, 50);
 </script>"""
@@ -146,7 +152,7 @@ def main():
     assert dom.count('data-title="Numbers as CSV"') == wanted
     assert 'data-title="Share' not in dom, "a button sends the chart away"
     cut = draw_on_phone(browser, path, bool(wanted))
-    assert cut == "nothing", f"wider than a screen of 420 px: {cut}"
+    assert cut == "nothing", f"wider than a screen of 420 px, or printed: {cut}"
     print(f"{wanted} charts with {series} flat series, {page.motions} motions")
     return 0
 

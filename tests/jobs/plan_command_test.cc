@@ -352,6 +352,37 @@ TEST_CASE("Cases that never meet the snapshot's line are warned of", "[io]") {
   CHECK_THAT(outcome.messages, Contains("warning") && Contains("snapshot's line"));
 }
 
+TEST_CASE("A row's snapshot is on its last bump, and without a bump plan warns", "[io]") {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& maneuver, const std::string& axis) {
+    const std::string examples = STRUT_SOURCE_DIR "/examples/";
+    folder.write("sweep.toml",
+                 "vehicle = \"" + examples + "vehicles/paper_sedan.toml\"\nmaneuver = \"" +
+                     examples + "maneuvers/" + maneuver + ".toml\"\n[grid]\n" + axis +
+                     "\n[integrate]\nmethod = \"rk4\"\nstep = 1e-3\nclosure = \"table\"\n"
+                     "[record]\nsnapshot = { when = \"rear_wheels_on_bump\", channels = "
+                     "[\"body_position_z\"] }\n");
+    return "plan " + (folder / "sweep.toml").string() + " -o ";
+  };
+  const std::string rows = (folder / "rows").string();
+  const Outcome planned = run_program(
+      write("three_bumps", "bump_spacing = { from = 3.0, to = 6.0, step = 1.0 }") + rows);
+  CHECK(planned.code == 0);
+  CHECK_THAT(planned.messages, !Contains("no bump"));
+  REQUIRE(run_program("run " + rows).code == 0);
+  const std::string merged = (folder / "rows.h5").string();
+  REQUIRE(run_program("merge " + rows + " -o " + merged).code == 0);
+  const std::vector<double> heights = Hdf5Reader(merged).read("/snapshot").values;
+  REQUIRE(heights.size() == 4);
+  for (std::size_t i = 1; i < 4; ++i) CHECK(heights[i] != heights[0]);
+
+  const Outcome rough =
+      run_program(write("rough_road", "speed = { from = 15.0, to = 20.0, step = 5.0 }") +
+                  (folder / "rough").string());
+  CHECK(rough.code == 0);
+  CHECK_THAT(rough.messages, Contains("no bump") && Contains("record.history"));
+}
+
 TEST_CASE("The call itself is checked", "[io]") {
   CHECK(run_program("plan").code == 2);
   CHECK_THAT(run_program("plan").messages, Contains("expected SWEEP.toml"));

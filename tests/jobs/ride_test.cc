@@ -71,6 +71,10 @@ TEST_CASE("A ride's figures are those of its channels", "[unit]") {
   REQUIRE(ride.weighted);
   CHECK(*ride.weighted > 0.4 * ride.rms);
   CHECK(*ride.weighted < 1.1 * ride.rms);
+  // The bump lasts less than a second of the run's two.
+  REQUIRE(ride.transient);
+  CHECK(*ride.transient > 1.2 * *ride.weighted);
+  CHECK(*ride.transient < 1.42 * *ride.weighted);
   // At 20 m/s over 60 mm both axles lose the road for some hundredths of a second.
   for (const AxleRide& axle : ride.axles) {
     CHECK(axle.airborne > 0.005);

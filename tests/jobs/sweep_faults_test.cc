@@ -1,6 +1,7 @@
 // Sweeps under faults of disks, limits, damage and clocks, through the program itself.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <fstream>
 #include <set>
 #include <string>
@@ -73,6 +74,26 @@ TEST_CASE("A sweep meets a full disk, keeps what it has, and goes on once there 
   CHECK(verify_by_program(sweep).missing <= missing);
   REQUIRE(disk.set(64, false));
   check_completed(planned, sweep);
+}
+
+TEST_CASE("status waits for a slow file system's shards together, not one after the other",
+          "[io][threads]") {
+  // 304 shards of one case: fewer than 256 are read one after the other.
+  std::string text = test::make_coarse_sweep(1);
+  text.replace(text.find("step = -90"), 10, "step = -10");
+  const ProgramSweep planned(text);
+  const fs::path sweep = planned / "whole";
+  const auto measure = [&](const std::string& variables) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Outcome outcome = run_sweep_command("status", sweep, "--json", variables);
+    CHECK(outcome.code == 0);
+    CHECK_THAT(outcome.out, Contains("\"done\": 304"));
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  constexpr double kDelay = 0.02;  // s
+  const double slow = measure(test::preload_faults(sweep, "STRUT_DELAY=20"));
+  CHECK(slow > measure("") + 304 / 16 * kDelay);
+  CHECK(slow < 304 * kDelay);
 }
 
 TEST_CASE("A limit of file size ends a sweep with a message, not by a signal", "[io][threads]") {
