@@ -146,7 +146,7 @@ TEST_CASE("A task warned of its time limit continues in its next attempt", "[clu
 
 TEST_CASE("Slurm warns a task of its time limit", "[cluster][slow]") {
   const SlurmCluster cluster(1);
-  static const ProgramSweep slow(test::make_coarse_sweep(4, "", "2.5e-6"));
+  static const ProgramSweep slow(test::make_coarse_sweep(4, "", "1e-6"));
   const fs::path sweep = slow.copy("slow");
   // One minute, of which the warning leaves ten seconds or, since Slurm checks rarely, none; the
   // second attempt may take as long as it needs.
