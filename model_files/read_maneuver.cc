@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/error/input_error.h"
+#include "base/math/linear.h"
 #include "base/text/format_number.h"
 #include "base/text/nearest_name.h"
 #include "io/format/toml_document.h"
@@ -101,7 +102,7 @@ void read_bump(const Table& bump, ManeuverSpec& maneuver) {
   }
 }
 
-/// Of surveys; finer ones keep their own spacing down to a half of it.
+/// Spacing of a surveyed road; a finer survey keeps its own, down to a half of this.
 constexpr double kFinestSurvey = 0.01;  // m
 
 constexpr std::array<const char*, 8> kIsoClasses = {"A", "B", "C", "D", "E", "F", "G", "H"};
@@ -132,8 +133,7 @@ std::vector<double> resample(const std::vector<double>& x, const std::vector<dou
   std::vector<double> heights;
   for (std::size_t i = 0, j = 1; i < count; ++i) {
     const double at = std::min(x.front() + spacing * static_cast<double>(i), x.back());
-    while (j + 1 < x.size() && x[j] < at) ++j;
-    heights.push_back(std::lerp(z[j - 1], z[j], (at - x[j - 1]) / (x[j] - x[j - 1])));
+    heights.push_back(interpolate_line(x, z, at, j));
   }
   return heights;
 }

@@ -16,11 +16,11 @@ namespace strut {
 /// Smallest bound of the error for which there are candidates.
 inline constexpr double kFinestAccuracy = 1e-7;
 
-/// How the integrator was chosen.
+/// The measurement by which the integrator was chosen.
 struct IntegratorChoice {
   int cases = 0;  // on which errors were measured; 0: none has a result, and the default stands
-  /// Of the chosen setting, largest over the cases and channels recorded; infinite where none of
-  /// the candidates is stable, and the default stands.
+  /// Largest error of the chosen setting over the cases and channels recorded; infinite where none
+  /// of the candidates is stable, and the default stands.
   double error = std::numeric_limits<double>::infinity();
 };
 

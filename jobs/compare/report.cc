@@ -28,7 +28,7 @@ ReportSection make_run_section(const CampaignData& data, const RunComparison& ru
   return section;
 }
 
-/// How many readings agree, how far the worst is off, and the first calibrated parameter.
+/// The number of adequate channels, the largest residual, and the first calibrated parameter.
 std::vector<KeyNumber> make_key_numbers(const CampaignData& data, const Comparison& comparison) {
   std::size_t channels = 0, adequate = 0;
   double worst = 0.0;

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "base/error/input_error.h"
+#include "base/math/linear.h"
 #include "io/store/column_map.h"
 #include "model/car/assemble.h"
 #include "model/scenario/profile.h"
@@ -179,13 +180,11 @@ Json resample(const OtherRun& other, const std::vector<double>& values,
   Json list = Json::array();
   std::size_t i = 1;
   for (const double t : times) {
-    while (i + 1 < other.times.size() && other.times[i] < t) ++i;
     if (t < other.times.front() || t > other.times.back()) {
       list.push_back(nullptr);
       continue;
     }
-    const double fraction = (t - other.times[i - 1]) / (other.times[i] - other.times[i - 1]);
-    const double value = std::lerp(values[i - 1], values[i], fraction);
+    const double value = interpolate_line(other.times, values, t, i);
     list.push_back(std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr));
   }
   return list;
@@ -315,6 +314,7 @@ Json make_motion(const Case& c, const LaneResults& results, const std::optional<
   if (other) {
     std::vector<double> times;
     const std::vector<double> all = get_channel(results, CarChannel::kTime);
+    times.reserve(frames.size());
     for (const std::size_t frame : frames) times.push_back(all[frame]);
     json["other"] = make_other(*other, times);
   }

@@ -25,7 +25,7 @@ struct StepOptions {
 
 struct SamplePlan {
   double duration = 3.0;  // s
-  /// Of each lane where they differ, at most `duration` [s]; their samples then end with NaN.
+  /// Durations by lane where they differ, at most `duration` [s]; their samples then end with NaN.
   std::vector<double> lane_durations = {};
   double interval = 0.0;  // s between history samples from t = 0; 0: no history
   bool snapshot = true;

@@ -23,7 +23,7 @@ struct RoughTrack {
 template <class T>
 struct RoughTracks {
   bool is_rough = false;  // in any lane
-  /// Of all distinct tracks, one after the other, each between three zeros.
+  /// Coefficients of all distinct tracks, one after the other, each between three zeros.
   std::vector<double> coefficients;
   T begin = T(0.0), inverse_spacing = T(1.0);  // m, 1/m
   T first = T(0.0), cells = T(0.0);            // offset in `coefficients`, number of cells
