@@ -84,11 +84,14 @@ PanelPlace calc_place(const Chart& chart, std::size_t panel);
 /// The name of a panel in tables: "states: pitch [rad] over time [s]".
 std::string name_panel(const ChartPanel& panel);
 
+/// About as many as a screen is wide [px].
+inline constexpr std::size_t kCurvePoints = 1600;
+
 /// Decimates a curve to about `max_points` points: keeps the minimum, the maximum and a gap of each
 /// segment, so that no peak is lost.
 ChartSeries make_curve(const std::string& name, SeriesKind kind, int color,
                        const std::vector<double>& x, const std::vector<double>& y,
-                       std::size_t max_points = 2500);
+                       std::size_t max_points = kCurvePoints);
 
 /// A name with spaces for underscores: "body_position_z" -> "body position z"
 std::string make_words(std::string name);

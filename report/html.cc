@@ -24,9 +24,24 @@ std::string replace_all(std::string text, const std::string& from, const std::st
   return text;
 }
 
+/// JSON without the spaces and line ends between its tokens.
+std::string compact_json(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  bool is_string = false, is_escaped = false;
+  for (const char c : json) {
+    if (!is_string && (c == ' ' || c == '\n' || c == '\r' || c == '\t')) continue;
+    if (c == '"' && !is_escaped) is_string = !is_string;
+    is_escaped = c == '\\' && !is_escaped;
+    text += c;
+  }
+  return text;
+}
+
 /// In JSON, "<" occurs only in strings, where it can be escaped, so that none of them is a tag.
 std::string make_json_element(const std::string& json) {
-  return "<script type=\"application/json\">" + replace_all(json, "<", "\\u003c") + "</script>";
+  return "<script type=\"application/json\">" + replace_all(compact_json(json), "<", "\\u003c") +
+         "</script>";
 }
 
 /// Minimum length of a cell's text that may wrap [bytes].
@@ -180,7 +195,10 @@ std::string make_script(std::string_view code) {
 std::string make_scripts(const ReportPage& page) {
   const Moving moving = find_moving(page);
   std::string text;
-  if (moving.charts) text += make_script(embedded::plotly_cartesian_min_js);
+  if (moving.charts) {
+    text += "<script type=\"application/gzip\" id=\"plotly\">" +
+            std::string(embedded::plotly_gz_base64) + "</script>\n";
+  }
   if (moving.charts) text += make_script(embedded::page_js);
   if (moving.motions) return text + make_script(embedded::motion_js);
   if (moving.charts) text += make_script("drawAll();");

@@ -22,3 +22,11 @@ function(strut_embed_text target namespace)
     "#pragma once\n\n#include <string_view>\n\nnamespace ${namespace} {\n${declarations}}\n")
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
+
+# strut_pack_file(FILE OUT): compresses FILE into the text OUT in the build folder: gzip in base64,
+# which a page unpacks by DecompressionStream. Both programs are essential packages of Debian.
+function(strut_pack_file file out)
+  cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
+  add_custom_command(OUTPUT ${out} COMMAND sh -c "gzip -9nc \"$0\" | base64 -w 0 > \"$1\"" ${path} ${out}
+    DEPENDS ${path} COMMENT "Packing ${file}" VERBATIM)
+endfunction()

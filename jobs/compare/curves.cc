@@ -29,10 +29,17 @@ std::vector<double> calc_residual(const MeasuredChannel& c, const std::vector<do
   return residual;
 }
 
+/// Points of a curve such that those of all runs make a page that can be mailed.
+std::size_t choose_curve_points(std::size_t runs, std::size_t channels, std::size_t models) {
+  constexpr std::size_t kPagePoints = 60'000, kLeast = 300;
+  const std::size_t curves = runs * channels * (2 * models + 1);
+  return std::clamp(kPagePoints / std::max<std::size_t>(curves, 1), kLeast, kCurvePoints);
+}
+
 /// Adds two panels: a channel's curves, and the models' residuals.
 void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
                  const ChannelInfo& info, const std::vector<ModelCurves>& models,
-                 std::vector<ChartPanel>& panels) {
+                 std::size_t points, std::vector<ChartPanel>& panels) {
   const std::string label = make_label(info.name, info.unit);
   ChartPanel curves{{""}, {label}, {}};
   ChartPanel residuals{{"time [s]"}, {make_label("residual", info.unit)}, {}};
@@ -40,14 +47,15 @@ void add_channel(const std::vector<double>& times, const MeasuredChannel& c,
   residuals.about = "residual of " + curves.about;
   for (const ModelCurves& model : models) {
     const std::vector<double>& simulated = get_curve(model, c.channel);
-    curves.series.push_back(
-        make_curve(model.name, SeriesKind::kLine, model.color, times, simulated));
-    residuals.series.push_back(
-        make_curve(model.name, SeriesKind::kLine, model.color, times, calc_residual(c, simulated)));
+    const auto make = [&](const std::vector<double>& values) {
+      return make_curve(model.name, SeriesKind::kLine, model.color, times, values, points);
+    };
+    curves.series.push_back(make(simulated));
+    residuals.series.push_back(make(calc_residual(c, simulated)));
   }
   // Drawn last, above the models.
   curves.series.push_back(
-      make_curve("measured", SeriesKind::kLine, kMeasuredColor, times, c.values));
+      make_curve("measured", SeriesKind::kLine, kMeasuredColor, times, c.values, points));
   panels.push_back(std::move(curves));
   panels.push_back(std::move(residuals));
 }
@@ -80,8 +88,12 @@ Chart make_curve_chart(const CampaignData& data, std::size_t run,
   chart.panel_height = 240;
   chart.shares_x = true;
   chart.caption = "Measured and simulated curves over time, with residuals.";
-  for (const MeasuredChannel& c : data.channels(run)) {
-    add_channel(data.times(run), c, data.info(c.channel), keep_simulated(models), chart.panels);
+  const std::vector<ModelCurves> simulated = keep_simulated(models);
+  const std::vector<MeasuredChannel>& channels = data.channels(run);
+  const std::size_t points =
+      choose_curve_points(data.run_count(), channels.size(), simulated.size());
+  for (const MeasuredChannel& c : channels) {
+    add_channel(data.times(run), c, data.info(c.channel), simulated, points, chart.panels);
   }
   return chart;
 }

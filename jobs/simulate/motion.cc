@@ -89,25 +89,70 @@ Json make_corners(const LaneResults& results, int channel, const std::vector<std
   return list;
 }
 
-Json make_point(double x, double z) {
+Json make_point(double x, double z) { return Json::array({x, z}); }
+
+Json make_point(const Vec3<double>& p) {
   Json point = Json::array();
-  point.push_back(x);
-  point.push_back(z);
+  for (const double x : {p.x, p.y, p.z}) point.push_back(1e-4 * std::round(1e4 * x));
   return point;
 }
 
+/// Arms, rods and tie rod of a left wheel: pairs of joints on the chassis and on the upright, from
+/// the wheel's center at nominal trim.
+Json make_links(const SuspensionSpec& suspension) {
+  Json links = Json::array();
+  const auto add = [&](const Vec3<double>& chassis, const Vec3<double>& upright) {
+    links.push_back(Json::array({make_point(chassis), make_point(upright)}));
+  };
+  if (suspension.kind == SuspensionKind::kMacPherson) {
+    add(suspension.arm_front, suspension.ball_joint);
+    add(suspension.arm_rear, suspension.ball_joint);
+  }
+  for (const RodSpec& rod : suspension.rods) add(rod.chassis, rod.upright);
+  return links;
+}
+
+/// How far a mount follows its wheel: 0 on the chassis, 1 on the upright, between them on a link by
+/// its distance from the link's inner joint.
+double calc_share(const SuspensionSpec& suspension, const MountSpec& mount) {
+  const auto divide = [&](const Vec3<double>& inner, const Vec3<double>& outer) {
+    const double share = (mount.position.y - inner.y) / (outer.y - inner.y);
+    return std::clamp(std::isfinite(share) ? share : 1.0, 0.0, 1.0);
+  };
+  switch (mount.body) {
+    case MountBody::kChassis:
+      return 0.0;
+    case MountBody::kUpright:
+      return 1.0;
+    case MountBody::kLowerArm:
+      return divide(suspension.arm_front, suspension.ball_joint);
+    case MountBody::kRod: {
+      const RodSpec& rod = suspension.rods[static_cast<std::size_t>(mount.rod)];
+      return divide(rod.chassis, rod.upright);
+    }
+  }
+  return 1.0;
+}
+
 /// Wheel center and ends of the spring, relative to the reference point of the body; half the
-/// track.
+/// track; links and damper of a left wheel.
 Json make_axle(const Case& c, int axle) {
   const SuspensionSpec& suspension = c.vehicle.suspension[static_cast<std::size_t>(axle)];
   const Vec3<double> wheel = calc_wheel_reference(c.vehicle, c.maneuver.gravity, 2 * axle);
   const auto place = [&](const Vec3<double>& p) {
     return make_point(wheel.x + p.x, wheel.z + p.z);
   };
+  const MountSpec &upper = suspension.spring_upper, &lower = suspension.spring_lower;
+  const Json damper{{"upper", make_point(suspension.damper_upper.position)},
+                    {"lower", make_point(suspension.damper_lower.position)},
+                    {"share", calc_share(suspension, suspension.damper_lower)}};
   return Json{{"wheel", make_point(wheel.x, wheel.z)},
-              {"upper", place(suspension.spring_upper.position)},
-              {"lower", place(suspension.spring_lower.position)},
-              {"half_track", suspension.wheel_center_y}};
+              {"upper", place(upper.position)},
+              {"lower", place(lower.position)},
+              {"spring_y", make_point(upper.position.y, lower.position.y)},
+              {"half_track", suspension.wheel_center_y},
+              {"links", make_links(suspension)},
+              {"damper", damper}};
 }
 
 /// The points of the bumps under one track, by world x.
@@ -141,9 +186,14 @@ Json make_rough_points(const Case& c, const LaneResults& results, std::size_t si
       profile.begin + profile.spacing * static_cast<double>(profile.height[side].size());
   std::map<double, double> heights;  // by world x
   const Json bumps = has_bump ? make_bump_points(c) : Json::array();
+  const std::size_t per_bump = bumps.size() / static_cast<std::size_t>(c.maneuver.road.count);
   const auto is_on_bumps = [&](double x) {
-    return !bumps.empty() && x >= bumps.front()[0].get<double>() &&
-           x <= bumps.back()[0].get<double>();
+    for (std::size_t i = 0; i < bumps.size(); i += per_bump) {
+      const auto first = bumps[i][0].get<double>();
+      const auto past = bumps[i + per_bump - 1][0].get<double>();
+      if (first <= x && x <= past) return true;
+    }
+    return false;
   };
   for (double x = front + profile.begin; x < std::min(front + end, last); x += kProfileSpacing) {
     if (!is_on_bumps(x)) heights[x] = get_profile_height(profile, side, x - front);

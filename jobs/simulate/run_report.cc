@@ -119,7 +119,7 @@ void write_run_report(const std::filesystem::path& folder, const CaseSource& sou
       "The car drives to the right; its right wheels are solid, its left ones, farther away, "
       "dashed. "
       "Springs have their simulated length; their mounts are drawn at their positions at nominal "
-      "trim. Below, the rear axle from behind.";
+      "trim. Below, the front axle from the front and the rear axle from behind.";
   if (other) caption += fmt::format(" {} is drawn over it, dotted.", other->name);
   motion.motions = {drawer.draw_motion(make_motion(c, run.results, other), "motion", caption)};
   drawer.draw_all({make_motion_curves(run.results, other)}, motion);

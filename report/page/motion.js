@@ -1,5 +1,5 @@
-// Animation of a car on its road: a side view that moves with the car, its rear axle from behind, and
-// a slider over time. make_motion() (jobs/simulate/motion.h) writes the scene; x forward, y to the
+// Animation of a car on its road: a side view that moves with the car, its axles from the front and from
+// behind, and a slider over time. make_motion() (jobs/simulate/motion.h) writes the scene; x forward, y to the
 // left, z up, in meters.
 "use strict";
 
@@ -32,9 +32,9 @@ function makeOutline(scene) {
   return shape.map(([fraction, z]) => [scene.rear.wheel[0] + fraction * base, z - scene.nominal_height]);
 }
 
-// The same from behind: y to the left, z from the reference point.
-function makeRearOutline(scene) {
-  const half = scene.rear.half_track + 0.1;
+// The same along the car: y to the left, z from the reference point.
+function makeCrossOutline(scene, axle) {
+  const half = axle.half_track + 0.1;
   const shape = [[-half, 0.35], [-half, 0.9], [-0.8 * half, 0.98], [-0.62 * half, 1.42], [-0.4 * half, 1.46]];
   const other = shape.map(([y, z]) => [-y, z]).reverse();
   return [...shape, ...other].map(([y, z]) => [y, z - scene.nominal_height]);
@@ -78,12 +78,13 @@ function getHeight(track, x) {
   return z0 + (z1 - z0) * (x - x0) / (x1 - x0);
 }
 
-// A scene of an earlier version has one road with its side, no roll and no track.
+// A scene of an earlier version has one road with its side, no roll, no track and no links.
 function completeScene(scene) {
   if (scene.road_side !== undefined) {
     scene.road = ["right", "left"].map((other) => scene.road_side === other ? [] : scene.road);
   }
   scene.roll ??= scene.time.map(() => 0);
+  for (const axle of [scene.front, scene.rear]) axle.links ??= [];
   return scene;
 }
 
@@ -96,8 +97,8 @@ class MotionView {
     this.enlarged = 1;
     this.slowness = 5;
     this.makePicture(root);
-    this.hasRear = this.scene.rear.half_track !== undefined;
-    if (this.hasRear) this.makeRearView(root);
+    this.axleViews = [];
+    if (this.scene.rear.half_track !== undefined) this.makeAxleViews(root);
     this.makeControls(root);
     const at = this.scene.snapshot_time;
     this.show(at === null ? 0 : this.findFrame(at));
@@ -132,8 +133,12 @@ class MotionView {
     const far = {"stroke-dasharray": dashes, opacity: 0.5};
     this.wheels = [0, 1, 2, 3].map((corner) => {
       const look = corner % 2 === 0 ? far : {};
-      return {rim: addShape(this.svg, "polygon", {...line, class: "rim", "stroke-width": 0.03, ...look}),
-              spoke: addShape(this.svg, "line", {...line, ...look}),
+      const axle = corner < 2 ? this.scene.front : this.scene.rear;
+      const addLine = (more) => addShape(this.svg, "line", {...line, ...look, ...more});
+      return {links: axle.links.map(() => addLine({stroke: "var(--soft)", "stroke-width": 0.018})),
+              damper: axle.damper && addLine({"stroke-width": 0.035, opacity: corner % 2 === 0 ? 0.3 : 0.6}),
+              rim: addShape(this.svg, "polygon", {...line, class: "rim", "stroke-width": 0.03, ...look}),
+              spoke: addLine({}),
               spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...look})};
     });
     if (!this.scene.other) return;
@@ -142,16 +147,29 @@ class MotionView {
     this.otherWheels = [1, 3].map(() => addShape(this.svg, "circle", {...dotted, r: this.scene.radius}));
   }
 
-  makeRearView(root) {
-    this.rearOutline = makeRearOutline(this.scene);
-    const half = this.scene.rear.half_track + 0.5;
-    this.rearSvg = addShape(root, "svg", {viewBox: `${-half} ${-1.75} ${2 * half} ${2.0}`, class: "rear",
-                                          role: "img", "aria-label": "the rear axle from behind"});
+  // The front axle from the front, the rear axle from behind.
+  makeAxleViews(root) {
+    const box = document.createElement("div");
+    box.className = "axles";
+    root.append(box);
+    const {front, rear} = this.scene;
+    this.axleViews = [this.makeAxleView(box, front, 0, 1, "the front axle from the front"),
+                      this.makeAxleView(box, rear, 2, -1, "the rear axle from behind")];
+  }
+
+  // sign: of a place to the left of the car on the screen.
+  makeAxleView(box, axle, firstCorner, sign, name) {
+    const half = axle.half_track + 0.4;
+    const svg = addShape(box, "svg", {viewBox: `${-half} -1.7 ${2 * half} 1.95`, class: "axle", role: "img", "aria-label": name});
     const line = {fill: "none", stroke: "var(--ink)", "stroke-width": 0.012, "stroke-linejoin": "round"};
-    this.rearGround = [0, 1].map(() => addShape(this.rearSvg, "line", {...line, stroke: "var(--soft)", "stroke-width": 0.02}));
-    this.rearBody = addShape(this.rearSvg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
-    this.rearWheels = [0, 1].map(() => addShape(this.rearSvg, "rect", {...line, "stroke-width": 0.03, rx: 0.05, width: 0.2}));
-    this.rearStruts = [0, 1].map(() => addShape(this.rearSvg, "line", {...line, stroke: "var(--accent)"}));
+    const makeSide = () => ({
+      ground: addShape(svg, "line", {...line, stroke: "var(--soft)", "stroke-width": 0.02}),
+      links: axle.links.map(() => addShape(svg, "line", {...line, stroke: "var(--soft)", "stroke-width": 0.018})),
+      damper: axle.damper && addShape(svg, "line", {...line, "stroke-width": 0.035, opacity: 0.6}),
+      spring: axle.spring_y && addShape(svg, "polyline", {...line, stroke: "var(--accent)"}),
+      wheel: addShape(svg, "rect", {...line, "stroke-width": 0.03, rx: 0.05, width: 0.2})});
+    const body = addShape(svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
+    return {axle, firstCorner, sign, half, body, outline: makeCrossOutline(this.scene, axle), sides: [makeSide(), makeSide()]};
   }
 
   makeControls(root) {
@@ -200,7 +218,7 @@ class MotionView {
     setAll(this.reference, {cx, cy: -cz});
     this.wheels.forEach((wheel, corner) => this.placeWheel(wheel, corner, place, frame));
     this.placeRoad(x);
-    if (this.hasRear) this.placeRear(frame, z);
+    for (const view of this.axleViews) this.placeAxle(view, frame, z);
     if (scene.other) this.placeOther(frame);
     this.slider.value = frame;
     this.output.textContent = `${scene.time[frame].toFixed(3)} s, ${x.toFixed(2)} m`;
@@ -213,7 +231,26 @@ class MotionView {
     return ([px, pz]) => [px * cos + pz * sin - this.view.left, z - px * sin + pz * cos];
   }
 
-  placeWheel({rim, spoke, spring}, corner, place, frame) {
+  // The end of a spring on its wheel's side: shortened by its deflection. Enlarged motion may compress it
+  // beyond its length.
+  calcSpringRatio(axle, corner, frame) {
+    const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
+    return Math.max(0.15, 1 - this.enlarge(this.scene.deflection[corner], frame) / length);
+  }
+
+  // Draws links and damper. `onBody` and `onWheel` map a point from the wheel's center at nominal trim into
+  // the view, as it moves with the body or with the wheel.
+  placeLinks({links, damper}, axle, onBody, onWheel) {
+    const join = (shape, [x1, z1], [x2, z2]) => setAll(shape, {x1, y1: -z1, x2, y2: -z2});
+    axle.links.forEach(([inner, outer], i) => join(links[i], onBody(inner), onWheel(outer)));
+    if (!axle.damper) return;
+    const {upper, lower, share} = axle.damper;
+    const [fixed, moved] = [onBody(lower), onWheel(lower)];
+    join(damper, onBody(upper), fixed.map((value, i) => value + share * (moved[i] - value)));
+  }
+
+  placeWheel(shapes, corner, place, frame) {
+    const {rim, spoke, spring} = shapes;
     const scene = this.scene;
     const axle = corner < 2 ? scene.front : scene.rear;
     const [cx] = place(axle.wheel);
@@ -230,12 +267,12 @@ class MotionView {
     const angle = this.turned[corner][frame];
     const [dx, dz] = [0.8 * scene.radius * Math.cos(angle), 0.8 * scene.radius * Math.sin(angle)];
     setAll(spoke, {x1: cx - dx, y1: -cz - dz, x2: cx + dx, y2: -cz + dz});
-    const length = Math.hypot(axle.lower[0] - axle.upper[0], axle.lower[1] - axle.upper[1]);
-    // Enlarged motion may compress the spring beyond its length.
-    const ratio = Math.max(0.15, 1 - this.enlarge(scene.deflection[corner], frame) / length);
+    const ratio = this.calcSpringRatio(axle, corner, frame);
     const end = [axle.upper[0] + ratio * (axle.lower[0] - axle.upper[0]),
                  axle.upper[1] + ratio * (axle.lower[1] - axle.upper[1])];
     spring.setAttribute("points", toPoints(makeSpring(place(axle.upper), place(end))));
+    this.placeLinks(shapes, axle, ([px, , pz]) => place([axle.wheel[0] + px, axle.wheel[1] + pz]),
+                    ([px, , pz]) => [cx + px, cz + pz]);
   }
 
   placeRoad(forward) {
@@ -260,26 +297,32 @@ class MotionView {
     shape.setAttribute("points", toPoints(points));
   }
 
-  // From behind: left on the left. Positive roll is left side up.
-  placeRear(frame, z) {
+  // Positive roll is left side up.
+  placeAxle({axle, firstCorner, sign, half, body, outline, sides}, frame, z) {
     const scene = this.scene;
     const roll = this.enlarge(scene.roll, frame);
     const [cos, sin] = [Math.cos(roll), Math.sin(roll)];
-    // The reference point is between the axles: the body above the rear one moves by the pitch, too.
-    const height = z - scene.rear.wheel[0] * Math.sin(this.enlarge(scene.pitch, frame));
-    const place = ([y, pz]) => [-(y * cos - pz * sin), height + y * sin + pz * cos];
-    this.rearBody.setAttribute("points", toPoints(this.rearOutline.map(place)));
-    const x = scene.forward[frame] + scene.rear.wheel[0];
-    const half = scene.rear.half_track;
-    [2, 3].forEach((corner, side) => {
-      const y = side === 0 ? half : -half;
+    // The body above the axle also moves by the pitch.
+    const height = z - axle.wheel[0] * Math.sin(this.enlarge(scene.pitch, frame));
+    const place = ([y, pz]) => [sign * (y * cos - pz * sin), height + y * sin + pz * cos];
+    body.setAttribute("points", toPoints(outline.map(place)));
+    const x = scene.forward[frame] + axle.wheel[0];
+    sides.forEach((shapes, side) => {
+      const corner = firstCorner + side;
+      const left = side === 0 ? 1 : -1;
       const center = this.enlarge(scene.wheel_height[corner], frame);
       const ground = this.getRoad(side, x);
       const bottom = Math.max(center - scene.radius, ground);
-      setAll(this.rearWheels[side], {x: -y - 0.1, y: -(center + scene.radius), height: Math.max(0.01, center + scene.radius - bottom)});
-      const [sx, sz] = place([y * 0.75, scene.rear.upper[1]]);
-      setAll(this.rearStruts[side], {x1: sx, y1: -sz, x2: -y * 0.85, y2: -center});
-      setAll(this.rearGround[side], {x1: side === 0 ? -half - 0.5 : 0, x2: side === 0 ? 0 : half + 0.5, y1: -ground, y2: -ground});
+      setAll(shapes.wheel, {x: sign * left * axle.half_track - 0.1, y: -(center + scene.radius),
+                            height: Math.max(0.01, center + scene.radius - bottom)});
+      setAll(shapes.ground, {x1: 0, x2: sign * left * half, y1: -ground, y2: -ground});
+      this.placeLinks(shapes, axle, ([, y, pz]) => place([left * y, axle.wheel[1] + pz]),
+                      ([, y, pz]) => [sign * left * y, center + pz]);
+      if (!shapes.spring) return;
+      const ratio = this.calcSpringRatio(axle, corner, frame);
+      const [[y0, y1], z0, z1] = [axle.spring_y, axle.upper[1], axle.lower[1]];
+      const end = [left * (y0 + ratio * (y1 - y0)), z0 + ratio * (z1 - z0)];
+      shapes.spring.setAttribute("points", toPoints(makeSpring(place([left * y0, z0]), place(end))));
     });
   }
 

@@ -146,13 +146,28 @@ function repaintAll(forPaper) {
   for (const shown of strutCharts) redraw(shown);
 }
 
+// plotly.js is packed in the page, to a third of its length.
+async function loadPlotly() {
+  const packed = Uint8Array.from(atob(document.getElementById("plotly").textContent), (c) => c.charCodeAt(0));
+  const code = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const script = document.createElement("script");
+  script.textContent = await new Response(code).text();
+  document.head.append(script);
+}
+
 async function drawAll() {
   const divs = [...document.querySelectorAll("div.chart")];
   let drawn = 0;
+  try {
+    if (divs.length > 0) await loadPlotly();
+  } catch (error) {  // then no chart can be drawn, and each says so
+    console.error(error);
+  }
   for (const div of divs) {
     try {
       await drawChart(div);
       ++drawn;
+      await new Promise((resolve) => setTimeout(resolve));  // shows it before the next is drawn
     } catch (error) {
       console.error(error);
       explain(div, "This chart could not be drawn: " + error.message);

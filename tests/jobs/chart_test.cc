@@ -111,15 +111,28 @@ const waiting = setInterval(() => {
     const [[x0, y0], [x1, y1]] = [first.road[i - 1], first.road[i]];
     return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
   };
-  for (const rim of root.querySelectorAll("svg:not(.rear) .rim")) {
+  for (const rim of root.querySelectorAll("svg:not(.axle) .rim")) {
     for (const [x, y] of readPoints(rim)) expect(y < findRoad(x) + 2e-3, "tires do not sink into the road", x, y);
   }
   for (const [x, y, r] of first.wheels) {
     const ground = isNear(x, rear, 0.01) ? top[1] : 0;
     expect(y + r > ground && y + r < ground + 0.05, "tires are pressed onto the road", x, y + r, ground);
   }
-  const behind = [...root.querySelectorAll("svg.rear rect")].map((rect) => Number(rect.getAttribute("x")));
-  expect(isNear(behind[1] - behind[0], 2 * scene.rear.half_track, 1e-6), "track from behind", behind);
+  const views = [...root.querySelectorAll("svg.axle")];
+  const [ahead, behind] = views.map((view) => [...view.querySelectorAll("rect")].map((rect) => Number(rect.getAttribute("x"))));
+  expect(isNear(ahead[0] - ahead[1], 2 * scene.front.half_track, 1e-6), "left is right from the front", ahead);
+  expect(isNear(behind[1] - behind[0], 2 * scene.rear.half_track, 1e-6), "left is left from behind", behind);
+  // A link keeps its length as far as the wheel moves straight up.
+  for (const [view, axle] of [[views[0], scene.front], [views[1], scene.rear]]) {
+    const read = (shape, name) => Number(shape.getAttribute(name));
+    const links = [...view.querySelectorAll("line")].filter((shape) => shape.getAttribute("stroke-width") === "0.018");
+    expect(links.length === 2 * axle.links.length && links.length > 0, "links", links.length);
+    links.forEach((shape, i) => {
+      const [inner, outer] = axle.links[i % axle.links.length];
+      const drawn = Math.hypot(read(shape, "x2") - read(shape, "x1"), read(shape, "y2") - read(shape, "y1"));
+      expect(isNear(drawn, Math.hypot(outer[1] - inner[1], outer[2] - inner[2]), 0.02), "length of a link", i, drawn);
+    });
+  }
 
   const down = scene.pitch.indexOf(Math.max(...scene.pitch));
   expect(scene.pitch[down] > 0.005, "pitch");

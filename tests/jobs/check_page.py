@@ -3,7 +3,7 @@
 
     check_page.py PAGE [CHARTS]     CHARTS: how many must be drawn; default: as many as there are
 
-In the text: tags that close, names that are there once, nothing fetched from elsewhere, numbers that
+In the text: less than 2 MB, tags that close, names that are there once, nothing fetched from elsewhere, numbers that
 are JSON. In headless Chromium: every chart drawn and every series of it, the car in
 motion where there is one, nothing said on the console, no button that would send the numbers away; nothing
 that a screen of 420 px cuts.
@@ -77,6 +77,7 @@ def count_series(chart):
 def read_text(path):
     page = Page()
     text = path.read_text(encoding="utf-8")
+    assert len(text) < 2e6, f"{len(text)} bytes: too large to mail"
     page.feed(text)
     page.close()
     assert not page.open, page.open
