@@ -8,6 +8,7 @@
 
 #include "jobs/cli/clock.h"
 #include "jobs/cli/command.h"
+#include "jobs/cli/failures.h"
 #include "jobs/cli/interrupt.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
@@ -26,10 +27,10 @@ Arguments describe(const std::string& name, bool retries) {
                   "may be stopped at any time (Ctrl-C): run again, it continues, without the few "
                   "shards that\n"
                   "were unfinished. Several runs may work on one folder, also from several hosts.\n"
-                  "{}The exit code is 1 if cases failed.",
+                  "{}The exit code is 1 if cases failed, unless --allow-failed is given.",
                   retries ? "Then retries failed cases, with a quarter of the step with which they "
-                            "failed; up to "
-                            "three\nresumes in a row do so.\n"
+                            "failed, up to\n"
+                            "three times; not those that a smaller step cannot help.\n"
                           : ""),
       fmt::format("  strut plan examples/sweeps/paper.toml -o cars\n"
                   "  strut {} cars --threads 2\n"
@@ -44,6 +45,7 @@ Arguments describe(const std::string& name, bool retries) {
   arguments.add_option("lease", "S",
                        "lease: a runner on another host counts as dead after S seconds without a "
                        "heartbeat (default 30)");
+  arguments.add_switch("allow-failed", "exit with 0 although cases failed; damage is still 1");
   arguments.add_switch("json", "print the summary as JSON");
   return arguments;
 }
@@ -99,17 +101,13 @@ void end_drained(const OpenSweep& sweep, const std::optional<TaskRun>& task) {
   }
 }
 
-/// Whether a resume may repair some failed cases.
-bool has_untried(const OpenSweep& sweep) {
-  return read_status(sweep.folder, sweep.plan).untried > 0;
-}
-
+/// `untried`: failed cases that a resume may mend.
 void suggest_next_step(const OpenSweep& sweep, const RunProgress& progress,
-                       const RunSummary& summary, bool retries) {
+                       const RunSummary& summary, std::int64_t untried, bool retries) {
   const std::string root = sweep.folder.root.string();
   if (!summary.damaged.empty()) {
     suggest_next({"strut", "verify", root, "--quarantine"}, "moves damaged files aside; then run");
-  } else if (summary.failed > 0 && !retries && has_untried(sweep)) {
+  } else if (summary.failed > 0 && !retries && untried > 0) {
     suggest_next({"strut", "resume", root}, "retries failed cases with smaller steps");
   } else if (!is_complete_sweep(sweep, progress)) {
     suggest_next({"strut", "status", root});
@@ -149,6 +147,13 @@ int run(bool retries, const Arguments& arguments) {
   } else {
     print_summary(sweep, progress, summary, seconds);
   }
+  SweepStatus status;
+  if (summary.failed > 0) status = read_status(sweep.folder, sweep.plan);
+  if (!arguments.is_on("json")) {
+    for (const auto& [reason, count] : status.failures) {
+      std::cout << describe_failures(sweep.plan, reason, count) << "\n";
+    }
+  }
   if (watcher.signal() != 0) {
     print_error("interrupted; files written so far are complete");
     suggest_again(arguments, "continues from here");
@@ -158,8 +163,9 @@ int run(bool retries, const Arguments& arguments) {
     end_drained(sweep, task);
     return 128 + SIGUSR1;
   }
-  suggest_next_step(sweep, progress, summary, retries);
-  return summary.failed > 0 || !summary.damaged.empty() ? kExitNegative : kExitDone;
+  suggest_next_step(sweep, progress, summary, status.untried, retries);
+  const bool has_failed = summary.failed > 0 && !arguments.is_on("allow-failed");
+  return has_failed || !summary.damaged.empty() ? kExitNegative : kExitDone;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "cluster/follow.h"
 #include "io/format/json.h"
 #include "jobs/cli/command.h"
+#include "jobs/cli/failures.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/open_sweep.h"
 #include "jobs/cli/progress.h"
@@ -20,16 +21,6 @@
 
 namespace strut {
 namespace {
-
-/// The parameters of a case by name.
-std::vector<std::pair<std::string, double>> list_values(const Plan& plan, std::int64_t case_id) {
-  const std::vector<Axis>& axes = plan.request().grid.axes();
-  std::vector<double> values(axes.size());
-  plan.calc_parameters(case_id, values);
-  std::vector<std::pair<std::string, double>> named;
-  for (std::size_t i = 0; i < axes.size(); ++i) named.emplace_back(axes[i].name, values[i]);
-  return named;
-}
 
 /// A submission and its progress.
 struct Followed {
@@ -138,18 +129,6 @@ Json make_json(const Plan& plan, const SweepStatus& status, const Submissions& s
   json["submissions"] = jobs;
   json["faults"] = faults;
   return json;
-}
-
-/// "  diverged: 12, first case 123 with mass=900: a state is not finite"
-std::string describe_failures(const Plan& plan, const std::string& reason,
-                              const FailureCount& count) {
-  std::string text = fmt::format("  {}: {}", reason, format_count(count.cases));
-  if (count.first_case < 0) return text;
-  text += fmt::format(", first case {} with", count.first_case);
-  for (const auto& [name, value] : list_values(plan, count.first_case)) {
-    text += fmt::format(" {}={}", name, value);
-  }
-  return text + ": " + count.first_reason;
 }
 
 void print_text(const Plan& plan, const SweepStatus& status, const Submissions& submissions) {

@@ -59,7 +59,12 @@ Axis read_bounds(const Table& table, const std::string& name, bool levels) {
   const bool has_step = table.has("step"), has_count = table.has("count");
   if (has_step && has_count) throw table.error("count", "must not be given together with 'step'");
   if (has_count) read_count(table, to, axis);
-  if (!has_count && (has_step || levels)) read_step(table, to, allowed, axis);
+  try {
+    if (!has_count && (has_step || levels)) read_step(table, to, allowed, axis);
+  } catch (const InputError& e) {
+    if (has_step) throw;
+    throw InputError(std::string(e.what()) + "; 'count' would do, too");
+  }
   if (!levels) {
     axis.step = to - axis.from;
     axis.count = 2;

@@ -171,7 +171,7 @@ ShardRows retry_shard(const RunInput& run, std::int64_t shard, CaseSimulator& si
   const ShardRows rows = read_rows(run, shard, summary);
   std::vector<std::size_t> failing;
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (may_retry(rows.status[row]) && rows.attempt[row] < kLastAttempt) failing.push_back(row);
+    if (rows.attempt[row] < get_last_attempt(rows.status[row])) failing.push_back(row);
   }
   ShardRows overlay = ShardRows::make(run.schema, failing.size());
   for (std::size_t i = 0; i < failing.size() && !run.halt; ++i) {

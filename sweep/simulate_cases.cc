@@ -41,10 +41,16 @@ std::string describe_case_status() {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-bool may_retry(std::int32_t status) {
-  return status == static_cast<std::int32_t>(RunStatus::kDiverged) ||
-         status == static_cast<std::int32_t>(RunStatus::kOutOfTravel) ||
-         status == static_cast<std::int32_t>(RunStatus::kStalled);
+int get_last_attempt(std::int32_t status) {
+  switch (static_cast<RunStatus>(status)) {
+    case RunStatus::kDiverged:
+    case RunStatus::kStalled:
+      return 4;
+    case RunStatus::kOutOfTravel:
+      return 2;  // a car that leaves its travel with a sixteenth of the step, too, does leave it
+    default:
+      return 0;
+  }
 }
 
 SimulationSeconds& SimulationSeconds::operator+=(const SimulationSeconds& other) {
@@ -74,7 +80,7 @@ bool CaseSimulator::simulate(std::span<const std::int64_t> cases, ShardRows& row
   }
   if (plan_.request().integrate.solver == Solver::kCvode) return true;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!may_retry(rows.status[first_row + i])) continue;
+    if (get_last_attempt(rows.status[first_row + i]) == 0) continue;
     if (stop) return false;
     retry(cases[i], 1, rows, first_row + i);
   }

@@ -16,11 +16,9 @@ namespace strut {
 /// Lists the statuses of a case: "0 done, 1 diverged, ..."
 std::string describe_case_status();
 
-/// True if a retry with a smaller step may mend this failure.
-bool may_retry(std::int32_t status);
-
-/// Last allowed retry; each divides the step by 4.
-inline constexpr int kLastAttempt = 4;
+/// The last retry with a smaller step that may mend this failure; each divides the step by 4.
+/// 0: none can.
+int get_last_attempt(std::int32_t status);
 
 /// Time spent in each part [s].
 struct SimulationSeconds {

@@ -32,13 +32,14 @@ double calc_rate(const Journal& journal) {
   return now > first ? static_cast<double>(cases) / static_cast<double>(now - first) : 0.0;
 }
 
-/// Number of failed cases of an entry that a smaller step may mend.
+/// Number of failed cases of an entry that a resume may mend; the run itself has retried once.
 std::int64_t count_mendable(const JournalEntry& entry) {
+  constexpr int kAtOnce = 1;
   std::int64_t count = 0;
   for (const RunStatusInfo& info : kRunStatuses) {
     const auto failures = entry.failures.find(info.name);
-    if (may_retry(static_cast<std::int32_t>(info.status)) && failures != entry.failures.end())
-      count += failures->second;
+    const int last = get_last_attempt(static_cast<std::int32_t>(info.status));
+    if (last > kAtOnce && failures != entry.failures.end()) count += failures->second;
   }
   return count;
 }

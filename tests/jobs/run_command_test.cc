@@ -244,7 +244,9 @@ TEST_CASE("Cases that fail are data: exit code 1, and status says why", "[io]") 
       0);
   const Outcome outcome = run_sweep_command("run", sweep);
   CHECK(outcome.code == 1);
-  CHECK_THAT(outcome.out, Contains("24 cases simulated") && Contains("failed"));
+  CHECK_THAT(outcome.out, Contains("24 cases simulated") && Contains("failed") &&
+                              Contains("impossible: ") && Contains("no_equilibrium: "));
+  CHECK(run_sweep_command("run", sweep, "--allow-failed").code == 0);
   const Outcome told = run_sweep_command("status", sweep);
   CHECK(told.code == 1);
   CHECK_THAT(told.out, Contains("impossible: ") && Contains("no_equilibrium: "));
