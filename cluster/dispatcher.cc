@@ -49,7 +49,7 @@ std::vector<std::string> list_dispatchers() {
 }
 
 std::string find_dispatcher() {
-  return SlurmDispatcher::is_available() ? SlurmDispatcher::kName : LocalDispatcher::kName;
+  return SlurmDispatcher::find_fault().empty() ? SlurmDispatcher::kName : LocalDispatcher::kName;
 }
 
 std::unique_ptr<Dispatcher> make_dispatcher(const std::string& name) {

@@ -134,7 +134,12 @@ std::string format_slurm_time(double seconds) {
   return fmt::format("{}-{:02}:{:02}:00", minutes / 1440, minutes / 60 % 24, minutes % 60);
 }
 
-bool SlurmDispatcher::is_available() { return call({"sbatch", "--version"}).code == 0; }
+std::string SlurmDispatcher::find_fault() {
+  const ChildOutput version = call({"sbatch", "--version"});
+  if (version.code == 0) return "";
+  const std::string why = version.explain();
+  return why.starts_with("sbatch: ") ? why : "sbatch: " + why;
+}
 
 std::string SlurmDispatcher::find_cluster_name() const {
   return slurm::read_settings()["ClusterName"];

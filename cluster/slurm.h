@@ -9,8 +9,8 @@ namespace strut {
 
 class SlurmDispatcher : public Dispatcher {
  public:
-  /// Returns whether Slurm's commands are in PATH.
-  static bool is_available();
+  /// Why `sbatch` does not answer: "sbatch: command not found"; empty: it does.
+  static std::string find_fault();
 
   static constexpr const char* kName = "slurm";
   std::string name() const override { return kName; }

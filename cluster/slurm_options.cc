@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <regex>
 
 #include "base/error/input_error.h"
 #include "cluster/slurm.h"
@@ -36,6 +37,22 @@ bool is_reserved(const std::string& option) {
                      [&](const std::string& reserved) { return reserved.starts_with(name); });
 }
 
+void check_option(const std::string& option) {
+  const std::string name = option.substr(0, option.find('='));
+  const bool is_option = name.size() > 1 && name.front() == '-' && name != "--" &&
+                         name.find_first_of(" \t\n") == std::string::npos;
+  if (!is_option) {
+    throw InputError(
+        fmt::format("--option {}: must be one option, as in --option='--qos=low'", option));
+  }
+  if (is_reserved(option)) {
+    throw InputError(
+        fmt::format("--option {}: reserved for strut, which finds its jobs by it; to use "
+                    "another cluster, submit from there",
+                    option));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> list_options(const TaskArray& tasks) {
@@ -63,20 +80,13 @@ std::vector<std::string> list_options(const TaskArray& tasks) {
   return options;
 }
 
-void check_option(const std::string& option) {
-  const std::string name = option.substr(0, option.find('='));
-  const bool is_option = name.size() > 1 && name.front() == '-' && name != "--" &&
-                         name.find_first_of(" \t\n") == std::string::npos;
-  if (!is_option) {
+void check_words(const Resources& resources) {
+  static const std::regex kMemory("[0-9]+[KMGTkmgt]?[Bb]?");
+  if (!resources.memory.empty() && !std::regex_match(resources.memory, kMemory)) {
     throw InputError(
-        fmt::format("--option {}: must be one option, as in --option='--qos=low'", option));
+        fmt::format("--memory {}: must be a number with K, M, G or T, as 4G", resources.memory));
   }
-  if (is_reserved(option)) {
-    throw InputError(
-        fmt::format("--option {}: reserved for strut, which finds its jobs by it; to use "
-                    "another cluster, submit from there",
-                    option));
-  }
+  for (const std::string& option : resources.extra) check_option(option);
 }
 
 std::string make_script(const TaskArray& tasks) {

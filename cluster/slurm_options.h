@@ -1,4 +1,4 @@
-// Options and script of sbatch; for the files of SlurmDispatcher only.
+// Options and script of sbatch.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace strut::slurm {
 /// script they would be lines that Slurm splits.
 std::vector<std::string> list_options(const TaskArray& tasks);
 
-/// Checks a value of --option. Throws InputError unless it is one option of sbatch that strut does
-/// not need itself.
-void check_option(const std::string& option);
+/// Checks --memory and --option. Throws InputError unless the memory is a number with a unit, and
+/// each option one option of sbatch that strut does not need itself.
+void check_words(const Resources& resources);
 
 /// Returns the script for `tasks`.
 std::string make_script(const TaskArray& tasks);

@@ -122,13 +122,11 @@ Partition find_partition(const std::string& wanted) {
 }
 
 SiteLimits check_site(const Resources& resources, const fs::path& folder) {
-  const ChildOutput version = call({"sbatch", "--version"});
-  if (version.code != 0) {
+  const std::string fault = SlurmDispatcher::find_fault();
+  if (!fault.empty()) {
     throw EnvironmentError(fmt::format(
-        "sbatch: {}; --to slurm requires Slurm's commands in PATH, --to local works everywhere",
-        version.explain()));
+        "{}; --to slurm needs a Slurm that answers here, --to local works everywhere", fault));
   }
-  for (const std::string& option : resources.extra) check_option(option);
   const Settings settings = read_settings();
   const Partition partition = find_partition(resources.partition);
   if (!partition.is_up) {
@@ -155,7 +153,7 @@ SiteLimits check_site(const Resources& resources, const fs::path& folder) {
 }
 
 Findings examine_site(const Resources& resources, const fs::path& folder) {
-  if (!SlurmDispatcher::is_available()) {
+  if (!SlurmDispatcher::find_fault().empty()) {
     return {{"scheduler", Health::kBad, "sbatch cannot be started", "--to local works"}};
   }
   const auto start = std::chrono::steady_clock::now();

@@ -49,14 +49,21 @@ void claim_submit(const SweepFolder& folder, std::optional<Claims>& claims) {
 
 void report_nothing_to_do(const Arguments& arguments, const OpenSweep& sweep,
                           const MissingWork& work) {
-  std::cout << fmt::format(
-      "nothing to submit: of {} shards, {} exist; the others belong to tasks that wait or run\n",
-      format_count(sweep.plan.shard_count()), format_count(work.present));
+  const std::int64_t shards = sweep.plan.shard_count();
+  if (work.present == shards) {
+    std::cout << fmt::format("nothing to submit: the sweep's {} there\n",
+                             shards == 1 ? "shard is" : format_count(shards, "shard") + " are");
+  } else {
+    std::cout << fmt::format(
+        "nothing to submit: of {}, {} exist; the others belong to tasks that wait or run\n",
+        format_count(shards, "shard"), format_count(work.present));
+  }
   const std::string root = sweep.folder.root.string();
   if (work.status.failed > 0) {
-    std::cout << fmt::format("{} cases failed; --retry retries them\n",
-                             format_count(work.status.failed));
-    suggest_again(arguments, "retries failed cases", {"--retry"});
+    std::cout << fmt::format("{} failed\n", format_count(work.status.failed, "case"));
+  }
+  if (work.status.untried > 0) {
+    suggest_again(arguments, "retries failed cases with smaller steps", {"--retry"});
   } else if (work.status.complete()) {
     suggest_next({"strut", "verify", root});
   } else {
@@ -86,8 +93,11 @@ void print_queued(const QueuedSubmission& queued, const TaskPlan& plan, const Mi
 
 /// Whether the scheduler is there; notes it if not.
 bool can_ask(const Dispatcher& dispatcher) {
-  if (dispatcher.name() != SlurmDispatcher::kName || SlurmDispatcher::is_available()) return true;
-  print_note("Slurm is not on this machine: limits and partitions of the site are not checked");
+  if (dispatcher.name() != SlurmDispatcher::kName) return true;
+  const std::string fault = SlurmDispatcher::find_fault();
+  if (fault.empty()) return true;
+  print_note(fmt::format(
+      "no Slurm answers here ({}): limits and partitions of the site are not checked", fault));
   return false;
 }
 
@@ -157,10 +167,6 @@ int run_submit(const Arguments& arguments) {
   const SubmitRequest request = read_submit_request(arguments, *dispatcher);
   const bool is_list = arguments.text("to") == kToList;
   const bool is_dry = arguments.is_on("dry-run") || is_list;
-  const bool asks_scheduler = !is_dry || can_ask(*dispatcher);
-  SiteLimits limits;
-  if (asks_scheduler) limits = dispatcher->check(request.resources, sweep.folder.root);
-  limits.tasks = std::min(request.max_tasks, limits.tasks);
   std::optional<Claims> claims;
   if (!is_dry) claim_submit(sweep.folder, claims);
   const MissingWork work = find_missing_work(sweep, request, is_dry);
@@ -168,6 +174,10 @@ int run_submit(const Arguments& arguments) {
     report_nothing_to_do(arguments, sweep, work);
     return kExitDone;
   }
+  const bool asks_scheduler = !is_dry || can_ask(*dispatcher);
+  SiteLimits limits;
+  if (asks_scheduler) limits = dispatcher->check(request.resources, sweep.folder.root);
+  limits.tasks = std::min(request.max_tasks, limits.tasks);
   const int threads = request.resources.threads;
   const WorkEstimate estimate = estimate_work(sweep, work);
   const double shard_seconds =
@@ -187,9 +197,15 @@ int run_submit(const Arguments& arguments) {
       make_submission_request(sweep, plan, work, request, *dispatcher,
                               asks_scheduler ? dispatcher->find_cluster_name() : "");
   const ScriptOptions options{plan.resources, request.at_once, request.scratch, request.prologue};
+  if (is_dry && arguments.is_on("json")) {
+    std::cout << format_json(
+                     make_tasks_json(sweep, submission, options, *dispatcher, asks_scheduler))
+              << "\n";
+    return kExitDone;
+  }
   if (is_dry) {
     std::cout << describe_tasks(plan, work) << "\n" << describe_work(estimate) << "\n";
-    print_tasks(sweep, std::move(submission), options, *dispatcher, asks_scheduler);
+    print_tasks(sweep, submission, options, *dispatcher, asks_scheduler);
     suggest_next(make_real_command(arguments));
     return kExitDone;
   }

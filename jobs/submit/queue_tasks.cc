@@ -71,11 +71,40 @@ QueuedSubmission queue_tasks(const OpenSweep& sweep, Submission submission,
   return queued;
 }
 
-void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOptions& options,
-                 const Dispatcher& dispatcher, bool asks_scheduler) {
-  Submission& s = submission;
+namespace {
+
+/// The submission with the names that its next one would have.
+Submission name_next(const OpenSweep& sweep, Submission s) {
   s.folder = sweep.folder.root / "jobs" / "NEXT";
   s.job_prefix += "-NEXT";
+  return s;
+}
+
+}  // namespace
+
+Json make_tasks_json(const OpenSweep& sweep, const Submission& submission,
+                     const ScriptOptions& options, const Dispatcher& dispatcher,
+                     bool asks_scheduler) {
+  const Submission s = name_next(sweep, submission);
+  const std::vector<TaskArray> tasks = list_task_arrays(sweep.folder, s, options);
+  const std::vector<std::string> parts = s.list_parts();
+  const std::string answer = asks_scheduler ? dispatcher.dry_run(tasks.front()) : "";
+  Json list = Json::array();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::vector<std::string> after = list_dependencies(s, i, parts);
+    const std::filesystem::path script = s.folder / Submission::script_name(parts[i]);
+    list.push_back(Json{{"part", parts[i]},
+                        {"tasks", tasks[i].tasks},
+                        {"after", after},
+                        {"command", dispatcher.make_command(tasks[i], script, after)},
+                        {"script", dispatcher.make_script(tasks[i])}});
+  }
+  return Json{{"to", dispatcher.name()}, {"says", answer}, {"parts", list}};
+}
+
+void print_tasks(const OpenSweep& sweep, const Submission& submission, const ScriptOptions& options,
+                 const Dispatcher& dispatcher, bool asks_scheduler) {
+  const Submission s = name_next(sweep, submission);
   const std::vector<TaskArray> tasks = list_task_arrays(sweep.folder, s, options);
   const std::vector<std::string> parts = s.list_parts();
   for (std::size_t i = 0; i < parts.size(); ++i) {

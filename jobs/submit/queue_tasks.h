@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cluster/scripts.h"
+#include "io/format/json.h"
 #include "jobs/submit/task_plan.h"
 
 namespace strut {
@@ -28,8 +29,13 @@ QueuedSubmission queue_tasks(const OpenSweep& sweep, Submission submission,
 
 /// Prints scripts, commands and dependencies of the parts, and, if it is asked, what the scheduler
 /// says of them.
-void print_tasks(const OpenSweep& sweep, Submission submission, const ScriptOptions& options,
+void print_tasks(const OpenSweep& sweep, const Submission& submission, const ScriptOptions& options,
                  const Dispatcher& dispatcher, bool asks_scheduler);
+
+/// The same as JSON: for each part its command, script and the parts that it waits for.
+Json make_tasks_json(const OpenSweep& sweep, const Submission& submission,
+                     const ScriptOptions& options, const Dispatcher& dispatcher,
+                     bool asks_scheduler);
 
 /// Prints a command for each task, and those of the retry and the merge behind them.
 void print_commands(const OpenSweep& sweep, const TaskPlan& plan, const MissingWork& work,

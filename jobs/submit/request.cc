@@ -9,6 +9,7 @@
 #include "cluster/packing.h"
 #include "cluster/scripts.h"
 #include "cluster/slurm.h"
+#include "cluster/slurm_options.h"
 #include "io/file/read_text_file.h"
 #include "jobs/cli/open_sweep.h"
 
@@ -64,6 +65,7 @@ std::unique_ptr<Dispatcher> read_dispatcher(const Arguments& arguments) {
 SubmitRequest read_submit_request(const Arguments& arguments, const Dispatcher& dispatcher) {
   SubmitRequest request;
   request.resources = read_resources(arguments, dispatcher);
+  if (dispatcher.name() == SlurmDispatcher::kName) slurm::check_words(request.resources);
   request.scratch = arguments.text_or("scratch", "");
   if (arguments.has("scratch")) check_scratch(request.scratch);
   if (arguments.has("prologue")) request.prologue = read_text_file(arguments.text("prologue"));

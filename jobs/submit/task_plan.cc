@@ -23,11 +23,11 @@ constexpr double kMinWarning = 60.0;
 [[noreturn]] void refuse_time(double seconds, double min_seconds, double shard_seconds,
                               int threads) {
   throw InputError(
-      fmt::format("--time {}: must be at least {}: one shard takes about {} on {} threads, and "
+      fmt::format("--time {}: must be at least {}: one shard takes about {} on {}, and "
                   "tasks are warned "
                   "in time to finish it; use more --threads, or plan a sweep with smaller shards",
-                  format_slurm_time(seconds), format_slurm_time(min_seconds),
-                  format_duration(shard_seconds), threads));
+                  format_duration(seconds), format_duration(min_seconds),
+                  format_duration(shard_seconds), format_count(threads, "thread")));
 }
 
 /// Duration of the longest task [s].
@@ -130,16 +130,15 @@ TaskPlan plan_tasks(const MissingWork& work, double shard_seconds, const SubmitR
 
 std::string describe_tasks(const TaskPlan& plan, const MissingWork& work) {
   if (plan.arrays.empty()) {
-    return fmt::format("one task that retries {} failed cases", format_count(work.status.failed));
+    return fmt::format("one task that retries {}", format_count(work.status.failed, "failed case"));
   }
   const std::int64_t tasks = plan.count_tasks();
-  const std::size_t arrays = plan.arrays.size();
+  const auto arrays = static_cast<std::int64_t>(plan.arrays.size());
   const Resources& resources = plan.resources;
-  std::string text =
-      fmt::format("{} {} in {} {}, each {} shards, about {} on {} threads", format_count(tasks),
-                  tasks == 1 ? "task" : "tasks", arrays, arrays == 1 ? "array" : "arrays",
-                  format_count(plan.arrays.front().shards_per_task),
-                  format_duration(plan.task_seconds), resources.threads);
+  std::string text = fmt::format(
+      "{} in {}, each {}, about {} on {}", format_count(tasks, "task"),
+      format_count(arrays, "array"), format_count(plan.arrays.front().shards_per_task, "shard"),
+      format_duration(plan.task_seconds), format_count(resources.threads, "thread"));
   if (resources.seconds > 0.0) text += ", walltime " + format_slurm_time(resources.seconds);
   return text;
 }

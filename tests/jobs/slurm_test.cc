@@ -286,7 +286,8 @@ TEST_CASE("Submissions that Slurm would refuse fail before anything is queued", 
   // A time limit shorter than a shard and the warning before it; a folder that nodes cannot see.
   const Outcome walltime = submit(sweep, "--time 1");
   CHECK(walltime.code == 2);
-  CHECK_THAT(walltime.messages, Contains("--time 0-00:01:00") && Contains("one shard takes"));
+  CHECK_THAT(walltime.messages,
+             Contains("--time 1 min 0 s: must be at least 2 min") && Contains("one shard takes"));
   const Outcome folder = submit(sweep, "--partition far");
   CHECK(folder.code == 2);
   CHECK_THAT(folder.messages,
@@ -294,7 +295,7 @@ TEST_CASE("Submissions that Slurm would refuse fail before anything is queued", 
   const Outcome doctor = run_sweep_command("doctor", sweep, "--to slurm --nodes");
   CHECK(doctor.code == 0);
   CHECK_THAT(doctor.out, Contains("instruction sets of the nodes: n1: ") && Contains("job arrays"));
-  const Outcome dry = submit(sweep, "--merge --dry-run");
+  const Outcome dry = run_sweep_command("submit", sweep, "--to slurm --merge --dry-run");
   CHECK(dry.code == 0);
   CHECK_THAT(dry.out, Contains("$ sbatch --parsable --job-name=strut-") && !Contains("#SBATCH") &&
                           Contains("--dependency=afterany:array-0"));

@@ -86,7 +86,8 @@ TEST_CASE("Failed cases are retried after the arrays", "[io]") {
   REQUIRE(test::run_program("plan " + file + " -o " + sweep.string()).code == 0);
   REQUIRE(run_sweep_command("run", sweep).code == 1);
   const Outcome plain = run_sweep_command("submit", sweep, "--to local");
-  CHECK_THAT(plain.out, Contains("nothing to submit") && Contains("--retry"));
+  CHECK_THAT(plain.out, Contains("nothing to submit") && Contains("cases failed"));
+  CHECK_THAT(plain.messages, !Contains("--retry"));  // no smaller step helps
   const Outcome outcome = run_sweep_command("submit", sweep, "--to local --retry --merge");
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.out, Contains("one task that retries") && Contains("retry: local"));
@@ -109,6 +110,14 @@ TEST_CASE("A dry run shows the scripts and queues nothing", "[io]") {
   CHECK_THAT(outcome.out, Contains("#!/bin/bash") && Contains("--task NEXT/0/") &&
                               Contains("merged.h5") && Contains("--force") &&
                               !Contains("--virtual") && Contains("nothing is queued"));
+  const test::JsonTree json = test::parse_json(
+      run_sweep_command("submit", sweep, "--to local --merge --dry-run --json").out);
+  const auto& parts = json.get_child("parts");
+  REQUIRE(parts.size() == 2);
+  const auto &array = parts.front().second, &merge = parts.back().second;
+  CHECK_THAT(outcome.out, Contains(array.get<std::string>("script")) &&
+                              Contains(merge.get<std::string>("script")));
+  CHECK(merge.get_child("after").front().second.data() == array.get<std::string>("part"));
   CHECK_FALSE(fs::exists(sweep / "jobs"));
 }
 
@@ -155,9 +164,16 @@ TEST_CASE("A dry run needs no scheduler", "[io]") {
       run_sweep_command("submit", sweep, "--to slurm --dry-run --partition x", "PATH=/nowhere");
   INFO(outcome.messages);
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.messages, Contains("Slurm is not on this machine"));
+  CHECK_THAT(outcome.messages, Contains("no Slurm answers here (sbatch: "));
   CHECK_THAT(outcome.out, Contains("sbatch --parsable") && Contains("nothing is queued"));
   CHECK(run_sweep_command("submit", sweep, "--to slurm", "PATH=/nowhere").code == 3);
+  for (const char* wrong : {"--memory -4", "--memory 4X", "--option '--qos low'", "--option qos"}) {
+    const Outcome refused = run_sweep_command(
+        "submit", sweep, std::string("--to slurm --dry-run ") + wrong, "PATH=/nowhere");
+    INFO(wrong);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.messages, Contains(std::string(wrong).substr(0, 8)));
+  }
 }
 
 TEST_CASE("A sweep warned of its time limit finishes the current shard", "[io]") {
