@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/error/check.h"
+#include "base/text/quote_word.h"
 #include "embedded/texts.h"
 #include "io/file/atomic_file.h"
 #include "jobs/cli/command.h"
@@ -79,7 +80,8 @@ int run_init(const Arguments& arguments) {
   }
   suggest_next({"strut", "simulate", (folder / "vehicle.toml").string(),
                 (folder / "maneuver.toml").string(), "-o", "run.csv", "--report", "run"},
-               "the car crossing the bump, as a page");
+               "the car crossing the bump, as a page; or strut plan " +
+                   quote_if_needed((folder / "sweep.toml").string()) + " -o cars");
   return kExitDone;
 }
 

@@ -12,6 +12,7 @@
 #include "jobs/case/plan_estimate.h"
 #include "jobs/cli/arguments.h"
 #include "jobs/cli/command.h"
+#include "jobs/cli/failures.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/output_file.h"
 #include "jobs/cli/progress.h"
@@ -90,16 +91,18 @@ void print_text(const Plan& plan, const std::optional<IntegratorChoice>& choice,
       "order     {}\n"
       "runs      {}\n"
       "setting   {}\n"
-      "shards    {} of up to {} cases\n"
-      "time      about {}, {} on {} cores (an estimate, from {} cases)\n"
+      "shards    {} of up to {}\n"
+      "time      about {}, {} on {} (an estimate, from {})\n"
       "size      about {} (an estimate)\n"
       "plan      {}\n",
       describe_order(plan),
       ends_at_snapshot(plan.request()) ? "each until its snapshot; nothing after it is recorded"
                                        : "each for its duration",
-      describe_setting(plan, choice, step_error), plan.shard_count(), plan.request().shard_cases,
+      describe_setting(plan, choice, step_error), plan.shard_count(),
+      format_count(plan.request().shard_cases, "case"),
       describe_core_seconds(estimate.core_seconds), format_duration(estimate.seconds()),
-      estimate.cores, estimate.measured, format_bytes(estimate.bytes), plan.hash());
+      format_count(estimate.cores, "core"), format_count(estimate.measured, "case"),
+      format_bytes(estimate.bytes), plan.hash());
 }
 
 void print_json(const Plan& plan, const std::optional<IntegratorChoice>& choice,
@@ -164,19 +167,22 @@ void warn_of_snapshot(const SweepRequest& request) {
                   format_number(maneuver.bump_distance)));
 }
 
-void warn(const SweepEstimate& estimate) {
-  if (estimate.without_event == estimate.measured) {
-    print_note(
-        fmt::format("warning: none of the {} cases simulated reaches the snapshot's line; a longer "
-                    "duration may",
-                    estimate.measured));
+void warn(const Plan& plan, const SweepEstimate& estimate) {
+  if (estimate.without_event > 0) {
+    print_note(fmt::format(
+        "warning: of the {} simulated, {} do not reach the snapshot's line; a longer duration may",
+        format_count(estimate.measured, "case"), estimate.without_event));
   }
-  if (estimate.failed == estimate.measured) {
-    print_note(
-        fmt::format("warning: all of the {} cases simulated fail; `strut simulate` on one of them "
-                    "reports the cause",
-                    estimate.measured));
+  for (const ImpossibleCase& end : find_impossible_ends(plan)) {
+    const FailureCount count{1, end.case_id, end.reason};
+    print_note("warning: the end of an axis is impossible;" +
+               describe_failures(plan, "failed", count).substr(1));
   }
+  if (estimate.failed == 0) return;
+  const FailureCount count{estimate.failed, estimate.first_failed, estimate.first_reason};
+  print_note(fmt::format("warning: of the {} simulated, cases fail;{}",
+                         format_count(estimate.measured, "case"),
+                         describe_failures(plan, "failed", count).substr(1)));
 }
 
 /// Chooses what the sweep file leaves open, by simulating a few cases.
@@ -241,7 +247,7 @@ int run_plan(const Arguments& arguments) {
   warn_of_step_error(step_error);
   warn_of_step(plan.request());
   warn_of_snapshot(plan.request());
-  warn(estimate);
+  warn(plan, estimate);
   if (folder) {
     print_note(folder->root.string() + ": planned");
     suggest_next({"strut", "run", folder->root.string()});

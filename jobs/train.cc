@@ -9,6 +9,7 @@
 #include <limits>
 #include <mutex>
 
+#include "base/text/nearest_name.h"
 #include "base/text/parse_number.h"
 #include "base/text/range.h"
 #include "io/file/file_seal.h"
@@ -61,6 +62,22 @@ void read_limits(const Arguments& arguments, LevenbergMarquardtOptions& options)
   options.max_damping = arguments.number_or("max-damping", options.max_damping, above(0.0));
   options.seconds = arguments.number_or("max-time", options.seconds, above(0.0, "s"));
   options.threads = find_threads(arguments);
+}
+
+/// Throws InputError with what to give instead if the data lack one of the inputs by default.
+void check_inputs(const Arguments& arguments, const ShardSchema& schema,
+                  const TrainingRequest& request) {
+  if (arguments.has("inputs") || arguments.has("window")) return;
+  std::vector<std::string> names;
+  for (const ColumnInfo& channel : schema.snapshot) names.push_back(channel.name);
+  for (const std::string& input : request.rows.inputs) {
+    if (std::find(names.begin(), names.end(), input) != names.end()) continue;
+    const std::string advice = names.empty()
+                                   ? "there are no snapshots: --window FROM:TO trains on histories"
+                                   : "choose with --inputs among " + join_names(names);
+    throw InputError(
+        fmt::format("the snapshots lack '{}', an input by default; {}", input, advice));
+  }
 }
 
 TrainingRequest read_request(const Arguments& arguments, const fs::path& output) {
@@ -290,6 +307,7 @@ int run_train(const Arguments& arguments) {
   Dataset dataset({names.begin(), names.end()}, options);
   note_unsealed_data(names);
   read_noise_options(arguments, dataset.schema(), request);
+  check_inputs(arguments, dataset.schema(), request);
   Training training = [&] {
     const Stage reading("reading");
     const ProgressLine line("reading cases");

@@ -147,6 +147,23 @@ void check_plan(const Plan& plan) {
   check_point(plan, preparer, plan.point_count() - 1);
 }
 
+std::vector<ImpossibleCase> find_impossible_ends(const Plan& plan) {
+  if (plan.request().sample.method != SampleMethod::kGrid) return {};
+  std::vector<ImpossibleCase> found;
+  CasePreparer preparer;
+  std::int64_t stride = plan.point_count();
+  for (const Axis& axis : plan.request().grid.axes()) {
+    stride /= axis.count;  // the first axis is slowest
+    const std::int64_t id = (axis.count - 1) * stride;
+    try {
+      preparer.prepare(plan.make_case(id));
+    } catch (const ModelError& e) {
+      found.push_back({id, e.what()});
+    }
+  }
+  return found;
+}
+
 double calc_row_bytes(const ShardSchema& schema) {
   const std::size_t numbers = schema.parameters.size() + schema.snapshot.size() +
                               schema.history.size() * schema.history_samples;
@@ -158,10 +175,14 @@ SweepEstimate estimate_sweep(const Plan& plan, const Kernel& kernel) {
   estimate.cores = omp_get_num_procs();
   const Sample sample = draw_sample(plan, kernel, estimate.cores);
   estimate.measured = static_cast<int>(sample.rows.size());
-  for (const std::int32_t status : sample.rows.status) {
+  for (std::size_t row = 0; row < sample.rows.size(); ++row) {
+    const std::int32_t status = sample.rows.status[row];
     const bool no_event = status == static_cast<std::int32_t>(RunStatus::kNoEvent);
     estimate.without_event += no_event ? 1 : 0;
-    estimate.failed += !no_event && status != 0 ? 1 : 0;
+    if (no_event || status == 0) continue;
+    if (estimate.failed++ > 0) continue;
+    estimate.first_failed = sample.rows.case_id[row];
+    estimate.first_reason = sample.rows.reason[row];
   }
   const double start = read_thread_time();
   estimate.bytes = estimate_bytes(plan, sample.rows);

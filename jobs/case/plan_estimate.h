@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sweep/plan.h"
 
@@ -12,12 +13,14 @@ namespace strut {
 void check_plan(const Plan& plan);
 
 struct SweepEstimate {
-  int cores = 1;              // of this machine, all of which measured at once
-  int measured = 0;           // cases simulated for the estimate
-  int without_event = 0;      // among `measured`: cases that never reach the snapshot's line
-  int failed = 0;             // among `measured`: cases without a result for other reasons
-  double core_seconds = 0.0;  // processor time of the whole sweep
-  double bytes = 0.0;         // of all shards' files
+  int cores = 1;                   // of this machine, all of which measured at once
+  int measured = 0;                // cases simulated for the estimate
+  int without_event = 0;           // among `measured`: cases that never reach the snapshot's line
+  int failed = 0;                  // among `measured`: cases without a result for other reasons
+  std::int64_t first_failed = -1;  // the first of them
+  std::string first_reason;        // and why it failed
+  double core_seconds = 0.0;       // processor time of the whole sweep
+  double bytes = 0.0;              // of all shards' files
 
   double seconds() const { return core_seconds / cores; }
 };
@@ -25,6 +28,15 @@ struct SweepEstimate {
 /// Simulates the plan's first cases with the plan's settings on all cores, at least a batch on each
 /// and some 0.2 s, and compresses their rows.
 SweepEstimate estimate_sweep(const Plan& plan, const Kernel& kernel);
+
+/// A case that the model rejects, and why.
+struct ImpossibleCase {
+  std::int64_t case_id = 0;
+  std::string reason;
+};
+
+/// The points of a grid with one axis at its other end that the model rejects; none of samples.
+std::vector<ImpossibleCase> find_impossible_ends(const Plan& plan);
 
 /// "1.2 core-hours"; seconds below 0.1 core-hours.
 std::string describe_core_seconds(double core_seconds);

@@ -136,9 +136,10 @@ void suggest_again_with_setting(const Arguments& arguments, const std::string& s
 }
 
 void suggest_next_after_failures(const std::string& root, std::int64_t failed) {
-  suggest_next({"strut", "verify", root},
-               fmt::format("{} {} failed; strut train leaves them out", format_count(failed),
-                           failed == 1 ? "case remains" : "cases remain"));
+  suggest_next(
+      {"strut", "verify", root},
+      fmt::format("{} {} failed; strut train leaves {} out", format_count(failed),
+                  failed == 1 ? "case remains" : "cases remain", failed == 1 ? "it" : "them"));
 }
 
 void suggest_page(const std::string& file) { suggest_next({"xdg-open", file}); }

@@ -44,5 +44,7 @@ std::string format_bytes(double bytes);
 
 /// "12,345"
 std::string format_count(std::int64_t count);
+/// "1 shard", "12,345 shards"
+std::string format_count(std::int64_t count, std::string_view noun);
 
 }  // namespace strut

@@ -13,6 +13,7 @@
 #include "jobs/cli/progress.h"
 #include "jobs/cli/unsealed.h"
 #include "jobs/report/coverage.h"
+#include "jobs/report/histories.h"
 #include "jobs/report/sensitivities.h"
 #include "report/figures.h"
 #include "report/html.h"
@@ -203,7 +204,7 @@ ReportSection make_failures(const SweepStatus& status, const FigureDrawer& drawe
     return section;
   }
   drawer.draw_all({make_failure_chart(status)}, section);
-  ReportTable table{"Failed cases", {"reason", "cases", "first case", "its reason"}, {}};
+  ReportTable table{"Failed cases", {"reason", "cases", "first case", "why it failed"}, {}};
   for (const auto& [reason, count] : status.failures) {
     const bool is_known = count.first_case >= 0;
     table.rows.push_back({reason, format_count(count.cases),
@@ -232,6 +233,7 @@ ReportSection make_snapshots(const Cases& cases, const FigureDrawer& drawer) {
 ReportBadge make_badge(const SweepStatus& s) {
   if (!s.faults.empty()) return {"damaged", Tone::kBad};
   if (!s.complete()) return {"not complete", Tone::kWarning};
+  if (s.failed > 0) return {"complete, " + format_count(s.failed) + " failed", Tone::kWarning};
   return {"complete", Tone::kGood};
 }
 
@@ -268,6 +270,9 @@ void write_sweep_report(const SweepFolder& folder) {
     drawer.draw_all({make_coverage_chart(count_cases(dataset, plan))}, page.sections[1]);
     if (plan.request().snapshot.on) {
       page.sections.push_back(make_snapshots(read_cases(dataset), drawer));
+    }
+    if (!dataset.schema().history.empty()) {
+      page.sections.push_back(make_history_section(folder, drawer));
     }
   }
   if (plan.request().snapshot.on) {

@@ -10,6 +10,7 @@
 #include "io/format/hdf5.h"
 #include "sweep/folder.h"
 #include "tests/jobs/parse_json.h"
+#include "tests/jobs/program_sweep.h"
 #include "tests/jobs/run_program.h"
 #include "tests/support/sweep_text.h"
 
@@ -350,6 +351,17 @@ TEST_CASE("Cases that never meet the snapshot's line are warned of", "[io]") {
   const Outcome outcome = run_program(plan(folder, make_sweep_text(far)) + " --dry-run");
   CHECK(outcome.code == 0);
   CHECK_THAT(outcome.messages, Contains("warning") && Contains("snapshot's line"));
+}
+
+TEST_CASE("Cases that fail are warned of before they run", "[io]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("failing.toml", test::make_failing_sweep());
+  const Outcome outcome = run_program("plan " + file.string() + " --dry-run");
+  CHECK(outcome.code == 0);
+  CHECK_THAT(outcome.messages, Contains("cases fail") && Contains("first case") &&
+                                   Contains("the end of an axis is impossible"));
+  const Outcome good = run_program(plan(folder, make_sweep_text(kFast)) + " --dry-run");
+  CHECK_THAT(good.messages, !Contains("warning"));
 }
 
 TEST_CASE("A row's snapshot is on its last bump, and without a bump plan warns", "[io]") {

@@ -1,4 +1,6 @@
 // The report of a sweep: what it counts and draws is what the shards hold.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -100,7 +102,8 @@ TEST_CASE("A sweep's report counts every case in each panel, and failures by the
   CHECK(drawn == told);
 
   const std::string page = test::read_text(sweep / "report.html");
-  CHECK_THAT(page, Contains("<title>Sweep whole</title>") && !Contains("Not complete"));
+  CHECK_THAT(page, Contains("<title>Sweep whole</title>") && !Contains("Not complete") &&
+                       Contains(fmt::format(">complete, {:.0f} failed<", failed)));
   // Coverage, failures, two channels; no car at the middle of this grid, so no sensitivities.
   test::check_page((sweep / "report.html").string(), 4);
   CHECK_THAT(page, Contains("Could not be calculated"));
@@ -141,6 +144,30 @@ TEST_CASE("A report's bands are quantiles of the cases on each level", "[io]") {
   }
   CHECK(medians == levels.size());
   CHECK(bands == levels.size());
+}
+
+TEST_CASE("A report's histories are quantiles of the cases at each instant", "[io]") {
+  const ProgramSweep planned(
+      test::make_coarse_sweep(7, "history = { rate = 50, channels = [\"pitch_angle\"] }"));
+  const fs::path sweep = planned / "whole";
+  REQUIRE(run_sweep_command("report", sweep).code == 0);
+  Dataset dataset({sweep}, {.histories = true});
+  const ShardRows rows = dataset.read(0, dataset.row_count());
+  const ShardSchema& schema = dataset.schema();
+  std::size_t medians = 0;
+  for (const Point& point : read_chart(sweep, "histories")) {
+    if (point.series != "median") continue;
+    const auto sample =
+        static_cast<std::size_t>(std::lround(point.values.at("x") / schema.history_interval));
+    std::size_t below = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      below += rows.history[0][i * schema.history_samples + sample] < point.values.at("y") ? 1 : 0;
+    }
+    CHECK(below <= rows.size() / 2);
+    CHECK(below + 1 >= rows.size() / 2);
+    ++medians;
+  }
+  CHECK(medians == schema.history_samples);
 }
 
 TEST_CASE("The report of a part of a sweep says so, and counts what is there", "[io]") {

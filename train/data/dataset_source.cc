@@ -57,7 +57,8 @@ std::vector<std::size_t> find_columns(const std::vector<ColumnInfo>& columns,
     const auto at = std::find(known.begin(), known.end(), name);
     if (at == known.end()) {
       throw InputError(fmt::format("the data have no {} '{}'{}; they have: {}", kind, name,
-                                   suggest_name(name, known), join_names(known)));
+                                   suggest_name(name, known),
+                                   known.empty() ? "none" : join_names(known)));
     }
     const auto column = static_cast<std::size_t>(at - known.begin());
     if (std::find(found.begin(), found.end(), column) != found.end()) {
