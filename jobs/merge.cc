@@ -44,11 +44,11 @@ void print(const MergeReport& report, const fs::path& output, bool as_json) {
     std::cout << format_json(json) << "\n";
     return;
   }
-  std::cout << fmt::format("{}: {} cases ({} failed) of {} shards", output.string(),
-                           format_count(report.cases), format_count(report.failed),
-                           format_count(report.shards));
+  std::cout << fmt::format("{}: {} ({} failed) of {}", output.string(),
+                           format_count(report.cases, "case"), format_count(report.failed),
+                           format_count(report.shards, "shard"));
   if (report.missing > 0) {
-    std::cout << fmt::format("; {} shards MISSING", format_count(report.missing));
+    std::cout << fmt::format("; {} MISSING", format_count(report.missing, "shard"));
   }
   std::cout << fmt::format("\ndata digest {}\n", report.data_digest);
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "base/error/input_error.h"
 #include "base/text/nearest_name.h"
 #include "model_files/read_model.h"
@@ -9,10 +11,13 @@
 namespace strut {
 namespace {
 
+/// An effect's parameter that has the name of one of the model's own is not listed: the name means
+/// the model's.
 ModelTables list_kind(const ModelInfo& info) {
   ModelTables tables{&info, {}};
+  std::set<std::string> names;
   for (const Parameter* parameter : list_parameters(info)) {
-    tables.parameters.push_back({parameter, {}});
+    if (names.insert(parameter->name).second) tables.parameters.push_back({parameter, {}});
   }
   return tables;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/math/normal.h"
 
@@ -47,6 +48,7 @@ void widen(GroupValue& value, double shift, double error) {
 struct StrutMotionForce {
   std::string place;
   std::vector<double> deflection, velocity, force;
+  bool has_spring = false;
 };
 
 void add_motion(const StrutInfo& strut, const RunCurves& curves, StrutMotionForce& motion) {
@@ -60,6 +62,7 @@ void add_motion(const StrutInfo& strut, const RunCurves& curves, StrutMotionForc
     motion.deflection.push_back(d[t]);
     motion.velocity.push_back(v[t]);
     motion.force.push_back(force);
+    motion.has_spring = motion.has_spring || spring[t] != 0.0;
   }
 }
 
@@ -81,7 +84,9 @@ std::vector<std::pair<std::string, Slopes>> calc_secants(const CampaignData& dat
   std::vector<std::pair<std::string, Slopes>> secants;
   secants.reserve(motions.size());
   for (const StrutMotionForce& m : motions) {
-    secants.emplace_back(m.place, fit_slopes(m.deflection, m.velocity, m.force));
+    Slopes slopes = fit_slopes(m.deflection, m.velocity, m.force);
+    if (!m.has_spring) slopes.stiffness = std::numeric_limits<double>::quiet_NaN();
+    secants.emplace_back(m.place, slopes);
   }
   return secants;
 }

@@ -18,8 +18,8 @@ struct GroupValue {
 /// Slopes of a strut's force by least squares over its motion in the runs for fitting, with the
 /// force of all its effects: F ~ F0 + stiffness d + damping v.
 struct StrutSecant {
-  std::string place;  // as StrutInfo::place
-  GroupValue stiffness, damping;
+  std::string place;              // as StrutInfo::place
+  GroupValue stiffness, damping;  // stiffness: NaN of a strut without a spring
 };
 
 /// Slopes of force over deflection and velocity, with a constant; zero without motion.

@@ -88,6 +88,29 @@ void check_limits(const std::filesystem::path& path, std::string_view text) {
   }
 }
 
+/// Refuses files of other formats by what they are: the parser would complain about their bytes.
+void check_format(const std::filesystem::path& path, std::string_view text) {
+  struct Format {
+    const char* start;
+    const char* name;
+  };
+  static constexpr Format kFormats[] = {
+      {"\x89HDF\r\n", "an HDF5 file"},    {"MATLAB 5.0", "a MATLAB file"},
+      {"PK\x03\x04", "an archive (zip)"}, {"\x1f\x8b", "a compressed file (gzip)"},
+      {"<", "a page or XML file"},        {"{", "a JSON file"}};
+  for (const auto& [start, name] : kFormats) {
+    if (!text.starts_with(start)) continue;
+    throw InputError(fmt::format("{}: {}; must be a TOML file", path.string(), name));
+  }
+}
+
+/// What to add to a fault of a file that is named like a table.
+const char* describe_name(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";
+  return is_table ? "; is it a table of data?" : "";
+}
+
 }  // namespace
 
 std::string read_toml_text(const std::filesystem::path& path) {
@@ -95,12 +118,14 @@ std::string read_toml_text(const std::filesystem::path& path) {
 }
 
 toml::table parse_toml(const std::filesystem::path& path, const std::string& text) {
+  check_format(path, text);
   check_limits(path, text);
   try {
     return toml::parse(text, path.string());
   } catch (const toml::parse_error& e) {
-    throw line_error(path, e.source().begin.line,
-                     "not valid TOML: " + shorten(e.description(), kMaxDescription));
+    throw line_error(
+        path, e.source().begin.line,
+        "not valid TOML: " + shorten(e.description(), kMaxDescription) + describe_name(path));
   }
 }
 

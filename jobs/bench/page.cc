@@ -10,6 +10,7 @@
 
 #include "io/file/atomic_file.h"
 #include "jobs/cli/output_file.h"
+#include "jobs/cli/progress.h"
 #include "report/figures.h"
 #include "report/page_file.h"
 
@@ -167,8 +168,8 @@ void write_bench_page(const std::filesystem::path& folder, const BenchResult& re
   ReportSection settings{"Settings", {}, {make_setting_table(figures)}};
   ReportSection others{"Other simulators", {}, {make_peer_table()}};
   ReportPage page{"Throughput of strut",
-                  {fmt::format("{}, {} cores, {}, {}.", machine.cpu, machine.cores, machine.isa,
-                               machine.compiler)},
+                  {fmt::format("{}, {}, {}, {}.", machine.cpu, format_count(machine.cores, "core"),
+                               machine.isa, machine.compiler)},
                   {std::move(speed), std::move(settings), std::move(others)},
                   make_report_footer()};
   page.of = kBenchContent.name;

@@ -8,6 +8,7 @@
 
 #include "base/error/input_error.h"
 #include "io/file/read_text_file.h"
+#include "jobs/cli/progress.h"
 
 namespace strut {
 namespace {
@@ -148,8 +149,8 @@ void print_explanations(std::ostream& stream, const BenchResult& result) {
 void print_table(std::ostream& stream, const BenchResult& result,
                  const std::vector<FigureRatio>& ratios) {
   const Machine& machine = result.machine;
-  stream << fmt::format("{}, {} cores, {}, {}, {}\n\n", machine.cpu, machine.cores, machine.isa,
-                        machine.compiler, machine.commit);
+  stream << fmt::format("{}, {}, {}, {}, {}\n\n", machine.cpu, format_count(machine.cores, "core"),
+                        machine.isa, machine.compiler, machine.commit);
   print_single_core(stream, result);
   print_work_precision(stream, result);
   print_threads(stream, result);

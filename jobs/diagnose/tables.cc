@@ -40,18 +40,22 @@ std::string describe_parameters(const Cause& cause) {
   return text;
 }
 
+std::string format_probability(double p) {
+  return 0.0 < p && p < 0.0005 ? "< 0.001" : fmt::format("{:.3f}", p);
+}
+
 std::vector<std::string> make_cause_row(const Cause& cause, const std::string& role) {
   const bool is_rejected = role == "runner-up" || role == "not claimed";
   return {describe_effect(cause.effect, "", cause.change),
           cause.place,
           role,
           describe_parameters(cause) + (cause.converged || is_rejected ? "" : "; not converged"),
-          fmt::format("{:.3f}", cause.probability),
+          format_probability(cause.probability),
           format_significant(cause.delta_chi2)};
 }
 
 std::vector<std::string> make_unknown_row(double probability, const std::string& role) {
-  return {"none of the catalogue", "", role, "", fmt::format("{:.3f}", probability), ""};
+  return {"none of the catalogue", "", role, "", format_probability(probability), ""};
 }
 
 /// Where several causes act, the rows of each end with the probability that none of the catalogue

@@ -74,8 +74,8 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
     std::cout << fmt::format("{} shards were made twice, by two runners; one copy is kept\n",
                              summary.duplicates);
   }
-  std::cout << fmt::format("data: {} ({} shards, {} new)\n", sweep.folder.shards().string(),
-                           format_count(summary.shards_written),
+  std::cout << fmt::format("data: {} ({}, {} new)\n", sweep.folder.shards().string(),
+                           format_count(summary.shards_written, "shard"),
                            format_bytes(static_cast<double>(summary.bytes)));
 }
 

@@ -107,9 +107,9 @@ void print_snapshot(const Case& c, const LaneResults& results) {
     std::cout << "snapshot: the rear wheels do not reach the bump\n";
     return;
   }
-  std::cout << fmt::format("{:<22} {:>20}  {}\n", "snapshot", "value", "unit");
+  std::cout << fmt::format("{:<22} {:>14}  {}\n", "snapshot", "value", "unit");
   const auto print = [](const std::string& name, double value, const std::string& unit) {
-    std::cout << fmt::format("{:<22} {:>20.13g}  {}\n", name, value, unit);
+    std::cout << fmt::format("{:<22} {:>14.7g}  {}\n", name, value, unit);
   };
   print("event_time", results.get_event_time(), "s");
   for (const int channel : kInputs) {

@@ -76,6 +76,19 @@ TEST_CASE("TOML of endless depth or words is refused with its line, by every com
   }
 }
 
+TEST_CASE("A file of another format in place of TOML is named as what it is", "[io]") {
+  const TemporaryFolder folder;
+  const auto refuse = [&](const char* name, const std::string& text, const char* told) {
+    CHECK_THROWS_WITH(Document(folder.write(name, text)), Contains(name) && Contains(told));
+  };
+  refuse("run.h5", "\x89HDF\r\n\x1a\n", "an HDF5 file; must be a TOML file");
+  refuse("run.mat", "MATLAB 5.0 MAT-file", "a MATLAB file");
+  refuse("run.html", "<!DOCTYPE html>", "a page or XML file");
+  refuse("run.json", "{\"a\": 1}", "a JSON file");
+  refuse("run.csv", "time,force\n0,1\n", "run.csv:1: not valid TOML");
+  refuse("run.csv", "time,force\n0,1\n", "is it a table of data?");
+}
+
 TEST_CASE("Brackets and dots in strings, comments and numbers are not nesting", "[io]") {
   const TemporaryFolder folder;
   const std::string many = repeat("[.", 100);
