@@ -174,15 +174,13 @@ void warn(const Plan& plan, const SweepEstimate& estimate) {
         format_count(estimate.measured, "case"), estimate.without_event));
   }
   for (const ImpossibleCase& end : find_impossible_ends(plan)) {
-    const FailureCount count{1, end.case_id, end.reason};
-    print_note("warning: the end of an axis is impossible;" +
-               describe_failures(plan, "failed", count).substr(1));
+    print_note("warning: the end of an axis is impossible; " +
+               describe_case(plan, end.case_id, end.reason));
   }
   if (estimate.failed == 0) return;
-  const FailureCount count{estimate.failed, estimate.first_failed, estimate.first_reason};
-  print_note(fmt::format("warning: of the {} simulated, cases fail;{}",
-                         format_count(estimate.measured, "case"),
-                         describe_failures(plan, "failed", count).substr(1)));
+  print_note(fmt::format("warning: of the {} simulated, {} fail; {}",
+                         format_count(estimate.measured, "case"), estimate.failed,
+                         describe_case(plan, estimate.first_failed, estimate.first_reason)));
 }
 
 /// Chooses what the sweep file leaves open, by simulating a few cases.

@@ -69,8 +69,9 @@ Arguments describe_simulate() {
       "set", ArgumentValue::setting(),
       "set a parameter, e.g. front_stiffness=38000 or speed=72km/h; may be repeated");
   arguments.add_option("channels", "A,B", "channels in FILE, beside the time (default: all)");
-  arguments.add_option("report", ArgumentValue::folder("DIR"),
-                       "also write DIR/report.html: the car crossing the bump, and its curves");
+  arguments.add_option(
+      "report", ArgumentValue::folder("DIR"),
+      "also write DIR/report.html: the car crossing the bump, and its curves; of a rig its curves");
   arguments.add_option("beside", ArgumentValue::file("RUN", {}),
                        "draw another run over this one in the report: a file of simulate, or a "
                        "recording with its channels' names");
@@ -85,7 +86,7 @@ int run_simulate(const Arguments& arguments) {
   if (options.kinematics) return run_kinematics(options);
   print_detail(fmt::format("integrator {}", options.integrator_name()));
   if (read_model_info(options.source.vehicle).is_driven_by_inputs()) {
-    refuse_options(arguments, {"coarse-step", "closure", "spin", "report", "beside"},
+    refuse_options(arguments, {"coarse-step", "closure", "spin", "beside"},
                    options.source.vehicle.string() + " is a rig; allowed for cars");
     return run_rig(arguments, options);
   }

@@ -137,7 +137,7 @@ class Progress {
     const std::scoped_lock lock(mutex_);
     if (rows_ == 0) return fmt::format("first epoch, {}", format_duration(now() - start_));
     return fmt::format(
-        "epoch {} of at most {}, loss {:.3g}, validation {:.3g}, damping {:.1g}, {} rows, at most "
+        "epoch {} of at most {}, loss {:.3g}, validation {:.3g}, lambda {:.1g}, {} rows, at most "
         "{} "
         "to go",
         record_.epoch, options_.epochs, record_.loss, record_.validation, record_.damping,

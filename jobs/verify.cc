@@ -27,6 +27,7 @@ Json make_json(const VerifyReport& report) {
   json["missing"] = report.missing;
   json["double"] = report.misplaced;
   json["foreign"] = report.foreign;
+  json["failed"] = report.failed;
   json["damaged"] = report.damaged;
   json["shards"] = report.shards;
   json["resimulated"] = report.resimulated;
@@ -56,6 +57,10 @@ void print_text(const VerifyReport& report) {
   std::cout << fmt::format("data digest {}\n", report.data_digest);
   if (report.ok()) {
     std::cout << "sound and complete";
+    if (report.failed > 0) {
+      std::cout << fmt::format("; {} failed, as `strut status` explains",
+                               format_count(report.failed, "case"));
+    }
   } else {
     print_styled("NOT sound and complete", Style::kRed);
   }

@@ -47,8 +47,14 @@ std::string make_json_element(const std::string& json) {
 /// Minimum length of a cell's text that may wrap [bytes].
 constexpr std::size_t kLongText = 40;
 
+/// Units as they are typeset: "m/s^2" with a raised 2.
+std::string typeset_units(std::string text) {
+  return replace_all(replace_all(std::move(text), "^2", "\u00b2"), "^3", "\u00b3");
+}
+
 /// Escapes a cell; lines after the first are in small print.
-std::string make_cell(const std::string& text) {
+std::string make_cell(const std::string& source) {
+  const std::string text = typeset_units(source);
   const std::size_t end = text.find('\n');
   if (end == std::string::npos) return escape_html(text);
   return fmt::format("{}<br><small>{}</small>", escape_html(text.substr(0, end)),

@@ -194,12 +194,7 @@ Json make_range(const ChartAxis& axis) {
 
 Json make_axis(const ChartAxis& axis) {
   Json json = Json{{"title", Json{{"text", axis.label}}}};
-  // "D2": ticks at 2 and 5 between the powers of ten.
-  if (axis.is_logarithmic) {
-    json["type"] = "log";
-    json["exponentformat"] = "power";
-    json["dtick"] = "D2";
-  }
+  if (axis.is_logarithmic) json["type"] = "log";
   if (!axis.range.empty()) json["range"] = make_range(axis);
   if (!axis.categories.empty()) {
     std::vector<double> places;

@@ -135,7 +135,9 @@ std::int64_t check_rows(const VerifyInput& input, std::int64_t shard, const Shar
     const std::int64_t position = first + static_cast<std::int64_t>(row);
     const std::int64_t id = rows.case_id[row];
     if (position < last && id == input.plan.calc_case_id(position)) {
-      ++(matches_plan(input, rows, row) ? valid : report.foreign);
+      const bool is_valid = matches_plan(input, rows, row);
+      ++(is_valid ? valid : report.foreign);
+      report.failed += is_valid && rows.status[row] != 0 ? 1 : 0;
     } else {
       ++(input.plan.find_position(id) >= 0 ? report.misplaced : report.foreign);
     }

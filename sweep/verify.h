@@ -26,6 +26,7 @@ struct VerifyReport {
   std::int64_t misplaced = 0;        // rows of cases that belong elsewhere in the plan
   std::int64_t foreign = 0;          // rows that do not match the plan
   std::int64_t shards = 0;           // shards read
+  std::int64_t failed = 0;           // valid rows of cases that failed, which is no damage
   std::vector<std::string> damaged;  // "file: error"
   std::string data_digest;
   std::int64_t resimulated = 0;

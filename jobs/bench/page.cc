@@ -161,7 +161,9 @@ void write_bench_page(const std::filesystem::path& folder, const BenchResult& re
   const PageFolder out{folder.lexically_normal()};
   clear_page_folder(out, get_numbers_file(out));
   const FigureDrawer drawer(out.make());
-  const std::vector<Figure> figures = list_figures(result);
+  std::vector<Figure> figures = list_figures(result);
+  std::stable_sort(figures.begin(), figures.end(),
+                   [](const Figure& a, const Figure& b) { return a.error < b.error; });
   const Machine& machine = result.machine;
   ReportSection speed{"Speed over error"};
   drawer.draw_all({make_chart(figures)}, speed);

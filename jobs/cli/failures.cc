@@ -16,15 +16,19 @@ std::vector<std::pair<std::string, double>> list_values(const Plan& plan, std::i
   return named;
 }
 
-std::string describe_failures(const Plan& plan, const std::string& reason,
-                              const FailureCount& count) {
-  std::string text = fmt::format("  {}: {}", reason, format_count(count.cases));
-  if (count.first_case < 0) return text;
-  text += fmt::format(", first case {} with", count.first_case);
-  for (const auto& [name, value] : list_values(plan, count.first_case)) {
+std::string describe_case(const Plan& plan, std::int64_t case_id, const std::string& why) {
+  std::string text = fmt::format("case {} with", case_id);
+  for (const auto& [name, value] : list_values(plan, case_id)) {
     text += fmt::format(" {}={}", name, format_rounded(value));
   }
-  return text + ": " + count.first_reason;
+  return text + ": " + why;
+}
+
+std::string describe_failures(const Plan& plan, const std::string& reason,
+                              const FailureCount& count) {
+  const std::string text = fmt::format("  {}: {}", reason, format_count(count.cases));
+  if (count.first_case < 0) return text;
+  return text + ", first " + describe_case(plan, count.first_case, count.first_reason);
 }
 
 }  // namespace strut

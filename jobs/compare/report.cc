@@ -45,7 +45,8 @@ std::vector<KeyNumber> make_key_numbers(const CampaignData& data, const Comparis
   std::vector<KeyNumber> numbers = {
       {fmt::format("{} of {}", adequate, channels), "channels of all runs within their noise"}};
   if (!name.empty()) {
-    numbers.push_back({format_short(worst) + " x noise", "largest residual: " + make_words(name)});
+    numbers.push_back({worst <= 1.0 ? "within the noise" : format_short(worst) + " x noise",
+                       "largest residual: " + make_words(name)});
   }
   const Baseline& baseline = comparison.baseline;
   if (baseline.is_fitted && baseline.shared_count() > 0) {

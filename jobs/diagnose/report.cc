@@ -18,7 +18,7 @@ std::vector<std::string> make_lead(const Diagnosis& diagnosis) {
   const std::string where = make_where_text(diagnosis.where);
   if (!where.empty()) lead.push_back(where);
   if (!diagnosis.next_measurement.empty()) {
-    lead.push_back("Next measurement: " + diagnosis.next_measurement);
+    lead.push_back("Next measurement: " + diagnosis.next_measurement + ".");
   }
   if (diagnosis.is_extended()) {
     lead.push_back(
@@ -93,7 +93,7 @@ std::vector<KeyNumber> make_key_numbers(const Diagnosis& diagnosis) {
     worst = std::max(worst, ratio);
   }
   if (!channel.empty()) {
-    numbers.push_back({fmt::format("{:.2g} x noise", worst),
+    numbers.push_back({worst <= 1.0 ? "within the noise" : fmt::format("{:.2g} x noise", worst),
                        "residual on held-out runs, worst channel: " + make_words(channel)});
   }
   return numbers;

@@ -74,6 +74,17 @@ void add_positions(const std::vector<CausePosition>& positions, ReportTable& tab
   }
 }
 
+/// Removes the column of places of a stand that has only one.
+void drop_empty_place(ReportTable& table) {
+  constexpr std::size_t kPlace = 1;
+  for (const auto& row : table.rows) {
+    if (!row[kPlace].empty()) return;
+  }
+  for (auto& row : table.rows) row.erase(row.begin() + kPlace);
+  table.header.erase(table.header.begin() + kPlace);
+  --table.text_columns;
+}
+
 std::vector<std::string> make_improvement_notes(const Improvement& improvement) {
   std::vector<std::string> notes;
   if (improvement.explained) {
@@ -145,7 +156,7 @@ std::vector<std::string> describe_effects(const Verdict& verdict) {
 std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis, std::size_t max_runners_up) {
   const Verdict& verdict = diagnosis.verdict;
   ReportTable table{"Causes and their probabilities",
-                    {"effect", "place", "", "parameters (95 %)", "probability", "delta chi2"}};
+                    {"effect", "place", "role", "parameters (95 %)", "probability", "delta chi2"}};
   table.text_columns = 4;
   add_positions(verdict.positions, table);
   const std::vector<Cause> runners_up = verdict.list_runners_up();
@@ -162,6 +173,7 @@ std::vector<ReportTable> make_cause_tables(const Diagnosis& diagnosis, std::size
   if (verdict.positions.size() < 2) {
     table.rows.push_back(make_unknown_row(verdict.unknown_share, ""));
   }
+  drop_empty_place(table);
   return {std::move(table)};
 }
 

@@ -82,7 +82,7 @@ void print_one(const IdentifiedRow& row) {
               << (in_range ? fmt::format("{}\n", unit)
                            : fmt::format("{:<12}{}\n", unit, is_inside));
   };
-  print("parameter", "value", "+-", "unit", "in range");
+  print("parameter", "value", "+- (95 %)", "unit", "in range");
   for (const IdentifiedParameter& p : row.parameters) {
     print(p.name, format_value(p), format_width(p), p.unit, p.in_range ? "yes" : "no");
   }
@@ -93,7 +93,7 @@ void print_many(const std::vector<IdentifiedRow>& rows) {
   for (const IdentifiedRow& row : rows) width = std::max(width, row.source.size());
   std::cout << fmt::format("{:<{}}", "row", width);
   for (const IdentifiedParameter& p : rows.front().parameters) {
-    std::cout << fmt::format("{:>26}{:>12}", p.name + " " + p.unit, "+-");
+    std::cout << fmt::format("{:>26}{:>12}", p.name + " " + p.unit, "+- (95 %)");
   }
   std::cout << "  in range\n";
   for (const IdentifiedRow& row : rows) {
@@ -111,13 +111,14 @@ std::string describe_excess(const OutsideChannel& channel) {
   return fmt::format("{:.3g} % of the training range {} its {}, {}",
                      100.0 * std::abs(channel.excess), below ? "below" : "above",
                      below ? "minimum" : "maximum",
-                     format_number(below ? channel.low : channel.high));
+                     format_significant(below ? channel.low : channel.high, 4));
 }
 
 void report_row(const IdentifiedRow& row) {
   for (const OutsideChannel& channel : row.outside) {
     print_error(fmt::format("{}: {} = {} {}: {}", row.source, channel.name,
-                            format_number(channel.value), channel.unit, describe_excess(channel)));
+                            format_significant(channel.value, 4), channel.unit,
+                            describe_excess(channel)));
   }
   for (const IdentifiedParameter& p : row.parameters) {
     if (p.in_range || !row.outside.empty()) continue;

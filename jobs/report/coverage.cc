@@ -89,10 +89,16 @@ Chart make_coverage_chart(const std::vector<CaseCount>& counts) {
   chart.caption =
       "Cases simulated so far by stratum and by each parameter of the grid, and how many of them "
       "failed.";
+  const auto has_failed = [](const CaseCount& count) {
+    return std::any_of(count.failed.begin(), count.failed.end(), [](double n) { return n > 0.0; });
+  };
+  const bool is_any = std::any_of(counts.begin(), counts.end(), has_failed);
   for (const CaseCount& count : counts) {
+    if (count.centers.size() < 2 && counts.size() > 1) continue;  // says nothing
     ChartPanel panel{{count.label}, {"cases"}, {}};
     panel.series.push_back({"simulated", SeriesKind::kBars, 6, count.centers, count.simulated});
-    panel.series.push_back({"failed", SeriesKind::kBars, 2, count.centers, count.failed});
+    if (is_any)
+      panel.series.push_back({"failed", SeriesKind::kBars, 2, count.centers, count.failed});
     chart.panels.push_back(std::move(panel));
   }
   return chart;

@@ -12,7 +12,9 @@
 namespace strut {
 namespace {
 
-constexpr std::size_t kMaxCases = 1000, kMaxTimes = 250;
+constexpr std::size_t kMaxCases = 1000;
+/// Points of all curves together, for a page that can be mailed.
+constexpr std::size_t kMaxPoints = 30000;
 
 /// Values of the cases at some samples of the histories.
 struct Histories {
@@ -35,7 +37,8 @@ void add_row(const ShardSchema& schema, const ShardRows& rows, std::size_t row, 
 Histories read_histories(Dataset& dataset) {
   const ShardSchema& schema = dataset.schema();
   Histories h;
-  const std::size_t stride = (schema.history_samples + kMaxTimes - 1) / kMaxTimes;
+  const std::size_t most = std::max<std::size_t>(200, kMaxPoints / (3 * schema.history.size()));
+  const std::size_t stride = (schema.history_samples + most - 1) / most;
   for (std::size_t i = 0; i < schema.history_samples; i += stride) h.samples.push_back(i);
   h.values.assign(schema.history.size(), std::vector<std::vector<double>>(h.samples.size()));
   // Neighbors of a shard may be alike, so the cases come from as many shards as are read anyway.
@@ -89,8 +92,12 @@ ReportSection make_history_section(const SweepFolder& folder, const FigureDrawer
   }
   Chart chart{"histories", {}, 2};
   chart.caption = fmt::format(
-      "The channels over time, of {} finished cases: median, and the band of 5 to 95 % of them.",
-      h.cases);
+      "The channels over time, of {} finished cases: median, and the band of 5 to 95 % of them{}.",
+      h.cases,
+      h.samples.size() < schema.history_samples
+          ? fmt::format("; {} of {} instants, so peaks may be cut", h.samples.size(),
+                        schema.history_samples)
+          : "");
   for (std::size_t c = 0; c < schema.history.size(); ++c) {
     chart.panels.push_back(make_panel(schema, h, c));
   }

@@ -56,14 +56,14 @@ Chart make_bound_chart(const DesignReport& report) {
        {std::pair{"the sweep's instant", s.snapshot.offset}, std::pair{"best instant", best}}) {
     panel.series.push_back({name,
                             SeriesKind::kDashedLine,
-                            offset == best ? 3 : kInk,
+                            offset == best ? 5 : kInk,
                             {offset, offset},
                             {smallest, kIdentifiable}});
   }
   Chart chart{"bounds", {std::move(panel)}};
   chart.panel_height = 420;
   chart.caption = fmt::format(
-      "Cramer-Rao bound of each parameter from one snapshot, as a fraction of its value, over "
+      "Cramer-Rao bound of each parameter from one snapshot, in per cent of its value, over "
       "the location of the snapshot; bounds above {} % are left out.",
       format_short(kIdentifiable));
   return chart;

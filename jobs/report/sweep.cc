@@ -10,6 +10,7 @@
 #include "io/file/atomic_file.h"
 #include "io/file/folder.h"
 #include "io/store/dataset.h"
+#include "jobs/cli/failures.h"
 #include "jobs/cli/progress.h"
 #include "jobs/cli/unsealed.h"
 #include "jobs/report/coverage.h"
@@ -135,8 +136,6 @@ Chart make_channel_chart(const Cases& cases, std::size_t channel) {
 ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const SweepStatus& s) {
   ReportTable table{"Progress", {"quantity", "value"}, {}, {}, 2};
   table.rows = {
-      {"plan", plan.hash()},
-      {"data digest", s.digest.text()},
       {"cases", format_count(s.cases)},
       {"done", format_count(s.done)},
       {"failed", format_count(s.failed)},
@@ -151,6 +150,8 @@ ReportSection make_progress(const SweepFolder& folder, const Plan& plan, const S
                            format_cell("{:.3g}", 1e3 * s.simulation_seconds / simulated) +
                            " ms a case"});
   }
+  table.rows.push_back({"plan", plan.hash()});
+  table.rows.push_back({"data digest", s.digest.text()});
   ReportSection section{"Cases", {}, {table}};
   if (!s.complete()) {
     section.paragraphs.push_back(
@@ -197,18 +198,24 @@ Chart make_failure_chart(const SweepStatus& status) {
   return chart;
 }
 
-ReportSection make_failures(const SweepStatus& status, const FigureDrawer& drawer) {
+ReportSection make_failures(const Plan& plan, const SweepStatus& status,
+                            const FigureDrawer& drawer) {
   ReportSection section{"Failures", {}};
   if (status.failures.empty()) {
     section.paragraphs = {"No case failed."};
     return section;
   }
   drawer.draw_all({make_failure_chart(status)}, section);
-  ReportTable table{"Failed cases", {"reason", "cases", "first case", "why it failed"}, {}};
+  ReportTable table{"Failed cases", {"reason", "cases", "first case", "why it failed"}, {}, {}, 4};
   for (const auto& [reason, count] : status.failures) {
-    const bool is_known = count.first_case >= 0;
-    table.rows.push_back({reason, format_count(count.cases),
-                          is_known ? std::to_string(count.first_case) : "", count.first_reason});
+    std::string first;
+    if (count.first_case >= 0) {
+      first = std::to_string(count.first_case);
+      for (const auto& [name, value] : list_values(plan, count.first_case)) {
+        first += fmt::format("\n{} = {}", name, round(value));
+      }
+    }
+    table.rows.push_back({reason, format_count(count.cases), first, count.first_reason});
   }
   section.tables.push_back(table);
   return section;
@@ -264,7 +271,7 @@ void write_sweep_report(const SweepFolder& folder) {
   page.badge = make_badge(status);
   page.key_numbers = make_key_numbers(status);
   page.sections = {make_progress(folder, plan, status), make_strata(plan),
-                   make_failures(status, drawer)};
+                   make_failures(plan, status, drawer)};
   if (status.shards_present > 0) {
     Dataset dataset({folder.root}, {.partial = true});
     drawer.draw_all({make_coverage_chart(count_cases(dataset, plan))}, page.sections[1]);

@@ -11,6 +11,7 @@
 #include "base/error/input_error.h"
 #include "base/math/linear.h"
 #include "io/store/column_map.h"
+#include "jobs/simulate/ride.h"
 #include "model/car/assemble.h"
 #include "model/scenario/profile.h"
 #include "model/scenario/road.h"
@@ -23,8 +24,8 @@ constexpr std::size_t kRoadPoints = 200;  // of a bump
 constexpr double kProfileSpacing = 0.05;  // m, of a rough road
 constexpr double kSeen = 8.0;             // m ahead of the car
 
-std::vector<double> get_channel(const LaneResults& results, std::size_t channel) {
-  return results.get_history(static_cast<int>(channel));
+std::vector<double> get_channel(const LaneResults& results, int channel) {
+  return results.get_history(channel);
 }
 
 double calc_bump_center(const Case& c) {
@@ -59,9 +60,8 @@ std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) 
   return frames;
 }
 
-std::size_t get_corner_channel(int corner, int channel) {
-  const int first = CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels;
-  return static_cast<std::size_t>(first) + static_cast<std::size_t>(channel);
+int get_corner_channel(int corner, int channel) {
+  return CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels + channel;
 }
 
 /// Six significant digits, more than a screen can show.
@@ -243,15 +243,19 @@ Json resample(const OtherRun& other, const std::vector<double>& values,
 Json make_other(const OtherRun& other, const std::vector<double>& times) {
   Json json = Json::object();
   json["name"] = other.name;
-  const auto add = [&](const char* name, const std::vector<double>& values) {
-    if (!values.empty()) json[name] = resample(other, values, times);
+  const auto add = [&](const char* name, int channel) {
+    const std::vector<double>* values = other.find(channel);
+    if (values != nullptr) json[name] = resample(other, *values, times);
   };
-  add("forward", other.forward);
-  add("height", other.height);
-  add("pitch", other.pitch);
+  add("forward", CarChannel::kForwardPosition);
+  add("height", CarChannel::kBodyPositionZ);
+  add("pitch", CarChannel::kPitchAngle);
+  add("roll", CarChannel::kRollAngle);
   Json wheels = Json::array();
-  for (const std::vector<double>& height : other.wheel_height) {
-    wheels.push_back(height.empty() ? Json() : resample(other, height, times));
+  for (int corner = 0; corner < kCorners; ++corner) {
+    const std::vector<double>* height =
+        other.find(get_corner_channel(corner, CarChannel::kWheelPositionZ));
+    wheels.push_back(height == nullptr ? Json() : resample(other, *height, times));
   }
   json["wheel_height"] = wheels;
   return json;
@@ -259,17 +263,16 @@ Json make_other(const OtherRun& other, const std::vector<double>& times) {
 
 constexpr int kOtherColor = 5;
 
-const std::vector<double>* find_values(const OtherRun& other, int channel) {
-  switch (channel) {
-    case CarChannel::kBodyPositionZ:
-      return &other.height;
-    case CarChannel::kPitchAngle:
-      return &other.pitch;
-    case CarChannel::kBodyAccelerationZ:
-      return &other.acceleration;
-    default:
-      return nullptr;
+/// The channels of another run that are drawn or judged.
+std::vector<int> list_other_channels() {
+  std::vector<int> channels = list_ride_channels();
+  channels.insert(channels.end(), {CarChannel::kForwardPosition, CarChannel::kBodyPositionZ,
+                                   CarChannel::kPitchAngle, CarChannel::kRollAngle});
+  for (int corner = 0; corner < kCorners; ++corner) {
+    channels.push_back(get_corner_channel(corner, CarChannel::kWheelPositionZ));
+    channels.push_back(get_corner_channel(corner, CarChannel::kDamperForce));
   }
+  return channels;
 }
 
 struct CurvePanel {
@@ -298,38 +301,40 @@ std::vector<std::array<double, 2>> list_profile(const RoadSpec& road) {
   return points;
 }
 
+const std::vector<double>* OtherRun::find(int channel) const {
+  const auto found = channels.find(channel);
+  return found == channels.end() ? nullptr : &found->second;
+}
+
+std::optional<double> OtherRun::find_rate() const {
+  constexpr double kTolerance = 1e-3;  // of an interval
+  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (std::fabs(times[i] - times[i - 1] - interval) > kTolerance * interval) return {};
+  }
+  return 1.0 / interval;
+}
+
 OtherRun read_other_run(const std::filesystem::path& file) {
   const std::vector<ChannelInfo>& channels = list_car_channels();
-  const auto name = [&](std::size_t channel) { return channels[channel].name; };
-  const auto describe = [&](std::size_t channel) {
-    return ColumnInfo{channels[channel].name, channels[channel].unit,
-                      channels[channel].description};
+  const auto describe = [&](int channel) {
+    const ChannelInfo& info = channels[static_cast<std::size_t>(channel)];
+    return ColumnInfo{info.name, info.unit, info.description};
   };
-  std::vector<ColumnInfo> optional = {
-      describe(CarChannel::kForwardPosition), describe(CarChannel::kBodyPositionZ),
-      describe(CarChannel::kPitchAngle), describe(CarChannel::kBodyAccelerationZ)};
-  for (int corner = 0; corner < kCorners; ++corner) {
-    optional.push_back(describe(get_corner_channel(corner, CarChannel::kWheelPositionZ)));
+  std::vector<ColumnInfo> optional;
+  for (const int channel : list_other_channels()) optional.push_back(describe(channel));
+  const ColumnInfo time = describe(CarChannel::kTime);
+  const Measurement run = read_channels(file, MeasuredPart::kHistory, {time}, optional, {});
+  OtherRun other{file.filename().string(), run.values(time.name)};
+  for (const int channel : list_other_channels()) {
+    const CsvColumn* column = run.find(describe(channel).name);
+    if (column != nullptr) other.channels[channel] = column->values;
   }
-  const Measurement run =
-      read_channels(file, MeasuredPart::kHistory, {describe(CarChannel::kTime)}, optional, {});
-  const auto find = [&](std::size_t channel) {
-    const CsvColumn* column = run.find(name(channel));
-    return column == nullptr ? std::vector<double>{} : column->values;
-  };
-  OtherRun other{file.filename().string(), run.values(name(CarChannel::kTime)), {}, {}, {}, {}, {}};
-  other.forward = find(CarChannel::kForwardPosition);
-  other.height = find(CarChannel::kBodyPositionZ);
-  other.pitch = find(CarChannel::kPitchAngle);
-  other.acceleration = find(CarChannel::kBodyAccelerationZ);
-  for (int corner = 0; corner < kCorners; ++corner) {
-    other.wheel_height[static_cast<std::size_t>(corner)] =
-        find(get_corner_channel(corner, CarChannel::kWheelPositionZ));
-  }
-  if (other.height.empty() && other.acceleration.empty()) {
+  if (other.find(CarChannel::kBodyPositionZ) == nullptr &&
+      other.find(CarChannel::kBodyAccelerationZ) == nullptr) {
     throw InputError(fmt::format("{}: has neither {} nor {}; must have one of them to be drawn",
-                                 file.string(), name(CarChannel::kBodyPositionZ),
-                                 name(CarChannel::kBodyAccelerationZ)));
+                                 file.string(), describe(CarChannel::kBodyPositionZ).name,
+                                 describe(CarChannel::kBodyAccelerationZ).name));
   }
   if (other.times.size() < 2) {
     throw InputError(
@@ -344,7 +349,7 @@ OtherRun read_other_run(const std::filesystem::path& file) {
 
 Json make_motion(const Case& c, const LaneResults& results, const std::optional<OtherRun>& other) {
   const std::vector<std::size_t> frames = list_frames(c, results);
-  const auto add = [&](Json& json, const char* name, std::size_t channel) {
+  const auto add = [&](Json& json, const char* name, int channel) {
     json[name] = make_values(get_channel(results, channel), frames);
   };
   Json json = Json::object();
@@ -393,16 +398,22 @@ Chart make_motion_curves(const LaneResults& results, const std::optional<OtherRu
   const std::vector<double> time = get_channel(results, CarChannel::kTime);
   for (const CurvePanel& curves : kPanels) {
     ChartPanel panel{{&curves == &kPanels.back() ? "time [s]" : ""}, {curves.label}, {}};
-    const auto add = [&](const char* name, SeriesKind kind, int color, std::size_t channel) {
+    const auto add = [&](const std::string& name, SeriesKind kind, int color, int channel) {
       panel.series.push_back(make_curve(name, kind, color, time, get_channel(results, channel)));
     };
+    // The other run's are drawn first, below.
+    const auto add_other = [&](SeriesKind kind, int channel) {
+      const std::vector<double>* values = other ? other->find(channel) : nullptr;
+      if (values == nullptr) return;
+      panel.series.push_back(make_curve(other->name, kind, kOtherColor, other->times, *values));
+    };
     if (curves.channel >= 0) {
-      add("body", SeriesKind::kLine, kInk, static_cast<std::size_t>(curves.channel));
-      const std::vector<double>* values = other ? find_values(*other, curves.channel) : nullptr;
-      if (values != nullptr && !values->empty()) {
-        panel.series.push_back(
-            make_curve(other->name, SeriesKind::kLine, kOtherColor, other->times, *values));
-      }
+      add_other(SeriesKind::kLine, curves.channel);
+      add("body", SeriesKind::kLine, kInk, curves.channel);
+    }
+    for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
+      add_other(is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine,
+                get_corner_channel(corner, curves.corner));
     }
     for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
       add(kNames[static_cast<std::size_t>(corner)],

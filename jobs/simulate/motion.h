@@ -1,8 +1,9 @@
-// A simulated car on a page: a side and a rear view of the car on its road, and curves over time.
+// A simulated car on a page: views from the side and along its axles, and curves over time.
 #pragma once
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,13 @@ std::vector<std::array<double, 2>> list_profile(const RoadSpec& road);
 struct OtherRun {
   std::string name;           // "worn.h5"
   std::vector<double> times;  // s
-  /// By channel: values [SI] at the times; empty where its file does not have the channel.
-  std::vector<double> forward, height, pitch, acceleration;
-  std::array<std::vector<double>, kCorners> wheel_height;
+  /// Values [SI] at the times by number of the car's channel; those that its file has.
+  std::map<int, std::vector<double>> channels = {};
+
+  /// nullptr: its file does not have the channel.
+  const std::vector<double>* find(int channel) const;
+  /// Samples per second; nullopt where they are not even.
+  std::optional<double> find_rate() const;
 };
 
 /// Reads the channels of another run from a file of any format. Throws InputError without times or

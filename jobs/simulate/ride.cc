@@ -77,23 +77,23 @@ double calc_mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-std::vector<double> get_corner(const LaneResults& results, int corner, int channel) {
-  return results.get_history(CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels +
-                             channel);
+int get_corner_channel(int corner, int channel) {
+  return CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels + channel;
 }
 
-AxleRide calc_axle_ride(const LaneResults& results, int axle, double rate) {
+AxleRide calc_axle_ride(const ReadChannel& read, int axle, double rate) {
   AxleRide ride;
-  std::vector<bool> is_airborne(static_cast<std::size_t>(results.sample_count), false);
+  std::vector<bool> is_airborne;
   for (const int corner : {2 * axle, 2 * axle + 1}) {
-    const std::vector<double> load = get_corner(results, corner, CarChannel::kTireForceZ);
+    const std::vector<double> load = read(get_corner_channel(corner, CarChannel::kTireForceZ));
+    is_airborne.resize(load.size(), false);
     for (std::size_t i = 0; i < load.size(); ++i) {
       if (load[i] <= 0.0) is_airborne[i] = true;
     }
     const double mean = calc_mean(load);
     ride.load_variation = std::max(ride.load_variation, calc_rms(load, mean) / mean);
-    ride.travel = std::max(
-        ride.travel, calc_peak(get_corner(results, corner, CarChannel::kSuspensionDeflection)));
+    const int deflection = get_corner_channel(corner, CarChannel::kSuspensionDeflection);
+    ride.travel = std::max(ride.travel, calc_peak(read(deflection)));
   }
   ride.airborne =
       static_cast<double>(std::count(is_airborne.begin(), is_airborne.end(), true)) / rate;
@@ -108,8 +108,18 @@ std::vector<double> weight_acceleration(const std::vector<double>& acceleration,
   return weighted;
 }
 
-Ride calc_ride(const LaneResults& results, double rate) {
-  const std::vector<double> acceleration = results.get_history(CarChannel::kBodyAccelerationZ);
+std::vector<int> list_ride_channels() {
+  std::vector<int> channels = {CarChannel::kBodyAccelerationZ};
+  for (int corner = 0; corner < kCorners; ++corner) {
+    for (const int channel : {CarChannel::kTireForceZ, CarChannel::kSuspensionDeflection}) {
+      channels.push_back(get_corner_channel(corner, channel));
+    }
+  }
+  return channels;
+}
+
+Ride calc_ride(const ReadChannel& read, double rate) {
+  const std::vector<double> acceleration = read(CarChannel::kBodyAccelerationZ);
   Ride ride;
   ride.peak = calc_peak(acceleration);
   ride.rms = calc_rms(acceleration);
@@ -119,7 +129,7 @@ Ride calc_ride(const LaneResults& results, double rate) {
     ride.transient = calc_transient(weighted, rate);
   }
   for (std::size_t axle = 0; axle < kAxles; ++axle) {
-    ride.axles[axle] = calc_axle_ride(results, static_cast<int>(axle), rate);
+    ride.axles[axle] = calc_axle_ride(read, static_cast<int>(axle), rate);
   }
   return ride;
 }

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "model/car/spec.h"
-#include "model/kernel/simulation.h"
 
 namespace strut {
 
@@ -32,7 +32,12 @@ struct Ride {
   std::array<AxleRide, kAxles> axles;
 };
 
-/// `rate` [Hz]: of the history of `results`, which holds all channels of a car.
-Ride calc_ride(const LaneResults& results, double rate);
+/// Reads a channel of a car, by its number, at all samples.
+using ReadChannel = std::function<std::vector<double>(int channel)>;
+
+/// `rate` [Hz]: of the samples. Reads list_ride_channels().
+Ride calc_ride(const ReadChannel& read, double rate);
+/// The channels that a ride is judged by.
+std::vector<int> list_ride_channels();
 
 }  // namespace strut

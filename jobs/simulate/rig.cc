@@ -7,6 +7,7 @@
 #include "jobs/cli/command.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
+#include "jobs/simulate/rig_report.h"
 #include "jobs/simulate/run_file.h"
 #include "model/longest_step.h"
 #include "model/rig/rig_system.h"
@@ -96,11 +97,17 @@ int run_rig(const Arguments& arguments, const SimulateOptions& given) {
   }
   describe_run(options, rig, run);
   write_run(options.output, format, run);
+  if (!options.report.empty()) {
+    write_rig_report(options, run);
+    suggest_page((options.report / "report.html").string());
+  }
   print_note(fmt::format("{}: {} samples of {} channels; {:.4g} s simulated in {:.3g} s",
                          options.output.string(), run.results.sample_count, run.kept.size(),
                          maneuver.duration, seconds));
-  suggest_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
-               "to compare measured runs with this rig");
+  if (options.report.empty()) {
+    suggest_next({"strut", "compare", "CAMPAIGN.toml", "-o", "comparison"},
+                 "to compare measured runs with this rig; or repeat this one with --report DIR");
+  }
   return kExitDone;
 }
 

@@ -12,15 +12,6 @@
 namespace strut {
 namespace {
 
-ReportTable make_parameter_table(const RunRecord& run) {
-  ReportTable table{"All parameters", {"name", "description", "value", "unit"}, {}, {}, 2};
-  for (const RunParameter& p : run.parameters) {
-    table.rows.push_back({p.name, p.description, format_short(p.value), p.unit});
-  }
-  table.is_folded = true;
-  return table;
-}
-
 /// The parameters that --set changed; without rows where it changed none.
 ReportTable make_change_table(const CaseSource& source, const Case& c) {
   ReportTable table{"Changed by --set", {"name", "description", "file", "here", "unit"}, {}, {}, 2};
@@ -34,23 +25,60 @@ ReportTable make_change_table(const CaseSource& source, const Case& c) {
   return table;
 }
 
-ReportTable make_ride_table(const Ride& ride) {
-  ReportTable table{"Figures of merit", {"quantity", "value", "unit"}};
-  const auto add = [&](const std::string& quantity, double value, const char* unit) {
-    table.rows.push_back({quantity, format_short(value), unit});
-  };
-  add("peak vertical acceleration of the body", ride.peak, "m/s\u00b2");
-  add("its root mean square", ride.rms, "m/s\u00b2");
+/// The rows of make_ride_table(): quantity, value, unit.
+struct RideFigure {
+  std::string quantity;
+  double value = 0.0;
+  const char* unit = "";
+  int decimals = 2;
+};
+
+std::vector<RideFigure> list_ride_figures(const Ride& ride) {
+  constexpr const char* kAcceleration = "m/s\u00b2";
+  std::vector<RideFigure> figures = {
+      {"peak vertical acceleration of the body", ride.peak, kAcceleration},
+      {"its root mean square", ride.rms, kAcceleration}};
   if (ride.weighted) {
-    add("weighted by ISO 2631-1, largest rms of a second", *ride.transient, "m/s\u00b2");
-    add("weighted by ISO 2631-1, rms of the whole run", *ride.weighted, "m/s\u00b2");
+    figures.push_back(
+        {"weighted by ISO 2631-1, largest rms of a second", *ride.transient, kAcceleration});
+    figures.push_back(
+        {"weighted by ISO 2631-1, rms of the whole run", *ride.weighted, kAcceleration});
   }
   for (int axle = 0; axle < kAxles; ++axle) {
     const AxleRide& a = ride.axles[static_cast<std::size_t>(axle)];
     const std::string name = std::string(" ") + kAxleNames[static_cast<std::size_t>(axle)];
-    add("suspension travel," + name + " (of \u00b1100 mm)", 1e3 * a.travel, "mm");
-    add("tire load variation," + name + " (rms over mean)", 100.0 * a.load_variation, "%");
-    add("a wheel off the road," + name, 1e3 * a.airborne, "ms");
+    figures.push_back(
+        {"suspension travel," + name + " (of \u00b1100 mm)", 1e3 * a.travel, "mm", 1});
+    figures.push_back(
+        {"tire load variation," + name + " (rms over mean)", 100.0 * a.load_variation, "%", 1});
+    figures.push_back({"a wheel off the road," + name, 1e3 * a.airborne, "ms", 0});
+  }
+  return figures;
+}
+
+/// The figures of another run; empty where its file lacks a channel or has uneven times.
+std::vector<RideFigure> list_other_figures(const OtherRun& other) {
+  const std::vector<int> channels = list_ride_channels();
+  const bool has_all = std::all_of(channels.begin(), channels.end(),
+                                   [&](int channel) { return other.find(channel) != nullptr; });
+  const std::optional<double> rate = other.find_rate();
+  if (!has_all || !rate) return {};
+  return list_ride_figures(calc_ride([&](int channel) { return *other.find(channel); }, *rate));
+}
+
+ReportTable make_ride_table(const Ride& ride, const std::optional<OtherRun>& other) {
+  ReportTable table{"Figures of merit", {"quantity", "value", "unit"}};
+  const std::vector<RideFigure> figures = list_ride_figures(ride);
+  const std::vector<RideFigure> others =
+      other ? list_other_figures(*other) : std::vector<RideFigure>{};
+  const bool has_others = others.size() == figures.size();
+  if (has_others) table.header = {"quantity", "this run", other->name, "unit"};
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const RideFigure& f = figures[i];
+    std::vector<std::string> row = {f.quantity, fmt::format("{:.{}f}", f.value, f.decimals)};
+    if (has_others) row.push_back(fmt::format("{:.{}f}", others[i].value, f.decimals));
+    row.emplace_back(f.unit);
+    table.rows.push_back(std::move(row));
   }
   return table;
 }
@@ -65,13 +93,6 @@ std::vector<KeyNumber> make_key_numbers(const Ride& ride) {
   const double travel = std::max(ride.axles[kFront].travel, ride.axles[kRear].travel);
   numbers.push_back({fmt::format("{:.0f} mm", 1e3 * travel), "suspension travel used of 100 mm"});
   return numbers;
-}
-
-ReportTable make_source_table(const RunRecord& run) {
-  ReportTable table{"Provenance", {"name", "value"}, {}, {}, 2};
-  for (const auto& [name, value] : run.provenance) table.rows.push_back({name, value});
-  table.is_folded = true;
-  return table;
 }
 
 /// "a bump of 50 mm under the left wheels"
@@ -109,6 +130,32 @@ std::string describe(const CaseSource& source, const Case& c) {
 
 }  // namespace
 
+std::string make_run_title(const CaseSource& source) {
+  constexpr std::size_t kMaxSettings = 3;
+  std::string title = source.vehicle.stem().string() + " over " + source.maneuver.stem().string();
+  for (std::size_t i = 0; i < std::min(kMaxSettings, source.settings.size()); ++i) {
+    const NamedValue setting = parse_setting(source.settings[i]);
+    title += fmt::format(", {} = {}", setting.name, setting.value);
+  }
+  return title + (source.settings.size() > kMaxSettings ? ", ..." : "");
+}
+
+ReportTable make_parameter_table(const RunRecord& run) {
+  ReportTable table{"All parameters", {"name", "description", "value", "unit"}, {}, {}, 2};
+  for (const RunParameter& p : run.parameters) {
+    table.rows.push_back({p.name, p.description, format_short(p.value), p.unit});
+  }
+  table.is_folded = true;
+  return table;
+}
+
+ReportTable make_source_table(const RunRecord& run) {
+  ReportTable table{"Provenance", {"name", "value"}, {}, {}, 2};
+  for (const auto& [name, value] : run.provenance) table.rows.push_back({name, value});
+  table.is_folded = true;
+  return table;
+}
+
 void write_run_report(const std::filesystem::path& folder, const CaseSource& source, const Case& c,
                       const RunRecord& run, double rate, const std::optional<OtherRun>& other) {
   const PageFolder out{folder};
@@ -123,17 +170,18 @@ void write_run_report(const std::filesystem::path& folder, const CaseSource& sou
   if (other) caption += fmt::format(" {} is drawn over it, dotted.", other->name);
   motion.motions = {drawer.draw_motion(make_motion(c, run.results, other), "motion", caption)};
   drawer.draw_all({make_motion_curves(run.results, other)}, motion);
-  const Ride ride = calc_ride(run.results, rate);
+  const Ride ride = calc_ride([&](int channel) { return run.results.get_history(channel); }, rate);
   ReportSection parameters{"Parameters"};
   if (ReportTable changes = make_change_table(source, c); !changes.rows.empty()) {
     parameters.tables.push_back(std::move(changes));
   }
   parameters.tables.push_back(make_parameter_table(run));
   parameters.tables.push_back(make_source_table(run));
-  ReportPage page{"Run of " + source.vehicle.filename().string(),
-                  {describe(source, c)},
-                  {std::move(motion), {"Ride", {}, {make_ride_table(ride)}}, std::move(parameters)},
-                  make_report_footer()};
+  ReportPage page{
+      make_run_title(source),
+      {describe(source, c)},
+      {std::move(motion), {"Ride", {}, {make_ride_table(ride, other)}}, std::move(parameters)},
+      make_report_footer()};
   page.of = kRunContent.name;
   page.key_numbers = make_key_numbers(ride);
   write_page(out, page);

@@ -81,9 +81,12 @@ Chart make_bar_chart(const StudyRequest& request, const Bars& bars) {
   return chart;
 }
 
-constexpr char kBarsNote[] =
-    " Bars: median over the seeds, with the smallest and the largest value; triangles: the paper. "
-    "The scale is logarithmic.";
+std::string describe_bars(const StudyRequest& request) {
+  return fmt::format(" Bars: {}; triangles: the paper. The scale is logarithmic.",
+                     request.seeds == 1
+                         ? "one training each"
+                         : "median over the seeds, with the smallest and the largest value");
+}
 
 Bars make_network_bars(const StudyRequest& request, const StudyResults& results,
                        std::size_t preload) {
@@ -91,7 +94,7 @@ Bars make_network_bars(const StudyRequest& request, const StudyResults& results,
   bars.name = "networks_" + request.preloads[preload].name;
   bars.caption = fmt::format(
       "As Figure 8 of the paper. Mean absolute errors of all networks and numbers of cases.{}",
-      kBarsNote);
+      describe_bars(request));
   for (const CellResult& cell : results.cells) {
     const StudyCell& c = cell.cell;
     if (c.preload != preload || c.inputs != request.main_inputs || c.best_instant) continue;
@@ -108,7 +111,7 @@ Bars make_input_bars(const StudyRequest& request, const StudyResults& results,
   bars.name = "inputs_" + request.preloads[preload].name;
   bars.caption = fmt::format(
       "As Figure 9 of the paper. Mean absolute errors with different inputs and instants.{}",
-      kBarsNote);
+      describe_bars(request));
   for (const CellResult& cell : results.cells) {
     const StudyCell& c = cell.cell;
     const bool here = c.preload == preload && c.samples == request.main_samples &&

@@ -24,6 +24,8 @@ function setAll(shape, attributes) {
 
 const toPoints = (points) => points.map(([x, z]) => x.toFixed(4) + "," + (-z).toFixed(4)).join(" ");
 
+const makeDotted = (line) => ({...line, stroke: "var(--other)", "stroke-width": 0.02, "stroke-dasharray": dots, "stroke-linecap": "round"});
+
 // A sedan's outline: x as a fraction of the wheelbase from the rear axle, z from the ground at rest.
 function makeOutline(scene) {
   const base = scene.front.wheel[0] - scene.rear.wheel[0];
@@ -142,7 +144,7 @@ class MotionView {
               spring: addShape(this.svg, "polyline", {...line, stroke: "var(--accent)", ...look})};
     });
     if (!this.scene.other) return;
-    const dotted = {...line, stroke: "var(--other)", "stroke-width": 0.02, "stroke-dasharray": dots, "stroke-linecap": "round"};
+    const dotted = makeDotted(line);
     this.otherBody = addShape(this.svg, "polygon", dotted);
     this.otherWheels = [1, 3].map(() => addShape(this.svg, "circle", {...dotted, r: this.scene.radius}));
   }
@@ -169,7 +171,13 @@ class MotionView {
       spring: axle.spring_y && addShape(svg, "polyline", {...line, stroke: "var(--accent)"}),
       wheel: addShape(svg, "rect", {...line, "stroke-width": 0.03, rx: 0.05, width: 0.2})});
     const body = addShape(svg, "polygon", {...line, fill: "var(--accent)", "fill-opacity": 0.15});
-    return {axle, firstCorner, sign, half, body, outline: makeCrossOutline(this.scene, axle), sides: [makeSide(), makeSide()]};
+    const view = {axle, firstCorner, sign, half, body, outline: makeCrossOutline(this.scene, axle), sides: [makeSide(), makeSide()]};
+    if (this.scene.other) {
+      const dotted = makeDotted(line);
+      view.otherBody = addShape(svg, "polygon", dotted);
+      view.otherWheels = [0, 1].map(() => addShape(svg, "rect", {...dotted, rx: 0.05, width: 0.2}));
+    }
+    return view;
   }
 
   makeControls(root) {
@@ -249,6 +257,12 @@ class MotionView {
     join(damper, onBody(upper), fixed.map((value, i) => value + share * (moved[i] - value)));
   }
 
+  // Maps a point (y, z) of the body into the view along an axle. Positive roll is left side up.
+  makeCross(sign, height, roll) {
+    const [cos, sin] = [Math.cos(roll), Math.sin(roll)];
+    return ([y, pz]) => [sign * (y * cos - pz * sin), height + y * sin + pz * cos];
+  }
+
   placeWheel(shapes, corner, place, frame) {
     const {rim, spoke, spring} = shapes;
     const scene = this.scene;
@@ -297,14 +311,11 @@ class MotionView {
     shape.setAttribute("points", toPoints(points));
   }
 
-  // Positive roll is left side up.
   placeAxle({axle, firstCorner, sign, half, body, outline, sides}, frame, z) {
     const scene = this.scene;
-    const roll = this.enlarge(scene.roll, frame);
-    const [cos, sin] = [Math.cos(roll), Math.sin(roll)];
     // The body above the axle also moves by the pitch.
     const height = z - axle.wheel[0] * Math.sin(this.enlarge(scene.pitch, frame));
-    const place = ([y, pz]) => [sign * (y * cos - pz * sin), height + y * sin + pz * cos];
+    const place = this.makeCross(sign, height, this.enlarge(scene.roll, frame));
     body.setAttribute("points", toPoints(outline.map(place)));
     const x = scene.forward[frame] + axle.wheel[0];
     sides.forEach((shapes, side) => {
@@ -326,23 +337,45 @@ class MotionView {
     });
   }
 
+  // A value of another run, enlarged like this one's; null where it has none. One with another origin is
+  // shown relative to its own first value.
+  readOther(values, own, frame) {
+    const value = values?.[frame] ?? null;
+    if (value === null) return null;
+    const first = values.find((v) => v !== null);  // it may begin later
+    const base = Math.abs(first - own[0]) < 0.1 ? own[0] : first;
+    return own[0] + this.enlarged * (value - base);
+  }
+
   // Another run at the same time, as far as its file has channels.
   placeOther(frame) {
     const {other, front, rear} = this.scene;
-    const read = (values) => {
-      const first = values?.find((value) => value !== null);  // it may begin later
-      return (values?.[frame] ?? null) === null ? null : first + this.enlarged * (values[frame] - first);
-    };
-    const z = read(other.height);
+    const z = this.readOther(other.height, this.scene.height, frame);
     this.otherBody.style.display = z === null ? "none" : "";
     const ahead = other.forward && other.forward[frame] !== null ? other.forward[frame] - this.scene.forward[frame] : 0;
-    const place = this.makePlace(z ?? 0, read(other.pitch) ?? 0);
+    const pitch = this.readOther(other.pitch, this.scene.pitch, frame) ?? 0;
+    const place = this.makePlace(z ?? 0, pitch);
     if (z !== null) this.otherBody.setAttribute("points", toPoints(this.outline.map(place).map(([x, pz]) => [x + ahead, pz])));
     [1, 3].forEach((corner, i) => {
-      const center = read(other.wheel_height[corner]);
+      const center = this.readOther(other.wheel_height[corner], this.scene.wheel_height[corner], frame);
       this.otherWheels[i].style.display = center === null ? "none" : "";
       const [cx] = place((corner < 2 ? front : rear).wheel);
       if (center !== null) setAll(this.otherWheels[i], {cx: cx + ahead, cy: -center});
+    });
+    for (const view of this.axleViews) this.placeOtherAxle(view, frame, z, pitch);
+  }
+
+  placeOtherAxle({axle, firstCorner, sign, outline, otherBody, otherWheels}, frame, z, pitch) {
+    const {other} = this.scene;
+    const place = this.makeCross(sign, z - axle.wheel[0] * Math.sin(pitch), this.readOther(other.roll, this.scene.roll, frame) ?? 0);
+    otherBody.style.display = z === null ? "none" : "";
+    if (z !== null) otherBody.setAttribute("points", toPoints(outline.map(place)));
+    otherWheels.forEach((wheel, side) => {
+      const corner = firstCorner + side;
+      const center = this.readOther(other.wheel_height[corner], this.scene.wheel_height[corner], frame);
+      wheel.style.display = center === null ? "none" : "";
+      const y = sign * (side === 0 ? 1 : -1) * axle.half_track;
+      if (center !== null) setAll(wheel, {x: y - 0.1, y: -(center + this.scene.radius), height: 2 * this.scene.radius});
     });
   }
 

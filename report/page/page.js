@@ -25,12 +25,12 @@ function makeTemplate() {
   const ink = readColor("--ink");
   const line = readColor("--line");
   const axis = {gridcolor: line, zerolinecolor: line, linecolor: ink, showline: true, ticks: "outside",
-                autotickangles: [0, -30, -90], automargin: false, title: {standoff: 8, font: {size: 12}}};
+                autotickangles: [0, -30, -90], automargin: false, exponentformat: "power", minexponent: 5, title: {standoff: 8, font: {size: 12}}};
   return {layout: {
     font: {color: ink, size: 13, family: "system-ui, 'DejaVu Sans', Arial, sans-serif"},
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", xaxis: axis, yaxis: axis,
     modebar: {bgcolor: readColor("--paper"), color: readColor("--soft"), activecolor: ink},
-    legend: {itemsizing: "constant"},  // small points would be invisible
+    legend: {itemsizing: "constant", itemwidth: 40},  // small points would be invisible, dashes alike
     hoverlabel: {namelength: -1}}};
 }
 
@@ -42,7 +42,7 @@ function paint(value, ink) {
     const isDark = darkMode.matches && !isForPaper;
     return isDark && darkColors[value.slice(0, 7)] ? darkColors[value.slice(0, 7)] + value.slice(7) : value;
   }
-  if (typeof value === "string") return value.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  if (typeof value === "string") return value.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll("^2", "\u00b2").replaceAll("^3", "\u00b3");
   if (Array.isArray(value)) {
     return value.some((item) => typeof item !== "number") ? value.map((v) => paint(v, ink)) : value;
   }

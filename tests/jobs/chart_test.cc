@@ -406,7 +406,16 @@ TEST_CASE("Another run is drawn over a simulated one", "[io]") {
   const std::string page = test::read_text(folder / "worn/report.html");
   CHECK_THAT(page, Contains("Changed by --set") && Contains(">front_damping</td>"));
   CHECK_THAT(page,
-             Contains("weighted by ISO 2631-1") && Contains("over 3 bumps of 60 mm, 6 m apart"));
+             Contains("weighted by ISO 2631-1") && Contains("over 3 bumps of 60 mm, 6 m apart") &&
+                 !Contains(">this run<"));  // the record lacks what a ride is judged by
+  const std::string whole =
+      make_simulate_command("three_bumps", folder / "whole.csv", folder / "whole");
+  REQUIRE(test::run_program(whole + " --beside " + (folder / "worn.csv").string()).code == 0);
+  test::check_page(folder / "whole/report.html", 1);
+  CHECK_THAT(test::read_text(folder / "whole/report.html"),
+             Contains(">this run<") && Contains(">worn.csv<"));
+  CHECK_THAT(test::read_text(folder / "whole/figures/curves.csv"),
+             Contains("\"tire load [N] over time [s]\",\"worn.csv\""));
   test::check_page(folder / "worn/report.html", 1);
   const auto refuse = [&](const std::string& text, const std::string& told) {
     const test::Outcome outcome =
@@ -433,6 +442,23 @@ TEST_CASE("A run's report replaces no page but an earlier run's", "[io]") {
     fs::remove(folder / name);
   }
   CHECK_FALSE(fs::exists(folder / "run.csv"));
+}
+
+TEST_CASE("A rig's report shows its channels, those of one unit together", "[io]") {
+  const TemporaryFolder folder;
+  const std::string rigs = "examples/rigs/", out = folder / "report";
+  const test::Outcome run = test::run_program("simulate " + rigs + "quarter_car.toml " + rigs +
+                                              "maneuvers/bump.toml -o " +
+                                              (folder / "run.csv").string() + " --report " + out);
+  INFO(run.messages);
+  REQUIRE(run.code == 0);
+  test::check_page(out + "/report.html", 1);
+  CHECK_THAT(test::read_text(out + "/report.html"),
+             Contains("quarter_car over bump") && Contains("sprung_mass"));
+  const std::string curves = test::read_text(out + "/figures/curves.csv");
+  CHECK_THAT(curves, Contains("[N] over time [s]\",\"tire force\"") &&
+                         Contains("[m] over time [s]\",\"sprung position\""));
+  CHECK(test::run_program("report " + out).code == 0);
 }
 
 TEST_CASE("The motion's road is the maneuver's, however its table is spaced", "[unit]") {

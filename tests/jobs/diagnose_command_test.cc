@@ -189,7 +189,8 @@ TEST_CASE("Where several causes act, each has its own probability of being none 
     std::vector<std::vector<std::string>> rows;
     const auto tables = make_cause_tables(diagnosis);
     for (const auto& row : tables.front().rows) {
-      if (row[0] == "none of the catalogue") rows.push_back({row[2], row[4]});
+      if (row[0] == "none of the catalogue")
+        rows.push_back({row[1], row[3]});  // no stand has places
     }
     return rows;
   };

@@ -52,6 +52,10 @@ TEST_CASE("Vertical acceleration is weighted as ISO 2631-1 tabulates", "[referen
   CHECK(measure_gain(5.0, kMinWeightedRate) == Approx(1.039).epsilon(0.012));
 }
 
+ReadChannel read_from(const LaneResults& results) {
+  return [&results](int channel) { return results.get_history(channel); };
+}
+
 TEST_CASE("A ride's figures are those of its channels", "[unit]") {
   Case c = test::make_paper_case();
   c.maneuver.duration = 2.0;
@@ -60,7 +64,7 @@ TEST_CASE("A ride's figures are those of its channels", "[unit]") {
   const LaneResults results =
       list_kernels().front().run_scalar(test::prepare(c), IntegrateOptions{}, plan);
   REQUIRE(results.is_done());
-  const Ride ride = calc_ride(results, 1000.0);
+  const Ride ride = calc_ride(read_from(results), 1000.0);
   double peak = 0.0, sum = 0.0;
   for (const double a : results.get_history(CarChannel::kBodyAccelerationZ)) {
     peak = std::max(peak, std::abs(a));
@@ -83,11 +87,11 @@ TEST_CASE("A ride's figures are those of its channels", "[unit]") {
     CHECK(axle.travel < 0.1);
     CHECK(axle.load_variation > 0.05);
   }
-  CHECK_FALSE(calc_ride(results, kMinWeightedRate - 1.0).weighted);
+  CHECK_FALSE(calc_ride(read_from(results), kMinWeightedRate - 1.0).weighted);
   c.maneuver.road.height = 0.0;
   const LaneResults still =
       list_kernels().front().run_scalar(test::prepare(c), IntegrateOptions{}, plan);
-  const Ride none = calc_ride(still, 1000.0);
+  const Ride none = calc_ride(read_from(still), 1000.0);
   CHECK(none.peak < 0.05);
   CHECK(none.axles[0].airborne == 0.0);
   CHECK(none.axles[1].load_variation < 1e-3);
