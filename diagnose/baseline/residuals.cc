@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <unsupported/Eigen/FFT>
 
 #include "base/math/spread.h"
@@ -37,14 +39,53 @@ std::vector<double> make_even(std::span<const double> times, std::span<const dou
   return even;
 }
 
+/// The largest prime factor of a number above 1.
+std::size_t find_largest_factor(std::size_t n) {
+  std::size_t largest = 1;
+  for (std::size_t p = 2; p * p <= n; ++p) {
+    for (; n % p == 0; n /= p) largest = p;
+  }
+  return std::max(largest, n);
+}
+
+using Spectrum = std::vector<std::complex<double>>;
+
+/// The transform of any number of values. Eigen's takes n steps for each unit
+/// of n's largest prime factor; where that is large, by Bluestein's convolution with a
+/// chirp (L. I. Bluestein, IEEE Trans. Audio Electroacoust. 18 (1970)).
+Spectrum transform(const std::vector<double>& values) {
+  constexpr std::size_t kMostFactor = 50;
+  thread_local Eigen::FFT<double> fft;  // keeps its tables
+  const std::size_t n = values.size();
+  Spectrum spectrum;
+  if (find_largest_factor(n) <= kMostFactor) {
+    fft.fwd(spectrum, values);
+    return spectrum;
+  }
+  const std::size_t size = std::bit_ceil(2 * n - 1);
+  Spectrum chirp(n), signal(size), filter(size), product(size);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double angle = static_cast<double>(k * k % (2 * n)) / static_cast<double>(n);
+    chirp[k] = std::polar(1.0, -std::numbers::pi * angle);
+    signal[k] = values[k] * chirp[k];
+    filter[k] = filter[(size - k) % size] = std::conj(chirp[k]);
+  }
+  Spectrum of_signal, of_filter;
+  fft.fwd(of_signal, signal);
+  fft.fwd(of_filter, filter);
+  for (std::size_t i = 0; i < size; ++i) product[i] = of_signal[i] * of_filter[i];
+  fft.inv(signal, product);
+  spectrum.resize(n);
+  for (std::size_t k = 0; k < n; ++k) spectrum[k] = signal[k] * chirp[k];
+  return spectrum;
+}
+
 /// Mean square by band of `values`, one every `interval` s.
 std::array<double, kBands.size()> calc_band_powers(const std::vector<double>& values,
                                                    double interval) {
   std::array<double, kBands.size()> powers{};
   if (values.size() < 2) return powers;
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> spectrum;
-  fft.fwd(spectrum, values);
+  const Spectrum spectrum = transform(values);
   const std::size_t n = values.size();
   const double norm = 1.0 / (static_cast<double>(n) * static_cast<double>(n));
   for (std::size_t k = 0; k < n; ++k) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "base/parallel/team.h"
 #include "estimate/nuisances.h"
 #include "model/effects/names.h"
 
@@ -51,7 +52,8 @@ TestBench::TestBench(const CampaignData& data, const WhitenedFit& fit, int threa
   std::shared_ptr<const Linearization> given = fit.linearization;
   if (!given) given = std::make_shared<const Linearization>(model->linearize(values_));
   if (!given->failure.empty()) throw InputError(given->failure);
-  Linearization at = whitener_->apply(*given);
+  Linearization at = whitener_->apply(*given, threads_);
+  readings_ = given->residual;
   normal_ = calc_normal_equations(whitened, at).information;
   residual_ = std::move(at.residual);
   jacobian_ = std::move(at.jacobian);
@@ -81,11 +83,14 @@ Eigen::MatrixXd TestBench::simulate_columns(const std::vector<Unknown>& added,
       all[i - begin].insert(all[i - begin].end(), points[i].begin(), points[i].end());
     }
     const std::vector<Evaluation> evaluations = model->evaluate(all);
+    Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(readings_.size(), as_index(end - begin));
     for (std::size_t i = begin; i < end; ++i) {
       const Evaluation& e = evaluations[i - begin];
       if (!e.failure.empty()) continue;  // no such size: a column of zeros is no hypothesis
-      columns.col(as_index(i)) = whitener_->apply_residual(e.residual) - residual_;
+      differences.col(as_index(i - begin)) = e.residual - readings_;
     }
+    columns.middleCols(as_index(begin), differences.cols()) =
+        whitener_->apply(differences, threads_);
   }
   simulations_ += model->simulation_count();
   return columns;
@@ -189,7 +194,9 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
   for (Index i = shared; i < jacobian_.cols(); ++i) all_own.push_back(i);
   // Priors of a run's own unknowns belong to the run.
   Eigen::MatrixXd priors = add_products(whitened, rows - whitened, all_own);
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
+  evidence.norms.resize(runs_.size());
+  evidence.products.resize(runs_.size());
+  share_items(threads_, runs_.size(), [&](std::size_t r, int) {
     std::vector<Index> own;
     for (std::size_t i = shared_count_; i < unknowns_.size(); ++i) {
       if (unknowns_[i].run == static_cast<int>(r)) own.push_back(as_index(i));
@@ -197,7 +204,7 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
     const auto begin = as_index(whitener_->run_begin()[r]);
     const auto length = as_index(whitener_->run_begin()[r + 1]) - begin;
     Eigen::MatrixXd products = add_products(begin, length, own);
-    evidence.norms.emplace_back(products.diagonal().segment(products.rows() - 1 - count, count));
+    evidence.norms[r] = products.diagonal().segment(products.rows() - 1 - count, count);
     for (std::size_t i = 0; i < own.size(); ++i) {
       const Index at = shared + as_index(i);
       products(at, at) += priors(own[i], own[i]);
@@ -205,8 +212,8 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
       products(at, products.cols() - 1) += priors(own[i], last);
       products(products.rows() - 1, at) += priors(last, own[i]);
     }
-    evidence.products.push_back(eliminate(products, shared, as_index(own.size())));
-  }
+    evidence.products[r] = eliminate(products, shared, as_index(own.size()));
+  });
   // What is left of the priors: those of shared unknowns.
   Eigen::MatrixXd of_shared = Eigen::MatrixXd::Zero(shared + count + 1, shared + count + 1);
   of_shared.topLeftCorner(shared, shared) = priors.topLeftCorner(shared, shared);

@@ -62,6 +62,7 @@ class TestBench {
   EffectSettings effects_on_;  // of the fit
   int threads_;
   std::unique_ptr<Whitener> whitener_;
+  Eigen::VectorXd readings_;  // residual of readings, then priors
   Eigen::VectorXd residual_;  // whitened, then priors
   Eigen::MatrixXd jacobian_;  // by unknowns in their scale
   Eigen::MatrixXd normal_;    // J'J

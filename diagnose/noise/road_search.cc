@@ -106,7 +106,7 @@ class RoadSearch {
     const Linearization& at = linearize();
     const Whitener whitener(*model_, result_.spectra, result_.roads);
     const WhitenedModel whitened(*model_, whitener);
-    const NormalEquations normal = calc_normal_equations(whitened, whitener.apply(at));
+    const NormalEquations normal = calc_normal_equations(whitened, whitener.apply(at, threads_));
     const NormalEquations free = free_unknowns(normal, list_held(normal.gradient));
     const Eigen::MatrixXd covariance = invert_information(free.information).covariance;
     const Eigen::VectorXd change = -(covariance * free.gradient);
@@ -242,7 +242,7 @@ class RoadSearch {
   void describe(int steps) {
     const Whitener whitener(*model_, result_.spectra, result_.roads);
     const WhitenedModel whitened(*model_, whitener);
-    const Linearization at = whitener.apply(linearize());
+    const Linearization at = whitener.apply(linearize(), threads_);
     result_.linearization = here_;
     result_.is_dominated =
         at.residual.squaredNorm() > kDominated * static_cast<double>(at.residual.size());

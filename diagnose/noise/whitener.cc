@@ -172,20 +172,30 @@ Eigen::VectorXd Whitener::apply_sensors(std::size_t r, const Eigen::VectorXd& re
   return whiten_run(r, residual.segment(begin, count));
 }
 
-void Whitener::remove_roads(Eigen::MatrixXd& whitened) const {
-  for (std::size_t r = 0; r < roads_.size(); ++r) {
-    if (!has_road(r) || roads_[r]->response.size() == 0) continue;
+namespace {
+
+/// Multiplies by X = (1 + L')^-1 L^-1.
+template <class Matrix>
+void solve_along(const LatentRoad& road, Matrix& along) {
+  road.factor.triangularView<Eigen::Lower>().solveInPlace(along);
+  road.raised.transpose().triangularView<Eigen::Upper>().solveInPlace(along);
+}
+
+}  // namespace
+
+void Whitener::remove_roads(Eigen::MatrixXd& whitened, int threads) const {
+  share_items(threads, roads_.size(), [&](std::size_t r, int) {
+    if (!has_road(r) || roads_[r]->response.size() == 0) return;
     const LatentRoad& road = *roads_[r];
     auto of_run = whitened.middleRows(static_cast<Eigen::Index>(run_begin_[r]),
                                       static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]));
     Eigen::MatrixXd along = road.response.transpose() * of_run;
-    road.factor.triangularView<Eigen::Lower>().solveInPlace(along);
-    road.raised.transpose().triangularView<Eigen::Upper>().solveInPlace(along);
+    solve_along(road, along);
     of_run.noalias() -= road.response * along;
-  }
+  });
 }
 
-Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns) const {
+Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns, int threads) const {
   const auto readings = static_cast<Eigen::Index>(reading_count_);
   const auto whitened = static_cast<Eigen::Index>(places_.size());
   const Eigen::Index priors = columns.rows() - readings;
@@ -193,11 +203,13 @@ Eigen::MatrixXd Whitener::apply(const Eigen::MatrixXd& columns) const {
   for (std::size_t r = 0; r < runs_.size(); ++r) {
     const auto begin = static_cast<Eigen::Index>(run_begin_[r]);
     const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
-    out.middleRows(begin, count) = whiten_run(
-        r, Eigen::MatrixXd(columns.middleRows(static_cast<Eigen::Index>(runs_[r].begin),
-                                              static_cast<Eigen::Index>(runs_[r].count))));
+    out.middleRows(begin, count) =
+        whiten_run(r,
+                   Eigen::MatrixXd(columns.middleRows(static_cast<Eigen::Index>(runs_[r].begin),
+                                                      static_cast<Eigen::Index>(runs_[r].count))),
+                   threads);
   }
-  remove_roads(out);
+  remove_roads(out, threads);
   out.bottomRows(priors) = columns.bottomRows(priors);
   STRUT_CHECK(out.allFinite(), "finite residuals and derivatives");
   return out;
@@ -210,11 +222,16 @@ Eigen::VectorXd Whitener::apply_residual(const Eigen::VectorXd& residual) const 
     const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
     auto of_run = out.col(0).segment(begin, count);
     of_run = apply_sensors(r, residual);
-    if (has_road(r) && roads_[r]->response.size() > 0) {
-      of_run -= roads_[r]->response * roads_[r]->weights;
-    }
+    if (!has_road(r) || roads_[r]->response.size() == 0) continue;
+    // (1 - H X H') (v - H w) = v - H (w + X (H' v - H'H w)) with H'H = L L' - 1: H, which is larger
+    // than a cache, is read twice instead of three times.
+    const LatentRoad& road = *roads_[r];
+    const auto factor = road.factor.triangularView<Eigen::Lower>();
+    Eigen::VectorXd along = road.response.transpose() * of_run;
+    along -= factor * (factor.transpose() * road.weights) - road.weights;
+    solve_along(road, along);
+    of_run.noalias() -= road.response * (road.weights + along);
   }
-  remove_roads(out);
   const Eigen::Index priors = residual.size() - static_cast<Eigen::Index>(reading_count_);
   Eigen::VectorXd all(out.rows() + priors);
   all << out.col(0), residual.tail(priors);
@@ -222,8 +239,8 @@ Eigen::VectorXd Whitener::apply_residual(const Eigen::VectorXd& residual) const 
   return all;
 }
 
-Linearization Whitener::apply(const Linearization& at) const {
-  return {"", apply_residual(at.residual), apply(at.jacobian)};
+Linearization Whitener::apply(const Linearization& at, int threads) const {
+  return {"", apply_residual(at.residual), apply(at.jacobian, threads)};
 }
 
 WhitenedModel::WhitenedModel(ReadingModel& model, const Whitener& whitener)

@@ -39,8 +39,9 @@ class Whitener {
            const WhitenerOptions& options = {});
 
   /// Columns of readings, in units of each channel's sigma, then priors -> whitened, then priors.
-  /// For differences of readings and derivatives; see apply_residual for residuals.
-  Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
+  /// For differences of readings and derivatives; see apply_residual for residuals. The same for
+  /// any number of threads.
+  Eigen::MatrixXd apply(const Eigen::MatrixXd& columns, int threads = 1) const;
   /// The residuals, about the road whose weights are zero, its prior mean.
   Eigen::VectorXd apply_residual(const Eigen::VectorXd& residual) const;
   /// Columns of one run's readings, by its sensors alone.
@@ -49,7 +50,7 @@ class Whitener {
   /// Residuals whitened by the sensors alone, with the road as it is in the model's run.
   Eigen::VectorXd apply_sensors(std::size_t run, const Eigen::VectorXd& residual) const;
   /// Whitens a linearization without failure.
-  Linearization apply(const Linearization& at) const;
+  Linearization apply(const Linearization& at, int threads = 1) const;
 
   std::size_t whitened_count() const { return places_.size(); }
   /// Run, frequency (as `time`) and channel of each whitened number, which combines the channels up
@@ -86,7 +87,7 @@ class Whitener {
   void apply_run(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& column,
                  Eigen::Ref<Eigen::VectorXd> out) const;
   bool has_road(std::size_t run) const { return !roads_.empty() && roads_[run] != nullptr; }
-  void remove_roads(Eigen::MatrixXd& whitened) const;
+  void remove_roads(Eigen::MatrixXd& whitened, int threads) const;
 
   std::vector<NoiseSpectrum> spectra_;
   LatentRoads roads_;

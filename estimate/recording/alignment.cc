@@ -75,7 +75,7 @@ std::size_t find_transform_size(std::size_t count) {
 
 Spectrum transform(std::vector<double> values, std::size_t size) {
   values.resize(size, 0.0);
-  Eigen::FFT<double> fft;
+  thread_local Eigen::FFT<double> fft;  // keeps its tables
   Spectrum spectrum;
   fft.fwd(spectrum, values);
   return spectrum;
@@ -128,7 +128,7 @@ Correlation correlate(const PreparedChannel& m, const std::vector<double>& shape
     product[k] = m.spectrum[k] * std::conj(product[k]);
   }
   std::vector<double> cross;
-  Eigen::FFT<double> fft;
+  thread_local Eigen::FFT<double> fft;  // keeps its tables
   fft.inv(cross, product);
   const double scale = 1.0 / std::sqrt(m.energy);
   const auto reach = static_cast<std::ptrdiff_t>(
@@ -182,7 +182,7 @@ double find_period(const PreparedChannel& m) {
   Spectrum power = m.spectrum;
   for (auto& p : power) p *= std::conj(p);
   std::vector<double> correlation;
-  Eigen::FFT<double> fft;
+  thread_local Eigen::FFT<double> fft;  // keeps its tables
   fft.inv(correlation, power);
   const std::size_t end = m.count - m.count / kLeastOverlap;
   const auto at = [&](std::size_t lag) {

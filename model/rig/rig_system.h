@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "model/integrate/simulate.h"
 #include "model/rig/rigs.h"
@@ -109,6 +110,7 @@ class RigSystem {
   void get_guards(T* g) const { g[0] = ws_.unclamped_load; }
   void calc_guards(const T& t, const T* x, T* g) {
     ws_.input[0] = read_first_input(t);
+    input_time_ = T(kNoTime);
     update_tire(x);
     get_guards(g);
   }
@@ -157,6 +159,7 @@ class RigSystem {
   const RigWorkspace<T>& workspace() const { return ws_; }
 
  private:
+  static constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
   static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   int strut_state_count() const { return rig_.effects.has_states() ? kStatesPerStrut : 0; }
@@ -169,7 +172,10 @@ class RigSystem {
     const T& gain = rig_.numbers.ground_gain;
     return {gain * input.value, gain * input.rate, gain * input.second_rate};
   }
+  /// Stages of a step share their times, so half of the readings are those of the stage before.
   void update_inputs(const T& t) {
+    if (all((t >= input_time_) & (t <= input_time_))) return;
+    input_time_ = t;
     ws_.input.fill({0.0, 0.0, 0.0});
     ws_.input[0] = read_first_input(t);
     if (inputs_[1]) ws_.input[1] = calc_signal(*inputs_[1], t);
@@ -358,6 +364,7 @@ class RigSystem {
 
   const Rig<T>& rig_;
   std::array<const InputSignal*, kMaxRigInputs> inputs_;
+  T input_time_ = T(kNoTime);  // of ws_.input
   int count_;
   bool on_ground_;
   RigWorkspace<T> ws_{};

@@ -48,6 +48,20 @@ TEST_CASE("Sines fall into their bands with their own rms", "[unit]") {
   CHECK(std::sqrt(noise) == Approx(0.02).epsilon(test::tolerance(1e-12)));
 }
 
+TEST_CASE("Bands are exact for numbers of samples with a large prime factor", "[unit]") {
+  // 4001 is prime: the last sample ends the period, so that a sine of 20 s over 4001 / 4000 fits.
+  constexpr std::size_t kCount = 4001;
+  const std::vector<double> times = make_times(kCount, 0.005);
+  std::vector<double> y;
+  for (const double t : times) y.push_back(std::sin(2 * kPi * 40.0 * t / (0.005 * kCount)));
+  const auto bands = calc_band_residuals(times, y, y, 0.0);
+  const double expected[] = {0.0, 1.0, 0.0, 0.0, 0.0};
+  for (std::size_t b = 0; b < bands.size(); ++b) {
+    CHECK(bands[b].residual_rms ==
+          Approx(expected[b] / std::sqrt(2.0)).margin(test::tolerance(1e-9)));
+  }
+}
+
 TEST_CASE("Missing samples leave the bands of a slow signal as they are", "[unit]") {
   const std::vector<double> times = make_times(4000, 0.005);
   std::vector<double> y;
