@@ -83,8 +83,8 @@ std::vector<std::string> list_options(const TaskArray& tasks) {
 void check_words(const Resources& resources) {
   static const std::regex kMemory("[0-9]+[KMGTkmgt]?[Bb]?");
   if (!resources.memory.empty() && !std::regex_match(resources.memory, kMemory)) {
-    throw InputError(
-        fmt::format("--memory {}: must be a number with K, M, G or T, as 4G", resources.memory));
+    throw InputError(fmt::format("--memory {}: must be a number, in MB or with K, M, G or T, as 4G",
+                                 resources.memory));
   }
   for (const std::string& option : resources.extra) check_option(option);
 }

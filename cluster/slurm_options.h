@@ -12,8 +12,8 @@ namespace strut::slurm {
 /// script they would be lines that Slurm splits.
 std::vector<std::string> list_options(const TaskArray& tasks);
 
-/// Checks --memory and --option. Throws InputError unless the memory is a number with a unit, and
-/// each option one option of sbatch that strut does not need itself.
+/// Checks --memory and --option. Throws InputError unless the memory is a number, with or without a
+/// unit, and each option one option of sbatch that strut does not need itself.
 void check_words(const Resources& resources);
 
 /// Returns the script for `tasks`.

@@ -153,8 +153,8 @@ SiteLimits check_site(const Resources& resources, const fs::path& folder) {
 }
 
 Findings examine_site(const Resources& resources, const fs::path& folder) {
-  if (!SlurmDispatcher::find_fault().empty()) {
-    return {{"scheduler", Health::kBad, "sbatch cannot be started", "--to local works"}};
+  if (const std::string fault = SlurmDispatcher::find_fault(); !fault.empty()) {
+    return {{"scheduler", Health::kBad, fault, "--to local works"}};
   }
   const auto start = std::chrono::steady_clock::now();
   Settings settings;

@@ -4,11 +4,13 @@
 
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <span>
 #include <utility>
 
 #include "base/error/input_error.h"
+#include "base/parallel/team.h"
 #include "base/text/format_number.h"
 #include "estimate/crossing_batch.h"
 #include "estimate/hit_time.h"
@@ -249,22 +251,30 @@ Linearization CrossingReadings::linearize(const std::vector<double>& values) {
   std::vector<SampledRun> sampled;
   Linearization out = make_linearization(sample_variants(values, variants, sampled));
   if (!out.failure.empty()) return out;
-  std::size_t base = 0;
+  // A run as it is, or the upper of the two sides of an unknown; each fills places of its own.
+  struct Part {
+    std::size_t variant, base;
+  };
+  std::vector<Part> parts;
   for (std::size_t k = 0; k < variants.size(); ++k) {
+    const bool is_base = variants[k].unknown == kNoUnknown;
+    parts.push_back({k, is_base ? k : parts.back().base});
+    if (!is_base) ++k;  // the lower side
+  }
+  share_items(options_.threads, parts.size(), [&](std::size_t i, int) {
+    const auto [k, base] = parts[i];
     const std::size_t run = variants[k].run;
-    if (variants[k].unknown == kNoUnknown) {
-      base = k;
-      const std::vector<double> readings =
-          read_run(run, sampled[k], get_hit_time(unknowns_, values, run));
-      fill_residual(run, values, readings, out.residual);
-      fill_sensor_columns(run, readings, out);
-      fill_hit_time(run, sampled[k], values, out);
-    } else {
+    if (k != base) {
       fill_column(variants[k], variants[k + 1], sampled[base], sampled[k], sampled[k + 1], values,
                   out);
-      ++k;  // the lower side
+      return;
     }
-  }
+    const std::vector<double> readings =
+        read_run(run, sampled[k], get_hit_time(unknowns_, values, run));
+    fill_residual(run, values, readings, out.residual);
+    fill_sensor_columns(run, readings, out);
+    fill_hit_time(run, sampled[k], values, out);
+  });
   fill_priors(values, out);
   return out;
 }
@@ -296,7 +306,7 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
     }
   }
   const std::vector<CrossingResult> results = simulate(cars);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  share_items(options_.threads, points.size(), [&](std::size_t i, int) {
     Evaluation& e = evaluations[i];
     for (std::size_t run = 0; run < runs_.size() && e.failure.empty(); ++run) {
       const PointSetup& point = setups[run * points.size() + i];
@@ -307,7 +317,7 @@ std::vector<Evaluation> CrossingReadings::evaluate(const std::vector<std::vector
       fill_residual(run, points[i], read_run(run, sampled, get_hit_time(unknowns_, points[i], run)),
                     e.residual);
     }
-  }
+  });
   return evaluations;
 }
 
@@ -343,7 +353,7 @@ std::string CrossingReadings::linearize_road(const std::vector<double>& values, 
   RoadResponse response;
   failure = simulate_road_response(runs_[run], setup, options_, preparers_[run], response);
   if (!failure.empty()) return failure;
-  simulation_count_ += response.simulation_count;
+  std::atomic_ref(simulation_count_) += response.simulation_count;
   const ReadingMap map = make_reading_map(run, response, get_hit_time(unknowns_, values, run));
   constexpr Eigen::Index kAtOnce = 64;
   const Eigen::Index count = response.derivatives.cols();

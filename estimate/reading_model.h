@@ -72,7 +72,7 @@ class ReadingModel {
   /// Derivatives of the readings' residuals by the coefficients of a run's rough tracks
   /// (model/scenario/rough_track.h), left before right [1/m], where the model has a road; handed to
   /// `take` some columns at a time, with the index of the first. Returns why the run cannot be
-  /// simulated, "" if it can.
+  /// simulated, "" if it can. May be called for several runs at once.
   using TakeColumns = std::function<void(Eigen::Index first, const Eigen::MatrixXd& columns)>;
   virtual std::string linearize_road(const std::vector<double>& values, std::size_t run,
                                      const TakeColumns& take);

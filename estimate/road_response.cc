@@ -73,12 +73,14 @@ class Simulator {
     response.samples = static_cast<Index>(section_count_ * kSection + 1);
     response.derivatives = MatrixXd::Zero(
         static_cast<Index>(run_.channels.size()) * response.samples, columns_.back());
-    constexpr std::size_t kAtOnce = 16;
+    // As many as fill some threads: the cases of more would not stay in a cache.
+    constexpr std::size_t kAtOnce = 4;
+    std::vector<PreparedCase> cases;
     MatrixXd states = MatrixXd::Zero(state_count_, columns_.back());
     std::size_t simulated = 0;
     for (std::size_t begin = 0; begin < section_count_; begin += kAtOnce) {
       const std::size_t end = std::min(begin + kAtOnce, section_count_);
-      std::vector<PreparedCase> cases;
+      cases.clear();
       for (std::size_t s = begin; s < end; ++s) add_changed(sections_[s], cases);
       const std::vector<LaneRun> runs =
           run_prepared(cases, options_.integrate, plan_, options_.threads);

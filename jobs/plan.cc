@@ -170,15 +170,15 @@ void warn_of_snapshot(const SweepRequest& request) {
 void warn(const Plan& plan, const SweepEstimate& estimate) {
   if (estimate.without_event > 0) {
     print_note(fmt::format(
-        "warning: of the {} simulated, {} do not reach the snapshot's line; a longer duration may",
-        format_count(estimate.measured, "case"), estimate.without_event));
+        "warning: {} of {} simulated end before the snapshot's line; a longer duration may help",
+        estimate.without_event, format_count(estimate.measured, "case")));
   }
   for (const ImpossibleCase& end : find_impossible_ends(plan)) {
-    print_note("warning: the end of an axis is impossible; " +
-               describe_case(plan, end.case_id, end.reason));
+    print_note(fmt::format("warning: the end of {} is impossible; {}", end.axis,
+                           describe_case(plan, end.case_id, end.reason)));
   }
   if (estimate.failed == 0) return;
-  print_note(fmt::format("warning: of the {} simulated, {} fail; {}",
+  print_note(fmt::format("warning: failures among {} simulated: {}; the first is {}",
                          format_count(estimate.measured, "case"), estimate.failed,
                          describe_case(plan, estimate.first_failed, estimate.first_reason)));
 }

@@ -30,7 +30,7 @@ Arguments describe(const std::string& name, bool retries) {
                   "{}The exit code is 1 if cases failed, unless --allow-failed is given.",
                   retries ? "Then retries failed cases, with a quarter of the step with which they "
                             "failed, up to\n"
-                            "three times; not those that a smaller step cannot help.\n"
+                            "three times. Cases that no smaller step can mend are not retried.\n"
                           : ""),
       fmt::format("  strut plan examples/sweeps/paper.toml -o cars\n"
                   "  strut {} cars --threads 2\n"
@@ -147,13 +147,6 @@ int run(bool retries, const Arguments& arguments) {
   } else {
     print_summary(sweep, progress, summary, seconds);
   }
-  SweepStatus status;
-  if (summary.failed > 0) status = read_status(sweep.folder, sweep.plan);
-  if (!arguments.is_on("json")) {
-    for (const auto& [reason, count] : status.failures) {
-      std::cout << describe_failures(sweep.plan, reason, count) << "\n";
-    }
-  }
   if (watcher.signal() != 0) {
     print_error("interrupted; files written so far are complete");
     suggest_again(arguments, "continues from here");
@@ -162,6 +155,16 @@ int run(bool retries, const Arguments& arguments) {
   if (watcher.warned() && !is_complete(progress)) {
     end_drained(sweep, task);
     return 128 + SIGUSR1;
+  }
+  // A run of some shards, as each task of a cluster is, does not read all others for it.
+  SweepStatus status;
+  if (summary.failed > 0 && is_complete_sweep(sweep, progress)) {
+    status = read_status(sweep.folder, sweep.plan);
+  }
+  if (!arguments.is_on("json")) {
+    for (const auto& [reason, count] : status.failures) {
+      std::cout << describe_failures(sweep.plan, reason, count) << "\n";
+    }
   }
   suggest_next_step(sweep, progress, summary, status.untried, retries);
   const bool has_failed = summary.failed > 0 && !arguments.is_on("allow-failed");

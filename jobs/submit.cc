@@ -167,9 +167,16 @@ int run_submit(const Arguments& arguments) {
   const SubmitRequest request = read_submit_request(arguments, *dispatcher);
   const bool is_list = arguments.text("to") == kToList;
   const bool is_dry = arguments.is_on("dry-run") || is_list;
+  if (is_list && arguments.is_on("json")) {
+    throw InputError("--json: not with --to list, whose output is commands");
+  }
   std::optional<Claims> claims;
   if (!is_dry) claim_submit(sweep.folder, claims);
   const MissingWork work = find_missing_work(sweep, request, is_dry);
+  if (work.is_empty() && is_dry && arguments.is_on("json")) {
+    std::cout << format_json(Json{{"to", dispatcher->name()}, {"parts", Json::array()}}) << "\n";
+    return kExitDone;
+  }
   if (work.is_empty()) {
     report_nothing_to_do(arguments, sweep, work);
     return kExitDone;
@@ -198,9 +205,12 @@ int run_submit(const Arguments& arguments) {
                               asks_scheduler ? dispatcher->find_cluster_name() : "");
   const ScriptOptions options{plan.resources, request.at_once, request.scratch, request.prologue};
   if (is_dry && arguments.is_on("json")) {
-    std::cout << format_json(
-                     make_tasks_json(sweep, submission, options, *dispatcher, asks_scheduler))
-              << "\n";
+    Json json = make_tasks_json(sweep, submission, options, *dispatcher, asks_scheduler);
+    json["core_seconds"] = estimate.core_seconds;
+    json["bytes"] = estimate.bytes;
+    json["task_seconds"] = plan.task_seconds;
+    json["walltime_seconds"] = plan.resources.seconds;
+    std::cout << format_json(json) << "\n";
     return kExitDone;
   }
   if (is_dry) {

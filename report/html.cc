@@ -47,9 +47,20 @@ std::string make_json_element(const std::string& json) {
 /// Minimum length of a cell's text that may wrap [bytes].
 constexpr std::size_t kLongText = 40;
 
-/// Units as they are typeset: "m/s^2" with a raised 2.
-std::string typeset_units(std::string text) {
-  return replace_all(replace_all(std::move(text), "^2", "\u00b2"), "^3", "\u00b3");
+/// Units as they are typeset: "m/s^2" with a raised 2. Other powers, as 10^20, stay.
+std::string typeset_units(const std::string& text) {
+  std::string typeset;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char power = i + 1 < text.size() && text[i] == '^' ? text[i + 1] : '\0';
+    const bool ends = i + 2 >= text.size() || text[i + 2] < '0' || text[i + 2] > '9';
+    if ((power != '2' && power != '3') || !ends) {
+      typeset += text[i];
+      continue;
+    }
+    typeset += power == '2' ? "\u00b2" : "\u00b3";
+    ++i;
+  }
+  return typeset;
 }
 
 /// Escapes a cell; lines after the first are in small print.
@@ -74,7 +85,8 @@ std::string make_cells(const std::vector<std::string>& cells, const std::string&
     if (cells[c].size() > kLongText) classes += " long";
     std::string attribute = classes.empty() ? "" : fmt::format(" class=\"{}\"", classes);
     if (c < names.size() && !cells[c].empty()) {
-      attribute += fmt::format(" data-name=\"{}\"", escape_html(replace_all(names[c], "\n", " ")));
+      attribute += fmt::format(" data-name=\"{}\"",
+                               escape_html(typeset_units(replace_all(names[c], "\n", " "))));
     }
     text += fmt::format("<{0}{1}>{2}</{0}>", tag, attribute, make_cell(cells[c]));
   }

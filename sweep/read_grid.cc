@@ -63,7 +63,7 @@ Axis read_bounds(const Table& table, const std::string& name, bool levels) {
     if (!has_count && (has_step || levels)) read_step(table, to, allowed, axis);
   } catch (const InputError& e) {
     if (has_step) throw;
-    throw InputError(std::string(e.what()) + "; 'count' would do, too");
+    throw InputError(std::string(e.what()) + "; give 'step' or 'count'");
   }
   if (!levels) {
     axis.step = to - axis.from;

@@ -27,6 +27,6 @@ endfunction()
 # which a page unpacks by DecompressionStream. Both programs are essential packages of Debian.
 function(strut_pack_file file out)
   cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE path)
-  add_custom_command(OUTPUT ${out} COMMAND sh -c "gzip -9nc \"$0\" | base64 -w 0 > \"$1\"" ${path} ${out}
+  add_custom_command(OUTPUT ${out} COMMAND sh -c "gzip -9nc \"$0\" > \"$1.gz\" && base64 -w 0 \"$1.gz\" > \"$1\"" ${path} ${out}
     DEPENDS ${path} COMMENT "Packing ${file}" VERBATIM)
 endfunction()

@@ -50,15 +50,15 @@ std::size_t find_largest_factor(std::size_t n) {
 
 using Spectrum = std::vector<std::complex<double>>;
 
-/// The transform of any number of values. Eigen's takes n steps for each unit
-/// of n's largest prime factor; where that is large, by Bluestein's convolution with a
+/// The transform of any number of values. Eigen's takes O(n p) steps, p the largest
+/// prime factor of n; where that is large, by Bluestein's convolution with a
 /// chirp (L. I. Bluestein, IEEE Trans. Audio Electroacoust. 18 (1970)).
 Spectrum transform(const std::vector<double>& values) {
-  constexpr std::size_t kMostFactor = 50;
+  constexpr std::size_t kMaxFactor = 50;
   thread_local Eigen::FFT<double> fft;  // keeps its tables
   const std::size_t n = values.size();
   Spectrum spectrum;
-  if (find_largest_factor(n) <= kMostFactor) {
+  if (find_largest_factor(n) <= kMaxFactor) {
     fft.fwd(spectrum, values);
     return spectrum;
   }

@@ -164,18 +164,21 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
   return make_reading_model(std::move(laid), std::move(unknowns), threads);
 }
 
-std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response) {
+std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd derivative) {
   const CholeskyKernel& kernel = get_cholesky_kernel();
-  const auto count = static_cast<std::size_t>(response.cols());
-  auto out = std::make_shared<LatentRoad>(road);
-  out->factor = Eigen::MatrixXd::Identity(response.cols(), response.cols());
-  kernel.add_normal(response.data(), static_cast<std::size_t>(response.rows()), count,
-                    out->factor.data());
-  const bool is_finite = kernel.factor_diagonal(out->factor.data(), count, count);
+  const auto count = static_cast<std::size_t>(derivative.cols());
+  auto response = std::make_shared<WhitenedRoad>();
+  Eigen::MatrixXd& factor = response->factor;
+  factor = Eigen::MatrixXd::Identity(derivative.cols(), derivative.cols());
+  kernel.add_normal(derivative.data(), static_cast<std::size_t>(derivative.rows()), count,
+                    factor.data());
+  const bool is_finite = kernel.factor_diagonal(factor.data(), count, count);
   STRUT_CHECK(is_finite, "a road's response is finite");
-  out->raised = out->factor;
-  out->raised.diagonal().array() += 1.0;
-  out->response = std::move(response);
+  response->raised = factor;
+  response->raised.diagonal().array() += 1.0;
+  response->derivative = std::move(derivative);
+  auto out = std::make_shared<LatentRoad>(road);
+  out->whitened = std::move(response);
   return out;
 }
 
@@ -188,16 +191,17 @@ std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::Vecto
 }
 
 Eigen::VectorXd solve_weights(const LatentRoad& road, const Eigen::VectorXd& residual) {
-  Eigen::VectorXd weights = road.response.transpose() * (road.response * road.weights - residual);
-  road.factor.triangularView<Eigen::Lower>().solveInPlace(weights);
-  road.factor.transpose().triangularView<Eigen::Upper>().solveInPlace(weights);
+  const auto& [derivative, factor, raised] = *road.whitened;
+  Eigen::VectorXd weights = derivative.transpose() * (derivative * road.weights - residual);
+  factor.triangularView<Eigen::Lower>().solveInPlace(weights);
+  factor.transpose().triangularView<Eigen::Upper>().solveInPlace(weights);
   return weights;
 }
 
 double count_determined(const LatentRoad& road) {
   const auto n = static_cast<std::size_t>(road.weights.size());
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(road.weights.size(), road.weights.size());
-  get_cholesky_kernel().solve_panel(road.factor.data(), n, inverse.data(), n, n);
+  get_cholesky_kernel().solve_panel(road.whitened->factor.data(), n, inverse.data(), n, n);
   return static_cast<double>(n) - inverse.squaredNorm();
 }
 

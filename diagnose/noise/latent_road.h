@@ -35,17 +35,22 @@ struct RoadPrior {
   Eigen::MatrixXd apply_transposed(const Eigen::MatrixXd& derivatives) const;
 };
 
+/// The readings of a run as a linear function of the weights of its road.
+struct WhitenedRoad {
+  /// Derivative H by w of the readings, whitened by the sensors' noise; rows as in Whitener.
+  Eigen::MatrixXd derivative;
+  /// Lower L with L L' = 1 + H' H, and L + 1. (1 + L')^-1 L^-1 = X makes 1 - H X H' a root of the
+  /// inverse of the readings' covariance 1 + H H'.
+  Eigen::MatrixXd factor, raised;
+};
+
 struct LatentRoad {
   std::array<RoughTrack, 2> tracks;  // the estimate
   Eigen::VectorXd weights;           // w of the estimate
   double lead_speed = 0.0;  // m/s, by how much the car is faster at the begin of its lead time
   std::shared_ptr<const RoadPrior> prior{};
-  /// Derivative H by w of the readings, whitened by the sensors' noise; rows as in Whitener. Empty:
-  /// not known yet.
-  Eigen::MatrixXd response{};
-  /// Lower L with L L' = 1 + H' H, and L + 1. (1 + L')^-1 L^-1 = X makes 1 - H X H' a root of the
-  /// inverse of the readings' covariance 1 + H H'.
-  Eigen::MatrixXd factor{}, raised{};
+  /// Tens of megabytes, shared with the road at other weights; null: not known yet.
+  std::shared_ptr<const WhitenedRoad> whitened{};
 };
 using LatentRoads = std::vector<std::shared_ptr<const LatentRoad>>;  // by run of a fit
 
@@ -64,8 +69,8 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const LatentRoads& roads,
                                                  std::vector<Unknown> unknowns, int threads = 1);
 
-/// The road with the response, and the factor of it.
-std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd response);
+/// The road with the response of this derivative.
+std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd derivative);
 
 /// The road at other weights, its response as it was. `level`: G0 [m^3].
 std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::VectorXd weights,

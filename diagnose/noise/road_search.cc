@@ -1,6 +1,7 @@
 #include "diagnose/noise/road_search.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -74,15 +75,20 @@ class RoadSearch {
   bool renew_responses(const Whitener& sensors) {
     const std::size_t runs = result_.runs.size();
     std::vector<Eigen::MatrixXd> columns(runs);
-    for (std::size_t r = 0; r < runs; ++r) {
+    // Runs side by side where they occupy the threads: a run's road is driven by one of them.
+    const int side_by_side = static_cast<int>(runs) >= threads_ ? threads_ : 1;
+    const int inside = side_by_side > 1 ? 1 : threads_;
+    std::atomic<bool> has_failed{false};
+    share_items(side_by_side, runs, [&](std::size_t r, int) {
       columns[r].resize(
           static_cast<Eigen::Index>(sensors.run_begin()[r + 1] - sensors.run_begin()[r]),
           result_.roads[r]->weights.size());
       const auto take = [&](Eigen::Index first, const Eigen::MatrixXd& part) {
-        columns[r].middleCols(first, part.cols()) = sensors.whiten_run(r, part, threads_);
+        columns[r].middleCols(first, part.cols()) = sensors.whiten_run(r, part, inside);
       };
-      if (!model_->linearize_road(values_, r, take).empty()) return false;
-    }
+      if (!model_->linearize_road(values_, r, take).empty()) has_failed = true;
+    });
+    if (has_failed) return false;
     const double scale = std::sqrt(result_.spectra.front().level);
     share_items(threads_, runs, [&](std::size_t r, int) {
       const LatentRoad& road = *result_.roads[r];
@@ -126,8 +132,8 @@ class RoadSearch {
       const Eigen::VectorXd there = sensors.apply_sensors(r, moved);
       Eigen::VectorXd weights = solve_weights(road, there);
       move.cost += sensors.apply_sensors(r, at.residual).squaredNorm() + road.weights.squaredNorm();
-      after +=
-          (there + road.response * (weights - road.weights)).squaredNorm() + weights.squaredNorm();
+      after += (there + road.whitened->derivative * (weights - road.weights)).squaredNorm() +
+               weights.squaredNorm();
       move.weights.push_back(std::move(weights));
     }
     move.promised = move.cost - after;
@@ -230,8 +236,9 @@ class RoadSearch {
     for (NoiseSpectrum& s : result_.spectra) s.level *= factor;
     share_items(threads_, determined.size(), [&](std::size_t r, int) {
       const LatentRoad& road = *result_.roads[r];
-      result_.roads[r] = move_road(*set_response(road, std::sqrt(factor) * road.response),
-                                   road.weights / std::sqrt(factor), result_.spectra.front().level);
+      result_.roads[r] =
+          move_road(*set_response(road, std::sqrt(factor) * road.whitened->derivative),
+                    road.weights / std::sqrt(factor), result_.spectra.front().level);
     });
     make_model();
   }

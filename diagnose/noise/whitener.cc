@@ -79,8 +79,8 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
         places_.insert(places_.end(), static_cast<std::size_t>(parts), {r, k, c});
       }
     }
-    if (has_road(r) && roads_[r]->factor.size() > 0) {
-      run.log_determinant += roads_[r]->factor.diagonal().array().log().sum();
+    if (const WhitenedRoad* road = find_road(r)) {
+      run.log_determinant += road->factor.diagonal().array().log().sum();
     }
     STRUT_CHECK(std::isfinite(run.log_determinant), "noise of finite covariance");
     runs_.push_back(std::move(run));
@@ -176,7 +176,7 @@ namespace {
 
 /// Multiplies by X = (1 + L')^-1 L^-1.
 template <class Matrix>
-void solve_along(const LatentRoad& road, Matrix& along) {
+void solve_along(const WhitenedRoad& road, Matrix& along) {
   road.factor.triangularView<Eigen::Lower>().solveInPlace(along);
   road.raised.transpose().triangularView<Eigen::Upper>().solveInPlace(along);
 }
@@ -185,13 +185,13 @@ void solve_along(const LatentRoad& road, Matrix& along) {
 
 void Whitener::remove_roads(Eigen::MatrixXd& whitened, int threads) const {
   share_items(threads, roads_.size(), [&](std::size_t r, int) {
-    if (!has_road(r) || roads_[r]->response.size() == 0) return;
-    const LatentRoad& road = *roads_[r];
+    const WhitenedRoad* road = find_road(r);
+    if (road == nullptr) return;
     auto of_run = whitened.middleRows(static_cast<Eigen::Index>(run_begin_[r]),
                                       static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]));
-    Eigen::MatrixXd along = road.response.transpose() * of_run;
-    solve_along(road, along);
-    of_run.noalias() -= road.response * along;
+    Eigen::MatrixXd along = road->derivative.transpose() * of_run;
+    solve_along(*road, along);
+    of_run.noalias() -= road->derivative * along;
   });
 }
 
@@ -222,15 +222,16 @@ Eigen::VectorXd Whitener::apply_residual(const Eigen::VectorXd& residual) const 
     const auto count = static_cast<Eigen::Index>(run_begin_[r + 1]) - begin;
     auto of_run = out.col(0).segment(begin, count);
     of_run = apply_sensors(r, residual);
-    if (!has_road(r) || roads_[r]->response.size() == 0) continue;
+    const WhitenedRoad* road = find_road(r);
+    if (road == nullptr) continue;
     // (1 - H X H') (v - H w) = v - H (w + X (H' v - H'H w)) with H'H = L L' - 1: H, which is larger
     // than a cache, is read twice instead of three times.
-    const LatentRoad& road = *roads_[r];
-    const auto factor = road.factor.triangularView<Eigen::Lower>();
-    Eigen::VectorXd along = road.response.transpose() * of_run;
-    along -= factor * (factor.transpose() * road.weights) - road.weights;
-    solve_along(road, along);
-    of_run.noalias() -= road.response * (road.weights + along);
+    const Eigen::VectorXd& weights = roads_[r]->weights;
+    const auto factor = road->factor.triangularView<Eigen::Lower>();
+    Eigen::VectorXd along = road->derivative.transpose() * of_run;
+    along -= factor * (factor.transpose() * weights) - weights;
+    solve_along(*road, along);
+    of_run.noalias() -= road->derivative * (weights + along);
   }
   const Eigen::Index priors = residual.size() - static_cast<Eigen::Index>(reading_count_);
   Eigen::VectorXd all(out.rows() + priors);

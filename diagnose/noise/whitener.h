@@ -87,6 +87,10 @@ class Whitener {
   void apply_run(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& column,
                  Eigen::Ref<Eigen::VectorXd> out) const;
   bool has_road(std::size_t run) const { return !roads_.empty() && roads_[run] != nullptr; }
+  /// nullptr: the run has no road, or its response is not known.
+  const WhitenedRoad* find_road(std::size_t run) const {
+    return has_road(run) ? roads_[run]->whitened.get() : nullptr;
+  }
   void remove_roads(Eigen::MatrixXd& whitened, int threads) const;
 
   std::vector<NoiseSpectrum> spectra_;

@@ -94,10 +94,15 @@ void check_format(const std::filesystem::path& path, std::string_view text) {
     const char* start;
     const char* name;
   };
-  static constexpr Format kFormats[] = {
-      {"\x89HDF\r\n", "an HDF5 file"},    {"MATLAB 5.0", "a MATLAB file"},
-      {"PK\x03\x04", "an archive (zip)"}, {"\x1f\x8b", "a compressed file (gzip)"},
-      {"<", "a page or XML file"},        {"{", "a JSON file"}};
+  static constexpr Format kFormats[] = {{"\x89HDF\r\n", "an HDF5 file"},
+                                        {"MATLAB ", "a MATLAB file"},
+                                        {"strut ", "a file that strut seals, as a shard or a run"},
+                                        {"PK\x03\x04", "an archive (zip)"},
+                                        {"\x1f\x8b", "a compressed file (gzip)"},
+                                        {"<", "a page or XML file"},
+                                        {"{", "a JSON file"}};
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (const auto& [start, name] : kFormats) {
     if (!text.starts_with(start)) continue;
     throw InputError(fmt::format("{}: {}; must be a TOML file", path.string(), name));

@@ -162,8 +162,10 @@ void write_bench_page(const std::filesystem::path& folder, const BenchResult& re
   clear_page_folder(out, get_numbers_file(out));
   const FigureDrawer drawer(out.make());
   std::vector<Figure> figures = list_figures(result);
-  std::stable_sort(figures.begin(), figures.end(),
-                   [](const Figure& a, const Figure& b) { return a.error < b.error; });
+  std::stable_sort(figures.begin(), figures.end(), [](const Figure& a, const Figure& b) {
+    const auto rank = [](double error) { return std::isnan(error) ? INFINITY : error; };
+    return rank(a.error) < rank(b.error);
+  });
   const Machine& machine = result.machine;
   ReportSection speed{"Speed over error"};
   drawer.draw_all({make_chart(figures)}, speed);

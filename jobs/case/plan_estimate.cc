@@ -158,7 +158,7 @@ std::vector<ImpossibleCase> find_impossible_ends(const Plan& plan) {
     try {
       preparer.prepare(plan.make_case(id));
     } catch (const ModelError& e) {
-      found.push_back({id, e.what()});
+      found.push_back({id, axis.name, e.what()});
     }
   }
   return found;

@@ -32,6 +32,7 @@ SweepEstimate estimate_sweep(const Plan& plan, const Kernel& kernel);
 /// A case that the model rejects, and why.
 struct ImpossibleCase {
   std::int64_t case_id = 0;
+  std::string axis;  // that is at its other end
   std::string reason;
 };
 

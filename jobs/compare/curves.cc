@@ -31,9 +31,9 @@ std::vector<double> calc_residual(const MeasuredChannel& c, const std::vector<do
 
 /// Points of a curve such that those of all runs make a page that can be mailed.
 std::size_t choose_curve_points(std::size_t runs, std::size_t channels, std::size_t models) {
-  constexpr std::size_t kPagePoints = 60'000, kLeast = 300;
+  constexpr std::size_t kPagePoints = 60'000, kMinPoints = 300;
   const std::size_t curves = runs * channels * (2 * models + 1);
-  return std::clamp(kPagePoints / std::max<std::size_t>(curves, 1), kLeast, kCurvePoints);
+  return std::clamp(kPagePoints / std::max<std::size_t>(curves, 1), kMinPoints, kCurvePoints);
 }
 
 /// Adds two panels: a channel's curves, and the models' residuals.

@@ -94,11 +94,14 @@ Chart make_coverage_chart(const std::vector<CaseCount>& counts) {
   };
   const bool is_any = std::any_of(counts.begin(), counts.end(), has_failed);
   for (const CaseCount& count : counts) {
-    if (count.centers.size() < 2 && counts.size() > 1) continue;  // says nothing
+    // One bar of all cases: the table of the progress has their number.
+    const bool is_only = chart.panels.empty() && &count == &counts.back();
+    if (count.centers.size() < 2 && !is_only) continue;
     ChartPanel panel{{count.label}, {"cases"}, {}};
     panel.series.push_back({"simulated", SeriesKind::kBars, 6, count.centers, count.simulated});
-    if (is_any)
+    if (is_any) {
       panel.series.push_back({"failed", SeriesKind::kBars, 2, count.centers, count.failed});
+    }
     chart.panels.push_back(std::move(panel));
   }
   return chart;

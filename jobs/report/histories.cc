@@ -6,7 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/math/spread.h"
 #include "io/store/dataset.h"
+#include "jobs/cli/progress.h"
 #include "report/chart.h"
 
 namespace strut {
@@ -37,11 +39,12 @@ void add_row(const ShardSchema& schema, const ShardRows& rows, std::size_t row, 
 Histories read_histories(Dataset& dataset) {
   const ShardSchema& schema = dataset.schema();
   Histories h;
-  const std::size_t most = std::max<std::size_t>(200, kMaxPoints / (3 * schema.history.size()));
-  const std::size_t stride = (schema.history_samples + most - 1) / most;
+  const std::size_t max_samples =
+      std::max<std::size_t>(200, kMaxPoints / (3 * schema.history.size()));
+  const std::size_t stride = (schema.history_samples + max_samples - 1) / max_samples;
   for (std::size_t i = 0; i < schema.history_samples; i += stride) h.samples.push_back(i);
   h.values.assign(schema.history.size(), std::vector<std::vector<double>>(h.samples.size()));
-  // Neighbors of a shard may be alike, so the cases come from as many shards as are read anyway.
+  // From shards all over the sweep: where an axis needs a new mechanism, neighbors are alike.
   const std::size_t pieces = dataset.piece_count();
   const std::size_t per_piece = std::max<std::size_t>(1, dataset.row_count() / pieces);
   const std::size_t wanted = std::min(pieces, (kMaxCases + per_piece - 1) / per_piece);
@@ -54,22 +57,15 @@ Histories read_histories(Dataset& dataset) {
   return h;
 }
 
-double find_quantile(std::vector<double>& values, double probability) {
-  const auto at = std::llround(probability * static_cast<double>(values.size() - 1));
-  const auto place = values.begin() + at;
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
 ChartPanel make_panel(const ShardSchema& schema, Histories& h, std::size_t channel) {
   ChartSeries band{"5 to 95 %", SeriesKind::kBand, 6}, median{"median", SeriesKind::kLine, 1};
   for (std::size_t i = 0; i < h.samples.size(); ++i) {
     std::vector<double>& values = h.values[channel][i];
     if (values.empty()) continue;
     median.x.push_back(static_cast<double>(h.samples[i]) * schema.history_interval);
-    median.y.push_back(find_quantile(values, 0.5));
-    band.low.push_back(find_quantile(values, 0.05));
-    band.high.push_back(find_quantile(values, 0.95));
+    median.y.push_back(calc_quantile(values, 0.5));
+    band.low.push_back(calc_quantile(values, 0.05));
+    band.high.push_back(calc_quantile(values, 0.95));
   }
   band.x = median.x;
   const ColumnInfo& c = schema.history[channel];
@@ -91,13 +87,13 @@ ReportSection make_history_section(const SweepFolder& folder, const FigureDrawer
     return section;
   }
   Chart chart{"histories", {}, 2};
-  chart.caption = fmt::format(
-      "The channels over time, of {} finished cases: median, and the band of 5 to 95 % of them{}.",
-      h.cases,
-      h.samples.size() < schema.history_samples
-          ? fmt::format("; {} of {} instants, so peaks may be cut", h.samples.size(),
-                        schema.history_samples)
-          : "");
+  chart.caption =
+      fmt::format("The channels over time, of {}: median, and the band of 5 to 95 % of them{}.",
+                  format_count(static_cast<std::int64_t>(h.cases), "finished case"),
+                  h.samples.size() < schema.history_samples
+                      ? fmt::format("; {} of {} instants, so peaks may be cut", h.samples.size(),
+                                    schema.history_samples)
+                      : "");
   for (std::size_t c = 0; c < schema.history.size(); ++c) {
     chart.panels.push_back(make_panel(schema, h, c));
   }

@@ -58,7 +58,7 @@ void print_summary(const OpenSweep& sweep, const RunProgress& progress, const Ru
                    double seconds) {
   const std::int64_t present = progress.present + progress.elsewhere;
   const double rate = static_cast<double>(progress.written) / seconds;
-  std::cout << fmt::format("{} cases simulated in {} ({}/s)", format_count(progress.written),
+  std::cout << fmt::format("{} simulated in {} ({}/s)", format_count(progress.written, "case"),
                            format_duration(seconds), format_count(std::llround(rate)));
   if (present > 0) std::cout << fmt::format(", {} were there already", format_count(present));
   std::cout << fmt::format("; {} failed in all\n", format_count(summary.failed));

@@ -60,10 +60,6 @@ std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) 
   return frames;
 }
 
-int get_corner_channel(int corner, int channel) {
-  return CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels + channel;
-}
-
 /// Six significant digits, more than a screen can show.
 Json make_numbers(const std::vector<double>& values) {
   Json list = Json::array();
@@ -402,17 +398,19 @@ Chart make_motion_curves(const LaneResults& results, const std::optional<OtherRu
       panel.series.push_back(make_curve(name, kind, color, time, get_channel(results, channel)));
     };
     // The other run's are drawn first, below.
-    const auto add_other = [&](SeriesKind kind, int channel) {
+    const auto add_other = [&](const std::string& name, SeriesKind kind, int channel) {
       const std::vector<double>* values = other ? other->find(channel) : nullptr;
       if (values == nullptr) return;
-      panel.series.push_back(make_curve(other->name, kind, kOtherColor, other->times, *values));
+      panel.series.push_back(
+          make_curve(other->name + name, kind, kOtherColor, other->times, *values));
     };
     if (curves.channel >= 0) {
-      add_other(SeriesKind::kLine, curves.channel);
+      add_other("", SeriesKind::kLine, curves.channel);
       add("body", SeriesKind::kLine, kInk, curves.channel);
     }
     for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
-      add_other(is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine,
+      add_other(std::string(", ") + kNames[static_cast<std::size_t>(corner)],
+                is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine,
                 get_corner_channel(corner, curves.corner));
     }
     for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {

@@ -77,10 +77,6 @@ double calc_mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-int get_corner_channel(int corner, int channel) {
-  return CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels + channel;
-}
-
 AxleRide calc_axle_ride(const ReadChannel& read, int axle, double rate) {
   AxleRide ride;
   std::vector<bool> is_airborne;
@@ -106,6 +102,10 @@ std::vector<double> weight_acceleration(const std::vector<double>& acceleration,
   std::vector<double> weighted = acceleration;
   for (const Section& section : list_sections()) filter(section, rate, weighted);
   return weighted;
+}
+
+int get_corner_channel(int corner, int channel) {
+  return CarChannel::kCornerBegin + corner * CarChannel::kCornerChannels + channel;
 }
 
 std::vector<int> list_ride_channels() {

@@ -43,7 +43,12 @@ void write_rig_report(const SimulateOptions& options, const RunRecord& run) {
   clear_page_folder(out, out.page());
   const FigureDrawer drawer(out.make());
   ReportSection curves{"Curves"};
-  drawer.draw_all({make_curves(run)}, curves);
+  const Chart chart = make_curves(run);
+  if (chart.panels.empty()) {
+    curves.paragraphs = {"The run has no channel but the time."};
+  } else {
+    drawer.draw_all({chart}, curves);
+  }
   ReportPage page{
       make_run_title(options.source),
       {},

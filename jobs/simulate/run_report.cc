@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "jobs/simulate/ride.h"
 #include "model_files/parameters.h"
@@ -66,19 +67,30 @@ std::vector<RideFigure> list_other_figures(const OtherRun& other) {
   return list_ride_figures(calc_ride([&](int channel) { return *other.find(channel); }, *rate));
 }
 
-ReportTable make_ride_table(const Ride& ride, const std::optional<OtherRun>& other) {
+/// `duration` [s]: of this run.
+ReportTable make_ride_table(const Ride& ride, double duration,
+                            const std::optional<OtherRun>& other) {
   ReportTable table{"Figures of merit", {"quantity", "value", "unit"}};
   const std::vector<RideFigure> figures = list_ride_figures(ride);
   const std::vector<RideFigure> others =
       other ? list_other_figures(*other) : std::vector<RideFigure>{};
-  const bool has_others = others.size() == figures.size();
-  if (has_others) table.header = {"quantity", "this run", other->name, "unit"};
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    const RideFigure& f = figures[i];
-    std::vector<std::string> row = {f.quantity, fmt::format("{:.{}f}", f.value, f.decimals)};
-    if (has_others) row.push_back(fmt::format("{:.{}f}", others[i].value, f.decimals));
+  if (!others.empty()) table.header = {"quantity", "this run", other->name, "unit"};
+  for (const RideFigure& f : figures) {
+    const auto format = [&](double value) { return fmt::format("{:.{}f}", value, f.decimals); };
+    std::vector<std::string> row = {f.quantity, format(f.value)};
+    // A coarse record has no weighted acceleration.
+    const auto found = std::find_if(others.begin(), others.end(),
+                                    [&](const RideFigure& o) { return o.quantity == f.quantity; });
+    if (!others.empty()) row.push_back(found == others.end() ? "" : format(found->value));
     row.emplace_back(f.unit);
     table.rows.push_back(std::move(row));
+  }
+  if (!others.empty()) {
+    const double length = other->times.back() - other->times.front();
+    if (std::fabs(length - duration) > 0.01 * duration) {
+      table.notes.push_back(fmt::format("{} lasts {} s, this run {} s.", other->name,
+                                        format_short(length), format_short(duration)));
+    }
   }
   return table;
 }
@@ -135,7 +147,8 @@ std::string make_run_title(const CaseSource& source) {
   std::string title = source.vehicle.stem().string() + " over " + source.maneuver.stem().string();
   for (std::size_t i = 0; i < std::min(kMaxSettings, source.settings.size()); ++i) {
     const NamedValue setting = parse_setting(source.settings[i]);
-    title += fmt::format(", {} = {}", setting.name, setting.value);
+    title += fmt::format(", {} = {}{}{}", setting.name, setting.value,
+                         setting.unit.empty() ? "" : " ", setting.unit);
   }
   return title + (source.settings.size() > kMaxSettings ? ", ..." : "");
 }
@@ -177,11 +190,12 @@ void write_run_report(const std::filesystem::path& folder, const CaseSource& sou
   }
   parameters.tables.push_back(make_parameter_table(run));
   parameters.tables.push_back(make_source_table(run));
-  ReportPage page{
-      make_run_title(source),
-      {describe(source, c)},
-      {std::move(motion), {"Ride", {}, {make_ride_table(ride, other)}}, std::move(parameters)},
-      make_report_footer()};
+  ReportPage page{make_run_title(source),
+                  {describe(source, c)},
+                  {std::move(motion),
+                   {"Ride", {}, {make_ride_table(ride, c.maneuver.duration, other)}},
+                   std::move(parameters)},
+                  make_report_footer()};
   page.of = kRunContent.name;
   page.key_numbers = make_key_numbers(ride);
   write_page(out, page);

@@ -99,7 +99,7 @@ Json make_tasks_json(const OpenSweep& sweep, const Submission& submission,
                         {"command", dispatcher.make_command(tasks[i], script, after)},
                         {"script", dispatcher.make_script(tasks[i])}});
   }
-  return Json{{"to", dispatcher.name()}, {"says", answer}, {"parts", list}};
+  return Json{{"to", dispatcher.name()}, {"scheduler_answer", answer}, {"parts", list}};
 }
 
 void print_tasks(const OpenSweep& sweep, const Submission& submission, const ScriptOptions& options,

@@ -130,7 +130,8 @@ TaskPlan plan_tasks(const MissingWork& work, double shard_seconds, const SubmitR
 
 std::string describe_tasks(const TaskPlan& plan, const MissingWork& work) {
   if (plan.arrays.empty()) {
-    return fmt::format("one task that retries {}", format_count(work.status.failed, "failed case"));
+    return fmt::format("one task that retries, of {}, those that a smaller step may mend",
+                       format_count(work.status.failed, "failed case"));
   }
   const std::int64_t tasks = plan.count_tasks();
   const auto arrays = static_cast<std::int64_t>(plan.arrays.size());

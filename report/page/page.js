@@ -42,7 +42,7 @@ function paint(value, ink) {
     const isDark = darkMode.matches && !isForPaper;
     return isDark && darkColors[value.slice(0, 7)] ? darkColors[value.slice(0, 7)] + value.slice(7) : value;
   }
-  if (typeof value === "string") return value.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll("^2", "\u00b2").replaceAll("^3", "\u00b3");
+  if (typeof value === "string") return value.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replace(/\^([23])(?!\d)/g, (match, digit) => digit === "2" ? "\u00b2" : "\u00b3");
   if (Array.isArray(value)) {
     return value.some((item) => typeof item !== "number") ? value.map((v) => paint(v, ink)) : value;
   }
@@ -160,8 +160,13 @@ async function drawAll() {
   let drawn = 0;
   try {
     if (divs.length > 0) await loadPlotly();
-  } catch (error) {  // then no chart can be drawn, and each says so
+  } catch (error) {
     console.error(error);
+    for (const div of divs) {
+      explain(div, "This browser cannot unpack the charts: it must be Chrome 80, Firefox 113, Safari 16.4 or later. Their numbers are in the files named below.");
+    }
+    document.body.dataset.charts = "0/" + divs.length;
+    return;
   }
   for (const div of divs) {
     try {

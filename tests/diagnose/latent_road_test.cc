@@ -72,7 +72,7 @@ struct WhitenedRun {
   Whitener plain{model, {make_white()}}, whitener{model, {make_white()}, {road}};
   /// From readings to sensors' numbers: orthogonal.
   Eigen::MatrixXd rotation = plain.apply(Eigen::MatrixXd::Identity(kReadings, kReadings));
-  Eigen::MatrixXd response = road->response;
+  Eigen::MatrixXd response = road->whitened->derivative;
 };
 
 TEST_CASE("Readings over an unknown road are whitened by a root of their inverse covariance",

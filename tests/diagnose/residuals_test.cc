@@ -49,7 +49,7 @@ TEST_CASE("Sines fall into their bands with their own rms", "[unit]") {
 }
 
 TEST_CASE("Bands are exact for numbers of samples with a large prime factor", "[unit]") {
-  // 4001 is prime: the last sample ends the period, so that a sine of 20 s over 4001 / 4000 fits.
+  // 4001 is prime; 40 periods fit into as many samples.
   constexpr std::size_t kCount = 4001;
   const std::vector<double> times = make_times(kCount, 0.005);
   std::vector<double> y;

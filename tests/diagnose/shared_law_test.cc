@@ -87,8 +87,12 @@ TEST_CASE("The interval of a secant is that of the calibrated model's parameter,
   CHECK(found.value == Approx(1000.0).margin(tolerance(0.01)));
   CHECK(found.low == Approx(1000.0 - 5.8799).margin(tolerance(0.02)));
   CHECK(found.high == Approx(1000.0 + 40.0 + 5.8799).margin(tolerance(0.02)));
-  // This stand's strut has no spring.
+  // This stand's strut has no spring. What is not fitted has no error.
   CHECK(std::isnan(secants.front().stiffness.value));
+  data.runs[0].setup.rig().rig.stiffness = 5000.0;
+  const GroupValue stiffness = list_secants(data, s, {position}).front().stiffness;
+  CHECK(stiffness.value == Approx(5000.0).epsilon(tolerance(1e-3)));
+  CHECK(stiffness.high - stiffness.low < tolerance(0.01));
 }
 
 }  // namespace

@@ -391,7 +391,7 @@ TEST_CASE("Another run is drawn over a simulated one", "[io]") {
   const TemporaryFolder folder;
   const std::string simulate =
       make_simulate_command("three_bumps", folder / "worn.csv", folder / "worn") +
-      " --set front_damping=900 --beside ";
+      " --set front_damping=900 --set speed=36km/h --beside ";
   folder.write("measured.csv",
                "time [ms],body_position_z [mm],pitch_angle [deg]\n0,540,0.1\n500,545,0.2\n"
                "1000,550,0.3\n");
@@ -404,7 +404,8 @@ TEST_CASE("Another run is drawn over a simulated one", "[io]") {
   CHECK(other.get_child("wheel_height").front().second.data() == "null");
   CHECK_THAT(test::read_text(figures + "curves.csv"), Contains("\"measured.csv\""));
   const std::string page = test::read_text(folder / "worn/report.html");
-  CHECK_THAT(page, Contains("Changed by --set") && Contains(">front_damping</td>"));
+  CHECK_THAT(page, Contains("Changed by --set") && Contains(">front_damping</td>") &&
+                       Contains("three_bumps, front_damping = 900, speed = 36 km/h"));
   CHECK_THAT(page,
              Contains("weighted by ISO 2631-1") && Contains("over 3 bumps of 60 mm, 6 m apart") &&
                  !Contains(">this run<"));  // the record lacks what a ride is judged by
@@ -415,7 +416,7 @@ TEST_CASE("Another run is drawn over a simulated one", "[io]") {
   CHECK_THAT(test::read_text(folder / "whole/report.html"),
              Contains(">this run<") && Contains(">worn.csv<"));
   CHECK_THAT(test::read_text(folder / "whole/figures/curves.csv"),
-             Contains("\"tire load [N] over time [s]\",\"worn.csv\""));
+             Contains("\"tire load [N] over time [s]\",\"worn.csv, front left\""));
   test::check_page(folder / "worn/report.html", 1);
   const auto refuse = [&](const std::string& text, const std::string& told) {
     const test::Outcome outcome =
@@ -459,6 +460,11 @@ TEST_CASE("A rig's report shows its channels, those of one unit together", "[io]
   CHECK_THAT(curves, Contains("[N] over time [s]\",\"tire force\"") &&
                          Contains("[m] over time [s]\",\"sprung position\""));
   CHECK(test::run_program("report " + out).code == 0);
+  const std::string time = "simulate " + rigs + "quarter_car.toml " + rigs +
+                           "maneuvers/bump.toml --channels time --force -o " +
+                           (folder / "run.csv").string() + " --report " + out;
+  REQUIRE(test::run_program(time).code == 0);
+  test::check_page(out + "/report.html", 0);
 }
 
 TEST_CASE("The motion's road is the maneuver's, however its table is spaced", "[unit]") {

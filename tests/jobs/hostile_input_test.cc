@@ -84,7 +84,9 @@ TEST_CASE("A file of another format in place of TOML is named as what it is", "[
   refuse("run.h5", "\x89HDF\r\n\x1a\n", "an HDF5 file; must be a TOML file");
   refuse("run.mat", "MATLAB 5.0 MAT-file", "a MATLAB file");
   refuse("run.html", "<!DOCTYPE html>", "a page or XML file");
-  refuse("run.json", "{\"a\": 1}", "a JSON file");
+  refuse("new.mat", "MATLAB 7.3 MAT-file", "a MATLAB file");
+  refuse("run.json", "\xef\xbb\xbf{\"a\": 1}", "a JSON file");
+  refuse("000000.h5", "strut shard seal\n", "a file that strut seals");
   refuse("run.csv", "time,force\n0,1\n", "run.csv:1: not valid TOML");
   refuse("run.csv", "time,force\n0,1\n", "is it a table of data?");
 }

@@ -90,7 +90,7 @@ TEST_CASE("Failed cases are retried after the arrays", "[io]") {
   CHECK_THAT(plain.messages, !Contains("--retry"));  // no smaller step helps
   const Outcome outcome = run_sweep_command("submit", sweep, "--to local --retry --merge");
   CHECK(outcome.code == 0);
-  CHECK_THAT(outcome.out, Contains("one task that retries") && Contains("retry: local"));
+  CHECK_THAT(outcome.out, Contains("one task that retries, of ") && Contains("retry: local"));
   wait_for_end(sweep);
   // No smaller step helps these cases, but they were tried, after no array and before the merge.
   std::string told;
