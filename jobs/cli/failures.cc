@@ -26,7 +26,7 @@ std::string describe_case(const Plan& plan, std::int64_t case_id, const std::str
 
 std::string describe_failures(const Plan& plan, const std::string& reason,
                               const FailureCount& count) {
-  const std::string text = fmt::format("  {}: {}", reason, format_count(count.cases));
+  std::string text = fmt::format("  {}: {}", reason, format_count(count.cases));
   if (count.first_case < 0) return text;
   return text + ", first " + describe_case(plan, count.first_case, count.first_reason);
 }

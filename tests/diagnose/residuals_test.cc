@@ -53,6 +53,7 @@ TEST_CASE("Bands are exact for numbers of samples with a large prime factor", "[
   constexpr std::size_t kCount = 4001;
   const std::vector<double> times = make_times(kCount, 0.005);
   std::vector<double> y;
+  y.reserve(kCount);
   for (const double t : times) y.push_back(std::sin(2 * kPi * 40.0 * t / (0.005 * kCount)));
   const auto bands = calc_band_residuals(times, y, y, 0.0);
   const double expected[] = {0.0, 1.0, 0.0, 0.0, 0.0};

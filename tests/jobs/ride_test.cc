@@ -17,10 +17,11 @@ namespace {
 
 /// Gain of the weighting at one frequency, once its start has decayed.
 double measure_gain(double frequency, double rate) {
-  std::vector<double> wave;
   const double seconds = 20.0 + 10.0 / frequency;
-  for (int i = 0; i < static_cast<int>(seconds * rate); ++i) {
-    wave.push_back(std::sin(2.0 * std::numbers::pi * frequency * i / rate));
+  std::vector<double> wave(static_cast<std::size_t>(seconds * rate));
+  for (std::size_t i = 0; i < wave.size(); ++i) {
+    const double t = static_cast<double>(i) / rate;
+    wave[i] = std::sin(2.0 * std::numbers::pi * frequency * t);
   }
   const std::vector<double> weighted = weight_acceleration(wave, rate);
   const auto periods = static_cast<std::size_t>(std::round(rate / frequency * 10.0));
