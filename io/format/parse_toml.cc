@@ -109,7 +109,7 @@ void check_format(const std::filesystem::path& path, std::string_view text) {
   }
 }
 
-/// What to add to a fault of a file that is named like a table.
+/// Returns a hint if the file has the extension of a table of data, "" otherwise.
 const char* describe_name(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   const bool is_table = extension == ".csv" || extension == ".tsv" || extension == ".txt";

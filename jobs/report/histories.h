@@ -1,4 +1,4 @@
-// What the cases of a sweep record over time, for the sweep's report.
+// The section of a sweep's report on the histories that its cases recorded.
 #pragma once
 
 #include "report/figures.h"

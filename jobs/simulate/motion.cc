@@ -24,10 +24,6 @@ constexpr std::size_t kRoadPoints = 200;  // of a bump
 constexpr double kProfileSpacing = 0.05;  // m, of a rough road
 constexpr double kSeen = 8.0;             // m ahead of the car
 
-std::vector<double> get_channel(const LaneResults& results, int channel) {
-  return results.get_history(channel);
-}
-
 double calc_bump_center(const Case& c) {
   return c.vehicle.whole.centroid_to_front + c.maneuver.bump_distance;
 }
@@ -45,7 +41,7 @@ std::vector<std::size_t> list_frames(const Case& c, const LaneResults& results) 
   const double first = calc_bump_center(c) + bump_begin - whole.centroid_to_front - kBefore;
   const double last = calc_bump_center(c) + bump_end + whole.centroid_to_rear + kAfter;
 
-  const std::vector<double> forward = get_channel(results, CarChannel::kForwardPosition);
+  const std::vector<double> forward = results.get_history(CarChannel::kForwardPosition);
   const auto get_part = [&](std::size_t i) {
     return first < forward[i] && forward[i] < last ? std::size_t{1} : std::size_t{0};
   };
@@ -80,7 +76,7 @@ Json make_values(const std::vector<double>& all, const std::vector<std::size_t>&
 Json make_corners(const LaneResults& results, int channel, const std::vector<std::size_t>& frames) {
   Json list = Json::array();
   for (int corner = 0; corner < kCorners; ++corner) {
-    list.push_back(make_values(get_channel(results, get_corner_channel(corner, channel)), frames));
+    list.push_back(make_values(results.get_history(get_corner_channel(corner, channel)), frames));
   }
   return list;
 }
@@ -108,8 +104,8 @@ Json make_links(const SuspensionSpec& suspension) {
   return links;
 }
 
-/// How far a mount follows its wheel: 0 on the chassis, 1 on the upright, between them on a link by
-/// its distance from the link's inner joint.
+/// Fraction of the wheel's vertical displacement by which a mount moves: 0 on the chassis, 1 on the
+/// upright, and on a link linear in y from its chassis joint to its upright joint.
 double calc_share(const SuspensionSpec& suspension, const MountSpec& mount) {
   const auto divide = [&](const Vec3<double>& inner, const Vec3<double>& outer) {
     const double share = (mount.position.y - inner.y) / (outer.y - inner.y);
@@ -176,7 +172,7 @@ double get_profile_height(const RoadProfile& profile, std::size_t side, double a
 Json make_rough_points(const Case& c, const LaneResults& results, std::size_t side, bool has_bump) {
   const RoadProfile& profile = *c.maneuver.profile.data;
   const double front = c.vehicle.whole.centroid_to_front;
-  const std::vector<double> forward = get_channel(results, CarChannel::kForwardPosition);
+  const std::vector<double> forward = results.get_history(CarChannel::kForwardPosition);
   const double last = *std::max_element(forward.begin(), forward.end()) + kSeen;
   const double end =
       profile.begin + profile.spacing * static_cast<double>(profile.height[side].size());
@@ -185,9 +181,9 @@ Json make_rough_points(const Case& c, const LaneResults& results, std::size_t si
   const std::size_t per_bump = bumps.size() / static_cast<std::size_t>(c.maneuver.road.count);
   const auto is_on_bumps = [&](double x) {
     for (std::size_t i = 0; i < bumps.size(); i += per_bump) {
-      const auto first = bumps[i][0].get<double>();
-      const auto past = bumps[i + per_bump - 1][0].get<double>();
-      if (first <= x && x <= past) return true;
+      const auto bump_begin = bumps[i][0].get<double>();
+      const auto bump_end = bumps[i + per_bump - 1][0].get<double>();
+      if (bump_begin <= x && x <= bump_end) return true;
     }
     return false;
   };
@@ -346,7 +342,7 @@ OtherRun read_other_run(const std::filesystem::path& file) {
 Json make_motion(const Case& c, const LaneResults& results, const std::optional<OtherRun>& other) {
   const std::vector<std::size_t> frames = list_frames(c, results);
   const auto add = [&](Json& json, const char* name, int channel) {
-    json[name] = make_values(get_channel(results, channel), frames);
+    json[name] = make_values(results.get_history(channel), frames);
   };
   Json json = Json::object();
   add(json, "time", CarChannel::kTime);
@@ -364,7 +360,7 @@ Json make_motion(const Case& c, const LaneResults& results, const std::optional<
   json["road"] = make_road(c, results);
   if (other) {
     std::vector<double> times;
-    const std::vector<double> all = get_channel(results, CarChannel::kTime);
+    const std::vector<double> all = results.get_history(CarChannel::kTime);
     times.reserve(frames.size());
     for (const std::size_t frame : frames) times.push_back(all[frame]);
     json["other"] = make_other(*other, times);
@@ -391,11 +387,11 @@ Chart make_motion_curves(const LaneResults& results, const std::optional<OtherRu
       "Body, suspension and tires over time; right wheels solid, left dashed. Compression is "
       "relative to nominal trim; damper forces are positive in compression. The vertical line "
       "marks the instant of the slider; click a curve to move it there.";
-  const std::vector<double> time = get_channel(results, CarChannel::kTime);
+  const std::vector<double> time = results.get_history(CarChannel::kTime);
   for (const CurvePanel& curves : kPanels) {
     ChartPanel panel{{&curves == &kPanels.back() ? "time [s]" : ""}, {curves.label}, {}};
     const auto add = [&](const std::string& name, SeriesKind kind, int color, int channel) {
-      panel.series.push_back(make_curve(name, kind, color, time, get_channel(results, channel)));
+      panel.series.push_back(make_curve(name, kind, color, time, results.get_history(channel)));
     };
     // The other run's are drawn first, below.
     const auto add_other = [&](const std::string& name, SeriesKind kind, int channel) {
