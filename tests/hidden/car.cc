@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <stdexcept>
 
 #include "tests/hidden/dormand_prince.h"
@@ -55,6 +56,14 @@ double calc_touch(double deflection) {
   return t * t * t * (t * (6.0 * t - 15.0) + 10.0);
 }
 
+/// Half the rate of the squared distance from a center at x, z to the road as the road's point
+/// moves on.
+double calc_recession(const Track& track, double x, double z, double point) {
+  double height = 0.0, slope = 0.0;
+  track.evaluate(point, height, slope);
+  return point - x + (height - z) * slope;
+}
+
 }  // namespace
 
 void Track::evaluate(double x, double& z, double& z_x) const {
@@ -64,6 +73,40 @@ void Track::evaluate(double x, double& z, double& z_x) const {
   if (rough != nullptr) rough->evaluate(x, height, slope);
   z += height;
   z_x += slope;
+}
+
+Support Track::find_support(Contact contact, double x, double z, double radius) const {
+  Support support;
+  double height = 0.0, slope = 0.0;
+  if (contact == Contact::kFelt) {
+    evaluate(x, height, support.slope);
+    const double cosine = 1.0 / std::hypot(1.0, support.slope);
+    support.distance = radius - (radius - (z - height)) * cosine;
+    return support;
+  }
+  // The nearest point, of all where the distance is least within its surroundings: on either side
+  // of a bump's foot a wheel has two.
+  constexpr int kCells = 64;
+  const double cell = 2.0 * radius / kCells;
+  support.distance = std::numeric_limits<double>::infinity();
+  double low = x - radius, before = calc_recession(*this, x, z, low);
+  for (int i = 1; i <= kCells; ++i) {
+    double high = x - radius + cell * i;
+    const double behind = calc_recession(*this, x, z, high);
+    const double end = high;
+    if (before < 0.0 && behind >= 0.0) {
+      while (high - low > 1e-10) {
+        const double middle = 0.5 * (low + high);
+        (calc_recession(*this, x, z, middle) < 0.0 ? low : high) = middle;
+      }
+      evaluate(high, height, slope);
+      const double distance = std::hypot(high - x, height - z);
+      if (distance < support.distance) support = {distance, slope};
+    }
+    low = end;
+    before = behind;
+  }
+  return support;
 }
 
 /// Forces and kinematics of one evaluation, vectors in body axes.
@@ -118,9 +161,9 @@ void CarModel::calc_tire(const Drive& drive, const std::vector<double>& y, int w
   const Vector3d velocity = get_vector(y, S::kVelocity), omega = get_vector(y, S::kRate);
   const Vector3d center = f.at[i], axis = Vector3d::UnitY();
   const Vector3d world = get_vector(y, S::kPosition) + f.rotation * center;
-  double z = 0.0, slope = 0.0;
-  drive.track[i].evaluate(world.x(), z, slope);
-  const Vector3d up = Vector3d(-slope, 0.0, 1.0).normalized();
+  const Support support =
+      drive.track[i].find_support(drive.contact, world.x(), world.z(), w.tire.radius);
+  const Vector3d up = Vector3d(-support.slope, 0.0, 1.0).normalized();
   const Vector3d normal = f.rotation.transpose() * up;
   const Vector3d motion =
       velocity + omega.cross(center) + get(y, S::kTravelRate + wheel) * Vector3d::UnitZ();
@@ -129,7 +172,7 @@ void CarModel::calc_tire(const Drive& drive, const std::vector<double>& y, int w
   const Vector3d forward = tilt * sideways, lateral = normal.cross(forward);
   const double turn = get(y, S::kAngle + wheel);
   const double free = w.tire.radius + w.tire.runout * std::sin(turn);
-  const double loaded = tilt * (w.tire.radius - (w.tire.radius - (world.z() - z)) * up.z());
+  const double loaded = tilt * support.distance;
   const Vector3d arm = -loaded * forward.cross(axis);
   const double deflection = free - loaded;
   const double rate =

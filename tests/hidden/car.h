@@ -79,17 +79,32 @@ struct Car {
   Bending bending;
 };
 
-/// The road under a track: felt bump with its center and roughness.
+/// How a tire touches the road.
+enum class Contact {
+  kFelt,  // the height under its center that it feels, across the felt road's slope
+  kDisc   // the point nearest to its center, along the line to it: a disc on the bare road
+};
+
+/// Where the road supports a wheel's center.
+struct Support {
+  double distance = 0.0;  // m, from the center to the road
+  double slope = 0.0;     // of the road across that line
+};
+
+/// The road under a track: bump with its center and roughness, felt or bare.
 struct Track {
   const Curve* bump = nullptr;
   double bump_center = 0.0;  // m, world x
   const Curve* rough = nullptr;
 
   void evaluate(double x, double& z, double& z_x) const;
+  /// Of a center at x, z [m] of a wheel of this radius [m].
+  Support find_support(Contact contact, double x, double z, double radius) const;
 };
 
 struct Drive {
   double speed = 5.0;  // m/s
+  Contact contact = Contact::kFelt;
   std::array<Track, kWheels> track;
 };
 

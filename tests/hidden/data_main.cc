@@ -19,9 +19,10 @@ namespace strut::hidden {
 constexpr char kUsage[] =
     "Usage: strut_hidden_data KIT SEEDS DIR [THREADS [ABLATION [REGIME]]]\n\n"
     "Writes the trials of the seeds into DIR/trials and their truths into DIR/truths; those that\n"
-    "are there already stay. KIT: car, quarter_car or dyno. SEEDS: FROM:TO, TO not included, or\n"
-    "such ranges and single seeds with commas between; nulls:SEEDS keeps those that hide\n"
-    "nothing. ABLATION: none, no_roughness, no_deflection, body_only or one_crossing. REGIME:\n"
+    "are there already stay. KIT: car, car_disc (on another contact), quarter_car or dyno.\n"
+    "SEEDS: FROM:TO, TO not included, or such ranges and single seeds with commas between;\n"
+    "nulls:SEEDS keeps those that hide nothing. ABLATION: none, no_roughness, no_deflection,\n"
+    "body_only or one_crossing. REGIME:\n"
     "exact, sensors (with small errors within data sheets) or machine (these, realistic sizes\n"
     "and small misfits). The files depend on seeds, ablation and regime alone.\n\n"
     "Example: strut_hidden_data quarter_car 0:39 hidden 2\n";

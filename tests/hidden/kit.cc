@@ -132,11 +132,19 @@ Kit make_dyno_kit() {
   return kit;
 }
 
+Kit make_disc_kit() {
+  Kit kit = make_car_kit();
+  kit.name = "car_disc";
+  kit.contact = Contact::kDisc;
+  return kit;
+}
+
 Kit make_exact_kit(const std::string& name) {
   if (name == "car") return make_car_kit();
+  if (name == "car_disc") return make_disc_kit();
   if (name == "quarter_car") return make_quarter_car_kit();
   if (name == "dyno") return make_dyno_kit();
-  throw std::invalid_argument("kit '" + name + "': must be car, quarter_car or dyno");
+  throw std::invalid_argument("kit '" + name + "': must be car, car_disc, quarter_car or dyno");
 }
 
 }  // namespace

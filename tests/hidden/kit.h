@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/hidden/car.h"
 #include "tests/hidden/faults.h"
 #include "tests/hidden/regime.h"
 #include "tests/hidden/road.h"
@@ -52,9 +53,11 @@ struct Kit {
   double speed_sigma = 0.0;  // 1
   double jitter = 2e-5;      // s
   Regime regime = Regime::kExact;
+  Contact contact = Contact::kFelt;
 };
 
-/// "car", "quarter_car" or "dyno"; throws std::invalid_argument for others.
+/// "car", "car_disc" (the same with another contact), "quarter_car" or "dyno"; throws
+/// std::invalid_argument for others.
 Kit make_kit(const std::string& name, Regime regime = Regime::kExact);
 
 }  // namespace strut::hidden

@@ -10,6 +10,7 @@
 #include "tests/hidden/dormand_prince.h"
 #include "tests/hidden/faults.h"
 #include "tests/hidden/rigs.h"
+#include "tests/hidden/road.h"
 #include "tests/support/tolerance.h"
 
 namespace strut::hidden {
@@ -49,6 +50,35 @@ double calc_distance(const std::vector<QuarterCarSample>& a,
 }
 
 }  // namespace
+
+TEST_CASE("Hidden data: a disc touches the nearest point of the bare road", "[unit]") {
+  const double radius = 0.32;
+  const Curve smooth = make_bare_bump({BumpForm::kCosine, 0.08, 0.9, 0.0});
+  const Track gentle{&smooth, 2.0, nullptr};
+  for (const double u : {-0.3, -0.1, 0.2}) {
+    const double z = 0.04 * (1.0 + std::cos(kTwoPi * u / 0.9));
+    const double slope = -0.04 * kTwoPi / 0.9 * std::sin(kTwoPi * u / 0.9);
+    const double root = std::hypot(1.0, slope), distance = 0.31;
+    const Support support = gentle.find_support(Contact::kDisc, 2.0 + u - distance * slope / root,
+                                                z + distance / root, radius);
+    CHECK(support.distance == Approx(distance).margin(tolerance(1e-6)));
+    CHECK(support.slope == Approx(slope).margin(tolerance(1e-4)));
+  }
+  // Before the foot of an arc a wheel has two nearest points: on level ground and on the arc,
+  // whose center is 0.425 - 0.05 m below ground.
+  const Curve arc = make_bare_bump({BumpForm::kArc, 0.05, 0.4, 0.0});
+  const Track steep{&arc, 0.0, nullptr};
+  for (const double x : {-0.30, -0.24, -0.15}) {
+    const double to_arc = std::hypot(x, 0.31 + 0.375) - 0.425;
+    const Support support = steep.find_support(Contact::kDisc, x, 0.31, radius);
+    CHECK(support.distance == Approx(std::min(0.31, to_arc)).margin(tolerance(1e-4)));
+    CHECK((support.slope > 0.0) == (to_arc < 0.31));
+  }
+  const Support level = gentle.find_support(Contact::kFelt, 0.0, 0.31, radius);
+  CHECK(level.distance == Approx(0.31).margin(tolerance(1e-12)));
+  CHECK(gentle.find_support(Contact::kDisc, 0.0, 0.31, radius).distance ==
+        Approx(0.31).margin(tolerance(1e-12)));
+}
 
 TEST_CASE("Hidden data: the integrator follows an oscillator, between its steps too", "[unit]") {
   const auto rates = [](double, const std::vector<double>& y, std::vector<double>& dy) {

@@ -235,8 +235,8 @@ MatrixXcd NoiseSpectrum::calc_road(double frequency) const {
     tracks(at, static_cast<Eigen::Index>(w % 2)) = ahead;
     tracks(at + 1, static_cast<Eigen::Index>(w % 2)) = ahead * Complex(0.0, kTwoPi * n);
   }
-  const double width = 0.25 * kFootprint * 0.5 * kTwoPi * n;
-  const double felt = std::pow(std::sin(width) / width, 8);
+  const double width = 0.25 * get_footprint(kit_) * 0.5 * kTwoPi * n;
+  const double felt = width > 0.0 ? std::pow(std::sin(width) / width, 8) : 1.0;
   const double density = calc_roughness_density(roughness, n) / speed_ * felt;
   const double common = std::exp(-0.5 * n / roughness.coherence);
   Eigen::Matrix2cd road;

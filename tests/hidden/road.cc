@@ -118,6 +118,14 @@ Curve make_felt_bump(const Bump& bump, double radius, double footprint) {
   return make_curve(-kGrid * static_cast<double>(half), kEvery * kGrid, std::move(knots));
 }
 
+Curve make_bare_bump(const Bump& bump) {
+  constexpr double kSpacing = 1e-3;  // m, which rounds the ends of an arc
+  const double half = std::ceil(0.5 * bump.length / kSpacing) + 4.0;
+  std::vector<double> z;
+  for (double i = -half; i <= half; ++i) z.push_back(calc_bump_height(bump, kSpacing * i));
+  return make_curve(-kSpacing * half, kSpacing, std::move(z));
+}
+
 Curve spread_cams(const Curve& curve, double spread) {
   const auto margin = static_cast<std::size_t>(std::ceil(spread / curve.spacing)) + 2;
   std::vector<double> height(curve.height.size() + 2 * margin);

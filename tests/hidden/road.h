@@ -35,7 +35,10 @@ double calc_bump_height(const Bump& bump, double x);
 /// over the footprint by four boxcars of a quarter of it. Brute force on a grid of 0.5 mm.
 Curve make_felt_bump(const Bump& bump, double radius, double footprint);
 
-/// The same under two cams, a half of `spread` [m] before and behind the center: the mean of both.
+/// The bump itself.
+Curve make_bare_bump(const Bump& bump);
+
+/// A curve under two cams, a half of `spread` [m] before and behind the center: the mean of both.
 Curve spread_cams(const Curve& curve, double spread);
 
 /// ISO 8608: G(n) = G(n0) (n / n0)^-2 [m^3], n0 = 0.1 cycles/m, and the coherence exp(-n / n_c) of

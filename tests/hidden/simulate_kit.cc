@@ -40,7 +40,13 @@ double find_magnitude(const Truth& truth, Fault fault) {
   return 0.0;
 }
 
-/// The bump of a run as built, as a tire feels it.
+/// A bump as tires meet it.
+Curve make_bump(const Kit& kit, const Bump& bump, double radius) {
+  return kit.contact == Contact::kDisc ? make_bare_bump(bump)
+                                       : make_felt_bump(bump, radius, kFootprint);
+}
+
+/// The bump of a run as built, as tires meet it.
 Curve make_true_bump(const Kit& kit, const Truth& truth, const RunPlan& run, double radius) {
   Bump bump = run.bump;
   const std::string number = std::to_string(run.bump_number);
@@ -50,20 +56,20 @@ Curve make_true_bump(const Kit& kit, const Truth& truth, const RunPlan& run, dou
                          (1.0 + find_magnitude(truth, Fault::kBumpLength));
   bump.length *= stretch;
   bump.ramp *= stretch;
-  Curve felt = make_felt_bump(bump, radius, kFootprint);
+  Curve met = make_bump(kit, bump, radius);
   for (const Fault fault : {Fault::kParabola, Fault::kTruncatedRamp}) {
     const double share = find_magnitude(truth, fault);
     if (share == 0.0) continue;
     Bump other = bump;
     other.form = fault == Fault::kParabola ? BumpForm::kParabola : BumpForm::kTruncated;
-    const Curve otherwise = make_felt_bump(other, radius, kFootprint);
-    for (std::size_t i = 0; i < felt.height.size(); ++i) {
-      felt.height[i] += share * (otherwise.height[i] - felt.height[i]);
+    const Curve otherwise = make_bump(kit, other, radius);
+    for (std::size_t i = 0; i < met.height.size(); ++i) {
+      met.height[i] += share * (otherwise.height[i] - met.height[i]);
     }
-    felt = make_curve(felt.begin, felt.spacing, felt.height);
+    met = make_curve(met.begin, met.spacing, met.height);
   }
   const double spread = find_magnitude(truth, Fault::kCams);
-  return spread > 0.0 ? spread_cams(felt, spread) : felt;
+  return spread > 0.0 ? spread_cams(met, spread) : met;
 }
 
 /// Takes from a warming damper's rate what it has lost by this run: it falls evenly from the first
@@ -125,6 +131,7 @@ std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::si
   const CarModel model(car);
   const double front = car.wheel[0].position.x(), rear = car.wheel[2].position.x();
   Drive drive;
+  drive.contact = kit.contact;
   const double laid_at = run.speed * (1.0 + truth.speed_error[number]);
   drive.speed = laid_at * (1.0 + get_adjustment(truth.speed_change, number));
   for (const FaultSetting& s : truth.faults) {
@@ -148,7 +155,8 @@ std::vector<Signal> simulate_car_run(const Kit& kit, const Truth& truth, std::si
     const double length = laid_at * (run.duration + before + margin) + front - rear + 10.0;
     Roughness roughness;
     roughness.degree = truth.roughness;
-    rough = make_rough_tracks(roughness, begin, length, kFootprint, truth.seed + 1000003 * number);
+    rough = make_rough_tracks(roughness, begin, length, get_footprint(kit),
+                              truth.seed + 1000003 * number);
     for (std::size_t i = 0; i < kWheels; ++i) {
       drive.track[i].rough = i % 2 == 0 ? &rough.left : &rough.right;
     }
@@ -295,6 +303,8 @@ Truth make_nominal_truth(const Kit& kit) {
   truth.speed_error.assign(kit.runs.size(), 0.0);
   return truth;
 }
+
+double get_footprint(const Kit& kit) { return kit.contact == Contact::kDisc ? 0.0 : kFootprint; }
 
 Car make_car(const Kit& kit, const Truth& truth) {
   Car car = make_nominal_car();

@@ -42,5 +42,7 @@ void add_sensor_errors(const Truth& truth, std::vector<Signal>& signals);
 /// The car of a truth.
 Car make_car(const Kit& kit, const Truth& truth);
 inline constexpr double kFootprint = 0.12;  // m
+/// m, over which the tires of a kit average its roads.
+double get_footprint(const Kit& kit);
 
 }  // namespace strut::hidden
