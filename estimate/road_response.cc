@@ -18,8 +18,8 @@ namespace {
 constexpr double kInterval = 4e-3;  // s, between samples: eight in a period of 31 Hz
 constexpr double kStep = 4e-3;      // s
 /// Samples of a section. Each section costs a simulation for every state and for every coefficient
-/// under a wheel; in a longer one, wheels meet more.
-constexpr std::size_t kSection = 10;
+/// under a wheel: one of 0.16 s takes some 130, where four of a quarter of it take 320.
+constexpr std::size_t kSection = 40;
 constexpr double kLength = kInterval * static_cast<double>(kSection);  // s, of a section
 /// m, by which a wheel may leave its place along the car as it swings and the chassis pitches.
 constexpr double kPlay = 0.05;
@@ -45,6 +45,7 @@ struct Section {
     Index number;
   };
   std::vector<Place> met{};  // coefficients under a wheel
+  bool has_event = false;    // a wheel lifts off, lands or meets a kink
 };
 
 class Simulator {
@@ -74,7 +75,7 @@ class Simulator {
     response.derivatives = MatrixXd::Zero(
         static_cast<Index>(run_.channels.size()) * response.samples, columns_.back());
     // As many as fill some threads: the cases of more would not stay in a cache.
-    constexpr std::size_t kAtOnce = 4;
+    constexpr std::size_t kAtOnce = 2;
     std::vector<PreparedCase> cases;
     MatrixXd states = MatrixXd::Zero(state_count_, columns_.back());
     std::size_t simulated = 0;
@@ -113,6 +114,7 @@ class Simulator {
       if (!failure.empty()) return failure;
       const LaneResults& results = *runs.front().results;
       state_count_ = static_cast<Index>(results.final_state.size()) / results.lanes;
+      section.has_event = results.event_count > 0;
       section.samples = get_channels(run_, runs.front());
       start = get_final_state(runs.front());
       sections_.push_back(std::move(section));
@@ -167,14 +169,15 @@ class Simulator {
     return c;
   }
 
-  /// Two cases for each state, up and down, then one for each coefficient under a wheel.
+  /// Cases for each state, up and, where there is an event, down; then one for each coefficient
+  /// under a wheel.
   void add_changed(const Section& section, std::vector<PreparedCase>& cases) const {
     const std::size_t begin = cases.size();
     cases.insert(cases.end(), count_changed(section), make_case(section));
     PreparedCase* c = cases.data() + begin;
     for (Index i = 0; i < state_count_; ++i) {
       (c++)->start[static_cast<std::size_t>(i)] += kChange;
-      (c++)->start[static_cast<std::size_t>(i)] -= kChange;
+      if (section.has_event) (c++)->start[static_cast<std::size_t>(i)] -= kChange;
     }
     for (const auto& [track, number] : section.met) {
       const Index at = number - section.tracks[track].begin;
@@ -182,8 +185,12 @@ class Simulator {
     }
   }
 
+  Index count_changed_states(const Section& section) const {
+    return section.has_event ? 2 * state_count_ : state_count_;
+  }
+
   std::size_t count_changed(const Section& section) const {
-    return 2 * static_cast<std::size_t>(state_count_) + section.met.size();
+    return static_cast<std::size_t>(count_changed_states(section)) + section.met.size();
   }
 
   /// Differences of a changed section from the one over the road as it is: samples, channel by
@@ -232,10 +239,12 @@ class Simulator {
     // Rows: the samples, channel by channel, then the states at the end.
     MatrixXd by_states(channels * samples + state_count_, state_count_);
     MatrixXd by_met(by_states.rows(), met);
-    for (Index i = 0; i < state_count_; ++i) by_states.col(i) = calc_by_state(s, changed + 2 * i);
-    for (Index i = 0; i < met; ++i) {
-      by_met.col(i) = calc_change(s, changed[2 * state_count_ + i]) / kHeight;
+    for (Index i = 0; i < state_count_; ++i) {
+      by_states.col(i) = section.has_event ? calc_by_state(s, changed + 2 * i)
+                                           : VectorXd(calc_change(s, changed[i]) / kChange);
     }
+    const LaneRun* changed_road = changed + count_changed_states(section);
+    for (Index i = 0; i < met; ++i) by_met.col(i) = calc_change(s, changed_road[i]) / kHeight;
     for (std::size_t track = 0; track < 2; ++track) {
       // The wheels have met no coefficient beyond the section's last.
       const Index first = columns_[track], count = section.tracks[track].end;

@@ -53,8 +53,8 @@ NoiseFloors measure_floors(const CampaignData& data, const Baseline& baseline, i
       fitted.fit = fit_readings(*make_reading_model(
           data, baseline.runs, make_run_unknowns(data, baseline.runs, {}), threads));
     }
-    return calc_noise_floors(data, baseline.runs, measure_noise(data, fitted), baseline.calibrated,
-                             threads);
+    return calc_noise_floors(data, baseline.runs, measure_noise(data, fitted, threads),
+                             baseline.calibrated, threads);
   } catch (const InputError&) {  // comparing the runs reports the failure
     return list_sensor_floors(data);
   }

@@ -126,10 +126,10 @@ void improve(Fitted& fitted, Fitted other) {
 
 /// The first fit of one effect, values empty where it cannot be simulated.
 Fitted fit_first(const Round& round, const RankedTrial& ranked,
-                 const std::vector<double>& beginning) {
+                 const std::vector<double>& beginning, int threads) {
   const Hypothesis& h = round.hypotheses[round.evidence.trials[ranked.trial].hypothesis];
-  Fitted fitted =
-      keep_fit(round, h, round.bench.fit(h, beginning, round.options.screening), beginning);
+  Fitted fitted = keep_fit(
+      round, h, round.bench.fit(h, beginning, round.options.screening, {}, threads), beginning);
   fitted.candidate.score = ranked.gain.chi2;
   return fitted;
 }
@@ -137,7 +137,8 @@ Fitted fit_first(const Round& round, const RankedTrial& ranked,
 /// A fit far from what the score promised is in another valley, and none of the sizes that a search
 /// begins with was in the right one. Near the base the score cannot be wrong, so a fit begins
 /// there, if what it promises comes near `most`, the largest gain of all.
-void fit_near_base(const Round& round, const RankedTrial& ranked, double most, Fitted& fitted) {
+void fit_near_base(const Round& round, const RankedTrial& ranked, double most, int threads,
+                   Fitted& fitted) {
   constexpr double kSize = 0.02, kKept = 0.5;
   if (!round.data.has_inputs() || ranked.gain.chi2 < kKept * most) return;
   if (!fitted.candidate.values.empty() && fitted.candidate.gain > kKept * ranked.gain.chi2) return;
@@ -145,7 +146,8 @@ void fit_near_base(const Round& round, const RankedTrial& ranked, double most, F
   const Hypothesis& h = round.hypotheses[trial.hypothesis];
   const std::vector<double> near =
       scale_beginning(round.data, h, trial, kSize * ranked.gain.amplitude);
-  improve(fitted, keep_fit(round, h, round.bench.fit(h, near, round.options.screening), near));
+  improve(fitted,
+          keep_fit(round, h, round.bench.fit(h, near, round.options.screening, {}, threads), near));
   fitted.candidate.score = ranked.gain.chi2;
 }
 
@@ -156,12 +158,12 @@ double find_most(const std::vector<Fitted>& fitted) {
 }
 
 /// Searches on where a fit has not converged.
-void finish(const Round& round, Fitted& fitted) {
+void finish(const Round& round, int threads, Fitted& fitted) {
   Candidate& c = fitted.candidate;
   if (c.values.empty()) return;
   const Fitted first = fitted;
-  const HypothesisFit fit =
-      round.bench.fit(c.hypothesis, fitted.beginning, round.options.convergence, fitted.values);
+  const HypothesisFit fit = round.bench.fit(c.hypothesis, fitted.beginning,
+                                            round.options.convergence, fitted.values, threads);
   fitted = keep_fit(round, first.candidate.hypothesis, fit, first.beginning);
   if (fitted.candidate.values.empty()) fitted = first;
   fitted.candidate.score = first.candidate.score;
@@ -186,13 +188,13 @@ bool is_allowed(const CampaignData& data, const Candidate& c) {
 
 /// An effect of the model's file that is better with other values may as well not be there: then
 /// that is the hypothesis, since nothing is left to be determined.
-void try_removal(const Round& round, Fitted& fitted) {
+void try_removal(const Round& round, int threads, Fitted& fitted) {
   const Candidate& c = fitted.candidate;
   if (c.values.empty() || c.hypothesis.change != EffectChange::kChanged) return;
   const Hypothesis removal = make_removal(round.data, c.hypothesis);
   const std::vector<double>& none = removal.beginnings.front();
-  Fitted removed =
-      keep_fit(round, removal, round.bench.fit(removal, none, round.options.convergence), none);
+  Fitted removed = keep_fit(
+      round, removal, round.bench.fit(removal, none, round.options.convergence, {}, threads), none);
   if (removed.candidate.values.empty() ||
       !is_dispensable(round.now.fit, c.gain, removed.candidate.gain)) {
     return;
@@ -232,28 +234,34 @@ std::vector<std::vector<double>> list_beginnings(const Round& round,
   return beginnings;
 }
 
-/// Fits of the ranked: all for a start, then those near the best until they converge. Each alone on
-/// a thread: one fit does not fill several.
+/// Fits of the ranked: all for a start, then those near the best until they converge.
 std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial>& ranked,
                                const RoundOptions& options) {
   constexpr double kNear = 0.7;
   const std::vector<std::vector<double>> beginnings = list_beginnings(round, ranked, options);
   const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
   std::vector<Fitted> fitted(ranked.size());
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < twins.size(); ++i) {
+    if (twins[i] == i) own.push_back(i);
+  }
   const auto on_each = [&](const auto& work) {
-    share_items(round.options.threads, ranked.size(), [&](std::size_t i, int /*thread*/) {
-      if (twins[i] == i) work(i);
-    });
+    share_large_items(round.options.threads, own.size(),
+                      [&](std::size_t k, int inside) { work(own[k], inside); });
   };
-  on_each([&](std::size_t i) { fitted[i] = fit_first(round, ranked[i], beginnings[i]); });
+  on_each([&](std::size_t i, int inside) {
+    fitted[i] = fit_first(round, ranked[i], beginnings[i], inside);
+  });
   const double first = find_most(fitted);
-  on_each([&](std::size_t i) { fit_near_base(round, ranked[i], first, fitted[i]); });
+  on_each([&](std::size_t i, int inside) {
+    fit_near_base(round, ranked[i], first, inside, fitted[i]);
+  });
   const double most = find_most(fitted);
   if (options.is_final) {
-    on_each([&](std::size_t i) {
+    on_each([&](std::size_t i, int inside) {
       const Candidate& c = fitted[i].candidate;
-      if (c.gain > kNear * most && is_allowed(round.data, c)) finish(round, fitted[i]);
-      try_removal(round, fitted[i]);
+      if (c.gain > kNear * most && is_allowed(round.data, c)) finish(round, inside, fitted[i]);
+      try_removal(round, inside, fitted[i]);
     });
   }
   for (std::size_t i = 0; i < fitted.size(); ++i) {

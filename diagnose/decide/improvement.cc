@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel/team.h"
 #include "diagnose/baseline/time_windows.h"
 
 namespace strut {
@@ -113,16 +114,15 @@ std::vector<DiagnosedRun> evaluate_runs(const CampaignData& data, const Diagnosi
     nominal.values[i] = get_nominal(data, nominal.unknowns[i]);
   }
   const NoiseFloors floors = calc_noise_floors(data, base.runs, base.spectra, before, threads);
-  std::vector<DiagnosedRun> runs;
-  for (std::size_t r = 0; r < data.run_count(); ++r) {
+  std::vector<DiagnosedRun> runs(data.run_count());
+  share_large_items(threads, runs.size(), [&](std::size_t r, int inside) {
     const std::vector<TimeWindow> windows = make_time_windows(data, r);
     const auto compare = [&](const SharedValues& shared) {
-      return compare_run(data, r, shared, floors[r], windows, threads);
+      return compare_run(data, r, shared, floors[r], windows, inside);
     };
-    DiagnosedRun run{r, compare(nominal), compare(before), {}};
-    run.after = diagnosis.is_extended() ? compare(after) : run.before;
-    runs.push_back(std::move(run));
-  }
+    runs[r] = {r, compare(nominal), compare(before), {}};
+    runs[r].after = diagnosis.is_extended() ? compare(after) : runs[r].before;
+  });
   return runs;
 }
 

@@ -28,7 +28,7 @@ class Selector {
       throw InputError(data_.campaign.path.string() +
                        ": fit.free: nothing is free; a diagnosis needs what may be adjusted");
     }
-    const std::vector<NoiseSpectrum> spectra = measure_noise(data_, baseline);
+    const std::vector<NoiseSpectrum> spectra = measure_noise(data_, baseline, options_.threads);
     selection_.base = fit_excited(baseline, spectra);
     selection_.extended = selection_.base;
     tell("judging the runs held out");
@@ -80,11 +80,13 @@ class Selector {
       return fit_whitened(data_, runs, noise, unknowns, start, baseline.shared_count(),
                           options_.threads);
     };
-    WhitenedFit first = fit({chosen}, values);
-    // A road would take what a car that is far off lacks.
-    const bool is_rough = !data_.has_inputs() && !all && chosen.front().level > 0.0;
-    if (!is_rough || first.is_dominated) return first;
-    return fit({chosen, make_smooth_roads(data_, runs)}, first.fit.values);
+    if (!data_.has_inputs() && !all && chosen.front().level > 0.0) {
+      const RoughStart start =
+          search_without_roads(data_, runs, chosen, unknowns, values, options_.threads);
+      if (!start.is_dominated) return fit({chosen, make_smooth_roads(data_, runs)}, start.values);
+      values = start.values;
+    }
+    return fit({chosen}, values);
   }
 
   void tell(const std::string& what) const {

@@ -176,7 +176,7 @@ class Search {
         fit_.converged = fit_.distance <= kKinkTolerance;
         return;
       }
-      renew = !ground_.has_inputs || ratio < kEnough;
+      renew = ratio < kEnough;
     }
   }
 
@@ -324,7 +324,7 @@ class Search {
     const double predicted = -2.0 * gradient_.dot(step) - step.dot(information_ * step);
     const double ratio = (chi2_ - least) / std::max(predicted, 1e-300);
     damping_ = std::max(1e-6, 0.01 * dampings[best]);
-    if (ground_.has_inputs) correct_jacobian(step, residual);
+    correct_jacobian(step, residual);
     x_ += step;
     residual_ = std::move(residual);
     chi2_ = least;

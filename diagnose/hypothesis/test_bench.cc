@@ -224,11 +224,13 @@ Evidence TestBench::gather(const std::vector<Hypothesis>& hypotheses) {
 }
 
 HypothesisFit TestBench::fit(const Hypothesis& hypothesis, const std::vector<double>& beginning,
-                             const SearchEffort& effort, const std::vector<double>& from) const {
+                             const SearchEffort& effort, const std::vector<double>& from,
+                             int threads) const {
   const std::vector<Unknown> own = make_unknowns(data_, hypothesis);
   const SearchGround ground{data_.has_inputs(), unknowns_, values_, *whitener_,
                             residual_,          jacobian_, normal_, regular_normal_};
-  return search_hypothesis(ground, *make_model(own, 1), hypothesis, own, beginning, effort, from);
+  return search_hypothesis(ground, *make_model(own, threads), hypothesis, own, beginning, effort,
+                           from);
 }
 
 }  // namespace strut

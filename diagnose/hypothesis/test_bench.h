@@ -33,9 +33,10 @@ class TestBench {
   /// Simulates the starts of the hypotheses and gathers their products.
   Evidence gather(const std::vector<Hypothesis>& hypotheses);
 
-  /// Fits a hypothesis (search_hypothesis). Uses one thread; several fits may run at once.
+  /// Fits a hypothesis (search_hypothesis). Several fits may run at once.
   HypothesisFit fit(const Hypothesis& hypothesis, const std::vector<double>& beginning,
-                    const SearchEffort& effort = {}, const std::vector<double>& from = {}) const;
+                    const SearchEffort& effort = {}, const std::vector<double>& from = {},
+                    int threads = 1) const;
 
   const Whitener& whitener() const { return *whitener_; }
   const Eigen::VectorXd& residual() const { return residual_; }

@@ -27,14 +27,15 @@ HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, in
   noise_.resize(runs_.size());
   roads_.resize(runs_.size());
   const SharedValues shared = base.shared();
-  share_items(threads, runs_.size(), [&](std::size_t i, int /*thread*/) {
+  share_large_items(threads, runs_.size(), [&](std::size_t i, int inside) {
     noise_[i] = make_spectrum_of_run(data, runs_[i], base.spectra, shared);
     if (base.roads.empty()) return;
     const CampaignData one = pin_run(data, runs_[i], shared);
     const std::vector<Unknown> own = make_run_unknowns(one, {0}, shared.unknowns);
-    const WhitenedFit first = fit_whitened(one, {0}, {{noise_[i]}}, own, list_starts(own), 0, 1);
+    const RoughStart start =
+        search_without_roads(one, {0}, {noise_[i]}, own, list_starts(own), inside);
     const RunNoise noise{{noise_[i]}, make_smooth_roads(one, {0}), true};
-    roads_[i] = fit_whitened(one, {0}, noise, own, first.fit.values, 0, 1).roads;
+    roads_[i] = fit_whitened(one, {0}, noise, own, start.values, 0, inside).roads;
   });
 }
 

@@ -205,4 +205,18 @@ double count_determined(const LatentRoad& road) {
   return static_cast<double>(n) - inverse.squaredNorm();
 }
 
+Eigen::VectorXd calc_leverage(const LatentRoad& road) {
+  const auto& [derivative, factor, raised] = *road.whitened;
+  const Index rows = derivative.rows(), n = factor.cols();
+  // H L^-T, by the kernel, for which both have as many rows.
+  const Index lead = std::max(rows, n);
+  Eigen::MatrixXd lower(lead, n), along(lead, n);
+  lower.topRows(n) = factor;
+  along.topRows(rows) = derivative;
+  get_cholesky_kernel().solve_panel(lower.data(), static_cast<std::size_t>(n), along.data(),
+                                    static_cast<std::size_t>(rows),
+                                    static_cast<std::size_t>(lead));
+  return along.topRows(rows).rowwise().squaredNorm();
+}
+
 }  // namespace strut

@@ -84,4 +84,8 @@ Eigen::VectorXd solve_weights(const LatentRoad& road, const Eigen::VectorXd& res
 /// H'H (1 + H'H)^-1.
 double count_determined(const LatentRoad& road);
 
+/// The share of each whitened reading's noise that the road takes up: diagonal of
+/// H (1 + H'H)^-1 H'.
+Eigen::VectorXd calc_leverage(const LatentRoad& road);
+
 }  // namespace strut

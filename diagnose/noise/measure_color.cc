@@ -1,5 +1,6 @@
 #include "diagnose/noise/measure_color.h"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -68,6 +69,45 @@ void measure_color(const ReadingModel& model, const Eigen::VectorXd& residual,
   for (std::size_t r = 0; r < spectra.size(); ++r) {
     for (const int channel : model.channels()[r]) spectra[r].color.push_back(colors[channel]);
   }
+}
+
+bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& sensors,
+                                const Eigen::VectorXd& residual,
+                                std::vector<NoiseSpectrum>& spectra) {
+  ChannelSpectra list;
+  for (std::size_t r = 0; r < spectra.size(); ++r) {
+    const NoiseSpectrum& s = spectra[r];
+    const std::vector<int>& channels = model.channels()[r];
+    const std::vector<double> none(s.samples / 2 + 1, 0.0);
+    std::vector<ResidualSpectrum> of_run(channels.size(),
+                                         {s.samples, s.interval, none, none, none});
+    const Eigen::VectorXd whitened = sensors.apply_sensors(r, residual);
+    const Eigen::VectorXd leverage = calc_leverage(*sensors.roads()[r]);
+    const std::size_t begin = sensors.run_begin()[r];
+    for (std::size_t i = begin; i < sensors.run_begin()[r + 1]; ++i) {
+      const ReadingPlace& place = sensors.places()[i];
+      const auto at = static_cast<Eigen::Index>(i - begin);
+      const bool is_real = place.time == 0 || 2 * place.time == s.samples;
+      const double part = is_real ? 1.0 : 0.5;
+      ResidualSpectrum& of = of_run[place.channel];
+      of.power[place.time] += part * whitened(at) * whitened(at);
+      of.freedom[place.time] += part * (1.0 - leverage(at));
+      of.expected[place.time] = 1.0;
+    }
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      ResidualSpectrum& of = of_run[c];
+      for (std::size_t k = 0; k < of.power.size(); ++k) {
+        if (of.expected[k] > 0.0) of.power[k] /= std::max(of.freedom[k], 1e-6);
+      }
+      list[channels[c]].push_back(std::move(of));
+    }
+  }
+  std::map<int, double> corners;
+  for (const auto& [channel, runs] : list) corners[channel] = estimate_corner(runs);
+  for (std::size_t r = 0; r < spectra.size(); ++r) {
+    for (SensorColor& color : spectra[r].color) color.corner = corners[color.channel];
+  }
+  return std::any_of(corners.begin(), corners.end(), [](const auto& c) { return c.second > 0.0; });
 }
 
 }  // namespace strut

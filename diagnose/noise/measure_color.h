@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include "diagnose/noise/noise_spectrum.h"
-#include "estimate/reading_model.h"
+#include "diagnose/noise/whitener.h"
 
 namespace strut {
 
@@ -12,5 +11,12 @@ namespace strut {
 /// model's error dominates the noise.
 void measure_color(const ReadingModel& model, const Eigen::VectorXd& residual,
                    std::vector<NoiseSpectrum>& spectra);
+
+/// Sets the drift of NoiseSpectrum::color by what is left of the readings of `model` beside its
+/// runs' roads, whose responses `sensors` knows; the spectra are those of `sensors`, without drift.
+/// Whether there is any.
+bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& sensors,
+                                const Eigen::VectorXd& residual,
+                                std::vector<NoiseSpectrum>& spectra);
 
 }  // namespace strut

@@ -12,6 +12,7 @@
 
 #include "base/error/input_error.h"
 #include "base/math/all_finite.h"
+#include "base/parallel/team.h"
 #include "diagnose/noise/smooth_road.h"
 #include "estimate/simulate_run.h"
 #include "model/scenario/road_density.h"
@@ -381,16 +382,15 @@ std::size_t find_quick_length(std::size_t n) {
 std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
                                               const std::vector<std::size_t>& runs,
                                               const std::vector<Unknown>& unknowns,
-                                              const std::vector<double>& values,
-                                              RoadRecord record) {
-  std::vector<NoiseSpectrum> spectra;
-  spectra.reserve(runs.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    spectra.push_back(data.has_inputs() ? make_driven_spectrum(data, runs[i], unknowns, values)
-                                        : make_road_spectrum(data, runs[i], static_cast<int>(i),
-                                                             unknowns, values, record));
-    check_finite(spectra.back(), data.runs[runs[i]].name);
-  }
+                                              const std::vector<double>& values, RoadRecord record,
+                                              int threads) {
+  std::vector<NoiseSpectrum> spectra(runs.size());
+  share_items(threads, runs.size(), [&](std::size_t i, int) {
+    spectra[i] = data.has_inputs() ? make_driven_spectrum(data, runs[i], unknowns, values)
+                                   : make_road_spectrum(data, runs[i], static_cast<int>(i),
+                                                        unknowns, values, record);
+    check_finite(spectra[i], data.runs[runs[i]].name);
+  });
   return spectra;
 }
 

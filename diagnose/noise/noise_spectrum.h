@@ -80,6 +80,7 @@ std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
                                               const std::vector<std::size_t>& runs,
                                               const std::vector<Unknown>& unknowns,
                                               const std::vector<double>& values,
-                                              RoadRecord record = RoadRecord::kCutOff);
+                                              RoadRecord record = RoadRecord::kCutOff,
+                                              int threads = 1);
 
 }  // namespace strut

@@ -9,6 +9,7 @@
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
+#include "diagnose/noise/measure_color.h"
 #include "estimate/fisher.h"
 
 namespace strut {
@@ -21,43 +22,60 @@ class RoadSearch {
       : data_(data),
         unknowns_(unknowns),
         values_(std::move(start)),
-        level_steps_(is_level_known ? kLevelSteps : 0),
+        is_level_known_(is_level_known),
         threads_(threads),
         result_(result) {
-    for (NoiseSpectrum& s : result.spectra) s.excess.assign(s.excess.size(), 1.0);
+    for (NoiseSpectrum& s : result.spectra) {
+      s.excess.assign(s.excess.size(), 1.0);
+      if (is_level_known_) continue;
+      // Measured with the road as noise, it would contain what the sensors read of the road.
+      for (SensorColor& color : s.color) color.corner = 0.0;
+    }
   }
 
   /// Returns false where the car cannot be simulated on the road that it seems to need.
   bool run() {
+    make_model();
+    if (!descend()) return false;
+    if (!is_level_known_ && measure_drift() && !descend()) return false;
+    settle();
+    describe();
+    return true;
+  }
+
+ private:
+  /// Predicted decrease of chi2 below which the search ends. Contact events that pass a reading
+  /// make chi2 discontinuous by about as much.
+  static constexpr double kUneven = 30.0;
+
+  bool descend() {
     constexpr int kMostSteps = 12;
-    // Predicted decrease of chi2 below which the search ends. Contact events that pass a reading
-    // make chi2 discontinuous by about as much.
-    constexpr double kUneven = 30.0;
     // The derivatives by the road are kept after a step whose predicted decrease is below kSmall
     // of chi2 and that achieves more than kEnough of it.
     constexpr double kSmall = 0.05, kEnough = 0.25;
     bool is_new = true;
-    int steps = 0;
-    make_model();
-    while (steps < kMostSteps) {
+    int level_steps = is_level_known_ ? kLevelSteps : 0;
+    for (int steps = 1; steps <= kMostSteps; ++steps) {
       const bool was_new = is_new;
       const std::optional<Move> proposed = propose(is_new);
       if (!proposed) return false;
       const Move& move = *proposed;
       const double gained = take(move, 0.0).value_or(0.0);
-      ++steps;
+      ++steps_;
       if (move.promised < kUneven) break;
       const bool is_enough = gained > kEnough * move.promised;
       if (!is_enough && was_new && steps > 1) break;
       is_new = !is_enough || move.promised > kSmall * move.cost;
-      if (level_steps_++ < kLevelSteps) measure_level(move);
+      if (level_steps++ < kLevelSteps) measure_level(move);
     }
-    settle(kUneven);
-    describe(steps);
     return true;
   }
 
- private:
+  bool measure_drift() {
+    const Whitener sensors(*model_, result_.spectra, result_.roads);
+    return measure_drift_beside_roads(*model_, sensors, linearize().residual, result_.spectra);
+  }
+
   struct Move {
     std::vector<double> values;            // of the unknowns
     std::vector<Eigen::VectorXd> weights;  // of the roads, by run
@@ -75,11 +93,9 @@ class RoadSearch {
   bool renew_responses(const Whitener& sensors) {
     const std::size_t runs = result_.runs.size();
     std::vector<Eigen::MatrixXd> columns(runs);
-    // Runs side by side where they occupy the threads: a run's road is driven by one of them.
-    const int side_by_side = static_cast<int>(runs) >= threads_ ? threads_ : 1;
-    const int inside = side_by_side > 1 ? 1 : threads_;
     std::atomic<bool> has_failed{false};
-    share_items(side_by_side, runs, [&](std::size_t r, int) {
+    // A run's road is driven by one thread.
+    share_large_items(threads_, runs, [&](std::size_t r, int inside) {
       columns[r].resize(
           static_cast<Eigen::Index>(sensors.run_begin()[r + 1] - sensors.run_begin()[r]),
           result_.roads[r]->weights.size());
@@ -99,9 +115,10 @@ class RoadSearch {
 
   /// The linearization at the current values and roads.
   const Linearization& linearize() {
-    if (!here_) {
+    if (!is_fresh_) {
       here_ = std::make_shared<const Linearization>(model_->linearize(values_));
       if (!here_->failure.empty()) throw InputError(here_->failure);
+      is_fresh_ = true;
     }
     return *here_;
   }
@@ -109,7 +126,10 @@ class RoadSearch {
   std::optional<Move> propose(bool is_new) {
     const Whitener sensors(*model_, result_.spectra, result_.roads);
     if (is_new && !renew_responses(sensors)) return std::nullopt;
-    const Linearization& at = linearize();
+    return propose_from(linearize(), sensors);
+  }
+
+  Move propose_from(const Linearization& at, const Whitener& sensors) const {
     const Whitener whitener(*model_, result_.spectra, result_.roads);
     const WhitenedModel whitened(*model_, whitener);
     const NormalEquations normal = calc_normal_equations(whitened, whitener.apply(at, threads_));
@@ -167,15 +187,12 @@ class RoadSearch {
     return held;
   }
 
-  /// chi2 of readings, priors and roads; infinite where a run cannot be simulated.
-  double calc_cost(const std::vector<double>& values) {
-    make_model();
-    const Evaluation there = model_->evaluate(values);
-    if (!there.failure.empty()) return std::numeric_limits<double>::infinity();
+  /// chi2 of readings, priors and roads there.
+  double calc_cost(const Eigen::VectorXd& residual) const {
     const Whitener sensors(*model_, result_.spectra, result_.roads);
-    double cost = calc_prior_cost(there.residual);
+    double cost = calc_prior_cost(residual);
     for (std::size_t r = 0; r < result_.roads.size(); ++r) {
-      cost += sensors.apply_sensors(r, there.residual).squaredNorm() +
+      cost += sensors.apply_sensors(r, residual).squaredNorm() +
               result_.roads[r]->weights.squaredNorm();
     }
     return cost;
@@ -195,9 +212,14 @@ class RoadSearch {
         const Eigen::VectorXd& from = before[r]->weights;
         result_.roads[r] = move_road(*before[r], from + share * (move.weights[r] - from), level);
       }
-      const double gained = move.cost - calc_cost(values);
+      make_model();
+      Evaluation there = model_->evaluate(values);
+      if (!there.failure.empty()) continue;
+      const double gained = move.cost - calc_cost(there.residual);
       if (!(gained > -uneven)) continue;
-      here_.reset();
+      here_ = std::make_shared<const Linearization>(
+          Linearization{"", std::move(there.residual), here_->jacobian});
+      is_fresh_ = false;
       values_ = std::move(values);
       return gained;
     }
@@ -208,14 +230,15 @@ class RoadSearch {
 
   /// Takes full steps of the linear model, even if chi2 rises a little: contact events make chi2
   /// uneven, so that a search which only descends ends before it reaches the minimum of all
-  /// readings.
-  void settle(double uneven) {
+  /// readings. The steps are small: derivatives of before serve all of them.
+  void settle() {
     if (result_.shared_count == 0) return;
     constexpr int kMost = 5;
     constexpr double kNearSigmas = 0.05;
+    linearize();
     for (int i = 0; i < kMost; ++i) {
-      const std::optional<Move> move = propose(false);
-      if (!move || move->distance < kNearSigmas || !take(*move, uneven)) break;
+      const Move move = propose_from(*here_, Whitener(*model_, result_.spectra, result_.roads));
+      if (move.distance < kNearSigmas || !take(move, kUneven)) break;
     }
   }
 
@@ -246,7 +269,7 @@ class RoadSearch {
   /// The fit where the search ended. Events that readings pass leave single runs' clocks and speeds
   /// some standard deviations beside what the linear model wants; what all runs share has converged
   /// where that wants no more of it.
-  void describe(int steps) {
+  void describe() {
     const Whitener whitener(*model_, result_.spectra, result_.roads);
     const WhitenedModel whitened(*model_, whitener);
     const Linearization at = whitener.apply(linearize(), threads_);
@@ -263,17 +286,20 @@ class RoadSearch {
     const Eigen::MatrixXd covariance = invert_information(free.information).covariance;
     result_.fit.distance = calc_distance(covariance, covariance * free.gradient);
     result_.fit.converged = result_.fit.distance < kKinkTolerance;
-    result_.fit.iterations = steps;
+    result_.fit.iterations = steps_;
   }
 
   static constexpr int kLevelSteps = 4;
   const CampaignData& data_;
   const std::vector<Unknown>& unknowns_;
   std::vector<double> values_;
-  int level_steps_, threads_;
+  bool is_level_known_;
+  int threads_, steps_ = 0;
   WhitenedFit& result_;
   std::unique_ptr<ReadingModel> model_;
-  std::shared_ptr<const Linearization> here_;  // null: not known yet
+  /// Where the search stands; the derivatives may be those of before.
+  std::shared_ptr<const Linearization> here_;
+  bool is_fresh_ = false;
 };
 
 }  // namespace

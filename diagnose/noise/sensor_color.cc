@@ -33,24 +33,11 @@ double calc_log_likelihood(std::span<const ResidualSpectrum> residuals, double c
       if (frequency > kHighestDrift) break;
       if (s.expected[k] == 0.0) continue;
       const double expected = s.expected[k] + corner / frequency;
-      sum -= std::log(expected) + s.power[k] / expected;
+      const double freedom = s.freedom.empty() ? 1.0 : s.freedom[k];
+      sum -= freedom * (std::log(expected) + s.power[k] / expected);
     }
   }
   return sum;
-}
-
-double estimate_corner(std::span<const ResidualSpectrum> residuals) {
-  constexpr std::array kDrift = {0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5};
-  constexpr double kUsual = 0.25;
-  double best = 0.0, max_likelihood = -std::numeric_limits<double>::infinity();
-  for (const double rms : kDrift) {
-    const double corner = calc_corner(residuals.front(), rms), ratio = rms / kUsual;
-    const double likelihood = calc_log_likelihood(residuals, corner) - 0.5 * ratio * ratio;
-    if (likelihood <= max_likelihood) continue;
-    max_likelihood = likelihood;
-    best = corner;
-  }
-  return best;
 }
 
 /// The strongest line around a harmonic over all runs; an rms of 0 where none stands out.
@@ -84,6 +71,20 @@ double calc_color(const SensorColor& color, double frequency, std::size_t sample
     variance += 0.5 * count * line.rms * line.rms / std::max(1.0, away * away);
   }
   return variance;
+}
+
+double estimate_corner(std::span<const ResidualSpectrum> residuals) {
+  constexpr std::array kDrift = {0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5};
+  constexpr double kUsual = 0.25;
+  double best = 0.0, max_likelihood = -std::numeric_limits<double>::infinity();
+  for (const double rms : kDrift) {
+    const double corner = calc_corner(residuals.front(), rms), ratio = rms / kUsual;
+    const double likelihood = calc_log_likelihood(residuals, corner) - 0.5 * ratio * ratio;
+    if (likelihood <= max_likelihood) continue;
+    max_likelihood = likelihood;
+    best = corner;
+  }
+  return best;
 }
 
 SensorColor estimate_color(int channel, std::span<const ResidualSpectrum> residuals) {

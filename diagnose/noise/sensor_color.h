@@ -35,6 +35,9 @@ struct ResidualSpectrum {
   std::size_t samples = 0;
   double interval = 0.0;                // s
   std::vector<double> power, expected;  // expected 0: not measured
+  /// The part of the power that a fit's unknowns leave, where they follow some of it; power is then
+  /// over that part. Empty: all.
+  std::vector<double> freedom{};
 };
 
 /// Estimates the color of a channel from its residuals in all runs, by maximum likelihood over
@@ -42,5 +45,8 @@ struct ResidualSpectrum {
 /// harmonics of 50 and 60 Hz that exceed the noise by a factor of 12 and have an rms of at most
 /// sigma: what is larger is not noise.
 SensorColor estimate_color(int channel, std::span<const ResidualSpectrum> residuals);
+
+/// The drift's part of it: the corner frequency [Hz].
+double estimate_corner(std::span<const ResidualSpectrum> residuals);
 
 }  // namespace strut

@@ -18,10 +18,12 @@ SharedValues WhitenedFit::shared() const {
           {fit.values.begin(), fit.values.begin() + count}};
 }
 
-std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline) {
+std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline,
+                                         int threads) {
   std::vector<NoiseSpectrum> spectra =
-      make_noise_spectra(data, baseline.runs, baseline.fit.unknowns, baseline.fit.values);
-  const auto model = make_reading_model(data, baseline.runs, baseline.fit.unknowns);
+      make_noise_spectra(data, baseline.runs, baseline.fit.unknowns, baseline.fit.values,
+                         RoadRecord::kCutOff, threads);
+  const auto model = make_reading_model(data, baseline.runs, baseline.fit.unknowns, threads);
   const Evaluation at = model->evaluate(baseline.fit.values);
   if (!at.failure.empty()) throw InputError(at.failure);
   if (!data.has_inputs()) {
@@ -69,26 +71,27 @@ void conclude(ChordSearch& search, ReadingModel& model, const Whitener& whitener
   result.fit.simulations = model.simulation_count();
 }
 
+/// Searches with the weights of `whitener`; whether the model's error dominates where that ends.
+bool is_dominated_after(ChordSearch& search, const Whitener& whitener) {
+  search.search(whitener);
+  const Eigen::VectorXd residual = whitener.apply_residual(search.residual());
+  return residual.squaredNorm() > kDominated * static_cast<double>(residual.size());
+}
+
 /// By the road's spectrum. A rough road excites what is not linear, too: what a band has beyond its
 /// noise counts as noise. It is known only once the fit is there, and moves it.
 void fit_crossing(ReadingModel& model, const std::vector<double>& start, WhitenedFit& result) {
-  constexpr int kRounds = 2;
   ChordSearch search(model, start);
-  for (int round = 0; round < kRounds; ++round) {
-    const Whitener whitener(model, result.spectra);
-    search.search(whitener);
-    const Eigen::VectorXd residual = whitener.apply_residual(search.residual());
-    if (round == 0) {
-      result.is_dominated =
-          residual.squaredNorm() > kDominated * static_cast<double>(residual.size());
-      if (!result.is_dominated) {
-        count_excess(whitener, residual, result.spectra);
-        continue;
-      }
-    }
-    conclude(search, model, whitener, result);
-    break;
+  const Whitener of_noise(model, result.spectra);
+  result.is_dominated = is_dominated_after(search, of_noise);
+  if (result.is_dominated) {
+    conclude(search, model, of_noise, result);
+    return;
   }
+  count_excess(of_noise, of_noise.apply_residual(search.residual()), result.spectra);
+  const Whitener with_excess(model, result.spectra);
+  search.search(with_excess);
+  conclude(search, model, with_excess, result);
 }
 
 /// Throws InputError where chi2 is not finite, with the run and the channel of the first residual
@@ -109,6 +112,16 @@ void check_finite(const CampaignData& data, ReadingModel& model, const WhitenedF
 }
 
 }  // namespace
+
+RoughStart search_without_roads(const CampaignData& data, const std::vector<std::size_t>& runs,
+                                const std::vector<NoiseSpectrum>& spectra,
+                                const std::vector<Unknown>& unknowns,
+                                const std::vector<double>& start, int threads) {
+  const auto model = make_reading_model(data, runs, unknowns, threads);
+  ChordSearch search(*model, start);
+  const bool is_dominated = is_dominated_after(search, Whitener(*model, spectra));
+  return {search.values(), is_dominated};
+}
 
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
                          const RunNoise& noise, const std::vector<Unknown>& unknowns,

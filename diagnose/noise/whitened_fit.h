@@ -26,7 +26,8 @@ struct WhitenedFit {
 };
 
 /// Measures the spectra of the runs, with the roughness from the residual of `baseline`.
-std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline);
+std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baseline& baseline,
+                                         int threads);
 
 /// The noise of some runs. With `roads`, these are unknowns of the runs, from which the search
 /// starts; without them, a road is noise with the spectra's density.
@@ -43,5 +44,17 @@ struct RunNoise {
 WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t>& runs,
                          const RunNoise& noise, const std::vector<Unknown>& unknowns,
                          const std::vector<double>& start, std::size_t shared_count, int threads);
+
+/// Where the search of a car's fit without roads stands, before excess counts.
+struct RoughStart {
+  std::vector<double> values;
+  bool is_dominated = false;
+};
+/// From where a fit with roads can begin, if the model's error does not dominate the noise: a road
+/// would take what a car that is far off lacks.
+RoughStart search_without_roads(const CampaignData& data, const std::vector<std::size_t>& runs,
+                                const std::vector<NoiseSpectrum>& spectra,
+                                const std::vector<Unknown>& unknowns,
+                                const std::vector<double>& start, int threads);
 
 }  // namespace strut

@@ -7,8 +7,8 @@ namespace strut::test {
 
 inline WhitenedFit fit_whitened_baseline(const CampaignData& data) {
   const Baseline baseline = calibrate_baseline(data);
-  return fit_whitened(data, baseline.runs, {measure_noise(data, baseline)}, baseline.fit.unknowns,
-                      baseline.fit.values, baseline.shared_count(), 1);
+  return fit_whitened(data, baseline.runs, {measure_noise(data, baseline, 1)},
+                      baseline.fit.unknowns, baseline.fit.values, baseline.shared_count(), 1);
 }
 
 }  // namespace strut::test
