@@ -272,6 +272,32 @@ void apply_known(const std::vector<MeasuredRun>& runs, int at, const std::string
   }
 }
 
+/// Whether two runs cross bumps of the same size, on one side or both.
+bool cross_same_bump(const MeasuredRun& a, const MeasuredRun& b) {
+  RoadSpec of_a = a.setup.car().maneuver.road, of_b = b.setup.car().maneuver.road;
+  of_a.side = of_b.side;
+  return of_a == of_b;
+}
+
+/// A bump that n runs cross was surveyed once: all of them have that one error. Each run has an
+/// unknown of its own; with sqrt(n) times the survey's sigma, what they have in common is as
+/// uncertain as the survey, and what they do not is for the readings to say.
+void share_surveys(const std::vector<MeasuredRun>& runs, std::vector<Unknown>& unknowns) {
+  std::vector<double> widths(unknowns.size(), 1.0);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    const Unknown& u = unknowns[i];
+    if (u.name != "bump_height" && u.name != "bump_length") continue;
+    const auto count = std::count_if(unknowns.begin(), unknowns.end(), [&](const Unknown& other) {
+      return other.name == u.name && other.prior.mean == u.prior.mean &&
+             other.prior.sigma == u.prior.sigma &&
+             cross_same_bump(runs[static_cast<std::size_t>(u.run)],
+                             runs[static_cast<std::size_t>(other.run)]);
+    });
+    widths[i] = std::sqrt(static_cast<double>(count));
+  }
+  for (std::size_t i = 0; i < unknowns.size(); ++i) unknowns[i].prior.sigma *= widths[i];
+}
+
 }  // namespace
 
 const NoiseEstimate& CampaignData::find_noise(int channel) const {
@@ -431,6 +457,7 @@ std::vector<Unknown> make_run_unknowns(const CampaignData& data,
       apply_known(selected, static_cast<int>(r), name, known, unknowns);
     }
   }
+  share_surveys(selected, unknowns);
   return unknowns;
 }
 
