@@ -18,8 +18,8 @@ namespace {
 constexpr double kInterval = 4e-3;  // s, between samples: eight in a period of 31 Hz
 constexpr double kStep = 4e-3;      // s
 /// Samples of a section. Each section costs a simulation for every state and for every coefficient
-/// under a wheel: one of 0.16 s takes some 130, where four of a quarter of it take 320.
-constexpr std::size_t kSection = 40;
+/// under a wheel; in a longer one, wheels meet more.
+constexpr std::size_t kSection = 10;
 constexpr double kLength = kInterval * static_cast<double>(kSection);  // s, of a section
 /// m, by which a wheel may leave its place along the car as it swings and the chassis pitches.
 constexpr double kPlay = 0.05;
@@ -75,7 +75,7 @@ class Simulator {
     response.derivatives = MatrixXd::Zero(
         static_cast<Index>(run_.channels.size()) * response.samples, columns_.back());
     // As many as fill some threads: the cases of more would not stay in a cache.
-    constexpr std::size_t kAtOnce = 2;
+    constexpr std::size_t kAtOnce = 4;
     std::vector<PreparedCase> cases;
     MatrixXd states = MatrixXd::Zero(state_count_, columns_.back());
     std::size_t simulated = 0;

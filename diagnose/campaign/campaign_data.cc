@@ -474,9 +474,11 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
 }
 
 std::unique_ptr<ReadingModel> make_reading_model(std::vector<MeasuredRun> runs,
-                                                 std::vector<Unknown> unknowns, int threads) {
+                                                 std::vector<Unknown> unknowns, int threads,
+                                                 double relative_step) {
   LinearizeOptions options;
   options.rate = 1000.0;  // enough at the sensors and speeds of campaigns
+  options.relative_step = relative_step;
   options.threads = threads;
   return make_readings(std::move(runs), std::move(unknowns), options);
 }

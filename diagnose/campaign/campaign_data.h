@@ -8,6 +8,7 @@
 #include "diagnose/campaign/campaign.h"
 #include "diagnose/campaign/measured_table.h"
 #include "diagnose/campaign/noise_model.h"
+#include "estimate/linearize_options.h"
 #include "estimate/measured_run.h"
 #include "estimate/reading_model.h"
 
@@ -65,9 +66,11 @@ std::vector<Unknown> make_run_unknowns(const CampaignData& data,
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  std::vector<Unknown> unknowns, int threads = 1);
-/// The same for runs that were changed since they were read.
-std::unique_ptr<ReadingModel> make_reading_model(std::vector<MeasuredRun> runs,
-                                                 std::vector<Unknown> unknowns, int threads = 1);
+/// The same for runs that were changed since they were read; derivatives by differences of this
+/// relative step.
+std::unique_ptr<ReadingModel> make_reading_model(
+    std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns, int threads = 1,
+    double relative_step = LinearizeOptions{}.relative_step);
 
 /// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
 /// ModelError as make_signal does.

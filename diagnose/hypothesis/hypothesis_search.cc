@@ -53,11 +53,13 @@ class Search {
       : ground_(ground),
         model_(model),
         coordinates_(std::move(coordinates)),
-        n_(static_cast<Index>(ground.values.size())),
+        profiles_(!ground.has_inputs && !ground.whitener.roads().empty()),
+        n_(profiles_ ? 0 : static_cast<Index>(ground.values.size())),
         m_(static_cast<Index>(coordinates_.size())),
         x_(Eigen::VectorXd::Zero(n_ + m_)),
         low_(n_ + m_),
-        high_(n_ + m_) {
+        high_(n_ + m_),
+        center_(ground.values) {
     for (Index i = 0; i < n_; ++i) {
       const Unknown& u = ground.unknowns[static_cast<std::size_t>(i)];
       const double value = ground.values[static_cast<std::size_t>(i)];
@@ -72,7 +74,9 @@ class Search {
   }
 
   HypothesisFit run(const SearchEffort& effort, const std::vector<double>& from) {
+    constexpr int kFollowed = 2;
     if (from.empty() ? begin() : resume(from)) approach(effort);
+    for (int i = 0; i < kFollowed && follow(); ++i) approach(effort);
     fit_.simulations = model_.simulation_count();
     if (information_.size() > 0) conclude();
     return std::move(fit_);
@@ -88,11 +92,54 @@ class Search {
     std::vector<double> point;
     for (std::size_t i = 0; i < ground_.values.size(); ++i) {
       const Unknown& u = ground_.unknowns[i];
-      const double value = ground_.values[i] + u.scale * at(static_cast<Index>(i));
-      point.push_back(std::clamp(value, u.low, u.high));
+      const double change = profiles_ ? 0.0 : u.scale * at(static_cast<Index>(i));
+      point.push_back(std::clamp(center_[i] + change, u.low, u.high));
     }
     for (Index j = 0; j < m_; ++j) point.push_back(get_coordinate(j).calc_value(at(n_ + j)));
     return point;
+  }
+
+  /// What the ground's unknowns leave of a residual.
+  Eigen::VectorXd project(const Eigen::VectorXd& residual) const {
+    return residual -
+           ground_.jacobian * ground_.regular_normal.solve(ground_.jacobian.transpose() * residual);
+  }
+
+  Eigen::VectorXd reduce(const Eigen::VectorXd& residual) const {
+    return profiles_ ? project(residual) : residual;
+  }
+
+  /// By how much the ground's unknowns, in their scale, follow what the search has changed; 0 at
+  /// the ground, whose own distance to its minimum is not of the hypothesis.
+  Eigen::VectorXd calc_followed() const {
+    return -ground_.regular_normal.solve(ground_.jacobian.transpose() *
+                                         (whole_ - ground_.residual));
+  }
+
+  /// Moves the ground's unknowns where they follow so far that they may not be linear.
+  bool follow() {
+    constexpr double kFar = 3.0;  // standard deviations
+    if (!profiles_ || residual_.size() == 0) return false;
+    const Eigen::VectorXd change = calc_followed();
+    if ((ground_.jacobian * change).norm() < kFar) return false;
+    const std::vector<double> before = center_;
+    for (std::size_t i = 0; i < center_.size(); ++i) {
+      center_[i] += ground_.unknowns[i].scale * change(static_cast<Index>(i));
+    }
+    const Evaluation there = model_.evaluate(get_point(x_));
+    if (there.failure.empty()) {
+      Eigen::VectorXd whole = ground_.whitener.apply_residual(there.residual);
+      Eigen::VectorXd left = project(whole);
+      const double chi2 = left.squaredNorm() + calc_shape_chi2(x_);
+      if (chi2 < chi2_) {
+        whole_ = std::move(whole);
+        residual_ = std::move(left);
+        chi2_ = chi2;
+        return true;
+      }
+    }
+    center_ = before;
+    return false;
   }
 
   /// Of the prior of shapes.
@@ -129,31 +176,36 @@ class Search {
     for (std::size_t i = 0; i < there.size(); ++i) {
       if (!there[i].failure.empty()) continue;
       const Eigen::VectorXd residual = ground_.whitener.apply_residual(there[i].residual);
-      const Eigen::VectorXd slope = ground_.jacobian.transpose() * residual;
-      const double chi2 = residual.squaredNorm() - slope.dot(ground_.regular_normal.solve(slope));
+      const double chi2 = project(residual).squaredNorm();
       if (!(chi2 < least)) continue;
       least = chi2;
       x_ = tried[i];
-      residual_ = residual;
+      whole_ = residual;
     }
-    if (residual_.size() == 0) {
+    if (whole_.size() == 0) {
       fit_.failure = "cannot be simulated";
       return false;
     }
+    residual_ = reduce(whole_);
     chi2_ = residual_.squaredNorm() + calc_shape_chi2(x_);
     return true;
   }
 
   bool resume(const std::vector<double>& from) {
-    for (Index i = 0; i < n_ + m_; ++i) {
+    const std::size_t base = ground_.values.size();
+    if (profiles_) std::copy_n(from.begin(), base, center_.begin());
+    for (Index i = 0; i < n_; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      x_(i) = i < n_ ? (from[at] - ground_.values[at]) / ground_.unknowns[at].scale
-                     : get_coordinate(i - n_).calc_coordinate(from[at]);
+      x_(i) = (from[at] - ground_.values[at]) / ground_.unknowns[at].scale;
+    }
+    for (Index j = 0; j < m_; ++j) {
+      x_(n_ + j) = get_coordinate(j).calc_coordinate(from[base + static_cast<std::size_t>(j)]);
     }
     const Evaluation e = model_.evaluate(get_point(x_));
     fit_.failure = e.failure;
     if (!e.failure.empty()) return false;
-    residual_ = ground_.whitener.apply_residual(e.residual);
+    whole_ = ground_.whitener.apply_residual(e.residual);
+    residual_ = reduce(whole_);
     chi2_ = residual_.squaredNorm() + calc_shape_chi2(x_);
     return true;
   }
@@ -201,7 +253,7 @@ class Search {
       const auto at = static_cast<std::size_t>(j);
       if (!sides[at].failure.empty()) continue;
       columns.col(j) =
-          (ground_.whitener.apply_residual(sides[at].residual) - residual_) / widths[at];
+          (reduce(ground_.whitener.apply_residual(sides[at].residual)) - residual_) / widths[at];
     }
     return columns;
   }
@@ -225,9 +277,9 @@ class Search {
       gather(jacobian_.leftCols(n_).transpose() * jacobian_.leftCols(n_));
     } else {
       jacobian_.resize(residual_.size(), n_ + m_);
-      jacobian_.leftCols(n_) = ground_.jacobian;
+      jacobian_.leftCols(n_) = ground_.jacobian.leftCols(n_);
       jacobian_.rightCols(m_) = calc_differences();
-      gather(ground_.normal);
+      gather(ground_.normal.topLeftCorner(n_, n_));
     }
     is_fresh_ = true;
     return true;
@@ -270,7 +322,7 @@ class Search {
     Eigen::MatrixXd regular = system_;
     regular.diagonal() *= 1.0 + 1e-10;
     const double rise = free_gradient_.dot(regular.ldlt().solve(free_gradient_));
-    const double degrees = static_cast<double>(residual_.size() - n_ - m_);
+    const double degrees = static_cast<double>(residual_.size() - ground_.jacobian.cols() - m_);
     const double misfit = std::max(1.0, chi2_ / std::max(1.0, degrees));
     return std::sqrt(std::max(0.0, rise) / misfit);
   }
@@ -312,12 +364,14 @@ class Search {
     Eigen::VectorXd residual;
     for (std::size_t i = 0; i < steps.size(); ++i) {
       if (!there[i].failure.empty()) continue;
-      Eigen::VectorXd whitened = ground_.whitener.apply_residual(there[i].residual);
-      const double chi2 = whitened.squaredNorm() + calc_shape_chi2(x_ + steps[i]);
+      const Eigen::VectorXd whole = ground_.whitener.apply_residual(there[i].residual);
+      Eigen::VectorXd left = reduce(whole);
+      const double chi2 = left.squaredNorm() + calc_shape_chi2(x_ + steps[i]);
       if (!(chi2 < least)) continue;
       best = i;
       least = chi2;
-      residual = std::move(whitened);
+      residual = std::move(left);
+      whole_ = whole;
     }
     if (best == steps.size()) return 0.0;
     const Eigen::VectorXd& step = steps[best];
@@ -349,7 +403,15 @@ class Search {
   void conclude() {
     fit_.failure.clear();
     fit_.values = get_point(x_);
-    fit_.gain = ground_.residual.squaredNorm() - chi2_;
+    if (profiles_) {
+      const Eigen::VectorXd change = calc_followed();
+      for (std::size_t i = 0; i < center_.size(); ++i) {
+        const Unknown& u = ground_.unknowns[i];
+        const double value = fit_.values[i] + u.scale * change(static_cast<Index>(i));
+        fit_.values[i] = std::clamp(value, u.low, u.high);
+      }
+    }
+    fit_.gain = reduce(ground_.residual).squaredNorm() - chi2_;
     Eigen::MatrixXd regular = information_;
     regular.diagonal().array() += 1e-12;
     const Eigen::MatrixXd covariance =
@@ -366,10 +428,15 @@ class Search {
   const SearchGround& ground_;
   ReadingModel& model_;
   const std::vector<Coordinate> coordinates_;
-  const Index n_, m_;
+  /// On a road that was found, events that pass a reading make chi2 uneven by more than many a
+  /// hypothesis gains. There the search moves the hypothesis alone, and compares what linear
+  /// changes of the ground's unknowns leave.
+  const bool profiles_;
+  const Index n_, m_;  // coordinates of the ground's unknowns, 0 if it profiles; of the hypothesis
   Eigen::VectorXd x_;  // changes of the ground's unknowns in their scale, then coordinates
   Eigen::VectorXd low_, high_;
-  Eigen::VectorXd residual_;  // there
+  std::vector<double> center_;        // values of the ground's unknowns at x_ = 0
+  Eigen::VectorXd whole_, residual_;  // there; and reduced
   double chi2_ = 0.0, damping_ = 1e-6;
   Eigen::MatrixXd jacobian_, information_;
   Eigen::VectorXd gradient_;

@@ -46,7 +46,8 @@ struct SearchGround {
 };
 
 /// `model` has the unknowns of `ground`, followed by the hypothesis' `own`. For a car, the
-/// derivatives with respect to the former stay those of `ground`; for a rig, all are updated:
+/// derivatives with respect to the former stay those of `ground`, and on a road that was found the
+/// former follow by these alone; for a rig, all are updated:
 /// by differences where a step disappoints, else by the step itself (C. G. Broyden, Math. Comp. 19
 /// (1965)). The search starts at the best of several fractions of `beginning`, the center of the
 /// shapes' priors; or at `from`, values of all unknowns.

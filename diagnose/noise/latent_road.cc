@@ -155,13 +155,17 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const LatentRoads& roads,
                                                  std::vector<Unknown> unknowns, int threads) {
   if (roads.empty()) return make_reading_model(data, runs, std::move(unknowns), threads);
+  // A wheel that lands makes a spike of its acceleration. Over a shorter step than the unknowns are
+  // uncertain by, a reading on its flank would seem to decide them; over this one, which moves the
+  // spike past it, its difference jumps and does not count.
+  constexpr double kRelativeStep = 1e-4;
   std::vector<MeasuredRun> laid;
   laid.reserve(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
     laid.push_back(data.runs[runs[i]]);
     lay_road(*roads[i], laid.back());
   }
-  return make_reading_model(std::move(laid), std::move(unknowns), threads);
+  return make_reading_model(std::move(laid), std::move(unknowns), threads, kRelativeStep);
 }
 
 std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::MatrixXd derivative) {
@@ -214,8 +218,7 @@ Eigen::VectorXd calc_leverage(const LatentRoad& road) {
   lower.topRows(n) = factor;
   along.topRows(rows) = derivative;
   get_cholesky_kernel().solve_panel(lower.data(), static_cast<std::size_t>(n), along.data(),
-                                    static_cast<std::size_t>(rows),
-                                    static_cast<std::size_t>(lead));
+                                    static_cast<std::size_t>(rows), static_cast<std::size_t>(lead));
   return along.topRows(rows).rowwise().squaredNorm();
 }
 

@@ -50,9 +50,10 @@ class RoadSearch {
 
   bool descend() {
     constexpr int kMostSteps = 12;
-    // The derivatives by the road are kept after a step whose predicted decrease is below kSmall
-    // of chi2 and that achieves more than kEnough of it.
-    constexpr double kSmall = 0.05, kEnough = 0.25;
+    // The derivatives, of which those by the road cost most, are kept after a step that achieves
+    // more than kNearly of what it promised, or more than kEnough where that is below kSmall of
+    // chi2.
+    constexpr double kSmall = 0.05, kEnough = 0.25, kNearly = 0.8;
     bool is_new = true;
     int level_steps = is_level_known_ ? kLevelSteps : 0;
     for (int steps = 1; steps <= kMostSteps; ++steps) {
@@ -65,7 +66,8 @@ class RoadSearch {
       if (move.promised < kUneven) break;
       const bool is_enough = gained > kEnough * move.promised;
       if (!is_enough && was_new && steps > 1) break;
-      is_new = !is_enough || move.promised > kSmall * move.cost;
+      const bool is_near = gained > kNearly * move.promised;
+      is_new = !is_near && (!is_enough || move.promised > kSmall * move.cost);
       if (level_steps++ < kLevelSteps) measure_level(move);
     }
     return true;
@@ -125,7 +127,8 @@ class RoadSearch {
 
   std::optional<Move> propose(bool is_new) {
     const Whitener sensors(*model_, result_.spectra, result_.roads);
-    if (is_new && !renew_responses(sensors)) return std::nullopt;
+    if (!is_new) return propose_from(*here_, sensors);
+    if (!renew_responses(sensors)) return std::nullopt;
     return propose_from(linearize(), sensors);
   }
 
