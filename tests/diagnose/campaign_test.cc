@@ -259,5 +259,35 @@ TEST_CASE("Times rounded to few digits become the even clock they are rounded fr
   CHECK(jittered == before);
 }
 
+TEST_CASE("Runs over one bump share the error of its survey", "[unit]") {
+  // The left wheels of the second run meet the bump that both axles of the first do; the third
+  // bump is another, the fourth was surveyed on its own.
+  Case both = test::make_paper_case(), left = both, higher = both;
+  left.maneuver.road.side = BumpSide::kLeft;
+  higher.maneuver.road.height *= 1.1;
+  CampaignData data;
+  data.campaign.info = &get_car_info();
+  for (const auto& [known, sigma] :
+       {std::pair{both, 0.001}, {left, 0.001}, {higher, 0.001}, {both, 0.002}}) {
+    data.campaign.runs.emplace_back();
+    data.campaign.runs.back().known["bump_height"] = {known.maneuver.road.height, sigma};
+    data.runs.push_back({"run", known, {0.0, 0.1}, {}});
+    data.tables.emplace_back();
+  }
+  std::vector<double> sigmas;
+  for (const Unknown& u : make_run_unknowns(data, {0, 1, 2, 3}, {})) {
+    if (u.name == "bump_height") sigmas.push_back(u.prior.sigma);
+  }
+  REQUIRE(sigmas.size() == 4);
+  CHECK(sigmas[0] == Approx(0.001 * std::sqrt(2.0)));
+  CHECK(sigmas[1] == Approx(0.001 * std::sqrt(2.0)));
+  CHECK(sigmas[2] == 0.001);
+  CHECK(sigmas[3] == 0.002);
+  // A run alone knows what the survey knows.
+  for (const Unknown& u : make_run_unknowns(data, {1}, {})) {
+    if (u.name == "bump_height") CHECK(u.prior.sigma == 0.001);
+  }
+}
+
 }  // namespace
 }  // namespace strut

@@ -58,18 +58,19 @@ struct Problem {
     return right;
   }
 
-  HypothesisFit fit() const {
+  /// `roads`: not empty where the search moves the effect alone.
+  HypothesisFit fit(bool has_inputs = true, const LatentRoads& roads = {}) const {
     const Unknown parameter = make_plain_unknown("parameter", 2.0);
     const Eigen::VectorXd column = matrix.col(0), base = calc_offset_of_base();
     const double best = -column.dot(base) / column.squaredNorm();
     test::LinearModel base_model({parameter}, column, base);
-    const Whitener whitener(base_model, {test::make_unit_noise(kReadings)});
+    const Whitener whitener(base_model, {test::make_unit_noise(kReadings)}, roads);
     const Linearization at = whitener.apply(base_model.linearize({best}));
     const Eigen::MatrixXd normal = at.jacobian.transpose() * at.jacobian;
     const Eigen::LDLT<Eigen::MatrixXd> regular(normal);
     const std::vector<Unknown> unknowns = {parameter};
     const std::vector<double> values = {best};
-    const SearchGround ground{true,        unknowns,    values, whitener,
+    const SearchGround ground{has_inputs,  unknowns,    values, whitener,
                               at.residual, at.jacobian, normal, regular};
     test::LinearModel model({parameter, own[0], own[1]}, matrix, offset);
     return search_hypothesis(ground, model, hypothesis, own, {kStart, kShapeStart});
@@ -78,7 +79,10 @@ struct Problem {
 
 TEST_CASE("The fit of an effect is that of the linear system with the shape's prior", "[unit]") {
   const Problem problem;
-  const HypothesisFit fit = problem.fit();
+  const auto [has_inputs, roads] =
+      GENERATE(std::pair{true, LatentRoads{}}, std::pair{false, LatentRoads{}},
+               std::pair{false, LatentRoads{nullptr}});
+  const HypothesisFit fit = problem.fit(has_inputs, roads);
   REQUIRE(fit.failure.empty());
   CHECK(fit.converged);
   const Eigen::MatrixXd rows = problem.make_rows();

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "diagnose/noise/measure_color.h"
 #include "diagnose/noise/whitener.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/tolerance.h"
@@ -114,6 +115,52 @@ TEST_CASE("The weights of a road are those of ridge regression", "[unit]") {
   const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(kWeights, kWeights) + gram;
   CHECK(count_determined(*run.road) ==
         Approx((gram * all.inverse()).trace()).epsilon(tolerance(1e-10)));
+  const Eigen::VectorXd share =
+      (run.response * all.inverse() * run.response.transpose()).diagonal();
+  CHECK((calc_leverage(*run.road) - share).norm() < tolerance(1e-12));
+}
+
+/// Corners [Hz] found in what roads leave of the noise of sensors with this corner, by channel.
+std::vector<double> measure_corners(double corner) {
+  constexpr std::size_t kRuns = 100;
+  const IdleModel model(kRuns);
+  const IdleModel alone(1);
+  const Whitener plain(alone, {make_white()});
+  const Eigen::MatrixXd rotation = plain.apply(Eigen::MatrixXd::Identity(kReadings, kReadings));
+  LatentRoads roads;
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(kRuns) * kReadings);
+  for (std::size_t r = 0; r < kRuns; ++r) {
+    // A road that takes most of the low frequencies, where drift is.
+    Eigen::MatrixXd response = 0.3 * draw(40 + r, kReadings, kWeights);
+    response.topRows(kReadings / 4) *= 20.0;
+    LatentRoad road;
+    road.weights = Eigen::VectorXd::Zero(kWeights);
+    const auto answering = set_response(road, response);
+    Eigen::VectorXd noise = draw(260 + r, kReadings, 1);
+    for (Eigen::Index i = 0; i < kReadings; ++i) {
+      const double hertz = plain.get_frequency(plain.places()[static_cast<std::size_t>(i)]);
+      if (hertz > 0.0) noise(i) *= std::sqrt(1.0 + corner / hertz);
+    }
+    const Eigen::VectorXd seen = noise + response * draw(460 + r, kWeights, 1);
+    // Less the road found.
+    const Eigen::VectorXd left = seen + response * solve_weights(*answering, seen);
+    roads.push_back(answering);
+    residual.segment(static_cast<Eigen::Index>(r) * kReadings, kReadings) =
+        rotation.transpose() * left;
+  }
+  NoiseSpectrum white = make_white();
+  white.color = {{0, 0.0, {}}, {1, 0.0, {}}};
+  std::vector<NoiseSpectrum> spectra(kRuns, white);
+  const Whitener sensors(model, spectra, roads);
+  CHECK(measure_drift_beside_roads(model, sensors, residual, spectra) == (corner > 0.0));
+  std::vector<double> corners;
+  for (const SensorColor& c : spectra.back().color) corners.push_back(c.corner);
+  return corners;
+}
+
+TEST_CASE("Drift is measured beside a road that takes up part of it", "[statistical]") {
+  for (const double found : measure_corners(0.0)) CHECK(found < 0.05);
+  for (const double found : measure_corners(1.0)) CHECK(found == Approx(1.0).epsilon(0.3));
 }
 
 /// Of the increments of a track with white slope: the density of the slope, 2 pi^2 n0^2, times the
