@@ -45,7 +45,8 @@ struct Section {
     Index number;
   };
   std::vector<Place> met{};  // coefficients under a wheel
-  bool has_event = false;    // a wheel lifts off, lands or meets a kink
+  /// Whether a wheel lifts off, lands or meets a kink, here or in a section beside.
+  bool has_own_event = false, has_event = false;
 };
 
 class Simulator {
@@ -56,6 +57,7 @@ class Simulator {
     base_ = preparer.prepare(remove_sensors(setup));
     options_.integrate.solver = Solver::kLanes;  // CVODE ignores PreparedCase::rough
     options_.integrate.options.step.step = kStep;
+    options_.integrate.options.step.locate_events = true;  // which counts them
     options_.integrate.options.step.coarse_step = 0.0;
     plan_.interval = kInterval;
     plan_.snapshot = false;
@@ -114,12 +116,18 @@ class Simulator {
       if (!failure.empty()) return failure;
       const LaneResults& results = *runs.front().results;
       state_count_ = static_cast<Index>(results.final_state.size()) / results.lanes;
-      section.has_event = results.event_count > 0;
+      section.has_own_event = section.has_event = results.event_count > 0;
       section.samples = get_channels(run_, runs.front());
       start = get_final_state(runs.front());
       sections_.push_back(std::move(section));
     }
     sections_.push_back({start});
+    // A change may move an event across a section's end.
+    for (std::size_t s = 0; s + 1 < section_count_; ++s) {
+      const bool is_near = sections_[s].has_own_event || sections_[s + 1].has_own_event;
+      sections_[s].has_event |= is_near;
+      sections_[s + 1].has_event |= is_near;
+    }
     return "";
   }
 

@@ -84,10 +84,12 @@ void share_items(int threads, std::size_t count, const Work& work) {
 }
 
 /// Calls work(item, threads_inside) for each item: side by side with one thread each while they
-/// fill the threads, those that remain one by one with all of them.
+/// fill more than half of the threads (at least one), those that remain one by one with all.
 template <class Work>
 void share_large_items(int threads, std::size_t count, const Work& work) {
-  const std::size_t side_by_side = count - count % static_cast<std::size_t>(threads);
+  const auto team = static_cast<std::size_t>(threads);
+  const std::size_t remaining = count % team;
+  const std::size_t side_by_side = 2 * remaining > team ? count : count - remaining;
   share_items(threads, side_by_side, [&](std::size_t item, int) { work(item, 1); });
   for (std::size_t item = side_by_side; item < count; ++item) work(item, threads);
 }

@@ -286,7 +286,7 @@ void share_surveys(const std::vector<MeasuredRun>& runs, std::vector<Unknown>& u
   std::vector<double> widths(unknowns.size(), 1.0);
   for (std::size_t i = 0; i < unknowns.size(); ++i) {
     const Unknown& u = unknowns[i];
-    if (u.name != "bump_height" && u.name != "bump_length") continue;
+    if (u.run == kEveryRun || (u.name != "bump_height" && u.name != "bump_length")) continue;
     const auto count = std::count_if(unknowns.begin(), unknowns.end(), [&](const Unknown& other) {
       return other.name == u.name && other.prior.mean == u.prior.mean &&
              other.prior.sigma == u.prior.sigma &&

@@ -165,7 +165,10 @@ void finish(const Round& round, int threads, Fitted& fitted) {
   const HypothesisFit fit = round.bench.fit(c.hypothesis, fitted.beginning,
                                             round.options.convergence, fitted.values, threads);
   fitted = keep_fit(round, first.candidate.hypothesis, fit, first.beginning);
-  if (fitted.candidate.values.empty()) fitted = first;
+  // On a road, a search goes on from where the other unknowns follow, beyond events.
+  if (fitted.candidate.values.empty() || fitted.candidate.gain < first.candidate.gain) {
+    fitted = first;
+  }
   fitted.candidate.score = first.candidate.score;
   fitted.candidate.stability = first.candidate.stability;
   fitted.candidate.simulations = first.candidate.simulations + fit.simulations;

@@ -116,7 +116,8 @@ class Search {
                                          (whole_ - ground_.residual));
   }
 
-  /// Moves the ground's unknowns where they follow so far that they may not be linear.
+  /// Moves the ground's unknowns where they follow so far that they may not be linear; what the
+  /// simulation says there counts, more or less than was extrapolated.
   bool follow() {
     constexpr double kFar = 3.0;  // standard deviations
     if (!profiles_ || residual_.size() == 0) return false;
@@ -127,19 +128,14 @@ class Search {
       center_[i] += ground_.unknowns[i].scale * change(static_cast<Index>(i));
     }
     const Evaluation there = model_.evaluate(get_point(x_));
-    if (there.failure.empty()) {
-      Eigen::VectorXd whole = ground_.whitener.apply_residual(there.residual);
-      Eigen::VectorXd left = project(whole);
-      const double chi2 = left.squaredNorm() + calc_shape_chi2(x_);
-      if (chi2 < chi2_) {
-        whole_ = std::move(whole);
-        residual_ = std::move(left);
-        chi2_ = chi2;
-        return true;
-      }
+    if (!there.failure.empty()) {
+      center_ = before;
+      return false;
     }
-    center_ = before;
-    return false;
+    whole_ = ground_.whitener.apply_residual(there.residual);
+    residual_ = project(whole_);
+    chi2_ = residual_.squaredNorm() + calc_shape_chi2(x_);
+    return true;
   }
 
   /// Of the prior of shapes.
@@ -214,7 +210,8 @@ class Search {
   void approach(const SearchEffort& effort) {
     constexpr double kEnough = 0.25;  // decrease over the predicted one: the derivatives serve on
     bool renew = true;
-    for (int step = 0; step < effort.steps; ++step) {
+    fit_.converged = false;
+    for (; steps_ < effort.steps; ++steps_) {
       if (renew && !linearize()) return;
       fit_.distance = calc_distance();
       if (fit_.distance <= effort.distance) {
@@ -228,7 +225,7 @@ class Search {
         fit_.converged = fit_.distance <= kKinkTolerance;
         return;
       }
-      renew = ratio < kEnough;
+      renew = !is_corrected() || ratio < kEnough;
     }
   }
 
@@ -378,13 +375,16 @@ class Search {
     const double predicted = -2.0 * gradient_.dot(step) - step.dot(information_ * step);
     const double ratio = (chi2_ - least) / std::max(predicted, 1e-300);
     damping_ = std::max(1e-6, 0.01 * dampings[best]);
-    correct_jacobian(step, residual);
+    if (is_corrected()) correct_jacobian(step, residual);
     x_ += step;
     residual_ = std::move(residual);
     chi2_ = least;
     update_gradient();
     return ratio;
   }
+
+  /// Whether steps correct the derivatives: of all unknowns, or of the hypothesis alone.
+  bool is_corrected() const { return ground_.has_inputs || profiles_; }
 
   /// Broyden's update: derivatives along the step become its difference.
   void correct_jacobian(const Eigen::VectorXd& step, const Eigen::VectorXd& residual) {
@@ -438,6 +438,7 @@ class Search {
   std::vector<double> center_;        // values of the ground's unknowns at x_ = 0
   Eigen::VectorXd whole_, residual_;  // there; and reduced
   double chi2_ = 0.0, damping_ = 1e-6;
+  int steps_ = 0;
   Eigen::MatrixXd jacobian_, information_;
   Eigen::VectorXd gradient_;
   Eigen::MatrixXd system_;         // information without what bounds hold

@@ -46,11 +46,12 @@ struct SearchGround {
 };
 
 /// `model` has the unknowns of `ground`, followed by the hypothesis' `own`. For a car, the
-/// derivatives with respect to the former stay those of `ground`, and on a road that was found the
-/// former follow by these alone; for a rig, all are updated:
-/// by differences where a step disappoints, else by the step itself (C. G. Broyden, Math. Comp. 19
-/// (1965)). The search starts at the best of several fractions of `beginning`, the center of the
-/// shapes' priors; or at `from`, values of all unknowns.
+/// derivatives with respect to the former stay those of `ground`; for a rig, all are updated: by
+/// differences where a step disappoints, else by the step itself (C. G. Broyden, Math. Comp. 19
+/// (1965)). On a road that was found, the search moves the hypothesis alone, with Broyden's update,
+/// and the others by their derivatives; only where that is more than 3 standard deviations do the
+/// simulations have it. The search starts at the best of several fractions of `beginning`, the
+/// center of the shapes' priors; or at `from`, values of all unknowns.
 HypothesisFit search_hypothesis(const SearchGround& ground, ReadingModel& model,
                                 const Hypothesis& hypothesis, const std::vector<Unknown>& own,
                                 const std::vector<double>& beginning,

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/parallel/team.h"
 #include "diagnose/noise/whitened_fit.h"
 
 namespace strut {
@@ -73,7 +74,10 @@ void measure_color(const ReadingModel& model, const Eigen::VectorXd& residual,
 
 bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& sensors,
                                 const Eigen::VectorXd& residual,
-                                std::vector<NoiseSpectrum>& spectra) {
+                                std::vector<NoiseSpectrum>& spectra, int threads) {
+  std::vector<Eigen::VectorXd> leverages(spectra.size());
+  share_items(threads, spectra.size(),
+              [&](std::size_t r, int) { leverages[r] = calc_leverage(*sensors.roads()[r]); });
   ChannelSpectra list;
   for (std::size_t r = 0; r < spectra.size(); ++r) {
     const NoiseSpectrum& s = spectra[r];
@@ -82,7 +86,6 @@ bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& senso
     std::vector<ResidualSpectrum> of_run(channels.size(),
                                          {s.samples, s.interval, none, none, none});
     const Eigen::VectorXd whitened = sensors.apply_sensors(r, residual);
-    const Eigen::VectorXd leverage = calc_leverage(*sensors.roads()[r]);
     const std::size_t begin = sensors.run_begin()[r];
     for (std::size_t i = begin; i < sensors.run_begin()[r + 1]; ++i) {
       const ReadingPlace& place = sensors.places()[i];
@@ -91,8 +94,8 @@ bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& senso
       const double part = is_real ? 1.0 : 0.5;
       ResidualSpectrum& of = of_run[place.channel];
       of.power[place.time] += part * whitened(at) * whitened(at);
-      of.freedom[place.time] += part * (1.0 - leverage(at));
-      of.expected[place.time] = 1.0;
+      of.freedom[place.time] += part * (1.0 - leverages[r](at));
+      of.expected[place.time] = sensors.get_share(r);
     }
     for (std::size_t c = 0; c < channels.size(); ++c) {
       ResidualSpectrum& of = of_run[c];
@@ -105,7 +108,11 @@ bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& senso
   std::map<int, double> corners;
   for (const auto& [channel, runs] : list) corners[channel] = estimate_corner(runs);
   for (std::size_t r = 0; r < spectra.size(); ++r) {
-    for (SensorColor& color : spectra[r].color) color.corner = corners[color.channel];
+    std::vector<SensorColor>& colors = spectra[r].color;
+    if (colors.empty()) {
+      for (const int channel : model.channels()[r]) colors.push_back({channel, 0.0, {}});
+    }
+    for (SensorColor& color : colors) color.corner = corners[color.channel];
   }
   return std::any_of(corners.begin(), corners.end(), [](const auto& c) { return c.second > 0.0; });
 }

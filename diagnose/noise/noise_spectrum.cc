@@ -389,8 +389,10 @@ std::vector<NoiseSpectrum> make_noise_spectra(const CampaignData& data,
     spectra[i] = data.has_inputs() ? make_driven_spectrum(data, runs[i], unknowns, values)
                                    : make_road_spectrum(data, runs[i], static_cast<int>(i),
                                                         unknowns, values, record);
-    check_finite(spectra[i], data.runs[runs[i]].name);
   });
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    check_finite(spectra[i], data.runs[runs[i]].name);
+  }
   return spectra;
 }
 

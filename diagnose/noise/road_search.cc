@@ -18,16 +18,16 @@ namespace {
 class RoadSearch {
  public:
   RoadSearch(const CampaignData& data, const std::vector<Unknown>& unknowns,
-             std::vector<double> start, bool is_level_known, int threads, WhitenedFit& result)
+             std::vector<double> start, bool is_noise_known, int threads, WhitenedFit& result)
       : data_(data),
         unknowns_(unknowns),
         values_(std::move(start)),
-        is_level_known_(is_level_known),
+        is_noise_known_(is_noise_known),
         threads_(threads),
         result_(result) {
     for (NoiseSpectrum& s : result.spectra) {
       s.excess.assign(s.excess.size(), 1.0);
-      if (is_level_known_) continue;
+      if (is_noise_known_) continue;
       // Measured with the road as noise, it would contain what the sensors read of the road.
       for (SensorColor& color : s.color) color.corner = 0.0;
     }
@@ -37,7 +37,17 @@ class RoadSearch {
   bool run() {
     make_model();
     if (!descend()) return false;
-    if (!is_level_known_ && measure_drift() && !descend()) return false;
+    if (!is_noise_known_) {
+      const WhitenedFit found = result_;
+      const std::vector<double> values = values_;
+      if (measure_drift() && !descend()) {
+        result_ = found;
+        values_ = values;
+        is_fresh_ = false;
+        make_model();
+        if (!descend()) return false;
+      }
+    }
     settle();
     describe();
     return true;
@@ -55,7 +65,7 @@ class RoadSearch {
     // chi2.
     constexpr double kSmall = 0.05, kEnough = 0.25, kNearly = 0.8;
     bool is_new = true;
-    int level_steps = is_level_known_ ? kLevelSteps : 0;
+    int level_steps = is_noise_known_ ? kLevelSteps : 0;
     for (int steps = 1; steps <= kMostSteps; ++steps) {
       const bool was_new = is_new;
       const std::optional<Move> proposed = propose(is_new);
@@ -75,7 +85,8 @@ class RoadSearch {
 
   bool measure_drift() {
     const Whitener sensors(*model_, result_.spectra, result_.roads);
-    return measure_drift_beside_roads(*model_, sensors, linearize().residual, result_.spectra);
+    return measure_drift_beside_roads(*model_, sensors, linearize().residual, result_.spectra,
+                                      threads_);
   }
 
   struct Move {
@@ -96,7 +107,7 @@ class RoadSearch {
     const std::size_t runs = result_.runs.size();
     std::vector<Eigen::MatrixXd> columns(runs);
     std::atomic<bool> has_failed{false};
-    // A run's road is driven by one thread.
+    // Driving over a road cannot be shared, the changed sections can.
     share_large_items(threads_, runs, [&](std::size_t r, int inside) {
       columns[r].resize(
           static_cast<Eigen::Index>(sensors.run_begin()[r + 1] - sensors.run_begin()[r]),
@@ -296,7 +307,7 @@ class RoadSearch {
   const CampaignData& data_;
   const std::vector<Unknown>& unknowns_;
   std::vector<double> values_;
-  bool is_level_known_;
+  bool is_noise_known_;
   int threads_, steps_ = 0;
   WhitenedFit& result_;
   std::unique_ptr<ReadingModel> model_;
@@ -308,9 +319,9 @@ class RoadSearch {
 }  // namespace
 
 bool search_roads(const CampaignData& data, const std::vector<Unknown>& unknowns,
-                  std::vector<double> start, bool is_level_known, int threads,
+                  std::vector<double> start, bool is_noise_known, int threads,
                   WhitenedFit& result) {
-  return RoadSearch(data, unknowns, std::move(start), is_level_known, threads, result).run();
+  return RoadSearch(data, unknowns, std::move(start), is_noise_known, threads, result).run();
 }
 
 }  // namespace strut

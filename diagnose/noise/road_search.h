@@ -9,10 +9,10 @@
 namespace strut {
 
 /// Fits `unknowns` from `start` and the roads of `result`, whose runs, spectra and number of shared
-/// unknowns are set, by Gauss-Newton; completes `result`. `is_level_known`: the level of the roads
-/// stays as it is. Returns false where the car cannot be simulated on the road that it seems to
-/// need.
+/// unknowns are set, by Gauss-Newton; completes `result`. `is_noise_known`: the roads' level and
+/// the sensors' drift stay as they are, else they are measured. Returns false where the car cannot
+/// be simulated on the road that it seems to need.
 bool search_roads(const CampaignData& data, const std::vector<Unknown>& unknowns,
-                  std::vector<double> start, bool is_level_known, int threads, WhitenedFit& result);
+                  std::vector<double> start, bool is_noise_known, int threads, WhitenedFit& result);
 
 }  // namespace strut

@@ -132,7 +132,7 @@ WhitenedFit fit_whitened(const CampaignData& data, const std::vector<std::size_t
   result.roads = noise.roads;
   result.shared_count = shared_count;
   if (!result.roads.empty() &&
-      !search_roads(data, unknowns, start, noise.is_level_known, threads, result)) {
+      !search_roads(data, unknowns, start, noise.is_noise_known, threads, result)) {
     result.spectra = noise.spectra;
     result.roads.clear();
   }

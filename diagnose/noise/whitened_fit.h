@@ -34,7 +34,8 @@ std::vector<NoiseSpectrum> measure_noise(const CampaignData& data, const Baselin
 struct RunNoise {
   std::vector<NoiseSpectrum> spectra;
   LatentRoads roads{};
-  bool is_level_known = false;  // else the roads found say at which level they are
+  /// With roads: else these, once found, say at which level they are and how the sensors drift.
+  bool is_noise_known = false;
 };
 
 /// Fits `unknowns` (those that all runs share first) from `start`, and the roads; these are noise

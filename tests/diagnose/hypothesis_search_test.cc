@@ -3,6 +3,7 @@
 #include "diagnose/hypothesis/hypothesis_search.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -28,6 +29,17 @@ Eigen::VectorXd draw(std::uint64_t stream) {
   return values;
 }
 
+/// Keeps the values at which it was evaluated.
+class ObservedModel : public test::LinearModel {
+ public:
+  using LinearModel::LinearModel;
+  std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override {
+    seen.insert(seen.end(), points.begin(), points.end());
+    return LinearModel::evaluate(points);
+  }
+  std::vector<std::vector<double>> seen;
+};
+
 /// One parameter of the model, and an effect with a size and a shape.
 struct Problem {
   Eigen::MatrixXd matrix{kReadings, 3};
@@ -35,9 +47,9 @@ struct Problem {
   Hypothesis hypothesis;
   std::vector<Unknown> own = {make_plain_unknown("size"), make_plain_unknown("shape")};
 
-  Problem() {
+  explicit Problem(double size = 8.0) {
     matrix << draw(1), 5.0 * draw(2), 0.3 * draw(3);
-    offset = draw(4) - 8.0 * matrix.col(1);
+    offset = draw(4) - size * matrix.col(1);
     hypothesis.effect = "effect";
     hypothesis.parameters = {{"size", "size", true}, {"shape", "shape", false}};
     hypothesis.reference = {0.0, 0.0};
@@ -72,9 +84,14 @@ struct Problem {
     const std::vector<double> values = {best};
     const SearchGround ground{has_inputs,  unknowns,    values, whitener,
                               at.residual, at.jacobian, normal, regular};
-    test::LinearModel model({parameter, own[0], own[1]}, matrix, offset);
-    return search_hypothesis(ground, model, hypothesis, own, {kStart, kShapeStart});
+    ObservedModel model({parameter, own[0], own[1]}, matrix, offset);
+    HypothesisFit fit = search_hypothesis(ground, model, hypothesis, own, {kStart, kShapeStart});
+    for (const std::vector<double>& point : model.seen) {
+      largest_move = std::max(largest_move, std::abs(point.front() - best) * column.norm());
+    }
+    return fit;
   }
+  mutable double largest_move = 0.0;  // of the parameter in simulations, in standard deviations
 };
 
 TEST_CASE("The fit of an effect is that of the linear system with the shape's prior", "[unit]") {
@@ -103,6 +120,18 @@ TEST_CASE("The fit of an effect is that of the linear system with the shape's pr
   // chi2 is 0.01 above its minimum at a tenth of a standard error.
   CHECK(fit.gain ==
         Approx(without - (rows * solution - right).squaredNorm()).margin(tolerance(0.02)));
+}
+
+TEST_CASE("Over a road that was found simulations move other unknowns only where they follow far",
+          "[unit]") {
+  const Problem small(0.1), large(8.0);
+  small.fit(false, LatentRoads{nullptr});
+  CHECK(small.largest_move == 0.0);
+  large.fit(false, LatentRoads{nullptr});
+  CHECK(large.largest_move > 3.0);
+  // Elsewhere they always move.
+  small.fit(false);
+  CHECK(small.largest_move > 0.0);
 }
 
 }  // namespace

@@ -96,12 +96,15 @@ CampaignData make_rough_campaign() {
   return data;
 }
 
-/// White, and the level of a road that is wrong by a factor of 4.
+/// The level of a road that is wrong by a factor of 4, and drift of white sensors.
 NoiseSpectrum make_first_guess(const CampaignData& data) {
   NoiseSpectrum s;
   s.samples = find_quick_length(data.times(0).size());
   s.interval = 1.0 / kRate;
-  for (const MeasuredChannel& c : data.channels(0)) s.sigma.push_back(c.sigma);
+  for (const MeasuredChannel& c : data.channels(0)) {
+    s.sigma.push_back(c.sigma);
+    s.color.push_back({c.channel, 8.0, {}});
+  }
   s.level = kLevel / 4.0;
   return s;
 }
@@ -123,6 +126,7 @@ TEST_CASE("A rough road under a car is found together with its springs and dampe
     CHECK(std::abs(fit.fit.values[i] - value) < 4.0 * fit.fit.uncertainty.sigma[i]);
     CHECK(fit.fit.uncertainty.sigma[i] < tolerance(0.02) * value);
   }
+  for (const SensorColor& color : fit.spectra.front().color) CHECK(color.corner < 1.0);
   // 2 x 300 weights tell the level within a tenth; harmonics above 2.5 1/m are absent.
   CHECK(fit.spectra.front().level / kLevel > 0.6);
   CHECK(fit.spectra.front().level / kLevel < 1.5);
