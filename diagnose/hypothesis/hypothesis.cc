@@ -230,7 +230,8 @@ bool is_plausible(const CampaignData& data, const Hypothesis& h,
         parameters.begin(), parameters.end(),
         [&](const EffectParameter* other) { return other->name == h.parameters[i].key; });
     const double size = std::abs(values[i] - p.neutral);
-    const double most = values[i] < p.neutral ? p.neutral - p.low : p.high - p.neutral;
+    const double low = std::max(p.low, h.parameters[i].range.low);
+    const double most = values[i] < p.neutral ? p.neutral - low : p.high - p.neutral;
     if (size > 0.0 && size > (1.0 - kMargin) * most) return false;
     if (!data.has_inputs() && size > kMaxTypical * std::abs(p.typical - p.neutral)) return false;
   }
@@ -266,6 +267,11 @@ std::vector<Hypothesis> list_hypotheses(const CampaignData& data, const SharedVa
       for (const EffectParameter* p : parameters) {
         h.parameters.push_back({make_effect_parameter_name(effect, place, *p, model), p->name,
                                 p->switches, choose_search_range(effect.name, p->name, motion)});
+      }
+      if (effect.name == EffectName::kTireEnveloping) {
+        // No patch is shorter than the model can average over.
+        const double footprint = data.runs.front().setup.car().vehicle.tire.footprint;
+        h.parameters.front().range.low = kShortestFootprint - footprint;
       }
       if (is_own_parameter(data, h.parameters.front().name)) continue;
       const bool is_free = std::any_of(free.begin(), free.end(), [&](const Unknown& u) {

@@ -190,7 +190,8 @@ void validate(const RoadSpec& spec) {
 void validate(const ContactGeometry& contact) {
   if (contact.kind == ContactKind::kPoint) return;
   require_road_range("tire.radius", contact.radius, 0.05, 2.0);
-  if (contact.footprint != 0.0) require_road_range("tire.footprint", contact.footprint, 0.02, 1.0);
+  if (contact.footprint == 0.0) return;
+  require_road_range("tire.footprint", contact.footprint, kShortestFootprint, 1.0);
 }
 
 double calc_profile_height(const RoadSpec& spec, double x) {

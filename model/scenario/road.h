@@ -38,6 +38,9 @@ struct RoadSpec {
 
 enum class ContactKind { kEnvelope, kPoint };
 
+/// m, of a contact patch that averages the road.
+inline constexpr double kShortestFootprint = 0.02;
+
 /// The properties of the tire that determine its effective road.
 struct ContactGeometry {
   ContactKind kind = ContactKind::kEnvelope;
