@@ -99,7 +99,7 @@ class Search {
     return point;
   }
 
-  /// What the ground's unknowns leave of a residual.
+  /// The residual's component orthogonal to the derivatives by the ground's unknowns.
   Eigen::VectorXd project(const Eigen::VectorXd& residual) const {
     return residual -
            ground_.jacobian * ground_.regular_normal.solve(ground_.jacobian.transpose() * residual);

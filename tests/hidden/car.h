@@ -79,7 +79,7 @@ struct Car {
   Bending bending;
 };
 
-/// How a tire touches the road.
+/// The contact model of tire and road.
 enum class Contact {
   kFelt,  // the height under its center that it feels, across the felt road's slope
   kDisc   // the point nearest to its center, along the line to it: a disc on the bare road
@@ -98,7 +98,7 @@ struct Track {
   const Curve* rough = nullptr;
 
   void evaluate(double x, double& z, double& z_x) const;
-  /// Of a center at x, z [m] of a wheel of this radius [m].
+  /// The contact of a wheel of this radius [m] whose center is at x, z [m].
   Support find_support(Contact contact, double x, double z, double radius) const;
 };
 
