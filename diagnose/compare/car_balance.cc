@@ -36,7 +36,7 @@ bool has_channel(const std::vector<MeasuredChannel>& channels, int channel) {
 }
 
 bool has_deflection(const std::vector<MeasuredChannel>& channels, int axle) {
-  const int left = C::kCornerBegin + 2 * axle * C::kCornerChannels + C::kSuspensionDeflection;
+  const int left = C::of_corner(2 * axle, C::kSuspensionDeflection);
   return has_channel(channels, left) || has_channel(channels, left + C::kCornerChannels);
 }
 

@@ -32,9 +32,6 @@ struct Ride {
   std::array<AxleRide, kAxles> axles;
 };
 
-/// Number of a corner's channel among those of the car.
-int get_corner_channel(int corner, int channel);
-
 /// Reads a channel of a car, by its number, at all samples.
 using ReadChannel = std::function<std::vector<double>(int channel)>;
 

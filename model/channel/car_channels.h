@@ -44,6 +44,11 @@ struct CarChannel {
     kCornerChannels,
   };
   static constexpr int kCount = kCornerBegin + kCorners * kCornerChannels;
+
+  /// The number of a corner's channel, such as kWheelPositionZ.
+  static constexpr int of_corner(int corner, int channel) {
+    return kCornerBegin + corner * kCornerChannels + channel;
+  }
 };
 
 /// The car's channels in CarChannel order.
