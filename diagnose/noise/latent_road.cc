@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <unsupported/Eigen/FFT>
 #include <utility>
 
 #include "base/error/check.h"
@@ -34,15 +36,17 @@ Eigen::VectorXd calc_increment_covariance(Index count, double spacing, double wi
     density[static_cast<std::size_t>(k)] =
         calc_height_density(n) * rise * rise * 0.5 * (1.0 + sign * calc_track_coherence(n, width));
   }
+  // The sum of density cos(2 pi n spacing lag), a cosine transform, as 2 step spacing kSteps = 1.
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> transform;
+  density.resize(2 * kSteps, 0.0);
+  fft.fwd(transform, density);
   Eigen::VectorXd covariance(count);
   for (Index lag = 0; lag < count; ++lag) {
-    double sum = 0.0;
-    for (int k = 0; k < kSteps; ++k) {
-      sum +=
-          density[static_cast<std::size_t>(k)] *
-          std::cos(2.0 * std::numbers::pi * step * (k + 0.5) * spacing * static_cast<double>(lag));
-    }
-    covariance(lag) = 2.0 * step * sum;
+    const std::complex<double> half_step =
+        std::polar(1.0, -0.5 * std::numbers::pi * static_cast<double>(lag) / kSteps);
+    covariance(lag) =
+        2.0 * step * (half_step * transform[static_cast<std::size_t>(lag) % density.size()]).real();
   }
   return covariance;
 }
@@ -83,15 +87,6 @@ double calc_lead_speed(Case c) {
   plan.snapshot = false;
   const LaneRun run = simulate_smooth_road(c, plan);
   return c.maneuver.speed - run.results->get_final_state(StateIndex::kVelocity, run.lane);
-}
-
-void lay_road(const LatentRoad& road, MeasuredRun& run) {
-  ManeuverSpec& maneuver = run.setup.car().maneuver;
-  maneuver.lead_time = kRoadLead;
-  maneuver.lead_speed = road.lead_speed;
-  maneuver.duration += kRoadLead;
-  maneuver.rough = road.tracks;
-  for (double& t : run.times) t += kRoadLead;
 }
 
 std::shared_ptr<const LatentRoad> make_smooth_road(const MeasuredRun& run) {
@@ -150,6 +145,16 @@ LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::s
   return roads;
 }
 
+MeasuredRun lay_road(const LatentRoad& road, MeasuredRun run) {
+  ManeuverSpec& maneuver = run.setup.car().maneuver;
+  maneuver.lead_time = kRoadLead;
+  maneuver.lead_speed = road.lead_speed;
+  maneuver.duration += kRoadLead;
+  maneuver.rough = road.tracks;
+  for (double& t : run.times) t += kRoadLead;
+  return run;
+}
+
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const std::vector<std::size_t>& runs,
                                                  const LatentRoads& roads,
@@ -162,8 +167,7 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
   std::vector<MeasuredRun> laid;
   laid.reserve(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    laid.push_back(data.runs[runs[i]]);
-    lay_road(*roads[i], laid.back());
+    laid.push_back(lay_road(*roads[i], data.runs[runs[i]]));
   }
   return make_reading_model(std::move(laid), std::move(unknowns), threads, kRelativeStep);
 }
@@ -191,6 +195,16 @@ std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::Vecto
   auto out = std::make_shared<LatentRoad>(road);
   out->weights = std::move(weights);
   set_tracks(*out, level);
+  return out;
+}
+
+std::shared_ptr<const LatentRoad> note_landings(const CampaignData& data, std::size_t run,
+                                                const LatentRoad& road,
+                                                const std::vector<Unknown>& unknowns,
+                                                const std::vector<double>& values,
+                                                std::size_t number) {
+  auto out = std::make_shared<LatentRoad>(road);
+  out->landings = list_landings(lay_road(road, data.runs[run]), unknowns, values, number);
   return out;
 }
 

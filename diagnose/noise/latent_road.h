@@ -21,6 +21,7 @@
 
 #include "base/math/eigen_abi.h"
 #include "diagnose/campaign/campaign_data.h"
+#include "diagnose/noise/landings.h"
 
 namespace strut {
 
@@ -48,6 +49,7 @@ struct LatentRoad {
   std::array<RoughTrack, 2> tracks;  // the estimate
   Eigen::VectorXd weights;           // w of the estimate
   double lead_speed = 0.0;  // m/s, by how much the car is faster at the begin of its lead time
+  std::vector<LandingReading> landings{};  // on the estimate; none counts
   std::shared_ptr<const RoadPrior> prior{};
   /// Tens of megabytes, shared with the road at other weights; null: not known yet.
   std::shared_ptr<const WhitenedRoad> whitened{};
@@ -62,6 +64,9 @@ RoadPrior make_road_prior(Eigen::Index count, double spacing, double width);
 LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::size_t>& runs);
 inline constexpr double kRoadLead = 1.0;  // s
 
+/// The run on its road, with a clock that begins kRoadLead later.
+MeasuredRun lay_road(const LatentRoad& road, MeasuredRun run);
+
 /// The readings of `runs` against their simulation on these roads, one per run, with clocks that
 /// begin kRoadLead later; without roads, against that of the campaign.
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
@@ -75,6 +80,14 @@ std::shared_ptr<const LatentRoad> set_response(const LatentRoad& road, Eigen::Ma
 /// The road at other weights, its response as it was. `level`: G0 [m^3].
 std::shared_ptr<const LatentRoad> move_road(const LatentRoad& road, Eigen::VectorXd weights,
                                             double level);
+
+/// The road with the landings of the car of run number `number` of a fit that drives over it;
+/// `run`: its number in `data`.
+std::shared_ptr<const LatentRoad> note_landings(const CampaignData& data, std::size_t run,
+                                                const LatentRoad& road,
+                                                const std::vector<Unknown>& unknowns,
+                                                const std::vector<double>& values,
+                                                std::size_t number);
 
 /// The most likely weights of the linear model. `residual`: whitened by the sensors' noise, of the
 /// model with the road.

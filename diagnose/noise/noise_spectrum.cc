@@ -182,7 +182,8 @@ std::vector<Eigen::MatrixXcd> calc_road_covariance(const WheelSources& wheels, d
 std::vector<Eigen::MatrixXcd> spread_covariance(const std::vector<Eigen::MatrixXcd>& fine,
                                                 std::size_t samples) {
   constexpr std::size_t kReach = 12 * kFiner;  // of the finer frequencies, to either side
-  const Spectrum window = calc_transform(make_fade(samples, true), kFiner * samples);
+  const Spectrum window =
+      calc_transform(make_fade(samples, calc_fade_length(samples)), kFiner * samples);
   std::vector<double> weights;
   double sum = 0.0;
   for (std::size_t m = 0; m <= std::min(kReach, window.size() - 1); ++m) {
@@ -341,11 +342,13 @@ std::size_t find_noise_band(double frequency) {
   return band;
 }
 
-std::vector<double> make_fade(std::size_t count, bool fades) {
+std::size_t calc_fade_length(std::size_t count) {
   constexpr double kShare = 0.05;
+  return static_cast<std::size_t>(kShare * static_cast<double>(count));
+}
+
+std::vector<double> make_fade(std::size_t count, std::size_t length) {
   std::vector<double> fade(count, 1.0);
-  if (!fades) return fade;
-  const auto length = static_cast<std::size_t>(kShare * static_cast<double>(count));
   for (std::size_t i = 0; i < length; ++i) {
     const double way = (static_cast<double>(i) + 0.5) / static_cast<double>(length);
     fade[i] = fade[count - 1 - i] = 0.5 - 0.5 * std::cos(kPi * way);

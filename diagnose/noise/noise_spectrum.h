@@ -59,9 +59,11 @@ struct NoiseSpectrum {
   std::vector<double> excess = std::vector<double>(kNoiseBands.size(), 1.0);
 };
 
-/// Taper of a run's samples: half a period of a cosine over a twentieth of the run at either end; 1
-/// unless it `fades`.
-std::vector<double> make_fade(std::size_t count, bool fades);
+/// Taper of a run's samples: half a period of a cosine over `length` samples at either end, 1
+/// between.
+std::vector<double> make_fade(std::size_t count, std::size_t length);
+/// Its length where NoiseSpectrum::fades: a twentieth of the run.
+std::size_t calc_fade_length(std::size_t count);
 
 /// Variance of a channel of a run by `common`, at level 1.
 double calc_common_variance(const NoiseSpectrum& spectrum, std::size_t channel);

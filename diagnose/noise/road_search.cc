@@ -35,16 +35,16 @@ class RoadSearch {
   /// Returns false where the car cannot be simulated on the road that it seems to need.
   bool run() {
     make_model();
-    if (!descend()) return false;
+    if (!descend(true)) return false;
     if (!is_noise_known_) {
       const WhitenedFit found = result_;
       const std::vector<double> values = values_;
-      if (measure_drift() && !descend()) {
+      if (measure_drift() && !descend(false)) {
         result_ = found;
         values_ = values;
         is_fresh_ = false;
         make_model();
-        if (!descend()) return false;
+        if (!descend(true)) return false;
       }
     }
     settle();
@@ -57,14 +57,15 @@ class RoadSearch {
   /// make chi2 discontinuous by about as much.
   static constexpr double kUneven = 30.0;
 
-  bool descend() {
-    constexpr int kMostSteps = 12;
+  /// Steps to the minimum, at first by new derivatives or by those of before. False where the car
+  /// cannot be simulated on the road that it seems to need.
+  bool descend(bool is_new) {
+    constexpr int kMostSteps = 12, kLevelSteps = 4;
     // The derivatives, of which those by the road cost most, are kept after a step that achieves
     // more than kNearly of what it promised, or more than kEnough where that is below kSmall of
     // chi2.
     constexpr double kSmall = 0.05, kEnough = 0.25, kNearly = 0.8;
-    bool is_new = true;
-    int level_steps = is_noise_known_ ? kLevelSteps : 0;
+    int level_steps = is_noise_known_ ? 0 : kLevelSteps;
     for (int steps = 1; steps <= kMostSteps; ++steps) {
       const bool was_new = is_new;
       const std::optional<Move> proposed = propose(is_new);
@@ -77,15 +78,24 @@ class RoadSearch {
       if (!is_enough && was_new && steps > 1) break;
       const bool is_near = gained > kNearly * move.promised;
       is_new = !is_near && (!is_enough || move.promised > kSmall * move.cost);
-      if (level_steps++ < kLevelSteps) measure_level(move);
+      if (level_steps > 0) level_steps = measure_level(move) ? level_steps - 1 : 0;
     }
     return true;
   }
 
+  /// Whether there is any; the roads' responses are whitened by it.
   bool measure_drift() {
-    const Whitener sensors(*model_, result_.spectra, result_.roads);
-    return measure_drift_beside_roads(*model_, sensors, linearize().residual, result_.spectra,
-                                      threads_);
+    const Whitener before(*model_, result_.spectra, result_.roads);
+    if (!measure_drift_beside_roads(*model_, before, here_->residual, result_.spectra, threads_)) {
+      return false;
+    }
+    const Whitener after(*model_, result_.spectra, result_.roads);
+    share_items(threads_, result_.roads.size(), [&](std::size_t r, int) {
+      const LatentRoad& road = *result_.roads[r];
+      result_.roads[r] =
+          set_response(road, after.rewhiten_run(r, road.whitened->derivative, before));
+    });
+    return true;
   }
 
   struct Move {
@@ -100,10 +110,15 @@ class RoadSearch {
     model_ = make_reading_model(data_, result_.runs, result_.roads, unknowns_, threads_);
   }
 
-  /// Sets the response of the roads where they and the car are; false where these cannot be
-  /// simulated.
-  bool renew_responses(const Whitener& sensors) {
+  /// Sets the response of the roads where they and the car are, and where this lands; false where
+  /// these cannot be simulated.
+  bool renew_responses() {
     const std::size_t runs = result_.runs.size();
+    share_items(threads_, runs, [&](std::size_t r, int) {
+      result_.roads[r] =
+          note_landings(data_, result_.runs[r], *result_.roads[r], unknowns_, values_, r);
+    });
+    const Whitener sensors(*model_, result_.spectra, result_.roads);
     std::vector<Eigen::MatrixXd> columns(runs);
     std::atomic<bool> has_failed{false};
     // Driving over a road cannot be shared, the changed sections can.
@@ -136,10 +151,9 @@ class RoadSearch {
   }
 
   std::optional<Move> propose(bool is_new) {
+    if (is_new && !renew_responses()) return std::nullopt;
     const Whitener sensors(*model_, result_.spectra, result_.roads);
-    if (!is_new) return propose_from(*here_, sensors);
-    if (!renew_responses(sensors)) return std::nullopt;
-    return propose_from(linearize(), sensors);
+    return propose_from(is_new ? linearize() : *here_, sensors);
   }
 
   Move propose_from(const Linearization& at, const Whitener& sensors) const {
@@ -257,8 +271,8 @@ class RoadSearch {
 
   /// The level at which the roads found are most likely: a step to the fixed point of
   /// |w|^2 = number of weights that the readings determine (D. J. C. MacKay, Neural Computation 4
-  /// (1992)).
-  void measure_level(const Move& move) {
+  /// (1992)). Whether that is another.
+  bool measure_level(const Move& move) {
     std::vector<double> determined(result_.roads.size());
     share_items(threads_, determined.size(),
                 [&](std::size_t r, int) { determined[r] = count_determined(*result_.roads[r]); });
@@ -268,7 +282,9 @@ class RoadSearch {
       count += determined[r];
     }
     constexpr double kMost = 4.0;  // far from the minimum, a road takes what the car should
+    constexpr double kSame = 0.01;
     const double factor = std::clamp(sum / count, 1.0 / kMost, kMost);
+    if (std::abs(factor - 1.0) < kSame) return false;
     for (NoiseSpectrum& s : result_.spectra) s.level *= factor;
     share_items(threads_, determined.size(), [&](std::size_t r, int) {
       const LatentRoad& road = *result_.roads[r];
@@ -277,6 +293,7 @@ class RoadSearch {
                     road.weights / std::sqrt(factor), result_.spectra.front().level);
     });
     make_model();
+    return true;
   }
 
   /// The fit where the search ended. Events that readings pass leave single runs' clocks and speeds
@@ -302,7 +319,6 @@ class RoadSearch {
     result_.fit.iterations = steps_;
   }
 
-  static constexpr int kLevelSteps = 4;
   const CampaignData& data_;
   const std::vector<Unknown>& unknowns_;
   std::vector<double> values_;

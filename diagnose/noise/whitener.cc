@@ -1,6 +1,7 @@
 #include "diagnose/noise/whitener.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -37,6 +38,17 @@ Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index fre
   return covariance;
 }
 
+/// The taper of a cut-off record. Beside a road of its own, only waves that are too short for its
+/// tracks are left in it, which leak from the ends.
+std::vector<double> make_run_fade(const NoiseSpectrum& spectrum, bool has_road) {
+  constexpr double kRoadFade = 0.05;  // s
+  const std::size_t length = has_road
+                                 ? std::min(calc_fade_length(spectrum.samples),
+                                            static_cast<std::size_t>(kRoadFade / spectrum.interval))
+                                 : calc_fade_length(spectrum.samples);
+  return make_fade(spectrum.samples, spectrum.fades ? length : 0);
+}
+
 }  // namespace
 
 Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra, LatentRoads roads,
@@ -48,9 +60,9 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
     const NoiseSpectrum& spectrum = spectra_[r];
     const std::size_t channels = spectrum.sigma.size();
     Run run;
-    const bool fades = spectrum.fades && !has_road(r);
+    const bool is_red = spectrum.fades && !has_road(r);
     const double highest = has_road(r) ? options.highest_of_road : options.highest;
-    run.fade = make_fade(spectrum.samples, fades);
+    run.fade = make_run_fade(spectrum, has_road(r));
     run.rows.assign(channels, std::vector<std::size_t>(spectrum.samples, kMissing));
     double power = 0.0;
     for (std::size_t k = 0; k < reading_count_; ++k) {
@@ -64,7 +76,7 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
     run.share = power / static_cast<double>(channels * spectrum.samples);
     run_begin_.push_back(places_.size());
     const double step = 1.0 / (static_cast<double>(spectrum.samples) * spectrum.interval);
-    if (fades) run.first = static_cast<Eigen::Index>(std::ceil(options.lowest / step));
+    if (is_red) run.first = static_cast<Eigen::Index>(std::ceil(options.lowest / step));
     for (auto k = static_cast<std::size_t>(run.first); k <= spectrum.samples / 2; ++k) {
       if (step * static_cast<double>(k) > highest) break;
       const double excess = spectrum.excess[find_noise_band(step * static_cast<double>(k))];
@@ -86,6 +98,28 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
     runs_.push_back(std::move(run));
   }
   run_begin_.push_back(places_.size());
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    if (has_road(r)) runs_[r].of_landings = find_directions(r, roads_[r]->landings);
+  }
+}
+
+Eigen::MatrixXd Whitener::find_directions(std::size_t r,
+                                          const std::vector<LandingReading>& readings) const {
+  // Numbers up to some frequency hardly tell successive readings apart.
+  constexpr double kTold = 0.1;
+  const Run& run = runs_[r];
+  Eigen::MatrixXd units = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(run.count),
+                                                static_cast<Eigen::Index>(readings.size()));
+  Eigen::Index used = 0;
+  for (const LandingReading& at : readings) {
+    if (at.time >= spectra_[r].samples) continue;
+    const std::size_t row = run.rows[at.channel][at.time];
+    if (row != kMissing) units(static_cast<Eigen::Index>(row), used++) = 1.0;
+  }
+  if (used == 0) return {};
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(whiten_run(r, units.leftCols(used)));
+  qr.setThreshold(kTold);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(qr.rows(), qr.rank());
 }
 
 double Whitener::get_frequency(const ReadingPlace& place) const {
@@ -163,7 +197,29 @@ Eigen::MatrixXd Whitener::whiten_run(std::size_t r, const Eigen::MatrixXd& colum
     const auto i = static_cast<Eigen::Index>(k);
     if (!columns.col(i).isZero(0.0)) apply_run(r, columns.col(i), out.col(i));
   });
+  remove_landings(r, out);
   return out;
+}
+
+void Whitener::remove_landings(std::size_t r, Eigen::MatrixXd& whitened) const {
+  const Eigen::MatrixXd& of_landings = runs_[r].of_landings;
+  if (of_landings.size() == 0) return;
+  whitened -= of_landings * (of_landings.transpose() * whitened);
+}
+
+Eigen::MatrixXd Whitener::rewhiten_run(std::size_t r, Eigen::MatrixXd columns,
+                                       const Whitener& before) const {
+  // What `before` took out of the columns are landings here, too.
+  for (std::size_t i = run_begin_[r]; i < run_begin_[r + 1]; ++i) {
+    const ReadingPlace& place = places_[i];
+    const auto k = place.time - static_cast<std::size_t>(runs_[r].first);
+    const auto channel = static_cast<Eigen::Index>(place.channel);
+    columns.row(static_cast<Eigen::Index>(i - run_begin_[r])) *=
+        before.runs_[r].factor[k](channel, channel).real() /
+        runs_[r].factor[k](channel, channel).real();
+  }
+  remove_landings(r, columns);
+  return columns;
 }
 
 Eigen::VectorXd Whitener::apply_sensors(std::size_t r, const Eigen::VectorXd& residual) const {

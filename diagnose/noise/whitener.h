@@ -10,6 +10,8 @@
 // and the road's part is taken out of the numbers of the run together:
 //
 //   w - H X H' w
+//
+// Readings of a landing wheel (landings.h) do not count: the numbers are made orthogonal to them.
 #pragma once
 
 #include <Eigen/Core>
@@ -47,6 +49,10 @@ class Whitener {
   /// Columns of one run's readings, by its sensors alone.
   Eigen::MatrixXd whiten_run(std::size_t run, const Eigen::MatrixXd& columns_of_run,
                              int threads = 1) const;
+  /// Columns of one run that `before` has whitened by its sensors alone, by those of this one; both
+  /// have the same readings and the same landings, and on no frequency common noise.
+  Eigen::MatrixXd rewhiten_run(std::size_t run, Eigen::MatrixXd columns,
+                               const Whitener& before) const;
   /// Residuals whitened by the sensors alone, with the road as it is in the model's run.
   Eigen::VectorXd apply_sensors(std::size_t run, const Eigen::VectorXd& residual) const;
   /// Whitens a linearization without failure.
@@ -83,7 +89,12 @@ class Whitener {
     Eigen::Index first = 0;                // lowest frequency
     std::vector<Eigen::MatrixXcd> factor;  // [frequency - first]: C_k, lower
     double log_determinant = 0.0;
+    /// Orthonormal: what the readings of landings are among the run's numbers. Empty: none.
+    Eigen::MatrixXd of_landings;
   };
+  /// An orthonormal basis of what these readings are among the run's numbers.
+  Eigen::MatrixXd find_directions(std::size_t run,
+                                  const std::vector<LandingReading>& readings) const;
   void apply_run(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& column,
                  Eigen::Ref<Eigen::VectorXd> out) const;
   bool has_road(std::size_t run) const { return !roads_.empty() && roads_[run] != nullptr; }
@@ -92,6 +103,7 @@ class Whitener {
     return has_road(run) ? roads_[run]->whitened.get() : nullptr;
   }
   void remove_roads(Eigen::MatrixXd& whitened, int threads) const;
+  void remove_landings(std::size_t run, Eigen::MatrixXd& whitened) const;
 
   std::vector<NoiseSpectrum> spectra_;
   LatentRoads roads_;

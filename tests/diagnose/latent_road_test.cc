@@ -24,11 +24,11 @@ constexpr Eigen::Index kWeights = 8;
 /// Readings of two channels, none of which the unknown moves.
 class IdleModel : public ReadingModel {
  public:
-  explicit IdleModel(std::size_t runs) : ReadingModel({Unknown{}}) {
+  explicit IdleModel(std::size_t runs, std::size_t samples = kSamples) : ReadingModel({Unknown{}}) {
     unknowns_.front().name = "idle";
     for (std::size_t r = 0; r < runs; ++r) {
       channels_.push_back({0, 1});
-      for (std::size_t t = 0; t < kSamples; ++t) {
+      for (std::size_t t = 0; t < samples; ++t) {
         for (std::size_t c = 0; c < kChannels; ++c) readings_.push_back({r, t, c});
       }
     }
@@ -118,6 +118,66 @@ TEST_CASE("The weights of a road are those of ridge regression", "[unit]") {
   const Eigen::VectorXd share =
       (run.response * all.inverse() * run.response.transpose()).diagonal();
   CHECK((calc_leverage(*run.road) - share).norm() < tolerance(1e-12));
+}
+
+/// A road under which wheels land at three readings, two of which follow on another.
+LatentRoad make_road_of_landings() {
+  LatentRoad road;
+  road.weights = Eigen::VectorXd::Zero(kWeights);
+  road.landings = {{0, 7}, {1, 30}, {1, 31}};
+  return road;
+}
+
+TEST_CASE("Readings of a landing wheel do not count and others do as before", "[unit]") {
+  const IdleModel model(1);
+  const auto road = std::make_shared<const LatentRoad>(make_road_of_landings());
+  const Whitener plain(model, {make_white()}), whitener(model, {make_white()}, {road});
+  const Eigen::MatrixXd units = Eigen::MatrixXd::Identity(kReadings, kReadings);
+  const Eigen::MatrixXd gram =
+      whitener.whiten_run(0, units).transpose() * whitener.whiten_run(0, units);
+  Eigen::VectorXd counts = Eigen::VectorXd::Ones(kReadings);
+  for (const auto& [channel, time] : road->landings) {
+    counts(static_cast<Eigen::Index>(time * kChannels + channel)) = 0.0;
+  }
+  // All frequencies count here, so that whitening keeps sums of squares.
+  CHECK((gram - Eigen::MatrixXd(counts.asDiagonal())).norm() < tolerance(1e-12));
+}
+
+TEST_CASE("Numbers are whitened again by the drift of other sensors", "[unit]") {
+  const IdleModel model(1);
+  const auto road = std::make_shared<const LatentRoad>(make_road_of_landings());
+  NoiseSpectrum drifting = make_white();
+  drifting.color = {{0, 3.0, {}}, {1, 0.4, {}}};
+  const Whitener before(model, {make_white()}, {road}), after(model, {drifting}, {road});
+  const Eigen::MatrixXd columns = draw(17, kReadings, 5);
+  const Eigen::MatrixXd again = after.rewhiten_run(0, before.whiten_run(0, columns), before);
+  CHECK((again - after.whiten_run(0, columns)).norm() < tolerance(1e-12));
+  CHECK((again - before.whiten_run(0, columns)).norm() > 1.0);
+}
+
+/// Sum of squares of what whitening leaves of a tone of 10 standard deviations at 61.3 Hz.
+double leave_of_tone(bool is_cut_off) {
+  constexpr std::size_t kLong = 1500;
+  const IdleModel model(1, kLong);
+  NoiseSpectrum s = make_white();
+  s.samples = kLong;
+  s.interval = 2e-3;
+  s.fades = is_cut_off;
+  LatentRoad road;
+  road.weights = Eigen::VectorXd::Zero(kWeights);
+  const Whitener whitener(model, {s}, {std::make_shared<const LatentRoad>(road)});
+  Eigen::VectorXd tone(static_cast<Eigen::Index>(kLong * kChannels));
+  for (Eigen::Index i = 0; i < tone.size(); ++i) {
+    tone(i) = 10.0 * std::sin(2.0 * std::numbers::pi * 61.3 * s.interval *
+                              std::floor(static_cast<double>(i) / kChannels));
+  }
+  return whitener.apply_residual(tone).squaredNorm();
+}
+
+TEST_CASE("Hardly any waves too short for a road leak from the ends of a cut-off record",
+          "[unit]") {
+  CHECK(leave_of_tone(false) > 5.0);
+  CHECK(leave_of_tone(true) < 0.5);
 }
 
 /// Corners [Hz] found in what roads leave of the noise of sensors with this corner, by channel.
