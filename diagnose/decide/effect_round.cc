@@ -237,10 +237,11 @@ std::vector<std::vector<double>> list_beginnings(const Round& round,
   return beginnings;
 }
 
-/// Fits of the ranked: all for a start, then those near the best until they converge.
+/// Fits of the ranked: all for a start, then those near the best until they converge, unless a
+/// first fit so near to its minimum cannot reach `threshold`.
 std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial>& ranked,
-                               const RoundOptions& options) {
-  constexpr double kNear = 0.7;
+                               const RoundOptions& options, double threshold) {
+  constexpr double kNear = 0.7, kSmall = 0.5;
   const std::vector<std::vector<double>> beginnings = list_beginnings(round, ranked, options);
   const std::vector<std::size_t> twins = find_twins(ranked, beginnings);
   std::vector<Fitted> fitted(ranked.size());
@@ -263,6 +264,9 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
   if (options.is_final) {
     on_each([&](std::size_t i, int inside) {
       const Candidate& c = fitted[i].candidate;
+      const bool is_small =
+          c.gain < kSmall * threshold && c.distance <= round.options.screening.distance;
+      if (is_small) return;
       if (c.gain > kNear * most && is_allowed(round.data, c)) finish(round, inside, fitted[i]);
       try_removal(round, inside, fitted[i]);
     });
@@ -323,7 +327,7 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   const std::vector<RankedTrial> ranked =
       choose(evidence, hypotheses, std::move(all), round_options, 0.3 * result.threshold);
   const std::vector<std::size_t> classes = list_classes(evidence, score, ranked);
-  std::vector<Fitted> fitted = fit_ranked(round, ranked, round_options);
+  std::vector<Fitted> fitted = fit_ranked(round, ranked, round_options, result.threshold);
   for (std::size_t i = 0; i < fitted.size(); ++i) {
     Candidate& c = fitted[i].candidate;
     result.simulations += c.simulations;

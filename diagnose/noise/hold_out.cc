@@ -26,6 +26,7 @@ HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, in
     : data_(data), threads_(threads), runs_(data.list_runs(RunUse::kHoldOut)) {
   noise_.resize(runs_.size());
   roads_.resize(runs_.size());
+  starts_.resize(runs_.size());
   const SharedValues shared = base.shared();
   share_large_items(threads, runs_.size(), [&](std::size_t i, int inside) {
     noise_[i] = make_spectrum_of_run(data, runs_[i], base.spectra, shared);
@@ -35,7 +36,9 @@ HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, in
     const RoughStart start =
         search_without_roads(one, {0}, {noise_[i]}, own, list_starts(own), inside);
     const RunNoise noise{{noise_[i]}, make_smooth_roads(one, {0}), true};
-    roads_[i] = fit_whitened(one, {0}, noise, own, start.values, 0, inside).roads;
+    WhitenedFit found = fit_whitened(one, {0}, noise, own, start.values, 0, inside);
+    roads_[i] = std::move(found.roads);
+    starts_[i] = std::move(found.fit.values);
   });
 }
 
@@ -61,7 +64,9 @@ HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) co
       make_reading_model(one, {0}, roads_[i], make_run_unknowns(one, {0}, shared.unknowns));
   const Whitener whitener(*model, {noise_[i]}, roads_[i]);
   WhitenedModel whitened(*model, whitener);
-  const FitResult fit = fit_readings(whitened);
+  FitOptions options;
+  options.start = starts_[i];
+  const FitResult fit = fit_readings(whitened, options);
   HoldOutRun run;
   run.run = runs_[i];
   run.chi2 = fit.chi2;
