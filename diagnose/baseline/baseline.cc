@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error/input_error.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "estimate/search_start.h"
 #include "estimate/sensor_error.h"
 

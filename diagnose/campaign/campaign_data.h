@@ -31,10 +31,16 @@ struct CampaignData {
   const ChannelInfo& info(int channel) const {
     return model().channels[static_cast<std::size_t>(channel)];
   }
+  /// The input that a column records.
+  const InputInfo& get_input(const CampaignColumn& column) const;
   const NoiseEstimate& find_noise(int channel) const;
+  std::vector<MeasuredRun> select(const std::vector<std::size_t>& chosen) const;
   /// Indices of the runs for this use.
   std::vector<std::size_t> list_runs(RunUse use) const;
 };
+
+/// The recorded input of this name; null where the run lacks it.
+const InputSignal* find_input(const MeasuredRun& run, const std::string& name);
 
 /// The campaign with a single one of its runs.
 CampaignData take_run(const CampaignData& data, std::size_t run);
@@ -46,21 +52,6 @@ bool meets_bump(const CampaignData& data, std::size_t run);
 /// Reads the campaign, its model with the values of `[fit] fix`, and every run. Throws InputError
 /// as campaign.h, measured_table.h and check_campaign_data.h say.
 CampaignData read_campaign_data(const std::filesystem::path& path);
-
-/// The unknowns that all of `runs` share: those of `[fit] free`, with their priors, the gains of
-/// inputs that are not known exactly and, where there are any of these, the gain errors and skews
-/// of the sensors.
-std::vector<Unknown> make_free_unknowns(const CampaignData& data,
-                                        const std::vector<std::size_t>& runs);
-
-/// The value of a shared unknown in the model's file.
-double get_nominal(const CampaignData& data, const Unknown& unknown);
-
-/// The nuisances of `runs` (make_nuisances), except those in `chosen`, with the priors that the
-/// campaign gives for single runs. Unknown::run is an index in `runs`.
-std::vector<Unknown> make_run_unknowns(const CampaignData& data,
-                                       const std::vector<std::size_t>& runs,
-                                       const std::vector<Unknown>& chosen);
 
 /// The readings of `runs` against their simulation.
 std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,

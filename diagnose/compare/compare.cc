@@ -8,6 +8,7 @@
 #include "base/error/input_error.h"
 #include "base/math/spread.h"
 #include "diagnose/baseline/model_states.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "diagnose/compare/deciding_noise.h"
 #include "diagnose/noise/whitened_fit.h"
 #include "model_files/parameters.h"

@@ -9,6 +9,7 @@
 
 #include "base/parallel/team.h"
 #include "diagnose/baseline/time_windows.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 
 namespace strut {
 namespace {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/math/normal.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "diagnose/decide/shared_law.h"
 
 namespace strut {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "diagnose/decide/probability.h"
 #include "diagnose/noise/whitener.h"
 #include "estimate/simulate_run.h"

@@ -6,6 +6,7 @@
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "diagnose/noise/noise_floor.h"
 #include "estimate/fit.h"
 #include "model/error/model_error.h"

@@ -40,7 +40,7 @@ class HoldOutJudge {
   int threads_;
   std::vector<std::size_t> runs_;
   std::vector<NoiseSpectrum> noise_;
-  std::vector<LatentRoads> roads_;  // of each; empty where the road is noise
+  std::vector<LatentRoads> roads_;           // of each; empty where the road is noise
   std::vector<std::vector<double>> starts_;  // of each run's own unknowns; empty: their own
 };
 

@@ -14,37 +14,51 @@ namespace {
 /// Residual spectra of one channel by run; runs without it are left out.
 using ChannelSpectra = std::map<int, std::vector<ResidualSpectrum>>;
 
-/// Periodograms of the residuals, by channel of the model, without the channels' correlation.
-ChannelSpectra calc_residual_spectra(const ReadingModel& model, const Eigen::VectorXd& residual,
-                                     std::vector<NoiseSpectrum> spectra) {
-  const std::vector<NoiseSpectrum> noise = spectra;
-  for (NoiseSpectrum& s : spectra) s.common.clear();
-  const Whitener whitener(model, std::move(spectra));
-  const Eigen::VectorXd whitened = whitener.apply_residual(residual);
+/// Periodograms of whitened residuals, by channel of the model and run. `add(spectrum, number,
+/// part)` adds what is known of each whitened number, which stands for `part` of a frequency.
+template <class Add>
+ChannelSpectra gather_spectra(const ReadingModel& model, const Whitener& whitener,
+                              const Eigen::VectorXd& whitened, const Add& add) {
   ChannelSpectra list;
-  std::size_t run = noise.size();
+  std::size_t run = whitener.spectra().size();
   for (std::size_t i = 0; i < whitener.whitened_count(); ++i) {
     const ReadingPlace& place = whitener.places()[i];
-    const NoiseSpectrum& s = noise[place.run];
+    const NoiseSpectrum& s = whitener.spectra()[place.run];
     const std::vector<int>& channels = model.channels()[place.run];
     if (place.run != run) {
       run = place.run;
       const std::vector<double> none(s.samples / 2 + 1, 0.0);
-      for (const int channel : channels)
-        list[channel].push_back({s.samples, s.interval, none, none});
+      for (const int channel : channels) {
+        list[channel].push_back({s.samples, s.interval, none, none, none});
+      }
     }
     ResidualSpectrum& of = list[channels[place.channel]].back();
     const bool is_real = place.time == 0 || 2 * place.time == s.samples;
+    const double part = is_real ? 1.0 : 0.5, w = whitened(static_cast<Eigen::Index>(i));
+    of.power[place.time] += part * w * w;
+    add(of, i, part);
+  }
+  return list;
+}
+
+/// Without the channels' correlation.
+ChannelSpectra calc_residual_spectra(const ReadingModel& model, const Eigen::VectorXd& residual,
+                                     const std::vector<NoiseSpectrum>& noise) {
+  std::vector<NoiseSpectrum> alone = noise;
+  for (NoiseSpectrum& s : alone) s.common.clear();
+  const Whitener whitener(model, std::move(alone));
+  const auto add = [&](ResidualSpectrum& of, std::size_t i, double part) {
+    const ReadingPlace& place = whitener.places()[i];
+    const NoiseSpectrum& s = noise[place.run];
     const auto at = static_cast<Eigen::Index>(place.channel);
-    const double w = whitened(static_cast<Eigen::Index>(i));
     const double common = place.time < s.common.size()
                               ? s.level * s.common[place.time](at, at).real() /
                                     (s.sigma[place.channel] * s.sigma[place.channel])
                               : 0.0;
-    of.power[place.time] += (is_real ? 1.0 : 0.5) * w * w;
     of.expected[place.time] = whitener.get_share(place.run) * (1.0 + common);
-  }
-  return list;
+    of.freedom[place.time] += part;
+  };
+  return gather_spectra(model, whitener, whitener.apply_residual(residual), add);
 }
 
 /// Whether the model's error is far larger than the noise.
@@ -75,34 +89,25 @@ void measure_color(const ReadingModel& model, const Eigen::VectorXd& residual,
 bool measure_drift_beside_roads(const ReadingModel& model, const Whitener& sensors,
                                 const Eigen::VectorXd& residual,
                                 std::vector<NoiseSpectrum>& spectra, int threads) {
-  std::vector<Eigen::VectorXd> leverages(spectra.size());
-  share_items(threads, spectra.size(),
-              [&](std::size_t r, int) { leverages[r] = calc_leverage(*sensors.roads()[r]); });
-  ChannelSpectra list;
-  for (std::size_t r = 0; r < spectra.size(); ++r) {
-    const NoiseSpectrum& s = spectra[r];
-    const std::vector<int>& channels = model.channels()[r];
-    const std::vector<double> none(s.samples / 2 + 1, 0.0);
-    std::vector<ResidualSpectrum> of_run(channels.size(),
-                                         {s.samples, s.interval, none, none, none});
-    const Eigen::VectorXd whitened = sensors.apply_sensors(r, residual);
-    const std::size_t begin = sensors.run_begin()[r];
-    for (std::size_t i = begin; i < sensors.run_begin()[r + 1]; ++i) {
-      const ReadingPlace& place = sensors.places()[i];
-      const auto at = static_cast<Eigen::Index>(i - begin);
-      const bool is_real = place.time == 0 || 2 * place.time == s.samples;
-      const double part = is_real ? 1.0 : 0.5;
-      ResidualSpectrum& of = of_run[place.channel];
-      of.power[place.time] += part * whitened(at) * whitened(at);
-      of.freedom[place.time] += part * (1.0 - leverages[r](at));
-      of.expected[place.time] = sensors.get_share(r);
-    }
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-      ResidualSpectrum& of = of_run[c];
+  Eigen::VectorXd whitened(static_cast<Eigen::Index>(sensors.whitened_count()));
+  Eigen::VectorXd leverage(whitened.size());
+  share_items(threads, spectra.size(), [&](std::size_t r, int) {
+    const auto begin = static_cast<Eigen::Index>(sensors.run_begin()[r]);
+    const auto count = static_cast<Eigen::Index>(sensors.run_begin()[r + 1]) - begin;
+    whitened.segment(begin, count) = sensors.apply_sensors(r, residual);
+    leverage.segment(begin, count) = calc_leverage(*sensors.roads()[r]);
+  });
+  const auto add = [&](ResidualSpectrum& of, std::size_t i, double part) {
+    const ReadingPlace& place = sensors.places()[i];
+    of.expected[place.time] = sensors.get_share(place.run);
+    of.freedom[place.time] += part * (1.0 - leverage(static_cast<Eigen::Index>(i)));
+  };
+  ChannelSpectra list = gather_spectra(model, sensors, whitened, add);
+  for (auto& [channel, runs] : list) {
+    for (ResidualSpectrum& of : runs) {
       for (std::size_t k = 0; k < of.power.size(); ++k) {
         if (of.expected[k] > 0.0) of.power[k] /= std::max(of.freedom[k], 1e-6);
       }
-      list[channels[c]].push_back(std::move(of));
     }
   }
   std::map<int, double> corners;

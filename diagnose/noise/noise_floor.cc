@@ -8,6 +8,7 @@
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "model/error/model_error.h"
 
 namespace strut {

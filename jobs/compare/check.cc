@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error/input_error.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "jobs/cli/messages.h"
 #include "jobs/cli/progress.h"
 

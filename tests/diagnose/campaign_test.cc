@@ -8,6 +8,7 @@
 
 #include "base/error/input_error.h"
 #include "diagnose/campaign/campaign_data.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "io/format/hdf5.h"
 #include "io/table/units.h"
 #include "tests/support/campaign_files.h"

@@ -7,6 +7,7 @@
 
 #include "base/math/spread.h"
 #include "diagnose/baseline/baseline.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "estimate/driven_batch.h"
 #include "estimate/simulate_run.h"
 #include "model/rig/rig_system.h"

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "tests/support/strut_stand.h"
 #include "tests/support/test_car.h"
 #include "tests/support/tolerance.h"

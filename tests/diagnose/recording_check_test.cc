@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "diagnose/campaign/campaign_data.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "estimate/recording/check.h"
 #include "estimate/recording/check_alignment.h"
 #include "estimate/recording/check_readings.h"

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "io/file/atomic_file.h"
 #include "io/table/csv.h"
 #include "jobs/diagnose/figures.h"
