@@ -279,7 +279,7 @@ double calc_distance(const NormalEquations& normal) {
 }
 
 double calc_widening(const ReadingModel& model, const Linearization& at) {
-  const double degrees = static_cast<double>(model.reading_count() + model.prior_count()) -
+  const double degrees = model.calc_independent_count() + static_cast<double>(model.prior_count()) -
                          static_cast<double>(model.unknowns().size());
   return degrees > 0.0 ? std::sqrt(std::max(1.0, at.residual.squaredNorm() / degrees)) : 1.0;
 }
@@ -294,8 +294,8 @@ FitResult describe_fit(const ReadingModel& model, const Linearization& at,
   const NormalEquations normal = calc_normal_equations(model, at);
   result.uncertainty = calc_uncertainty(normal.information, result.unknowns);
   result.chi2 = at.residual.squaredNorm();
-  result.degrees =
-      static_cast<long>(model.reading_count() + model.prior_count()) - result.uncertainty.rank;
+  result.degrees = std::lround(model.calc_independent_count()) +
+                   static_cast<long>(model.prior_count()) - result.uncertainty.rank;
   result.widened = calc_widened(model, at, normal, result);
   result.channels = describe_channels(model, at.residual);
   result.distance =

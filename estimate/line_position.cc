@@ -86,7 +86,7 @@ std::vector<double> calc_line_positions(const PreparedCase& c, const LaneResults
     last_time = time;
     double sum = 0.0;
     for (std::size_t w = 0; w < wheels.size(); ++w) {
-      const int channel = C::of_corner(wheels[w].corner, C::kSuspensionDeflection);
+      const int channel = C::get_corner_channel(wheels[w].corner, C::kSuspensionDeflection);
       coordinates[w] = solve_coordinate(wheels[w], get(channel), coordinates[w]);
       sum += calc_world_x(yaw, pitch, roll, calc_center(wheels[w], coordinates[w]));
     }

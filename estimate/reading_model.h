@@ -79,6 +79,9 @@ class ReadingModel {
   /// Whether the residuals are independent, so that their squares tell how large the noise is where
   /// an unknown is decided; those of successive samples are not.
   virtual bool has_independent_residuals() const { return false; }
+  /// Number of independent readings: the expected sum of squares of their residuals, if the model
+  /// is right.
+  virtual double calc_independent_count() const { return static_cast<double>(reading_count()); }
   /// Returns `values` with unknowns improved that need no search, such as the hit times.
   virtual std::vector<double> align(const std::vector<double>& values) { return values; }
 

@@ -60,7 +60,7 @@ SensorNoise make_sigmas(std::span<const ChannelNoise> body, std::span<const Chan
   for (const ChannelNoise& n : body) sigmas[static_cast<std::size_t>(n.channel)] = n.sigma;
   for (int i = 0; i < kCorners; ++i) {
     for (const ChannelNoise& n : corner) {
-      const int channel = C::of_corner(i, n.channel);
+      const int channel = C::get_corner_channel(i, n.channel);
       sigmas[static_cast<std::size_t>(channel)] = n.sigma;
     }
   }

@@ -9,11 +9,9 @@
 #include "base/error/input_error.h"
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
-#include "diagnose/campaign/campaign_unknowns.h"
 #include "diagnose/campaign/check_campaign_data.h"
 #include "diagnose/campaign/local_cubic.h"
 #include "diagnose/campaign/name_table.h"
-#include "estimate/nuisances.h"
 #include "estimate/readings.h"
 #include "model/error/model_error.h"
 #include "model/rig/rigs.h"
@@ -282,7 +280,6 @@ CampaignData read_campaign_data(const std::filesystem::path& path) {
   fill_noise(data);
   make_runs(data);
   check_campaign_data(data);
-  make_free_unknowns(data, data.list_runs(RunUse::kFit));  // throws for what cannot be free
   return data;
 }
 

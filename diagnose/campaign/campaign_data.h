@@ -34,12 +34,13 @@ struct CampaignData {
   /// The input that a column records.
   const InputInfo& get_input(const CampaignColumn& column) const;
   const NoiseEstimate& find_noise(int channel) const;
+  /// The runs with these indices.
   std::vector<MeasuredRun> select(const std::vector<std::size_t>& chosen) const;
   /// Indices of the runs for this use.
   std::vector<std::size_t> list_runs(RunUse use) const;
 };
 
-/// The recorded input of this name; null where the run lacks it.
+/// The recorded input of this name of a run that recorded inputs drive; null where it lacks it.
 const InputSignal* find_input(const MeasuredRun& run, const std::string& name);
 
 /// The campaign with a single one of its runs.

@@ -10,6 +10,7 @@
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
 #include "diagnose/campaign/campaign_data.h"
+#include "diagnose/campaign/campaign_unknowns.h"
 #include "estimate/simulate_run.h"
 #include "io/table/units.h"
 
@@ -181,6 +182,7 @@ void check_campaign_data(CampaignData& data) {
     check_plausible(data, r);
     check_units(data, r);
   }
+  make_free_unknowns(data, data.list_runs(RunUse::kFit));  // throws for what cannot be free
 }
 
 }  // namespace strut

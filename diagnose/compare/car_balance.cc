@@ -36,8 +36,8 @@ bool has_channel(const std::vector<MeasuredChannel>& channels, int channel) {
 }
 
 bool has_deflection(const std::vector<MeasuredChannel>& channels, int axle) {
-  const int left = C::of_corner(2 * axle, C::kSuspensionDeflection);
-  return has_channel(channels, left) || has_channel(channels, left + C::kCornerChannels);
+  return has_channel(channels, C::get_corner_channel(2 * axle, C::kSuspensionDeflection)) ||
+         has_channel(channels, C::get_corner_channel(2 * axle + 1, C::kSuspensionDeflection));
 }
 
 bool can_balance(const CampaignData& data, std::size_t run) {

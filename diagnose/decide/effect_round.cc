@@ -237,8 +237,8 @@ std::vector<std::vector<double>> list_beginnings(const Round& round,
   return beginnings;
 }
 
-/// Fits of the ranked: all for a start, then those near the best until they converge, unless a
-/// first fit so near to its minimum cannot reach `threshold`.
+/// Fits of the ranked: all for a start, then those near the best until they converge, unless the
+/// first fit has come near its minimum at less than half of `threshold`.
 std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial>& ranked,
                                const RoundOptions& options, double threshold) {
   constexpr double kNear = 0.7, kSmall = 0.5;
@@ -266,8 +266,9 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
       const Candidate& c = fitted[i].candidate;
       const bool is_small =
           c.gain < kSmall * threshold && c.distance <= round.options.screening.distance;
-      if (is_small) return;
-      if (c.gain > kNear * most && is_allowed(round.data, c)) finish(round, inside, fitted[i]);
+      if (!is_small && c.gain > kNear * most && is_allowed(round.data, c)) {
+        finish(round, inside, fitted[i]);
+      }
       try_removal(round, inside, fitted[i]);
     });
   }

@@ -335,9 +335,9 @@ class Search {
   /// one simulation. Returns its decrease of chi2 over the predicted one; 0: none leads down.
   double improve() {
     const int at_once = ground_.has_inputs ? 8 : 1;
-    // A step of the hypothesis alone is damped at once by as much as shortens it.
+    // The first damping that changes the step of a few parameters at all is about 1.
     const int attempts = ground_.has_inputs ? 2 : profiles_ ? 4 : 12;
-    const double least = profiles_ ? 1.0 : 1e-3;
+    const double min_damping = profiles_ ? 1.0 : 1e-3;
     for (int attempt = 0; attempt < attempts; ++attempt) {
       std::vector<Eigen::VectorXd> steps;
       std::vector<std::vector<double>> points;
@@ -345,7 +345,7 @@ class Search {
       for (int k = 0; k < at_once; ++k) {
         Eigen::VectorXd step = calc_step(damping_);
         dampings.push_back(damping_);
-        damping_ = std::max(least, 10.0 * damping_);
+        damping_ = std::max(min_damping, 10.0 * damping_);
         if (!step.allFinite()) continue;
         points.push_back(get_point(x_ + step));
         steps.push_back(std::move(step));

@@ -21,6 +21,17 @@ void check_finite(const CampaignData& data, const HoldOutRun& run) {
                                data.campaign.runs[run.run].name, run.chi2, run.log_likelihood));
 }
 
+/// The values that were found for these unknowns, else their own initial guess.
+std::vector<double> make_start(const std::vector<Unknown>& unknowns, const SharedValues& found) {
+  std::vector<double> start = list_starts(unknowns);
+  for (std::size_t i = 0; i < unknowns.size(); ++i) {
+    for (std::size_t k = 0; k < found.unknowns.size(); ++k) {
+      if (found.unknowns[k].name == unknowns[i].name) start[i] = found.values[k];
+    }
+  }
+  return start;
+}
+
 }  // namespace
 
 HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, int threads)
@@ -39,7 +50,7 @@ HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, in
     const RunNoise noise{{noise_[i]}, make_smooth_roads(one, {0}), true};
     WhitenedFit found = fit_whitened(one, {0}, noise, own, start.values, 0, inside);
     roads_[i] = std::move(found.roads);
-    starts_[i] = std::move(found.fit.values);
+    starts_[i] = {own, std::move(found.fit.values)};
   });
 }
 
@@ -61,12 +72,12 @@ std::vector<HoldOutRun> HoldOutJudge::judge(const SharedValues& shared) const {
 
 HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) const {
   const CampaignData one = pin_run(data_, runs_[i], shared);
-  const auto model =
-      make_reading_model(one, {0}, roads_[i], make_run_unknowns(one, {0}, shared.unknowns));
+  const std::vector<Unknown> own = make_run_unknowns(one, {0}, shared.unknowns);
+  const auto model = make_reading_model(one, {0}, roads_[i], own);
   const Whitener whitener(*model, {noise_[i]}, roads_[i]);
   WhitenedModel whitened(*model, whitener);
   FitOptions options;
-  options.start = starts_[i];
+  options.start = make_start(own, starts_[i]);
   const FitResult fit = fit_readings(whitened, options);
   HoldOutRun run;
   run.run = runs_[i];

@@ -40,8 +40,8 @@ class HoldOutJudge {
   int threads_;
   std::vector<std::size_t> runs_;
   std::vector<NoiseSpectrum> noise_;
-  std::vector<LatentRoads> roads_;           // of each; empty where the road is noise
-  std::vector<std::vector<double>> starts_;  // of each run's own unknowns; empty: their own
+  std::vector<LatentRoads> roads_;    // of each run; empty where the road is noise
+  std::vector<SharedValues> starts_;  // of each run's own unknowns; empty: their own
 };
 
 }  // namespace strut

@@ -1,8 +1,8 @@
 // Readings of a wheel that lands.
 //
-// Its acceleration then changes by some g within two milliseconds, hundreds of a sensor's standard
-// deviations in one: what a reading of it is depends on the landing's moment, which is not known as
-// precisely, and not linearly. Such readings do not count.
+// Its acceleration then changes by several g within two milliseconds, by hundreds of a sensor's
+// standard deviations in one. A reading depends on the moment of the landing more finely than that
+// is known, and not linearly. Such readings are excluded from a fit.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,9 @@ struct LandingReading {
   std::size_t channel = 0, time = 0;
 };
 
-/// The readings of wheels' accelerations within 6 ms of where these wheels land, as a car is
-/// simulated that has the `unknowns` of run number `number`. Empty where it cannot be simulated.
+/// The readings of wheels' accelerations within 6 ms of the landings of these wheels, in a
+/// simulation of run number `number` at `values` of the unknowns. A sensor's own delay is ignored.
+/// Empty where the car cannot be simulated.
 std::vector<LandingReading> list_landings(const MeasuredRun& run,
                                           const std::vector<Unknown>& unknowns,
                                           const std::vector<double>& values, std::size_t number);

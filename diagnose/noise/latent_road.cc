@@ -36,7 +36,7 @@ Eigen::VectorXd calc_increment_covariance(Index count, double spacing, double wi
     density[static_cast<std::size_t>(k)] =
         calc_height_density(n) * rise * rise * 0.5 * (1.0 + sign * calc_track_coherence(n, width));
   }
-  // The sum of density cos(2 pi n spacing lag), a cosine transform, as 2 step spacing kSteps = 1.
+  // Sum of density cos(pi (k + 1/2) lag / kSteps): a cosine transform, by one of twice the length.
   Eigen::FFT<double> fft;
   std::vector<std::complex<double>> transform;
   density.resize(2 * kSteps, 0.0);
@@ -160,9 +160,9 @@ std::unique_ptr<ReadingModel> make_reading_model(const CampaignData& data,
                                                  const LatentRoads& roads,
                                                  std::vector<Unknown> unknowns, int threads) {
   if (roads.empty()) return make_reading_model(data, runs, std::move(unknowns), threads);
-  // A wheel that lands makes a spike of its acceleration. Over a shorter step than the unknowns are
-  // uncertain by, a reading on its flank would seem to decide them; over this one, which moves the
-  // spike past it, its difference jumps and does not count.
+  // The step is about as wide as the unknowns are uncertain. Over a shorter one, a single reading
+  // beside a contact event would seem to decide them; over this one its difference jumps and is
+  // ignored (calc_jump_free_difference).
   constexpr double kRelativeStep = 1e-4;
   std::vector<MeasuredRun> laid;
   laid.reserve(runs.size());

@@ -49,7 +49,7 @@ struct LatentRoad {
   std::array<RoughTrack, 2> tracks;  // the estimate
   Eigen::VectorXd weights;           // w of the estimate
   double lead_speed = 0.0;  // m/s, by how much the car is faster at the begin of its lead time
-  std::vector<LandingReading> landings{};  // on the estimate; none counts
+  std::vector<LandingReading> landings{};  // on the estimate; excluded
   std::shared_ptr<const RoadPrior> prior{};
   /// Tens of megabytes, shared with the road at other weights; null: not known yet.
   std::shared_ptr<const WhitenedRoad> whitened{};

@@ -62,7 +62,7 @@ struct NoiseSpectrum {
 /// Taper of a run's samples: half a period of a cosine over `length` samples at either end, 1
 /// between.
 std::vector<double> make_fade(std::size_t count, std::size_t length);
-/// Its length where NoiseSpectrum::fades: a twentieth of the run.
+/// Its length where NoiseSpectrum::fades and the road is noise: a twentieth of the run.
 std::size_t calc_fade_length(std::size_t count);
 
 /// Variance of a channel of a run by `common`, at level 1.

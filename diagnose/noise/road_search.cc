@@ -57,16 +57,16 @@ class RoadSearch {
   /// make chi2 discontinuous by about as much.
   static constexpr double kUneven = 30.0;
 
-  /// Steps to the minimum, at first by new derivatives or by those of before. False where the car
-  /// cannot be simulated on the road that it seems to need.
+  /// Searches the minimum; begins with new derivatives if `is_new`, else with the last ones.
+  /// Returns false where the car cannot be simulated on the road that it seems to need.
   bool descend(bool is_new) {
-    constexpr int kMostSteps = 12, kLevelSteps = 4;
+    constexpr int kMaxSteps = 12, kLevelSteps = 4;
     // The derivatives, of which those by the road cost most, are kept after a step that achieves
     // more than kNearly of what it promised, or more than kEnough where that is below kSmall of
     // chi2.
     constexpr double kSmall = 0.05, kEnough = 0.25, kNearly = 0.8;
     int level_steps = is_noise_known_ ? 0 : kLevelSteps;
-    for (int steps = 1; steps <= kMostSteps; ++steps) {
+    for (int steps = 1; steps <= kMaxSteps; ++steps) {
       const bool was_new = is_new;
       const std::optional<Move> proposed = propose(is_new);
       if (!proposed) return false;
@@ -78,12 +78,12 @@ class RoadSearch {
       if (!is_enough && was_new && steps > 1) break;
       const bool is_near = gained > kNearly * move.promised;
       is_new = !is_near && (!is_enough || move.promised > kSmall * move.cost);
-      if (level_steps > 0) level_steps = measure_level(move) ? level_steps - 1 : 0;
+      if (level_steps > 0 && measure_level(move)) --level_steps;
     }
     return true;
   }
 
-  /// Whether there is any; the roads' responses are whitened by it.
+  /// Returns whether the sensors drift; then whitens the roads' responses again.
   bool measure_drift() {
     const Whitener before(*model_, result_.spectra, result_.roads);
     if (!measure_drift_beside_roads(*model_, before, here_->residual, result_.spectra, threads_)) {
@@ -110,8 +110,8 @@ class RoadSearch {
     model_ = make_reading_model(data_, result_.runs, result_.roads, unknowns_, threads_);
   }
 
-  /// Sets the response of the roads where they and the car are, and where this lands; false where
-  /// these cannot be simulated.
+  /// Sets the landings and the responses of the roads where they and the car are. Returns false
+  /// where the car cannot be simulated.
   bool renew_responses() {
     const std::size_t runs = result_.runs.size();
     share_items(threads_, runs, [&](std::size_t r, int) {
@@ -152,11 +152,10 @@ class RoadSearch {
 
   std::optional<Move> propose(bool is_new) {
     if (is_new && !renew_responses()) return std::nullopt;
-    const Whitener sensors(*model_, result_.spectra, result_.roads);
-    return propose_from(is_new ? linearize() : *here_, sensors);
+    return propose_from(is_new ? linearize() : *here_);
   }
 
-  Move propose_from(const Linearization& at, const Whitener& sensors) const {
+  Move propose_from(const Linearization& at) const {
     const Whitener whitener(*model_, result_.spectra, result_.roads);
     const WhitenedModel whitened(*model_, whitener);
     const NormalEquations normal = calc_normal_equations(whitened, whitener.apply(at, threads_));
@@ -176,9 +175,10 @@ class RoadSearch {
     double after = calc_prior_cost(moved);
     for (std::size_t r = 0; r < result_.runs.size(); ++r) {
       const LatentRoad& road = *result_.roads[r];
-      const Eigen::VectorXd there = sensors.apply_sensors(r, moved);
+      const Eigen::VectorXd there = whitener.apply_sensors(r, moved);
       Eigen::VectorXd weights = solve_weights(road, there);
-      move.cost += sensors.apply_sensors(r, at.residual).squaredNorm() + road.weights.squaredNorm();
+      move.cost +=
+          whitener.apply_sensors(r, at.residual).squaredNorm() + road.weights.squaredNorm();
       after += (there + road.whitened->derivative * (weights - road.weights)).squaredNorm() +
                weights.squaredNorm();
       move.weights.push_back(std::move(weights));
@@ -230,14 +230,14 @@ class RoadSearch {
   std::optional<double> take(const Move& move, double uneven) {
     const double level = result_.spectra.front().level;
     const LatentRoads before = result_.roads;
-    for (const double share : {1.0, 0.3, 0.1, 0.03}) {
+    for (const double fraction : {1.0, 0.3, 0.1, 0.03}) {
       std::vector<double> values = values_;
       for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] += share * (move.values[i] - values[i]);
+        values[i] += fraction * (move.values[i] - values[i]);
       }
       for (std::size_t r = 0; r < before.size(); ++r) {
         const Eigen::VectorXd& from = before[r]->weights;
-        result_.roads[r] = move_road(*before[r], from + share * (move.weights[r] - from), level);
+        result_.roads[r] = move_road(*before[r], from + fraction * (move.weights[r] - from), level);
       }
       make_model();
       Evaluation there = model_->evaluate(values);
@@ -260,18 +260,18 @@ class RoadSearch {
   /// readings. The steps are small: derivatives of before serve all of them.
   void settle() {
     if (result_.shared_count == 0) return;
-    constexpr int kMost = 5;
+    constexpr int kMaxSteps = 5;
     constexpr double kNearSigmas = 0.05;
     linearize();
-    for (int i = 0; i < kMost; ++i) {
-      const Move move = propose_from(*here_, Whitener(*model_, result_.spectra, result_.roads));
+    for (int i = 0; i < kMaxSteps; ++i) {
+      const Move move = propose_from(*here_);
       if (move.distance < kNearSigmas || !take(move, kUneven)) break;
     }
   }
 
   /// The level at which the roads found are most likely: a step to the fixed point of
   /// |w|^2 = number of weights that the readings determine (D. J. C. MacKay, Neural Computation 4
-  /// (1992)). Whether that is another.
+  /// (1992)). Returns whether it has changed.
   bool measure_level(const Move& move) {
     std::vector<double> determined(result_.roads.size());
     share_items(threads_, determined.size(),
@@ -281,9 +281,9 @@ class RoadSearch {
       sum += move.weights[r].squaredNorm();
       count += determined[r];
     }
-    constexpr double kMost = 4.0;  // far from the minimum, a road takes what the car should
+    constexpr double kMaxFactor = 4.0;  // far from the minimum, a road takes what the car should
     constexpr double kSame = 0.01;
-    const double factor = std::clamp(sum / count, 1.0 / kMost, kMost);
+    const double factor = std::clamp(sum / count, 1.0 / kMaxFactor, kMaxFactor);
     if (std::abs(factor - 1.0) < kSame) return false;
     for (NoiseSpectrum& s : result_.spectra) s.level *= factor;
     share_items(threads_, determined.size(), [&](std::size_t r, int) {

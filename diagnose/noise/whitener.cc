@@ -1,6 +1,7 @@
 #include "diagnose/noise/whitener.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -42,10 +43,8 @@ Eigen::MatrixXcd calc_covariance(const NoiseSpectrum& spectrum, Eigen::Index fre
 /// tracks are left in it, which leak from the ends.
 std::vector<double> make_run_fade(const NoiseSpectrum& spectrum, bool has_road) {
   constexpr double kRoadFade = 0.05;  // s
-  const std::size_t length = has_road
-                                 ? std::min(calc_fade_length(spectrum.samples),
-                                            static_cast<std::size_t>(kRoadFade / spectrum.interval))
-                                 : calc_fade_length(spectrum.samples);
+  std::size_t length = calc_fade_length(spectrum.samples);
+  if (has_road) length = std::min(length, static_cast<std::size_t>(kRoadFade / spectrum.interval));
   return make_fade(spectrum.samples, spectrum.fades ? length : 0);
 }
 
@@ -99,14 +98,18 @@ Whitener::Whitener(const ReadingModel& model, std::vector<NoiseSpectrum> spectra
   }
   run_begin_.push_back(places_.size());
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    if (has_road(r)) runs_[r].of_landings = find_directions(r, roads_[r]->landings);
+    if (!has_road(r)) continue;
+    Run& run = runs_[r];
+    run.landing_basis = calc_landing_basis(r, roads_[r]->landings);
+    run.share -= static_cast<double>(run.landing_basis.cols()) /
+                 static_cast<double>(run_begin_[r + 1] - run_begin_[r]);
   }
 }
 
-Eigen::MatrixXd Whitener::find_directions(std::size_t r,
-                                          const std::vector<LandingReading>& readings) const {
-  // Numbers up to some frequency hardly tell successive readings apart.
-  constexpr double kTold = 0.1;
+Eigen::MatrixXd Whitener::calc_landing_basis(std::size_t r,
+                                             const std::vector<LandingReading>& readings) const {
+  // Frequencies up to a highest one hardly distinguish successive readings.
+  constexpr double kRankTolerance = 0.01;
   const Run& run = runs_[r];
   Eigen::MatrixXd units = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(run.count),
                                                 static_cast<Eigen::Index>(readings.size()));
@@ -117,9 +120,27 @@ Eigen::MatrixXd Whitener::find_directions(std::size_t r,
     if (row != kMissing) units(static_cast<Eigen::Index>(row), used++) = 1.0;
   }
   if (used == 0) return {};
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(whiten_run(r, units.leftCols(used)));
-  qr.setThreshold(kTold);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(qr.rows(), qr.rank());
+  const Eigen::MatrixXd whitened = whiten_run(r, units.leftCols(used));
+  // By white noise, so that drift of the sensors does not change what is removed (rewhiten_run).
+  const Eigen::MatrixXd white = list_sensor_noise(r).asDiagonal() * whitened;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(white.transpose() * white);
+  const double min_power = kRankTolerance * kRankTolerance * solver.eigenvalues()(used - 1);
+  const auto rank = static_cast<Eigen::Index>((solver.eigenvalues().array() > min_power).count());
+  if (rank == 0) return {};
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(whitened * solver.eigenvectors().rightCols(rank));
+  return qr.householderQ() * Eigen::MatrixXd::Identity(whitened.rows(), rank);
+}
+
+Eigen::VectorXd Whitener::list_sensor_noise(std::size_t r) const {
+  Eigen::VectorXd noise(static_cast<Eigen::Index>(run_begin_[r + 1] - run_begin_[r]));
+  for (std::size_t i = run_begin_[r]; i < run_begin_[r + 1]; ++i) {
+    const ReadingPlace& place = places_[i];
+    const auto k = place.time - static_cast<std::size_t>(runs_[r].first);
+    const auto channel = static_cast<Eigen::Index>(place.channel);
+    noise(static_cast<Eigen::Index>(i - run_begin_[r])) =
+        runs_[r].factor[k](channel, channel).real();
+  }
+  return noise;
 }
 
 double Whitener::get_frequency(const ReadingPlace& place) const {
@@ -202,22 +223,16 @@ Eigen::MatrixXd Whitener::whiten_run(std::size_t r, const Eigen::MatrixXd& colum
 }
 
 void Whitener::remove_landings(std::size_t r, Eigen::MatrixXd& whitened) const {
-  const Eigen::MatrixXd& of_landings = runs_[r].of_landings;
-  if (of_landings.size() == 0) return;
-  whitened -= of_landings * (of_landings.transpose() * whitened);
+  const Eigen::MatrixXd& landing_basis = runs_[r].landing_basis;
+  if (landing_basis.size() == 0) return;
+  whitened -= landing_basis * (landing_basis.transpose() * whitened);
 }
 
 Eigen::MatrixXd Whitener::rewhiten_run(std::size_t r, Eigen::MatrixXd columns,
                                        const Whitener& before) const {
-  // What `before` took out of the columns are landings here, too.
-  for (std::size_t i = run_begin_[r]; i < run_begin_[r + 1]; ++i) {
-    const ReadingPlace& place = places_[i];
-    const auto k = place.time - static_cast<std::size_t>(runs_[r].first);
-    const auto channel = static_cast<Eigen::Index>(place.channel);
-    columns.row(static_cast<Eigen::Index>(i - run_begin_[r])) *=
-        before.runs_[r].factor[k](channel, channel).real() /
-        runs_[r].factor[k](channel, channel).real();
-  }
+  STRUT_CHECK(has_road(r) && before.run_begin_ == run_begin_, "both whiten the same readings");
+  columns = before.list_sensor_noise(r).cwiseQuotient(list_sensor_noise(r)).asDiagonal() * columns;
+  // What `before` removed from the columns is among what is removed here.
   remove_landings(r, columns);
   return columns;
 }
@@ -325,6 +340,15 @@ std::vector<Evaluation> WhitenedModel::evaluate(const std::vector<std::vector<do
 
 std::vector<double> WhitenedModel::align(const std::vector<double>& values) {
   return model_.align(values);
+}
+
+double WhitenedModel::calc_independent_count() const {
+  double count = 0.0;
+  for (std::size_t r = 0; r + 1 < whitener_.run_begin().size(); ++r) {
+    count += whitener_.get_share(r) *
+             static_cast<double>(whitener_.run_begin()[r + 1] - whitener_.run_begin()[r]);
+  }
+  return count;
 }
 
 double shrink_excess(double ratio, double count) {

@@ -11,7 +11,8 @@
 //
 //   w - H X H' w
 //
-// Readings of a landing wheel (landings.h) do not count: the numbers are made orthogonal to them.
+// Readings of a landing wheel (landings.h) are excluded: the whitened readings are projected onto
+// what is orthogonal to them.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +28,8 @@ namespace strut {
 struct WhitenerOptions {
   /// Hz; higher frequencies are ignored, since no effect of the catalogue acts there.
   double highest = 100.0;
-  /// Hz; lower frequencies are ignored in tapered runs, where they are offset, not motion.
+  /// Hz; lower frequencies are ignored in tapered runs whose road is noise, where they are offset,
+  /// not motion.
   double lowest = 0.6;
   /// Hz; the highest where the road is a run's unknown: shorter waves than its tracks hold.
   double highest_of_road = 33.0;
@@ -49,8 +51,8 @@ class Whitener {
   /// Columns of one run's readings, by its sensors alone.
   Eigen::MatrixXd whiten_run(std::size_t run, const Eigen::MatrixXd& columns_of_run,
                              int threads = 1) const;
-  /// Columns of one run that `before` has whitened by its sensors alone, by those of this one; both
-  /// have the same readings and the same landings, and on no frequency common noise.
+  /// Whitens by its sensors alone columns of one run that `before` has whitened by its own. Both
+  /// have the same readings, landings and road.
   Eigen::MatrixXd rewhiten_run(std::size_t run, Eigen::MatrixXd columns,
                                const Whitener& before) const;
   /// Residuals whitened by the sensors alone, with the road as it is in the model's run.
@@ -65,8 +67,8 @@ class Whitener {
   /// First whitened number of each run, and the end.
   const std::vector<std::size_t>& run_begin() const { return run_begin_; }
   double get_frequency(const ReadingPlace& place) const;
-  /// Expected mean square of a run's whitened noise: less than 1 where it is tapered or readings
-  /// are missing.
+  /// Expected mean square of a run's whitened noise: less than 1 where it is tapered, and where
+  /// readings are missing or excluded.
   double get_share(std::size_t run) const { return runs_[run].share; }
   const std::vector<NoiseSpectrum>& spectra() const { return spectra_; }
   const LatentRoads& roads() const { return roads_; }
@@ -85,16 +87,18 @@ class Whitener {
     std::size_t begin = 0, count = 0;            // readings
     std::vector<std::vector<std::size_t>> rows;  // [channel][sample]: from `begin`; kMissing
     std::vector<double> fade;
-    double share = 1.0;                    // mean square of the taper, 0 at missing readings
+    double share = 1.0;                    // see get_share
     Eigen::Index first = 0;                // lowest frequency
     std::vector<Eigen::MatrixXcd> factor;  // [frequency - first]: C_k, lower
     double log_determinant = 0.0;
-    /// Orthonormal: what the readings of landings are among the run's numbers. Empty: none.
-    Eigen::MatrixXd of_landings;
+    /// Orthonormal basis of the whitened landing readings. Empty: none.
+    Eigen::MatrixXd landing_basis;
   };
-  /// An orthonormal basis of what these readings are among the run's numbers.
-  Eigen::MatrixXd find_directions(std::size_t run,
-                                  const std::vector<LandingReading>& readings) const;
+  /// Amplitude of the sensors' noise over their white one, by whitened reading of a run with a road
+  /// of its own.
+  Eigen::VectorXd list_sensor_noise(std::size_t run) const;
+  Eigen::MatrixXd calc_landing_basis(std::size_t run,
+                                     const std::vector<LandingReading>& readings) const;
   void apply_run(std::size_t run, const Eigen::Ref<const Eigen::VectorXd>& column,
                  Eigen::Ref<Eigen::VectorXd> out) const;
   bool has_road(std::size_t run) const { return !roads_.empty() && roads_[run] != nullptr; }
@@ -124,6 +128,7 @@ class WhitenedModel : public ReadingModel {
   std::vector<Evaluation> evaluate(const std::vector<std::vector<double>>& points) override;
   std::vector<double> align(const std::vector<double>& values) override;
   bool has_independent_residuals() const override { return true; }
+  double calc_independent_count() const override;
 
  private:
   ReadingModel& model_;

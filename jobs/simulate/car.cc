@@ -136,7 +136,7 @@ void print_summary(const SimulateOptions& options, const LaneResults& results, d
                    double seconds) {
   double travel = 0.0;
   for (int corner = 0; corner < kCorners; ++corner) {
-    const int channel = CarChannel::of_corner(corner, CarChannel::kSuspensionDeflection);
+    const int channel = CarChannel::get_corner_channel(corner, CarChannel::kSuspensionDeflection);
     for (const double d : results.get_history(channel)) travel = std::max(travel, std::fabs(d));
   }
   print_note(

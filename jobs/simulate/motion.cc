@@ -77,7 +77,7 @@ Json make_corners(const LaneResults& results, int channel, const std::vector<std
   Json list = Json::array();
   for (int corner = 0; corner < kCorners; ++corner) {
     list.push_back(
-        make_values(results.get_history(CarChannel::of_corner(corner, channel)), frames));
+        make_values(results.get_history(CarChannel::get_corner_channel(corner, channel)), frames));
   }
   return list;
 }
@@ -247,7 +247,7 @@ Json make_other(const OtherRun& other, const std::vector<double>& times) {
   Json wheels = Json::array();
   for (int corner = 0; corner < kCorners; ++corner) {
     const std::vector<double>* height =
-        other.find(CarChannel::of_corner(corner, CarChannel::kWheelPositionZ));
+        other.find(CarChannel::get_corner_channel(corner, CarChannel::kWheelPositionZ));
     wheels.push_back(height == nullptr ? Json() : resample(other, *height, times));
   }
   json["wheel_height"] = wheels;
@@ -262,8 +262,8 @@ std::vector<int> list_other_channels() {
   channels.insert(channels.end(), {CarChannel::kForwardPosition, CarChannel::kBodyPositionZ,
                                    CarChannel::kPitchAngle, CarChannel::kRollAngle});
   for (int corner = 0; corner < kCorners; ++corner) {
-    channels.push_back(CarChannel::of_corner(corner, CarChannel::kWheelPositionZ));
-    channels.push_back(CarChannel::of_corner(corner, CarChannel::kDamperForce));
+    channels.push_back(CarChannel::get_corner_channel(corner, CarChannel::kWheelPositionZ));
+    channels.push_back(CarChannel::get_corner_channel(corner, CarChannel::kDamperForce));
   }
   return channels;
 }
@@ -408,12 +408,12 @@ Chart make_motion_curves(const LaneResults& results, const std::optional<OtherRu
     for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
       add_other(std::string(", ") + kNames[static_cast<std::size_t>(corner)],
                 is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine,
-                CarChannel::of_corner(corner, curves.corner));
+                CarChannel::get_corner_channel(corner, curves.corner));
     }
     for (int corner = 0; curves.channel < 0 && corner < kCorners; ++corner) {
       add(kNames[static_cast<std::size_t>(corner)],
           is_right(corner) ? SeriesKind::kLine : SeriesKind::kDashedLine, 1 + axle_of(corner),
-          CarChannel::of_corner(corner, curves.corner));
+          CarChannel::get_corner_channel(corner, curves.corner));
     }
     panel.about = fmt::format("{} over time [s]", curves.label);
     chart.panels.push_back(std::move(panel));

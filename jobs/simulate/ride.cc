@@ -81,14 +81,16 @@ AxleRide calc_axle_ride(const ReadChannel& read, int axle, double rate) {
   AxleRide ride;
   std::vector<bool> is_airborne;
   for (const int corner : {2 * axle, 2 * axle + 1}) {
-    const std::vector<double> load = read(CarChannel::of_corner(corner, CarChannel::kTireForceZ));
+    const std::vector<double> load =
+        read(CarChannel::get_corner_channel(corner, CarChannel::kTireForceZ));
     is_airborne.resize(load.size(), false);
     for (std::size_t i = 0; i < load.size(); ++i) {
       if (load[i] <= 0.0) is_airborne[i] = true;
     }
     const double mean = calc_mean(load);
     ride.load_variation = std::max(ride.load_variation, calc_rms(load, mean) / mean);
-    const int deflection = CarChannel::of_corner(corner, CarChannel::kSuspensionDeflection);
+    const int deflection =
+        CarChannel::get_corner_channel(corner, CarChannel::kSuspensionDeflection);
     ride.travel = std::max(ride.travel, calc_peak(read(deflection)));
   }
   ride.airborne =
@@ -108,7 +110,7 @@ std::vector<int> list_ride_channels() {
   std::vector<int> channels = {CarChannel::kBodyAccelerationZ};
   for (int corner = 0; corner < kCorners; ++corner) {
     for (const int channel : {CarChannel::kTireForceZ, CarChannel::kSuspensionDeflection}) {
-      channels.push_back(CarChannel::of_corner(corner, channel));
+      channels.push_back(CarChannel::get_corner_channel(corner, channel));
     }
   }
   return channels;

@@ -10,7 +10,7 @@ using C = CarChannel;
 std::vector<StrutInfo> list_struts() {
   std::vector<StrutInfo> struts;
   for (int corner = 0; corner < kCorners; ++corner) {
-    const auto at = [corner](int channel) { return C::of_corner(corner, channel); };
+    const auto at = [corner](int channel) { return C::get_corner_channel(corner, channel); };
     const std::string axle = kAxleNames[static_cast<std::size_t>(axle_of(corner))];
     struts.push_back({axle,
                       axle + "_suspension_deflection",
@@ -29,8 +29,8 @@ std::vector<StateInfo> list_states() {
   for (int axle = 0; axle < kAxles; ++axle) {
     const std::string place = kAxleNames[static_cast<std::size_t>(axle)];
     const auto mean = [axle](int channel) {
-      return ChannelSum{{C::of_corner(2 * axle, channel), 0.5},
-                        {C::of_corner(2 * axle + 1, channel), 0.5}};
+      return ChannelSum{{C::get_corner_channel(2 * axle, channel), 0.5},
+                        {C::get_corner_channel(2 * axle + 1, channel), 0.5}};
     };
     states.push_back({StateKind::kDeflection, place, place + "_suspension_deflection", "m",
                       mean(C::kSuspensionDeflection)});

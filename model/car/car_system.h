@@ -162,7 +162,7 @@ class CarSystem {
     const T* x = expand(reduced);
     observe_body(vehicle_, t, x, workspace_, out);
     for (int c = 0; c < kCorners; c += kStride) {
-      T* own = out + CarChannel::of_corner(c, 0);
+      T* own = out + CarChannel::get_corner_channel(c, 0);
       center_acceleration_(*this, c, x[StateIndex::kCorner + c]);
       observe_corner(vehicle_, x, workspace_, c, own);
       if constexpr (S == Sides::kLeft) mirror_corner(own, own + CarChannel::kCornerChannels);

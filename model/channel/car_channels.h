@@ -46,7 +46,7 @@ struct CarChannel {
   static constexpr int kCount = kCornerBegin + kCorners * kCornerChannels;
 
   /// The number of a corner's channel, such as kWheelPositionZ.
-  static constexpr int of_corner(int corner, int channel) {
+  static constexpr int get_corner_channel(int corner, int channel) {
     return kCornerBegin + corner * kCornerChannels + channel;
   }
 };

@@ -120,7 +120,7 @@ TEST_CASE("The weights of a road are those of ridge regression", "[unit]") {
   CHECK((calc_leverage(*run.road) - share).norm() < tolerance(1e-12));
 }
 
-/// A road under which wheels land at three readings, two of which follow on another.
+/// A road under which wheels land at three readings, two of them successive.
 LatentRoad make_road_of_landings() {
   LatentRoad road;
   road.weights = Eigen::VectorXd::Zero(kWeights);
@@ -128,10 +128,10 @@ LatentRoad make_road_of_landings() {
   return road;
 }
 
-TEST_CASE("Readings of a landing wheel do not count and others do as before", "[unit]") {
+TEST_CASE("Readings of a landing wheel are excluded and others are not", "[unit]") {
   const IdleModel model(1);
   const auto road = std::make_shared<const LatentRoad>(make_road_of_landings());
-  const Whitener plain(model, {make_white()}), whitener(model, {make_white()}, {road});
+  const Whitener whitener(model, {make_white()}, {road});
   const Eigen::MatrixXd units = Eigen::MatrixXd::Identity(kReadings, kReadings);
   const Eigen::MatrixXd gram =
       whitener.whiten_run(0, units).transpose() * whitener.whiten_run(0, units);
@@ -141,6 +141,51 @@ TEST_CASE("Readings of a landing wheel do not count and others do as before", "[
   }
   // All frequencies count here, so that whitening keeps sums of squares.
   CHECK((gram - Eigen::MatrixXd(counts.asDiagonal())).norm() < tolerance(1e-12));
+  CHECK(whitener.get_share(0) ==
+        Approx(counts.sum() / static_cast<double>(kReadings)).epsilon(tolerance(1e-12)));
+  WhitenedModel whitened(const_cast<IdleModel&>(model), whitener);
+  CHECK(whitened.calc_independent_count() == Approx(counts.sum()).epsilon(tolerance(1e-12)));
+}
+
+/// 3 s at 500 Hz, of which a road keeps 33 Hz, with seven successive readings of a landing.
+struct LongRun {
+  static constexpr std::size_t kCount = 1500, kFirst = 700;
+  IdleModel model{1, kCount};
+  LatentRoads roads;
+
+  LongRun() {
+    LatentRoad road;
+    road.weights = Eigen::VectorXd::Zero(kWeights);
+    for (std::size_t t = kFirst; t < kFirst + 7; ++t) road.landings.push_back({1, t});
+    roads.push_back(std::make_shared<const LatentRoad>(std::move(road)));
+  }
+  static NoiseSpectrum make_spectrum() {
+    NoiseSpectrum s = make_white();
+    s.samples = kCount;
+    s.interval = 2e-3;
+    return s;
+  }
+};
+
+TEST_CASE("Hardly anything of a landing passes where frequencies distinguish few readings",
+          "[unit]") {
+  const LongRun run;
+  const Whitener whitener(run.model, {LongRun::make_spectrum()}, run.roads);
+  const auto whiten = [&](std::size_t time, double size) {
+    Eigen::VectorXd reading = Eigen::VectorXd::Zero(LongRun::kCount * kChannels);
+    reading(static_cast<Eigen::Index>(time * kChannels + 1)) = size;
+    return whitener.whiten_run(0, reading).norm();
+  };
+  for (std::size_t t = LongRun::kFirst; t < LongRun::kFirst + 7; ++t) {
+    CHECK(whiten(t, 300.0) < 2.0);
+  }
+  // Elsewhere a reading has its part of the frequencies, 2 * 33 of 500 Hz.
+  CHECK(whiten(300, 300.0) == Approx(300.0 * std::sqrt(66.0 / 500.0)).epsilon(0.01));
+  // Of the seven readings, that many can be told apart.
+  const double excluded =
+      (1.0 - whitener.get_share(0)) * static_cast<double>(whitener.whitened_count());
+  CHECK(excluded > 1.5);
+  CHECK(excluded < 5.5);
 }
 
 TEST_CASE("Numbers are whitened again by the drift of other sensors", "[unit]") {
@@ -153,10 +198,21 @@ TEST_CASE("Numbers are whitened again by the drift of other sensors", "[unit]") 
   const Eigen::MatrixXd again = after.rewhiten_run(0, before.whiten_run(0, columns), before);
   CHECK((again - after.whiten_run(0, columns)).norm() < tolerance(1e-12));
   CHECK((again - before.whiten_run(0, columns)).norm() > 1.0);
+
+  const LongRun run;
+  drifting.samples = LongRun::kCount;
+  drifting.interval = 2e-3;
+  const Whitener long_before(run.model, {LongRun::make_spectrum()}, run.roads);
+  const Whitener long_after(run.model, {drifting}, run.roads);
+  const Eigen::MatrixXd readings = draw(18, LongRun::kCount * kChannels, 3);
+  const Eigen::MatrixXd direct = long_after.whiten_run(0, readings);
+  const Eigen::MatrixXd indirect =
+      long_after.rewhiten_run(0, long_before.whiten_run(0, readings), long_before);
+  CHECK((indirect - direct).norm() < tolerance(1e-10));
 }
 
-/// Sum of squares of what whitening leaves of a tone of 10 standard deviations at 61.3 Hz.
-double leave_of_tone(bool is_cut_off) {
+/// Sum of squares of the whitened readings of a tone of 10 standard deviations at 61.3 Hz.
+double calc_leaked_power(bool is_cut_off) {
   constexpr std::size_t kLong = 1500;
   const IdleModel model(1, kLong);
   NoiseSpectrum s = make_white();
@@ -176,8 +232,8 @@ double leave_of_tone(bool is_cut_off) {
 
 TEST_CASE("Hardly any waves too short for a road leak from the ends of a cut-off record",
           "[unit]") {
-  CHECK(leave_of_tone(false) > 5.0);
-  CHECK(leave_of_tone(true) < 0.5);
+  CHECK(calc_leaked_power(false) > 5.0);
+  CHECK(calc_leaked_power(true) < 0.5);
 }
 
 /// Corners [Hz] found in what roads leave of the noise of sensors with this corner, by channel.
@@ -237,6 +293,20 @@ TEST_CASE("A road's prior has the density of ISO 8608 in either track", "[unit]"
   for (const Eigen::Index i : {10, 150, 210, 399}) {
     const Eigen::VectorXd increment = (factor.row(i) - factor.row(i - 1)).transpose();
     CHECK(increment.squaredNorm() == Approx(expected).epsilon(tolerance(1e-3)));
+  }
+  // Increments further apart, by quadrature over the wave number n up to 1 / (2 kSpacing).
+  for (const Eigen::Index lag : {1, 7, 150}) {
+    constexpr int kSteps = 100000;
+    double integral = 0.0;
+    for (int k = 0; k < kSteps; ++k) {
+      const double phase = std::numbers::pi * (k + 0.5) / kSteps;  // 2 pi n kSpacing
+      const double slope = 2.0 * std::sin(0.5 * phase) / (phase / (2.0 * std::numbers::pi));
+      integral += slope * slope * std::cos(phase * static_cast<double>(lag));
+    }
+    integral *= 0.01 * kSpacing * 0.5 / kSteps;
+    const Eigen::VectorXd one = (factor.row(20) - factor.row(19)).transpose();
+    const Eigen::VectorXd other = (factor.row(20 + lag) - factor.row(19 + lag)).transpose();
+    CHECK(one.dot(other) == Approx(integral).margin(tolerance(1e-6) * expected));
   }
   // Long waves lift both tracks alike: 10 m are many times their distance.
   const Eigen::VectorXd left = (factor.row(199) - factor.row(0)).transpose();

@@ -458,7 +458,7 @@ TEST_CASE("An effect at the front moves the front's force first", "[unit][effect
     const LaneResults a = scalar().run_scalar(on, make_options(), plan);
     const LaneResults b = scalar().run_scalar(plain, make_options(), plan);
     const auto find_first = [&](int corner) {
-      const int channel = C::of_corner(corner, C::kDamperForce);
+      const int channel = C::get_corner_channel(corner, C::kDamperForce);
       int i = 0;
       while (i < a.sample_count &&
              std::fabs(a.get_sample(i, channel) - b.get_sample(i, channel)) < 20.0) {

@@ -204,7 +204,7 @@ void check_against_cvode(Stepper stepper) {
     CHECK(z < tolerance(step < 5e-4 ? 1e-6 : 2e-5));
     CHECK(pitch < tolerance(step < 5e-4 ? 1e-6 : 2e-5));
     for (int corner = 0; corner < kCorners; ++corner) {
-      const int wheel = C::of_corner(corner, C::kWheelPositionZ);
+      const int wheel = C::get_corner_channel(corner, C::kWheelPositionZ);
       CHECK(calc_largest_difference(run, truth, wheel) < tolerance(step < 5e-4 ? 1e-6 : 5e-5));
     }
   }

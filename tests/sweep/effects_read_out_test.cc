@@ -120,7 +120,7 @@ TEST_CASE("Sensors change the readings of their own lane and channel, and no mot
   CHECK(run.event_time == truth.event_time);
   REQUIRE(run.history.size() == truth.history.size());
   const int corner = kRearLeft;
-  const int force = C::of_corner(corner, C::kDamperForce);
+  const int force = C::get_corner_channel(corner, C::kDamperForce);
   const auto is_read = [=](int channel) {
     return channel == C::kBodyPositionZ || channel == C::kImuRateY || channel == force;
   };
