@@ -73,7 +73,14 @@ class RoadSearch {
       const Move& move = *proposed;
       const double gained = take(move, 0.0).value_or(0.0);
       ++steps_;
-      if (move.promised < kUneven) break;
+      moved_ += std::max(gained, 0.0);
+      if (move.promised < kUneven) {
+        // The responses decide which part of a residual a road can take, here and not where the
+        // search began.
+        if (moved_ < kSmall * move.cost) break;
+        is_new = true;
+        continue;
+      }
       const bool is_enough = gained > kEnough * move.promised;
       if (!is_enough && was_new && steps > 1) break;
       const bool is_near = gained > kNearly * move.promised;
@@ -113,6 +120,7 @@ class RoadSearch {
   /// Sets the landings and the responses of the roads where they and the car are. Returns false
   /// where the car cannot be simulated.
   bool renew_responses() {
+    moved_ = 0.0;
     const std::size_t runs = result_.runs.size();
     share_items(threads_, runs, [&](std::size_t r, int) {
       result_.roads[r] =
@@ -329,6 +337,7 @@ class RoadSearch {
   /// Where the search stands; the derivatives may be those of before.
   std::shared_ptr<const Linearization> here_;
   bool is_fresh_ = false;
+  double moved_ = 0.0;  // fall of chi2 since the roads' responses were taken
 };
 
 }  // namespace
