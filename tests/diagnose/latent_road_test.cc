@@ -129,7 +129,7 @@ LatentRoad make_road_of_landings() {
 }
 
 TEST_CASE("Readings of a landing wheel are excluded and others are not", "[unit]") {
-  const IdleModel model(1);
+  IdleModel model(1);
   const auto road = std::make_shared<const LatentRoad>(make_road_of_landings());
   const Whitener whitener(model, {make_white()}, {road});
   const Eigen::MatrixXd units = Eigen::MatrixXd::Identity(kReadings, kReadings);
@@ -143,7 +143,7 @@ TEST_CASE("Readings of a landing wheel are excluded and others are not", "[unit]
   CHECK((gram - Eigen::MatrixXd(counts.asDiagonal())).norm() < tolerance(1e-12));
   CHECK(whitener.get_share(0) ==
         Approx(counts.sum() / static_cast<double>(kReadings)).epsilon(tolerance(1e-12)));
-  WhitenedModel whitened(const_cast<IdleModel&>(model), whitener);
+  const WhitenedModel whitened(model, whitener);
   CHECK(whitened.calc_independent_count() == Approx(counts.sum()).epsilon(tolerance(1e-12)));
 }
 
