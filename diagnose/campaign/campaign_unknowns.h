@@ -1,4 +1,4 @@
-// What a campaign does not know of its model, its runs and its sensors.
+// Unknowns of a campaign: free parameters, nuisances of its runs, errors of its sensors.
 #pragma once
 
 #include <cstddef>

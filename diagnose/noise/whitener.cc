@@ -232,7 +232,7 @@ Eigen::MatrixXd Whitener::rewhiten_run(std::size_t r, Eigen::MatrixXd columns,
                                        const Whitener& before) const {
   STRUT_CHECK(has_road(r) && before.run_begin_ == run_begin_, "both whiten the same readings");
   columns = before.list_sensor_noise(r).cwiseQuotient(list_sensor_noise(r)).asDiagonal() * columns;
-  // What `before` removed from the columns is among what is removed here.
+  // Both have the same landings: those that `before` removed span the same readings.
   remove_landings(r, columns);
   return columns;
 }

@@ -181,7 +181,7 @@ TEST_CASE("Hardly anything of a landing passes where frequencies distinguish few
   }
   // Elsewhere a reading has its part of the frequencies, 2 * 33 of 500 Hz.
   CHECK(whiten(300, 300.0) == Approx(300.0 * std::sqrt(66.0 / 500.0)).epsilon(0.01));
-  // Of the seven readings, that many can be told apart.
+  // The band holds 2 to 5 independent combinations of the seven readings.
   const double excluded =
       (1.0 - whitener.get_share(0)) * static_cast<double>(whitener.whitened_count());
   CHECK(excluded > 1.5);
