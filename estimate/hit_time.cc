@@ -28,25 +28,30 @@ BiasPrior find_bias_prior(const std::vector<Unknown>& unknowns, std::size_t run,
   return {};
 }
 
+/// Of the errors of a channel, over its sigma.
+struct ErrorSums {
+  double count = 0.0, sum = 0.0, squares = 0.0;
+};
+
 /// Sum over the channels of min over b of sum (e + b)^2 + information b^2, which is
-/// sum e^2 - (sum e)^2 / (count + information).
-double calc_chi2(const std::vector<Unknown>& unknowns, const MeasuredRun& run,
+/// sum e^2 - (sum e)^2 / (count + information). `biases`: by channel.
+double calc_chi2(const std::vector<BiasPrior>& biases, const MeasuredRun& run,
                  std::span<const ReadingPlace> readings, const SampledRun& base, double hit_time,
                  double step) {
+  std::vector<ErrorSums> channels(biases.size());
+  for (const ReadingPlace& place : readings) {
+    const MeasuredChannel& c = run.channels[place.channel];
+    const double simulated = read_curve(run, base, place, hit_time, step).value;
+    const double e = (simulated - c.values[place.time]) / c.sigma + biases[place.channel].mean;
+    ErrorSums& errors = channels[place.channel];
+    ++errors.count;
+    errors.sum += e;
+    errors.squares += e * e;
+  }
   double chi2 = 0.0;
-  for (std::size_t channel = 0; channel < run.channels.size(); ++channel) {
-    const MeasuredChannel& c = run.channels[channel];
-    const BiasPrior bias = find_bias_prior(unknowns, readings.front().run, c);
-    double count = 0.0, sum = 0.0, squares = 0.0;
-    for (const ReadingPlace& place : readings) {
-      if (place.channel != channel) continue;
-      const double simulated = read_curve(run, base, place, hit_time, step).value;
-      const double e = (simulated - c.values[place.time]) / c.sigma + bias.mean;
-      ++count;
-      sum += e;
-      squares += e * e;
-    }
-    chi2 += squares - sum * sum / std::max(1.0, count + bias.information);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const auto& [count, sum, squares] = channels[c];
+    chi2 += squares - sum * sum / std::max(1.0, count + biases[c].information);
   }
   return chi2;
 }
@@ -82,11 +87,15 @@ double find_best_hit_time(const std::vector<Unknown>& unknowns, const MeasuredRu
   // Excludes the bounds, where a search would be held.
   const auto first = static_cast<int>(std::floor((u.low - start) / kAlignStep)) + 1;
   const auto last = static_cast<int>(std::ceil((u.high - start) / kAlignStep)) - 1;
+  std::vector<BiasPrior> biases;
+  for (const MeasuredChannel& c : run.channels) {
+    biases.push_back(find_bias_prior(unknowns, readings.front().run, c));
+  }
   double best = start, min_chi2 = kInfinity;
   for (int k = first; k <= last; ++k) {
     const double hit_time = start + k * kAlignStep;
     const double off = u.prior.informs() ? (hit_time - u.prior.mean) / u.prior.sigma : 0.0;
-    const double chi2 = calc_chi2(unknowns, run, readings, base, hit_time, step) + off * off;
+    const double chi2 = calc_chi2(biases, run, readings, base, hit_time, step) + off * off;
     if (chi2 >= min_chi2) continue;
     min_chi2 = chi2;
     best = hit_time;

@@ -24,15 +24,24 @@ constexpr double kMargin = 0.5;
 /// Coefficients a second of driving: twice the highest frequency that the tracks hold.
 constexpr double kPerSecond = 100.0;
 
-/// Covariance of the increments over `spacing` of the tracks' half sum (`sign` 1) or half
+/// Amplitude that a wave keeps where a cubic B-spline with knots `width` [m] apart averages it.
+double calc_spline_gain(double wave_number, double width) {
+  const double x = std::numbers::pi * wave_number * width;
+  return x < 1e-6 ? 1.0 : std::pow(std::sin(x) / x, 4);
+}
+
+/// Covariance of the increments over a spacing of the tracks' half sum (`sign` 1) or half
 /// difference (-1), `lag` increments apart, at G0 = 1 m^3.
-Eigen::VectorXd calc_increment_covariance(Index count, double spacing, double width, double sign) {
+Eigen::VectorXd calc_increment_covariance(const TrackShape& shape, double sign) {
+  const auto& [count, spacing, width, footprint] = shape;
   constexpr int kSteps = 4096;
   const double highest = 0.5 / spacing, step = highest / kSteps;
   std::vector<double> density(kSteps);
   for (int k = 0; k < kSteps; ++k) {
     const double n = step * (k + 0.5);
-    const double rise = 2.0 * std::sin(std::numbers::pi * n * spacing);  // of a wave of height 1
+    // Of coefficients between which the spline has a wave of height 1 under the tires.
+    const double rise = 2.0 * std::sin(std::numbers::pi * n * spacing) *
+                        calc_spline_gain(n, 0.25 * footprint) / calc_spline_gain(n, spacing);
     density[static_cast<std::size_t>(k)] =
         calc_height_density(n) * rise * rise * 0.5 * (1.0 + sign * calc_track_coherence(n, width));
   }
@@ -103,8 +112,10 @@ std::shared_ptr<const LatentRoad> make_smooth_road(const MeasuredRun& run) {
   const auto count = static_cast<Index>(std::ceil((end - begin) / spacing));
   road.tracks.fill({begin, spacing, std::vector<double>(static_cast<std::size_t>(count), 0.0)});
   road.weights = Eigen::VectorXd::Zero(2 * count);
+  const TireContactSpec& tire = c.vehicle.tire;
+  const double footprint = tire.contact == ContactKind::kEnvelope ? tire.footprint : 0.0;
   road.prior = std::make_shared<const RoadPrior>(
-      make_road_prior(count, spacing, front.wheel_center_y + rear.wheel_center_y));
+      make_road_prior({count, spacing, front.wheel_center_y + rear.wheel_center_y, footprint}));
   return std::make_shared<const LatentRoad>(std::move(road));
 }
 
@@ -133,9 +144,9 @@ Eigen::MatrixXd RoadPrior::apply_transposed(const Eigen::MatrixXd& derivatives) 
   return out;
 }
 
-RoadPrior make_road_prior(Index count, double spacing, double width) {
-  return {factor_heights(calc_increment_covariance(count, spacing, width, 1.0)),
-          factor_heights(calc_increment_covariance(count, spacing, width, -1.0))};
+RoadPrior make_road_prior(const TrackShape& shape) {
+  return {factor_heights(calc_increment_covariance(shape, 1.0)),
+          factor_heights(calc_increment_covariance(shape, -1.0))};
 }
 
 LatentRoads make_smooth_roads(const CampaignData& data, const std::vector<std::size_t>& runs) {

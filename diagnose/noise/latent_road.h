@@ -6,11 +6,13 @@
 // u: coefficients of both tracks (model/scenario/rough_track.h). P: the increments of their sum and
 // their difference along the road are stationary, with the density
 //
-//   2 pi^2 n0^2 G0 (1 +- gamma(n)),  n0 = 0.1 1/m
+//   2 pi^2 n0^2 G0 (1 +- gamma(n)) (F(n) / B(n))^2,  n0 = 0.1 1/m
 //
-// of ISO 8608 and the coherence gamma of an isotropic road (noise_spectrum.h). The estimate of the
-// road is in the simulation, and readings are linear about it: what roughness moves while a wheel
-// is in the air or on the bump is not what it moves on level ground.
+// of ISO 8608 and the coherence gamma of an isotropic road (noise_spectrum.h). F: what the tires'
+// footprint leaves of a wave; B: what the spline between the coefficients leaves of it, 0.47 at a
+// third of their rate. The estimate of the road is in the simulation, and readings are linear about
+// it: what roughness moves while a wheel is in the air or on the bump is not what it moves on level
+// ground.
 #pragma once
 
 #include <Eigen/Core>
@@ -56,8 +58,14 @@ struct LatentRoad {
 };
 using LatentRoads = std::vector<std::shared_ptr<const LatentRoad>>;  // by run of a fit
 
-/// `count` coefficients of each track, `spacing` [m] apart, of tracks `width` [m] apart.
-RoadPrior make_road_prior(Eigen::Index count, double spacing, double width);
+struct TrackShape {
+  Eigen::Index count = 0;  // coefficients of each track
+  double spacing = 0.0;    // m, between them
+  double width = 0.0;      // m, between the tracks
+  double footprint = 0.0;  // m, over which the tires average the road; 0: they do not
+};
+
+RoadPrior make_road_prior(const TrackShape& shape);
 
 /// Smooth roads under `runs`. These start kRoadLead earlier, since the car still moves by what it
 /// met before the record.
