@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/math/local_polynomial.h"
 #include "estimate/sensor_noise.h"
 #include "io/table/units.h"
 #include "model/model.h"
@@ -38,9 +39,9 @@ struct MeasuredChannel {
 
 /// The noise of a recorded input, and its column.
 struct InputNoise {
-  double sigma = 0.0;       // standard deviation per sample, in the unit of what was recorded
-  double half_width = 0.0;  // of the local cubics that smoothed it [s]; 0: not smoothed
-  int derivative = 0;       // time derivative of the input that was recorded
+  double sigma = 0.0;  // standard deviation per sample, in the unit of what was recorded
+  LocalPolynomial smoothing{};
+  int derivative = 0;  // time derivative of the input that was recorded
   ColumnReading reading{};
 };
 

@@ -5,7 +5,7 @@
 //   R2  m_s a_s - F_s(delta, v) - F_a               F_s: strut at the measured deflection
 //
 // A wrong tire, road or unsprung mass leaves both at zero; a wrong strut shows in R2 alone, a wrong
-// sensor in both. D: second derivative by local cubics (local_cubic.h). A quantity y that is
+// sensor in both. D: second derivative by local cubics (local_polynomial.h). A quantity y that is
 // compared with it passes through the same filter, as D[y twice integrated], so that smoothing adds
 // no bias:
 //

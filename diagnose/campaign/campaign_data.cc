@@ -7,10 +7,10 @@
 
 #include "base/error/check.h"
 #include "base/error/input_error.h"
+#include "base/math/local_polynomial.h"
 #include "base/math/spread.h"
 #include "base/text/format_number.h"
 #include "diagnose/campaign/check_campaign_data.h"
-#include "diagnose/campaign/local_cubic.h"
 #include "diagnose/campaign/name_table.h"
 #include "estimate/readings.h"
 #include "model/error/model_error.h"
@@ -86,7 +86,7 @@ std::vector<MeasuredChannel> make_channels(const CampaignData& data, const Measu
 }
 
 /// The readings, without missing ones, as a signal over a clock that starts at 0. Smoothed as far
-/// as that removes only noise (choose_half_width), since forces follow the rate.
+/// as that removes only noise (choose_smoothing), since forces follow the rate.
 InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
                        const MeasuredColumn& column, InputNoise& noise) {
   const CampaignColumn& c = data.campaign.columns[column.at];
@@ -105,11 +105,13 @@ InputSignal make_input(const CampaignData& data, const MeasuredTable& table,
   noise.sigma = c.noise ? *c.noise : estimate_noise(values).sigma;
   // Masses smooth their inputs; a strut's force follows the velocity itself.
   const bool smooths = !data.model().masses.empty();
-  noise.half_width = c.smooth  ? *c.smooth
-                     : smooths ? 0.0
-                               : choose_half_width(times, values, noise.sigma);
+  if (c.smooth) {
+    noise.smoothing.half_width = *c.smooth;
+  } else if (!smooths) {
+    noise.smoothing = choose_smoothing(times, values, noise.sigma);
+  }
   try {
-    InputSignal input = make_sampled_input(data.get_input(c).name, times, values, noise.half_width);
+    InputSignal input = make_sampled_input(data.get_input(c).name, times, values, noise.smoothing);
     for (int i = 0; i < c.input.derivative; ++i) input = integrate_signal(input);
     return input;
   } catch (const ModelError& e) {
@@ -306,9 +308,12 @@ std::unique_ptr<ReadingModel> make_reading_model(std::vector<MeasuredRun> runs,
 }
 
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
-                               const std::vector<double>& values, double half_width) {
-  if (half_width <= 0.0) return make_signal(channel, times, values, Interpolation::kSpline);
-  const SmoothCurve curve = calc_local_cubic(times, values, half_width, CurveEnds::kOneSided);
+                               const std::vector<double>& values,
+                               const LocalPolynomial& smoothing) {
+  if (smoothing.half_width <= 0.0) {
+    return make_signal(channel, times, values, Interpolation::kSpline);
+  }
+  const SmoothCurve curve = smooth(times, values, smoothing, CurveEnds::kOneSided);
   return make_signal(channel, times, curve.value, curve.rate);
 }
 

@@ -64,9 +64,9 @@ std::unique_ptr<ReadingModel> make_reading_model(
     std::vector<MeasuredRun> runs, std::vector<Unknown> unknowns, int threads = 1,
     double relative_step = LinearizeOptions{}.relative_step);
 
-/// The samples of an input as a signal: a spline, or local cubics of `half_width` [s] > 0. Throws
-/// ModelError as make_signal does.
+/// The samples of an input as a signal: a spline, or smoothed. Throws ModelError as make_signal
+/// does.
 InputSignal make_sampled_input(const std::string& channel, const std::vector<double>& times,
-                               const std::vector<double>& values, double half_width);
+                               const std::vector<double>& values, const LocalPolynomial& smoothing);
 
 }  // namespace strut

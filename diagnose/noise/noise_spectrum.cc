@@ -265,7 +265,7 @@ std::vector<std::vector<double>> simulate_input_pulse(MeasuredRun run, std::size
     std::vector<double> samples(run.times.size(), 0.0);
     if (i == input) samples[begin] = pulse;
     inputs[i] =
-        make_sampled_input(inputs[i].channel, run.times, samples, run.input_noise[i].half_width);
+        make_sampled_input(inputs[i].channel, run.times, samples, run.input_noise[i].smoothing);
   }
   RunCurves curves = simulate_run(run, {}, {});
   if (!curves.failure.empty()) throw InputError(curves.failure);
@@ -303,8 +303,8 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
   for (std::size_t input = 0; input < measured.input_noise.size(); ++input) {
     const InputNoise noise = measured.input_noise[input];
     if (!(noise.sigma > 0.0)) continue;
-    const auto begin =
-        std::min(longest / 4, static_cast<std::size_t>(2.0 * noise.half_width / s.interval) + 4);
+    const auto begin = std::min(
+        longest / 4, static_cast<std::size_t>(2.0 * noise.smoothing.half_width / s.interval) + 4);
     const auto response = simulate_input_pulse(measured, input, begin, noise.sigma);
     Eigen::MatrixXcd source = make_source(s, s.samples);
     for (std::size_t k = 0; k < data.channels(run).size(); ++k) {

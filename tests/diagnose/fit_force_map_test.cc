@@ -296,7 +296,7 @@ CampaignData simulate_campaign(const test::TemporaryFolder& folder, const ForceM
     }
     const MeasuredRun run{
         name,
-        RigCase{spec, {make_sampled_input("road_position", record.time, record.road, 0.0)}},
+        RigCase{spec, {make_sampled_input("road_position", record.time, record.road, {})}},
         record.time,
         {}};
     const RunCurves curves = simulate_run(run, {}, {});

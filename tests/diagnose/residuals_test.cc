@@ -9,7 +9,6 @@
 
 #include "base/math/spread.h"
 #include "diagnose/baseline/body_balance.h"
-#include "diagnose/campaign/local_cubic.h"
 #include "diagnose/compare/compare.h"
 #include "tests/support/campaign_files.h"
 #include "tests/support/test_car.h"
@@ -104,48 +103,6 @@ TEST_CASE("A residual that is a function of a state is explained by it alone", "
   // The mean of 0.5 is all that x explains: 0.25 of a mean square of 2.5.
   CHECK(by_x.explained == Approx(0.1).margin(test::tolerance(0.01)));
   CHECK(by_x.bins.size() == kStateBins);
-}
-
-TEST_CASE("A local cubic gives cubics and their derivatives exactly", "[property]") {
-  std::vector<double> times, y;
-  for (int i = 0; i < 200; ++i) {
-    const double t = 0.01 * i + 0.002 * (i % 3);
-    times.push_back(t);
-    y.push_back(i % 9 == 4 ? kNan : 1.0 + t * (2.0 + t * (-3.0 + 4.0 * t)));
-  }
-  const SmoothCurve curve = calc_local_cubic(times, y, 0.08);
-  CHECK(std::isnan(curve.value.front()));
-  for (std::size_t i = 20; i < 180; i += 7) {
-    const double t = times[i];
-    CHECK(curve.value[i] == Approx(1.0 + t * (2.0 + t * (-3.0 + 4.0 * t))).epsilon(1e-9));
-    CHECK(curve.rate[i] == Approx(2.0 - 6.0 * t + 12.0 * t * t).margin(1e-8));
-    CHECK(curve.second_rate[i] == Approx(-6.0 + 24.0 * t).margin(1e-6));
-  }
-}
-
-TEST_CASE("A one-sided local cubic is defined everywhere on a clock with jitter", "[property]") {
-  std::vector<double> times, y;
-  for (std::uint64_t i = 0; i < 400; ++i) {
-    const double t = 0.01 * static_cast<double>(i) + 1e-6 * test::calc_test_normal(5, 0, i);
-    times.push_back(t);
-    y.push_back(1.0 + t * (2.0 + t * (-3.0 + 4.0 * t)));
-  }
-  const SmoothCurve inside = calc_local_cubic(times, y, 0.03);
-  const SmoothCurve curve = calc_local_cubic(times, y, 0.03, CurveEnds::kOneSided);
-  CHECK(count_readings(inside.value) < 390);  // some windows hold five readings
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    const double t = times[i];
-    CHECK(curve.value[i] == Approx(1.0 + t * (2.0 + t * (-3.0 + 4.0 * t))).epsilon(1e-9));
-    CHECK(curve.rate[i] == Approx(2.0 - 6.0 * t + 12.0 * t * t).epsilon(1e-7));
-  }
-}
-
-TEST_CASE("Noise reaches a local cubic's second rate as stated", "[statistical]") {
-  std::vector<double> times = make_times(4000, 0.002), y;
-  for (std::uint64_t i = 0; i < 4000; ++i) y.push_back(1e-5 * test::calc_test_normal(3, 0, i));
-  const double rms = calc_rms(calc_local_cubic(times, y, 0.02).second_rate);
-  // 4000 samples in windows of 21: some 200 independent ones, 5 %.
-  CHECK(rms == Approx(1e-5 * calc_second_rate_gain(0.02, 0.002)).epsilon(test::tolerance(0.2)));
 }
 
 /// The body balance of the first run at the truth's linear parameters.
