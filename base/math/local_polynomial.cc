@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "base/error/check.h"
@@ -20,21 +21,36 @@ using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxDegree + 1, 1>;
 using Gram =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDegree + 1, kMaxDegree + 1>;
 
-/// Legendre polynomials up to a degree, and two derivatives of each, at s.
+/// Legendre polynomials up to a degree at s.
+Terms calc_legendre(int degree, double s) {
+  Terms value(degree + 1);
+  value(0) = 1.0;
+  value(1) = s;
+  for (int k = 1; k < degree; ++k) {
+    value(k + 1) = ((2.0 * k + 1.0) * s * value(k) - k * value(k - 1)) / (k + 1.0);
+  }
+  return value;
+}
+
+/// The same with two derivatives of each.
 struct Legendre {
   Terms value, rate, second_rate;
 
-  Legendre(int degree, double s) : value(Terms::Zero(degree + 1)), rate(value), second_rate(value) {
-    value(0) = 1.0;
-    value(1) = s;
+  Legendre(int degree, double s)
+      : value(calc_legendre(degree, s)), rate(Terms::Zero(degree + 1)), second_rate(rate) {
     rate(1) = 1.0;
     for (int k = 1; k < degree; ++k) {
       const double a = (2.0 * k + 1.0) / (k + 1.0), b = k / (k + 1.0);
-      value(k + 1) = a * s * value(k) - b * value(k - 1);
       rate(k + 1) = a * (value(k) + s * rate(k)) - b * rate(k - 1);
       second_rate(k + 1) = a * (2.0 * rate(k) + s * second_rate(k)) - b * second_rate(k - 1);
     }
   }
+};
+
+/// Readings of one window, whose times count from its middle in units of its reach.
+struct Window {
+  std::span<const double> times, values;
+  double middle = 0.0, reach = 0.0;
 };
 
 /// Extends the readings [first, last) of a window around time i to the next ones on either side
@@ -51,49 +67,31 @@ void widen(std::span<const double> times, std::span<const double> values, std::s
   }
 }
 
-/// Coefficients of the Legendre polynomials in (t - middle) / half_width.
-Terms fit(std::span<const double> times, std::span<const double> values, double middle,
-          const LocalPolynomial& by) {
-  Gram gram = Gram::Zero(by.degree + 1, by.degree + 1);
-  Terms moment = Terms::Zero(by.degree + 1);
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (!std::isfinite(values[k])) continue;
-    const Terms at = Legendre(by.degree, (times[k] - middle) / by.half_width).value;
+/// Coefficients of the window's Legendre polynomials.
+Terms fit(const Window& window, int degree) {
+  Gram gram = Gram::Zero(degree + 1, degree + 1);
+  Terms moment = Terms::Zero(degree + 1);
+  for (std::size_t k = 0; k < window.times.size(); ++k) {
+    if (!std::isfinite(window.values[k])) continue;
+    const Terms at = calc_legendre(degree, (window.times[k] - window.middle) / window.reach);
     gram += at * at.transpose();
-    moment += values[k] * at;
+    moment += window.values[k] * at;
   }
   return gram.ldlt().solve(moment);
 }
 
-/// Of white noise of 1 sigma, 1 sigma of the value and of the rate times the interval in the middle
-/// of 2 m + 1 even readings.
-struct NoiseGain {
-  double value = 0.0, rate = 0.0;
-};
-
-NoiseGain calc_noise_gain(int m, int degree) {
-  Gram gram = Gram::Zero(degree + 1, degree + 1);
-  for (int k = -m; k <= m; ++k) {
-    const Terms at = Legendre(degree, static_cast<double>(k) / m).value;
-    gram += at * at.transpose();
-  }
-  const Legendre middle(degree, 0.0);
-  const auto solver = gram.ldlt();
-  return {std::sqrt(middle.value.dot(solver.solve(middle.value))),
-          std::sqrt(middle.rate.dot(solver.solve(middle.rate))) / m};
-}
-
-}  // namespace
-
-SmoothCurve smooth(std::span<const double> times, std::span<const double> values,
-                   const LocalPolynomial& by, CurveEnds ends) {
+/// The curve at every `stride`-th time; NaN between.
+SmoothCurve calc_curve(std::span<const double> times, std::span<const double> values,
+                       const LocalPolynomial& by, CurveEnds ends, std::size_t stride) {
   STRUT_CHECK(by.degree >= 1 && by.degree <= kMaxDegree, "a degree from 1 to 7");
   const std::size_t least = static_cast<std::size_t>(by.degree) + 1 + kSpare;
   const std::vector<double> none(times.size(), std::numeric_limits<double>::quiet_NaN());
   SmoothCurve curve{none, none, none};
-  const double half_width = by.half_width, reach = half_width * (1.0 + 1e-9);
+  if (times.size() < least) return curve;
+  const double half_width = std::min(by.half_width, 0.5 * (times.back() - times.front()));
+  const double reach = half_width * (1.0 + 1e-9);
   std::size_t first = 0, last = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
+  for (std::size_t i = 0; i < times.size(); i += stride) {
     // At an end the window stays a whole one and its polynomial is read off its middle.
     const double middle =
         std::max(times.front() + half_width, std::min(times[i], times.back() - half_width));
@@ -102,44 +100,86 @@ SmoothCurve smooth(std::span<const double> times, std::span<const double> values
     while (last < times.size() && times[last] <= middle + reach) ++last;
     std::size_t begin = first, end = last;
     if (ends == CurveEnds::kOneSided) widen(times, values, i, least, begin, end);
-    const auto inside = values.subspan(begin, end - begin);
-    if (count_readings(inside) < least) continue;
-    const Terms terms = fit(times.subspan(begin, end - begin), inside, middle, by);
-    const Legendre here(by.degree, (times[i] - middle) / half_width);
+    Window window{times.subspan(begin, end - begin), values.subspan(begin, end - begin), middle,
+                  half_width};
+    if (count_readings(window.values) < least) continue;
+    // A window that was widened across a gap reaches further.
+    window.reach = std::max({half_width, middle - times[begin], times[end - 1] - middle});
+    const Terms terms = fit(window, by.degree);
+    const Legendre here(by.degree, (times[i] - middle) / window.reach);
     curve.value[i] = here.value.dot(terms);
-    curve.rate[i] = here.rate.dot(terms) / half_width;
-    curve.second_rate[i] = here.second_rate.dot(terms) / (half_width * half_width);
+    curve.rate[i] = here.rate.dot(terms) / window.reach;
+    curve.second_rate[i] = here.second_rate.dot(terms) / (window.reach * window.reach);
   }
   return curve;
 }
 
-namespace {
+/// What white noise of 1 sigma in 2 m + 1 even readings leaves at places of their polynomial.
+class NoiseGain {
+ public:
+  NoiseGain(int m, int degree) : m_(m), degree_(degree) {
+    Gram gram = Gram::Zero(degree + 1, degree + 1);
+    for (int k = -m; k <= m; ++k) {
+      const Terms at = calc_legendre(degree, static_cast<double>(k) / m);
+      gram += at * at.transpose();
+    }
+    solver_.compute(gram);
+  }
+
+  /// Variance of the value in the middle.
+  double calc_value() const { return calc_variance(Legendre(degree_, 0.0).value); }
+  /// Variance of the rate times the interval, mean over a record of `count` readings.
+  double calc_rate(std::size_t count) const {
+    const double per_interval = 1.0 / (static_cast<double>(m_) * m_);
+    const double middle = calc_variance(Legendre(degree_, 0.0).rate);
+    double sum = middle * (static_cast<double>(count) - 2.0 * m_);
+    for (int k = 1; k <= m_; ++k) {
+      sum += 2.0 * calc_variance(Legendre(degree_, static_cast<double>(k) / m_).rate);
+    }
+    return per_interval * sum / static_cast<double>(count);
+  }
+  /// Variance of the second rate in the middle times the interval squared.
+  double calc_second_rate() const {
+    return calc_variance(Legendre(degree_, 0.0).second_rate) / std::pow(m_, 4);
+  }
+
+ private:
+  double calc_variance(const Terms& terms) const { return terms.dot(solver_.solve(terms)); }
+
+  int m_, degree_;
+  Eigen::LDLT<Gram> solver_;
+};
 
 /// Half the widest window [intervals] of polynomials that remove at most a tenth of sigma of the
 /// signal itself; 0: none.
 int find_widest(std::span<const double> times, std::span<const double> values, double sigma,
                 int degree) {
-  constexpr std::array kWidths = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+  constexpr std::array kWidths = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
   constexpr double kClear = 1.7;  // of the noise's rms
   constexpr double kMaxRemoved = 0.1;
+  constexpr std::size_t kEnough = 1000;  // places, for an rms
   const double duration = times.back() - times.front();
   const double interval = duration / static_cast<double>(times.size() - 1);
-  double max_width = std::numeric_limits<double>::infinity();
+  const std::size_t stride = 1 + times.size() / kEnough;
+  double max_width = 0.0;
   std::vector<int> widths;
   for (const int m : kWidths) {
     if (2 * m < degree + static_cast<int>(kSpare)) continue;
     const double half_width = m * interval;
-    if (half_width * 4.0 > duration) break;
-    const SmoothCurve curve = smooth(times, values, {half_width, degree});
+    if (!(half_width * 4.0 <= duration)) break;
+    const SmoothCurve curve =
+        calc_curve(times, values, {half_width, degree}, CurveEnds::kNone, stride);
     std::vector<double> left(values.size());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = values[i] - curve.value[i];
-    const double kept = calc_noise_gain(m, degree).value;
-    const double noise = sigma * std::sqrt(1.0 - kept * kept), rms = calc_rms(left);
+    if (count_readings(left) == 0) break;
+    const double noise = sigma * std::sqrt(1.0 - NoiseGain(m, degree).calc_value());
+    const double rms = calc_rms(left);
     widths.push_back(m);
-    if (rms <= kClear * noise) continue;
-    const double removed = std::sqrt(rms * rms - noise * noise);
+    // Where nothing is clear, as much may be removed as would be.
+    const double seen = std::max(rms, kClear * noise);
+    const double removed = std::sqrt(seen * seen - noise * noise);
     max_width = half_width * std::pow(kMaxRemoved * sigma / removed, 1.0 / (degree + 1));
-    break;
+    if (rms > kClear * noise) break;
   }
   const auto is_narrower = [&](int m) { return m * interval <= max_width; };
   const auto found = std::find_if(widths.rbegin(), widths.rend(), is_narrower);
@@ -148,15 +188,21 @@ int find_widest(std::span<const double> times, std::span<const double> values, d
 
 }  // namespace
 
+SmoothCurve calc_local_polynomial(std::span<const double> times, std::span<const double> values,
+                                  const LocalPolynomial& by, CurveEnds ends) {
+  return calc_curve(times, values, by, ends, 1);
+}
+
 LocalPolynomial choose_smoothing(std::span<const double> times, std::span<const double> values,
                                  double sigma) {
-  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   LocalPolynomial best;
+  if (times.size() < 2) return best;
+  const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   double least = std::numeric_limits<double>::infinity();
   for (const int degree : {3, 5, kMaxDegree}) {
     const int m = find_widest(times, values, sigma, degree);
     if (m == 0) continue;
-    const double noise = calc_noise_gain(m, degree).rate;
+    const double noise = NoiseGain(m, degree).calc_rate(times.size());
     if (noise >= least) continue;
     least = noise;
     best = {m * interval, degree};
@@ -166,15 +212,7 @@ LocalPolynomial choose_smoothing(std::span<const double> times, std::span<const 
 
 double calc_second_rate_gain(double half_width, double interval) {
   const auto m = static_cast<int>(std::floor(half_width / interval + 1e-9));
-  double n = 0.0, second = 0.0, fourth = 0.0;
-  for (int k = -m; k <= m; ++k) {
-    const double s = k * interval;
-    n += 1.0;
-    second += s * s;
-    fourth += s * s * s * s;
-  }
-  // Variance of the quadratic's coefficient, whose basis shares only the constant with it.
-  return 2.0 / std::sqrt(fourth - second * second / n);
+  return std::sqrt(NoiseGain(m, 3).calc_second_rate()) / (interval * interval);
 }
 
 }  // namespace strut

@@ -79,7 +79,8 @@ Values filter(const MeasuredRun& run, const Values& values, double half_width) {
   }
   Values filtered(values.size(), std::numeric_limits<double>::quiet_NaN());
   if (there.size() < 4) return filtered;
-  const Values second = smooth(times, integrate_twice(times, there), {half_width}).second_rate;
+  const Values second =
+      calc_local_polynomial(times, integrate_twice(times, there), {half_width, 3}).second_rate;
   std::size_t next = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) filtered[i] = second[next++];
@@ -136,7 +137,7 @@ void add_kinematics(const MeasuredRun& run, int position, int acceleration, doub
   const MeasuredChannel* z = find(run, position);
   const MeasuredChannel* a = find(run, acceleration);
   if (z == nullptr || a == nullptr) return;
-  const Values second = smooth(run.times, z->values, {half_width}).second_rate;
+  const Values second = calc_local_polynomial(run.times, z->values, {half_width, 3}).second_rate;
   const Values smoothed = filter(run, a->values, half_width);
   KinematicResidual k;
   k.channel = run.setup.info().channels[static_cast<std::size_t>(acceleration)].name;
@@ -178,7 +179,7 @@ std::optional<BodyBalance> calc_body_balance(const MeasuredRun& run) {
   }
   b.deflection = filter(run, deflection, b.half_width);
   b.velocity = filter(run, calc_rate(run, deflection), b.half_width);
-  b.force = smooth(run.times, sprung->values, {b.half_width}).second_rate;
+  b.force = calc_local_polynomial(run.times, sprung->values, {b.half_width, 3}).second_rate;
   const RigCase& rig = run.setup.rig();
   for (double& f : b.force) f *= rig.rig.sprung_mass;
   for (const InputSignal& input : rig.inputs) {

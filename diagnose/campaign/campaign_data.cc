@@ -313,7 +313,7 @@ InputSignal make_sampled_input(const std::string& channel, const std::vector<dou
   if (smoothing.half_width <= 0.0) {
     return make_signal(channel, times, values, Interpolation::kSpline);
   }
-  const SmoothCurve curve = smooth(times, values, smoothing, CurveEnds::kOneSided);
+  const SmoothCurve curve = calc_local_polynomial(times, values, smoothing, CurveEnds::kOneSided);
   return make_signal(channel, times, curve.value, curve.rate);
 }
 

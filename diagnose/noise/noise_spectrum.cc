@@ -296,15 +296,19 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
   rig.force_maps.clear();
   rig.initial_position = {};
   rig.initial_velocity = {};
-  const std::size_t longest =
-      std::min(times.size(), static_cast<std::size_t>(kLongestResponse / s.interval) + 2);
+  // Readings before a pulse whose windows are whole, as in the middle of a record.
+  const auto count_before = [&](const InputNoise& noise) {
+    return static_cast<std::size_t>(2.0 * noise.smoothing.half_width / s.interval) + 4;
+  };
+  std::size_t longest = static_cast<std::size_t>(kLongestResponse / s.interval) + 2;
+  for (const InputNoise& noise : measured.input_noise) longest += count_before(noise);
+  longest = std::min(times.size(), longest);
   measured.times.resize(longest);
   const auto rest = simulate_input_pulse(measured, 0, 0, 0.0);
   for (std::size_t input = 0; input < measured.input_noise.size(); ++input) {
     const InputNoise noise = measured.input_noise[input];
     if (!(noise.sigma > 0.0)) continue;
-    const auto begin = std::min(
-        longest / 4, static_cast<std::size_t>(2.0 * noise.smoothing.half_width / s.interval) + 4);
+    const std::size_t begin = std::min(longest / 2, count_before(noise));
     const auto response = simulate_input_pulse(measured, input, begin, noise.sigma);
     Eigen::MatrixXcd source = make_source(s, s.samples);
     for (std::size_t k = 0; k < data.channels(run).size(); ++k) {
