@@ -140,6 +140,7 @@ TEST_CASE("What cannot be smoothed is not", "[unit]") {
   CHECK(choose_smoothing(times, jumps, 0.0).half_width == 0.0);
   // A half width far beyond the record is half of the record.
   std::vector<double> line;
+  line.reserve(times.size());
   for (const double t : times) line.push_back(2.0 + 3.0 * t);
   const SmoothCurve curve = calc_local_polynomial(times, line, {1e6, 3}, CurveEnds::kOneSided);
   CHECK(std::abs(curve.value.front() - 2.0) < tolerance(1e-11));
