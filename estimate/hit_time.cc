@@ -28,7 +28,7 @@ BiasPrior find_bias_prior(const std::vector<Unknown>& unknowns, std::size_t run,
   return {};
 }
 
-/// Of the errors of a channel, over its sigma.
+/// Sums over the errors of a channel, each divided by its sigma.
 struct ErrorSums {
   double count = 0.0, sum = 0.0, squares = 0.0;
 };

@@ -32,7 +32,7 @@ Terms calc_legendre(int degree, double s) {
   return value;
 }
 
-/// The same with two derivatives of each.
+/// Legendre polynomials up to a degree at s, with two derivatives of each.
 struct Legendre {
   Terms value, rate, second_rate;
 
@@ -47,7 +47,7 @@ struct Legendre {
   }
 };
 
-/// Readings of one window, whose times count from its middle in units of its reach.
+/// Readings of one window; its polynomial is one of (time - middle) / reach.
 struct Window {
   std::span<const double> times, values;
   double middle = 0.0, reach = 0.0;
@@ -114,7 +114,7 @@ SmoothCurve calc_curve(std::span<const double> times, std::span<const double> va
   return curve;
 }
 
-/// What white noise of 1 sigma in 2 m + 1 even readings leaves at places of their polynomial.
+/// Noise of a polynomial through 2 m + 1 even readings, each with white noise of variance 1.
 class NoiseGain {
  public:
   NoiseGain(int m, int degree) : m_(m), degree_(degree) {
@@ -152,14 +152,13 @@ class NoiseGain {
 
 /// Half the widest window [intervals] of polynomials that remove at most a tenth of sigma of the
 /// signal itself; 0: none.
-int find_widest(std::span<const double> times, std::span<const double> values, double sigma,
-                int degree) {
+int find_widest(std::span<const double> times, std::span<const double> values, double interval,
+                double sigma, int degree) {
   constexpr std::array kWidths = {3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
   constexpr double kClear = 1.7;  // of the noise's rms
   constexpr double kMaxRemoved = 0.1;
   constexpr std::size_t kEnough = 1000;  // places, for an rms
   const double duration = times.back() - times.front();
-  const double interval = duration / static_cast<double>(times.size() - 1);
   const std::size_t stride = 1 + times.size() / kEnough;
   double max_width = 0.0;
   std::vector<int> widths;
@@ -175,7 +174,7 @@ int find_widest(std::span<const double> times, std::span<const double> values, d
     const double noise = sigma * std::sqrt(1.0 - NoiseGain(m, degree).calc_value());
     const double rms = calc_rms(left);
     widths.push_back(m);
-    // Where nothing is clear, as much may be removed as would be.
+    // Signal that is removed is visible only where the residual is clearly larger than the noise.
     const double seen = std::max(rms, kClear * noise);
     const double removed = std::sqrt(seen * seen - noise * noise);
     max_width = half_width * std::pow(kMaxRemoved * sigma / removed, 1.0 / (degree + 1));
@@ -200,7 +199,7 @@ LocalPolynomial choose_smoothing(std::span<const double> times, std::span<const 
   const double interval = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   double least = std::numeric_limits<double>::infinity();
   for (const int degree : {3, 5, kMaxDegree}) {
-    const int m = find_widest(times, values, sigma, degree);
+    const int m = find_widest(times, values, interval, sigma, degree);
     if (m == 0) continue;
     const double noise = NoiseGain(m, degree).calc_rate(times.size());
     if (noise >= least) continue;

@@ -33,9 +33,9 @@ SmoothCurve calc_local_polynomial(std::span<const double> times, std::span<const
 
 /// Returns the local polynomials that leave the least noise in the rate, over the whole record, of
 /// those that remove at most sigma / 10 (rms) of the signal itself; none where all remove more.
-/// What is removed beyond white noise `sigma` is measured at the first width where it is clear, or
-/// bounded at the widest, and falls with the power degree + 1 of the width. Even a little of it is
-/// coherent over thousands of readings and biases what is fitted to them. What is left of the noise
+/// The removed signal is measured at the first width where the residual clearly exceeds the white
+/// noise `sigma`, or bounded at the widest; it falls with the power degree + 1 of the width. Even a
+/// little of it is coherent over thousands of readings and biases a fit to them. Remaining noise
 /// runs through the simulation, where an effect that smooths forces would seem to explain it.
 LocalPolynomial choose_smoothing(std::span<const double> times, std::span<const double> values,
                                  double sigma);

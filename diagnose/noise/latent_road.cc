@@ -24,7 +24,7 @@ constexpr double kMargin = 0.5;
 /// Coefficients a second of driving: twice the highest frequency that the tracks hold.
 constexpr double kPerSecond = 100.0;
 
-/// Amplitude that a wave keeps where a cubic B-spline with knots `width` [m] apart averages it.
+/// Ratio by which averaging with a cubic B-spline, knots `width` [m] apart, reduces a wave.
 double calc_spline_gain(double wave_number, double width) {
   const double x = std::numbers::pi * wave_number * width;
   return x < 1e-6 ? 1.0 : std::pow(std::sin(x) / x, 4);
@@ -39,7 +39,7 @@ Eigen::VectorXd calc_increment_covariance(const TrackShape& shape, double sign) 
   std::vector<double> density(kSteps);
   for (int k = 0; k < kSteps; ++k) {
     const double n = step * (k + 0.5);
-    // Of coefficients between which the spline has a wave of height 1 under the tires.
+    // Amplitude of the coefficients' increments for a wave of the road with amplitude 1.
     const double rise = 2.0 * std::sin(std::numbers::pi * n * spacing) *
                         calc_spline_gain(n, 0.25 * footprint) / calc_spline_gain(n, spacing);
     density[static_cast<std::size_t>(k)] =

@@ -9,11 +9,11 @@
 //   2 pi^2 n0^2 G0 (1 +- gamma(n)) (F(n) / B(n))^2,  n0 = 0.1 1/m
 //
 // of ISO 8608 and the coherence gamma of an isotropic road (noise_spectrum.h). F = sinc^4(n a), a a
-// quarter of the tires' footprint, and B = sinc^4(n h), h the coefficients' spacing, sinc(x) =
-// sin(pi x) / (pi x): what the footprint leaves of a wave, and the spline of one of the
-// coefficients. The estimate of the road is in the simulation, and readings are linear about
-// it: what roughness moves while a wheel is in the air or on the bump is not what it moves on level
-// ground.
+// quarter of the tires' footprint, is the ratio of a wave's amplitude under the tires to that of
+// the road; B = sinc^4(n h), h the spacing, that of the spline to that of its coefficients; sinc(x)
+// = sin(pi x) / (pi x). The estimate of the road is in the simulation, and readings are linear
+// about it: what roughness moves while a wheel is in the air or on the bump is not what it moves on
+// level ground.
 #pragma once
 
 #include <Eigen/Core>

@@ -296,7 +296,7 @@ NoiseSpectrum make_driven_spectrum(const CampaignData& data, std::size_t run,
   rig.force_maps.clear();
   rig.initial_position = {};
   rig.initial_velocity = {};
-  // Readings before a pulse whose windows are whole, as in the middle of a record.
+  // Number of readings before a pulse, enough for whole smoothing windows around it.
   const auto count_before = [&](const InputNoise& noise) {
     return static_cast<std::size_t>(2.0 * noise.smoothing.half_width / s.interval) + 4;
   };
