@@ -13,7 +13,6 @@ double calc_wanted_fall(const Selection& selection, const SelectRound& round,
   if (now.is_dominated) {
     return 0.5 * options.dominated_share * sum_chi2(selection.hold_out_after);
   }
-  if (is_certain(round, options)) return 0.0;
   double readings = 0.0;
   for (const HoldOutRun& run : judged) readings += run.expected;
   return options.hold_out_share * round.candidates.front().gain * readings /
@@ -67,6 +66,12 @@ double sum_chi2(const std::vector<HoldOutRun>& runs) {
 
 bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
+  const bool is_whole = std::all_of(judged.begin(), judged.end(),
+                                    [](const HoldOutRun& run) { return run.failure.empty(); });
+  if (!is_whole) return false;
+  if (!selection.extended.is_dominated && is_certain(round, options)) {
+    return calc_fall(selection.hold_out_after, judged).is_possible();
+  }
   const double fall = sum_chi2(selection.hold_out_after) - sum_chi2(judged);
   return fall > calc_wanted_fall(selection, round, judged, options);
 }

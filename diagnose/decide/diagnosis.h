@@ -44,7 +44,7 @@ struct Improvement {
   std::optional<double> explained;
   double excess_before = 0.0, excess_after = 0.0;                  // the sums over channels
   double log_likelihood_before = 0.0, log_likelihood_after = 0.0;  // per sample
-  double log_odds = 0.0;  // of the extended against the calibrated model, over all samples
+  HoldOutFall hold_out;  // of chi2, twice the log odds of the extended against the calibrated model
 };
 
 /// Where the residual of the calibrated model is largest.

@@ -101,7 +101,7 @@ void fill_likelihood(const Selection& selection, Improvement& improvement) {
   if (!(count > 0.0)) return;
   improvement.log_likelihood_before = before / count;
   improvement.log_likelihood_after = after / count;
-  improvement.log_odds = after - before;
+  improvement.hold_out = calc_fall(selection.hold_out_before, selection.hold_out_after);
 }
 
 }  // namespace
@@ -149,7 +149,7 @@ Improvement calc_improvement(const CampaignData& data, const Selection& selectio
 
 bool is_improved(const Improvement& improvement) {
   constexpr double kTolerance = 0.05;  // of a floor: less is scatter
-  return improvement.log_odds > 0.0 &&
+  return improvement.hold_out.is_possible() &&
          improvement.excess_after <= improvement.excess_before + kTolerance;
 }
 

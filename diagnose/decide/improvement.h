@@ -17,8 +17,9 @@ std::vector<DiagnosedRun> evaluate_runs(const CampaignData& data, const Diagnosi
 Improvement calc_improvement(const CampaignData& data, const Selection& selection,
                              const std::vector<DiagnosedRun>& runs);
 
-/// Whether an extension makes the held-out runs better: they become more likely, and the sum of
-/// their channels' excess errors does not grow by more than a twentieth of a floor.
+/// Whether the held-out runs allow an extension: they become more likely, or less as far as noise
+/// explains, and the sum of their channels' excess errors does not grow by more than a twentieth of
+/// a floor.
 bool is_improved(const Improvement& improvement);
 
 /// Channels of held-out runs that exceed their noise and have become worse by more than a

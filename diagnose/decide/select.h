@@ -41,8 +41,8 @@ struct SelectOptions {
   /// Minimum ratio of a cause's delta chi2 per reading of the held-out runs to that of the fitted
   /// runs; and minimum fraction of the runs without each of which it remains among the best.
   double hold_out_share = 0.3, stability = 0.5;
-  /// A cause with this many times the threshold is exempt from both, and needs only some
-  /// improvement of the held-out runs: its first-order score may be lower than its fit's delta
+  /// A cause with this many times the threshold is exempt from both, and the held-out runs only
+  /// must not contradict it (HoldOutFall): its first-order score may be lower than its fit's delta
   /// chi2, and the held-out runs may have smaller amplitudes. Beside a first cause it has to
   /// explain `certain_share` of what that one does, in place of second_share.
   double certain = 3.0, certain_share = 0.035;

@@ -67,10 +67,17 @@ std::string describe_improvement(const Diagnosis& diagnosis) {
   constexpr double kVisible = 0.005;
   const Improvement& improvement = diagnosis.improvement;
   const std::string change = describe_change(diagnosis);
+  const double log_odds = 0.5 * improvement.hold_out.fall;
   // The readings of all channels together show what no channel shows alone.
+  if (log_odds < 0.0) {
+    return fmt::format(
+        "{} lowers the log-likelihood of the held-out runs by {:.2g}, as noise may: they hardly "
+        "respond to it and do not decide.",
+        change, -log_odds);
+  }
   if (!improvement.explained || *improvement.explained < kVisible) {
     return fmt::format("{} raises the log-likelihood of the held-out runs by {:.3g}.", change,
-                       improvement.log_odds);
+                       log_odds);
   }
   return fmt::format("{} removes {} of the excess error on the held-out runs.", change,
                      format_percent_of(*improvement.explained));

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
@@ -33,6 +35,24 @@ std::vector<double> make_start(const std::vector<Unknown>& unknowns, const Share
 }
 
 }  // namespace
+
+bool HoldOutFall::is_possible() const {
+  constexpr double kSigmas = 3.0;
+  return fall > std::min(0.0, expected - kSigmas * 2.0 * std::sqrt(expected));
+}
+
+HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after) {
+  HoldOutFall sum;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const HoldOutRun &b = before[i], &a = after[i];
+    if (!b.failure.empty() || !a.failure.empty()) continue;
+    sum.fall += b.chi2 - a.chi2;
+    if (b.residual.size() == a.residual.size()) {
+      sum.expected += (b.residual - a.residual).squaredNorm();
+    }
+  }
+  return sum;
+}
 
 HoldOutJudge::HoldOutJudge(const CampaignData& data, const WhitenedFit& base, int threads)
     : data_(data), threads_(threads), runs_(data.list_runs(RunUse::kHoldOut)) {
@@ -82,6 +102,7 @@ HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) co
   HoldOutRun run;
   run.run = runs_[i];
   run.chi2 = fit.chi2;
+  run.residual = std::move(whitened.evaluate(fit.values).residual);
   run.count = whitener.whitened_count();
   run.expected = static_cast<double>(run.count) * whitener.get_share(0);
   // Priors weigh what is unknown about the run.

@@ -1,9 +1,11 @@
 // Validates models on the held-out runs.
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "base/math/eigen_abi.h"
 #include "diagnose/noise/whitened_fit.h"
 
 namespace strut {
@@ -13,9 +15,24 @@ struct HoldOutRun {
   std::string failure;  // empty: it could be simulated
   double chi2 = 0.0;    // of the whitened readings and the priors
   double log_likelihood = 0.0;
-  std::size_t count = 0;  // of whitened readings
-  double expected = 0.0;  // chi2 of a perfect model
+  std::size_t count = 0;       // of whitened readings
+  double expected = 0.0;       // chi2 of a perfect model
+  Eigen::VectorXd residual{};  // whitened, of readings and priors: chi2 is its squared norm
 };
+
+/// From one model to another, the fall of the held-out runs' chi2, and its expectation if the other
+/// is true: s = |w - w'|^2 over the residuals w of both. Runs that either cannot simulate do not
+/// count.
+struct HoldOutFall {
+  double fall = 0.0, expected = 0.0;
+
+  /// Whether chi2 falls, or rises only as noise makes it rise where the model is true: then the
+  /// fall's standard deviation is 2 sqrt(s), and three of them are allowed. Runs that hardly
+  /// respond to a cause neither confirm it nor speak against it.
+  bool is_possible() const;
+};
+
+HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after);
 
 /// Validates all models with the same noise, that of the base model: otherwise a model with a
 /// larger response to noise would have the higher likelihood for that alone.

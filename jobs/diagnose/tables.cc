@@ -91,9 +91,12 @@ std::vector<std::string> make_improvement_notes(const Improvement& improvement) 
     notes.push_back(
         fmt::format("Explained fraction of the excess over noise, all held-out runs: {:.1f} %",
                     100.0 * *improvement.explained));
-  } else {
+  } else if (improvement.hold_out.fall >= 0.0) {
     notes.emplace_back(
         "No single channel exceeded its noise before; all readings together show the improvement.");
+  } else {
+    notes.emplace_back(
+        "No single channel exceeded its noise before, and the readings do not decide.");
   }
   notes.push_back(fmt::format("Log-likelihood per held-out sample: {} -> {}",
                               format_significant(improvement.log_likelihood_before),

@@ -2,6 +2,7 @@
 #include "diagnose/decide/acceptance.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 namespace strut {
 namespace {
@@ -102,6 +103,43 @@ TEST_CASE("Held-out runs veto even a certain cause that makes them worse", "[uni
   CHECK(is_confirmed_by(0.1, s, make_round(91.0)));
   CHECK_FALSE(is_confirmed_by(0.0, s, make_round(91.0)));
   CHECK_FALSE(is_confirmed_by(-0.1, s, make_round(1e6)));
+}
+
+/// A held-out run with these whitened residuals.
+HoldOutRun make_residuals(const Eigen::VectorXd& residual) {
+  HoldOutRun run = make_held_out(residual.squaredNorm());
+  run.residual = residual;
+  return run;
+}
+
+TEST_CASE("A certain cause to which held-out runs hardly respond may make them worse by chance",
+          "[unit]") {
+  // s = 4: true, it lowers chi2 by 4 +- 4, and by more than -8 with 3 sigma.
+  const double s = 4.0;
+  const auto confirms = [&](double fall, double gain) {
+    Selection selection = make_selection();
+    Eigen::VectorXd before = Eigen::VectorXd::Constant(500, 1.0), after = before;
+    // after = before + d with |d|^2 = s and |before|^2 - |after|^2 = fall
+    const double along = -0.5 * (fall + s);  // before . d
+    before(0) = 5.0;
+    before(1) = 0.0;
+    after = before;
+    after(0) += along / before(0);
+    after(1) += std::sqrt(s - std::pow(along / before(0), 2));
+    selection.hold_out_after = {make_residuals(before)};
+    return is_confirmed(selection, make_round(gain), {make_residuals(after)}, SelectOptions{});
+  };
+  CHECK(confirms(-7.9, 91.0));
+  CHECK_FALSE(confirms(-8.1, 91.0));
+  CHECK_FALSE(confirms(-1.0, 60.0));  // not certain
+}
+
+TEST_CASE("Held-out runs that respond contradict a cause by any rise of chi2", "[unit]") {
+  CHECK(HoldOutFall{0.1, 1e4}.is_possible());
+  CHECK_FALSE(HoldOutFall{-0.1, 36.1}.is_possible());
+  CHECK_FALSE(HoldOutFall{0.0, 0.0}.is_possible());
+  CHECK_FALSE(HoldOutFall{-9.1, 9.0}.is_possible());  // the most that noise explains
+  CHECK(HoldOutFall{-8.9, 9.0}.is_possible());
 }
 
 TEST_CASE("Where the model's error dominates, half of its fraction has to leave the held-out runs",

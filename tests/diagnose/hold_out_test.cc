@@ -47,6 +47,28 @@ TEST_CASE("A complete model leaves noise on the held-out runs, a wrong one more"
         Approx(0.5 * (right.chi2 - wrong.chi2)).epsilon(test::tolerance(1e-12)));
 }
 
+TEST_CASE("From a wrong model to the right one held-out chi2 falls by their difference and noise",
+          "[unit]") {
+  const Judged j = fit_base();
+  const HoldOutJudge judge(j.data, j.base, 1);
+  SharedValues shared = j.base.shared();
+  const std::vector<HoldOutRun> right = judge.judge(shared);
+  CHECK(right.front().residual.squaredNorm() ==
+        Approx(right.front().chi2).epsilon(test::tolerance(1e-9)));
+  const std::vector<double> values = shared.values;
+  for (const double change : {1e-4, 1e-3, 0.02}) {
+    shared.values = values;
+    shared.values[1] *= 1.0 + change;
+    const HoldOutFall fall = calc_fall(judge.judge(shared), right);
+    REQUIRE(fall.expected > 0.0);
+    CHECK(std::abs(fall.fall - fall.expected) < 6.0 * std::sqrt(fall.expected));
+  }
+  CHECK(calc_fall(right, right).expected == 0.0);
+  HoldOutRun failed;
+  failed.failure = "lost contact";
+  CHECK(calc_fall({failed}, right).fall == 0.0);
+}
+
 TEST_CASE("Held-out runs have the noise of the fitted ones", "[unit]") {
   Judged j = fit_base();
   const std::size_t band = find_noise_band(5.0);

@@ -311,12 +311,12 @@ TEST_CASE("The interval of a claimed cause is widened by the misfit", "[unit]") 
 
 TEST_CASE("An extension is an improvement only where the held-out runs agree", "[unit]") {
   Improvement better;
-  better.log_odds = 10.0;
+  better.hold_out = {20.0, 20.0};
   better.excess_before = 2.0;
   better.excess_after = 0.5;
   CHECK(is_improved(better));
   Improvement unlikely = better, worse = better;
-  unlikely.log_odds = -10.0;
+  unlikely.hold_out = {-20.0, 20.0};
   CHECK_FALSE(is_improved(unlikely));
   worse.excess_after = 3.0;
   CHECK_FALSE(is_improved(worse));
@@ -324,14 +324,14 @@ TEST_CASE("An extension is an improvement only where the held-out runs agree", "
 
 TEST_CASE("Errors of the held-out runs may grow by a twentieth of a floor", "[unit]") {
   Improvement i;
-  i.log_odds = 1e-3;
+  i.hold_out.fall = 2e-3;
   i.excess_before = 2.0;
   i.excess_after = 2.049;
   CHECK(is_improved(i));
   i.excess_after = 2.051;
   CHECK_FALSE(is_improved(i));
   i.excess_after = 2.0;
-  i.log_odds = -1e-3;
+  i.hold_out.fall = -2e-3;
   CHECK_FALSE(is_improved(i));
 }
 
@@ -339,6 +339,8 @@ TEST_CASE("Held-out log odds favor the model under which the runs are more likel
   Selection s;
   HoldOutRun before, after, failed;
   before.log_likelihood = -120.0;
+  before.chi2 = 240.0;
+  after.chi2 = 200.0;
   after.log_likelihood = -100.0;
   before.count = after.count = failed.count = 40;
   failed.failure = "lost contact";
@@ -346,7 +348,7 @@ TEST_CASE("Held-out log odds favor the model under which the runs are more likel
   s.hold_out_before = {before, before};
   s.hold_out_after = {after, failed};  // a run without both models counts for neither
   const Improvement improvement = calc_improvement(get_campaign(), s, {});
-  CHECK(improvement.log_odds == Approx(20.0).epsilon(tolerance(1e-12)));
+  CHECK(improvement.hold_out.fall == Approx(40.0).epsilon(tolerance(1e-12)));
   CHECK(improvement.log_likelihood_after == Approx(-2.5).epsilon(tolerance(1e-12)));
 }
 
