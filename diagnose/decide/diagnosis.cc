@@ -142,6 +142,7 @@ void withdraw(const CampaignData& data, const DiagnoseOptions& options, Diagnosi
   s.gains.clear();
   s.extended = s.base;
   s.hold_out_after = s.hold_out_before;
+  s.undetected = s.rounds.front().undetected;
   diagnosis.force.reset();
   TestBench bench(data, s.base, options.threads);
   s.left = measure_leftover(data, bench);

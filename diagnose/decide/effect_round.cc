@@ -345,8 +345,11 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                    [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
   const double most = result.candidates.empty() ? 0.0 : result.candidates.front().gain;
   result.misfit = calc_misfit(now.fit, most);
-  if (round_options.is_final)
+  if (round_options.is_final) {
     result.p_value = nulls.calc_p_value(result.best_score / result.misfit);
+    result.undetected =
+        list_undetected(evidence, score, one_sided, now.fit.unknowns, result.misfit);
+  }
   result.simulations += bench.simulation_count();
   return result;
 }

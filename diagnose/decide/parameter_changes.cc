@@ -1,5 +1,6 @@
 #include "diagnose/decide/parameter_changes.h"
 
+#include <cmath>
 #include <utility>
 
 #include "base/math/normal.h"
@@ -14,6 +15,10 @@ std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
   std::vector<ParameterChange> changes;
   const std::vector<GroupValue> group = list_group_values(selection, positions);
   const WhitenedFit &before = selection.base, &after = selection.extended;
+  const bool is_extended =
+      !selection.causes.empty() || after.fit.unknowns.size() > before.fit.unknowns.size();
+  const std::vector<double> form = calc_form_errors(
+      after.fit, before.shared_count, selection.is_left ? selection.left.energy : 0.0);
   for (std::size_t i = 0; i < before.shared_count; ++i) {
     const Unknown& u = before.fit.unknowns[i];
     if (is_sensor_tolerance(u)) continue;
@@ -32,8 +37,15 @@ std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
     c.after_at_bound = fill(after.fit, c.after, c.after_low, c.after_high);
     // Half as wide again: the members differ by more than each is uncertain.
     c.differs = group[i].high - group[i].low > 1.5 * (c.after_high - c.after_low);
-    c.after_low = group[i].low;
-    c.after_high = group[i].high;
+    const double sigma = after.fit.widened.sigma[i];
+    const Interval open =
+        calc_averaged_interval(c.after, std::hypot(sigma, form[i]), i, selection.undetected);
+    c.after_low = group[i].low - (c.after_low - open.low);
+    c.after_high = group[i].high + (open.high - c.after_high);
+    if (!is_extended) {
+      c.before_low = c.after_low;
+      c.before_high = c.after_high;
+    }
     changes.push_back(std::move(c));
   }
   return changes;

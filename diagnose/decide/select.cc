@@ -45,6 +45,7 @@ class Selector {
       last_ = selection_.rounds.back();
       if (!reconsider()) break;
     }
+    if (!last_.accepted) selection_.undetected = last_.undetected;
     measure_left();
     return std::move(selection_);
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/decide/undetected.h"
 #include "diagnose/discrepancy/leftover.h"
 #include "diagnose/hypothesis/test_bench.h"
 #include "diagnose/noise/hold_out.h"
@@ -83,17 +84,19 @@ struct SelectRound {
   /// Largest delta chi2 of a fit whose values are not such as its effect has: something is there,
   /// but not what the name says.
   double refused_gain = 0.0;
+  std::vector<Undetected> undetected;  // all that was tested, if it is no cause
   long simulations = 0;
 };
 
 struct Selection {
-  WhitenedFit base, extended;         // without and with the causes
-  std::vector<Hypothesis> causes;     // in the order in which they were found
-  std::vector<std::size_t> round_of;  // index of each cause's round
-  std::vector<double> gains;          // delta chi2 of each cause in its round
-  Leftover left;                      // residual of the extended model
-  bool is_left = false;               // the residual exceeds noise
-  std::vector<SelectRound> rounds;    // in the order in which they were made
+  WhitenedFit base, extended;          // without and with the causes
+  std::vector<Hypothesis> causes;      // in the order in which they were found
+  std::vector<std::size_t> round_of;   // index of each cause's round
+  std::vector<double> gains;           // delta chi2 of each cause in its round
+  Leftover left;                       // residual of the extended model
+  bool is_left = false;                // the residual exceeds noise
+  std::vector<Undetected> undetected;  // beside the causes; empty where none was looked for
+  std::vector<SelectRound> rounds;     // in the order in which they were made
   std::vector<HoldOutRun> hold_out_before, hold_out_after;
   std::shared_ptr<const HoldOutJudge> judge;
   long simulations = 0;

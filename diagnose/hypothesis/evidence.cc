@@ -21,7 +21,9 @@ Score calc_score(const Evidence& evidence, const std::vector<double>& weights) {
     Eigen::MatrixXd own = sum.topLeftCorner(shared, shared);
     own.diagonal() *= 1.0 + 1e-12;
     const Eigen::MatrixXd mixed = sum.topRightCorner(shared, count + 1);
-    sum.bottomRightCorner(count + 1, count + 1) -= mixed.transpose() * own.ldlt().solve(mixed);
+    const Eigen::MatrixXd solved = own.ldlt().solve(mixed);
+    sum.bottomRightCorner(count + 1, count + 1) -= mixed.transpose() * solved;
+    score.shift = -solved.leftCols(count);
   }
   score.covariance = sum.block(shared, shared, count, count);
   score.gradient = -sum.block(shared, shared + count, count, 1);
@@ -29,17 +31,21 @@ Score calc_score(const Evidence& evidence, const std::vector<double>& weights) {
   return score;
 }
 
+bool is_seen(const Score& score, Eigen::Index column) {
+  constexpr double kAlias = 1e-4, kUnseen = 1e-6;
+  // A hypothesis that the free unknowns can take over but for a hundredth is none of its own, and
+  // one that moves nothing (a roll bar where both wheels do the same) is rounding.
+  return score.covariance(column, column) > std::max(kAlias * score.norm(column), kUnseen);
+}
+
 Gain calc_gain(const Score& score, const std::vector<std::size_t>& columns, bool one_sided) {
-  constexpr double kAlias = 1e-4, kRank = 1e-8, kUnseen = 1e-6;
+  constexpr double kRank = 1e-8;
   const auto count = static_cast<Eigen::Index>(columns.size());
   Eigen::MatrixXd k(count, count);
   Eigen::VectorXd z(count), scale(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto at = static_cast<Eigen::Index>(columns[static_cast<std::size_t>(i)]);
-    const double left = score.covariance(at, at);
-    // A hypothesis that the free unknowns can take over but for a hundredth is none of its own, and
-    // one that moves nothing (a roll bar where both wheels do the same) is rounding.
-    scale(i) = left > std::max(kAlias * score.norm(at), kUnseen) ? 1.0 / std::sqrt(left) : 0.0;
+    scale(i) = is_seen(score, at) ? 1.0 / std::sqrt(score.covariance(at, at)) : 0.0;
     z(i) = score.gradient(at) * scale(i);
   }
   for (Eigen::Index i = 0; i < count; ++i) {

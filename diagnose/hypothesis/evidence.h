@@ -44,10 +44,14 @@ struct Score {
   Eigen::VectorXd gradient;    // z
   double chi2 = 0.0;           // of the residual
   Eigen::VectorXd norm;        // diagonal of K without any elimination, of a run's own unknowns too
+  Eigen::MatrixXd shift;       // of the shared unknowns, in their scale, by column: undoes it
 };
 
 /// The score over the runs, run i weighted by `weights[i]`.
 Score calc_score(const Evidence& evidence, const std::vector<double>& weights);
+
+/// Whether the readings tell a column from the adjustable parameters.
+bool is_seen(const Score& score, Eigen::Index column);
 
 /// The delta chi2 of these columns; 0 where their best amplitude has the wrong sign (`one_sided`),
 /// or the adjustable parameters have the same effect. `amplitude`: the best, in units of the start.

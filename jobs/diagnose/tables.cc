@@ -236,6 +236,11 @@ std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis) {
     table.notes.emplace_back(
         "*: differs between the effects that are not distinguished; the interval contains all");
   }
+  if (diagnosis.selection.is_left) {
+    table.notes.emplace_back(
+        "The intervals allow for a part of the unknown force that looks like one of these "
+        "parameters.");
+  }
   std::vector<ReportTable> tables = {std::move(table)};
   if (!diagnosis.secants.empty()) tables.push_back(make_secant_table(diagnosis.secants));
   return tables;

@@ -2,6 +2,7 @@
 #include "diagnose/decide/parameter_changes.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/support/strut_stand.h"
 #include "tests/support/tolerance.h"
@@ -43,6 +44,7 @@ struct Changed {
     selection.rounds.resize(1);
     selection.rounds[0].candidates = {make_candidate("a", 1040.0),
                                       make_candidate("b", 1040.0 + shift)};
+    selection.causes.resize(1);
     selection.round_of = {0};
     position.candidates = {{"a", "", 0.5, 9.0, {}}, {"b", "", 0.5, 9.0, {}}};
     position.close = 2;
@@ -76,6 +78,44 @@ TEST_CASE("A parameter differs between members whose interval is 1.5 times that 
   CHECK(c.differs);
   CHECK(c.after_high == Approx(1050.0 + 20.0 + 19.5996).margin(tolerance(1e-3)));
   CHECK(c.after_low == Approx(1050.0 - 19.5996).margin(tolerance(1e-3)));
+}
+
+TEST_CASE("The final model's interval allows for undetected effects, beside the group's",
+          "[unit]") {
+  Changed changed(20.0);
+  // An effect at 3 sigma that would raise the damping by 6 of its standard errors (10 each).
+  changed.selection.undetected = {{1.0, 3.0, true, {20.0}}};
+  const Interval open = calc_averaged_interval(1050.0, 10.0, 0, changed.selection.undetected);
+  const ParameterChange c = changed.get();
+  REQUIRE(open.high > 1050.0 + 30.0);
+  CHECK(c.after_high == Approx(open.high + 20.0).margin(tolerance(1e-6)));
+  CHECK(c.after_low == Approx(open.low).margin(tolerance(1e-6)));
+  CHECK(c.before_high == Approx(1100.0 + 39.1993).margin(tolerance(1e-3)));
+}
+
+TEST_CASE("Without an extension the calibrated model is the final one", "[unit]") {
+  Changed changed(0.0);
+  changed.selection.causes.clear();
+  changed.selection.extended = changed.selection.base;
+  changed.selection.undetected = {{1.0, 3.0, true, {40.0}}};
+  const ParameterChange c = list_parameter_changes(changed.data, changed.selection, {}).front();
+  CHECK(c.after_high > 1100.0 + 60.0);
+  CHECK(c.before_high == c.after_high);
+  CHECK(c.before_low == c.after_low);
+}
+
+TEST_CASE("A residual of unknown form widens the interval by its energy", "[unit]") {
+  Changed changed(0.0);
+  FitResult& fit = changed.selection.extended.fit;
+  fit.uncertainty.covariance = Eigen::MatrixXd::Constant(1, 1, 2.5 * 2.5);
+  changed.selection.left.energy = 4.0;
+  const double before = changed.get().after_high;
+  changed.selection.is_left = true;
+  const ParameterChange c = changed.get();
+  // 8 * sqrt(4) * 2.5 = 40 beside the misfit's 10
+  CHECK(before == Approx(1050.0 + 19.5996).margin(tolerance(1e-3)));
+  CHECK(c.after_high == Approx(1050.0 + 1.95996 * std::hypot(10.0, 40.0)).margin(tolerance(1e-3)));
+  CHECK(c.after_low == Approx(1050.0 - 1.95996 * std::hypot(10.0, 40.0)).margin(tolerance(1e-3)));
 }
 
 }  // namespace
