@@ -6,23 +6,21 @@
 namespace strut {
 namespace {
 
-/// Fall of the held-out runs' chi2 that a candidate must exceed.
-double calc_wanted_fall(const Selection& selection, const SelectRound& round,
-                        const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
-  const WhitenedFit& now = selection.extended;
-  if (now.is_dominated) {
-    return 0.5 * options.dominated_share * sum_chi2(selection.hold_out_after);
-  }
-  double readings = 0.0;
-  for (const HoldOutRun& run : judged) readings += run.expected;
-  return options.hold_out_share * round.candidates.front().gain * readings /
-         static_cast<double>(now.fit.degrees);
+bool are_simulated(const std::vector<HoldOutRun>& judged) {
+  return std::all_of(judged.begin(), judged.end(),
+                     [](const HoldOutRun& run) { return run.failure.empty(); });
 }
 
 }  // namespace
 
 bool is_certain(const SelectRound& round, const SelectOptions& options) {
   return round.candidates.front().gain > options.certain * round.threshold * round.misfit;
+}
+
+bool is_unstable(const SelectRound& round, const SelectOptions& options) {
+  const Candidate& best = round.candidates.front();
+  return best.gain / round.misfit >= round.threshold && !is_certain(round, options) &&
+         best.stability < options.stability;
 }
 
 bool is_large(const Selection& selection, const SelectRound& round, const SelectOptions& options) {
@@ -33,8 +31,7 @@ bool is_large(const Selection& selection, const SelectRound& round, const Select
     return best.gain > options.dominated_share * now.fit.chi2 ||
            round.pair_gain > 2.0 * options.dominated_share * now.fit.chi2;
   }
-  if (best.gain / round.misfit < round.threshold) return false;
-  if (!is_certain(round, options) && best.stability < options.stability) return false;
+  if (best.gain / round.misfit < round.threshold || is_unstable(round, options)) return false;
   if (selection.causes.empty()) return true;
   const double share = is_certain(round, options) ? options.certain_share : options.second_share;
   return best.gain > share * selection.rounds.front().candidates.front().gain;
@@ -64,16 +61,16 @@ double sum_chi2(const std::vector<HoldOutRun>& runs) {
   return sum;
 }
 
+bool is_contradicted(const Selection& selection, const std::vector<HoldOutRun>& judged) {
+  return !are_simulated(judged) || !calc_fall(selection.hold_out_after, judged).is_possible();
+}
+
 bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options) {
-  const bool is_whole = std::all_of(judged.begin(), judged.end(),
-                                    [](const HoldOutRun& run) { return run.failure.empty(); });
-  if (!is_whole) return false;
-  if (!selection.extended.is_dominated && is_certain(round, options)) {
-    return calc_fall(selection.hold_out_after, judged).is_possible();
-  }
-  const double fall = sum_chi2(selection.hold_out_after) - sum_chi2(judged);
-  return fall > calc_wanted_fall(selection, round, judged, options);
+  if (is_contradicted(selection, judged)) return false;
+  const double before = sum_chi2(selection.hold_out_after), fall = before - sum_chi2(judged);
+  if (selection.extended.is_dominated) return fall > 0.5 * options.dominated_share * before;
+  return round.candidates.front().gain + fall >= round.threshold * round.misfit;
 }
 
 bool is_near_minimum(const FitResult& calibration, const std::vector<double>& gains) {
@@ -86,7 +83,8 @@ bool is_near_minimum(const FitResult& calibration, const std::vector<double>& ga
 double calc_rejected_gain(const Selection& selection, const SelectRound& last) {
   constexpr double kLarge = 2.0;  // times the threshold
   if (last.accepted) return 0.0;
-  // A first cause that was not confirmed is none; a further one would have completed the form.
+  if (last.refusal != Refusal::kNone) return last.candidates.front().gain;
+  // A further cause that is too small beside the first would have completed its form.
   const bool is_further = !last.candidates.empty() && !selection.causes.empty();
   const double gain = std::max(is_further ? last.candidates.front().gain : 0.0, last.refused_gain);
   return gain / last.misfit > kLarge * last.threshold ? gain : 0.0;

@@ -12,8 +12,11 @@ namespace strut {
 /// Whether the best candidate exceeds SelectOptions::certain times the threshold.
 bool is_certain(const SelectRound& round, const SelectOptions& options);
 
-/// Whether the best candidate is large enough, beside the causes of `selection`, to be fitted in
-/// full.
+/// Whether the best candidate exceeds the threshold, but is not stable.
+bool is_unstable(const SelectRound& round, const SelectOptions& options);
+
+/// Whether the best candidate is large enough, and stable, beside the causes of `selection`, to be
+/// fitted in full.
 bool is_large(const Selection& selection, const SelectRound& round, const SelectOptions& options);
 
 /// Which candidate leads a round, with the best second effect fitted beside each. `gains`: delta
@@ -32,8 +35,13 @@ bool is_dispensable(const FitResult& now, double changed, double without);
 /// Sum of chi2 over the held-out runs; larger than any other where one cannot be simulated.
 double sum_chi2(const std::vector<HoldOutRun>& runs);
 
-/// Whether the held-out runs confirm the best candidate: whether their chi2 falls by enough from
-/// that of `selection` to that of `judged`, the same runs with the candidate.
+/// Whether the held-out runs contradict a candidate: from `selection` to `judged`, the same runs
+/// with the candidate, their chi2 rises by more than noise explains, or one cannot be simulated.
+bool is_contradicted(const Selection& selection, const std::vector<HoldOutRun>& judged);
+
+/// Whether the held-out runs confirm the best candidate: they do not contradict it, and delta chi2
+/// of all runs exceeds the threshold or, where the model's error dominates, their own chi2 falls by
+/// half of dominated_share.
 bool is_confirmed(const Selection& selection, const SelectRound& round,
                   const std::vector<HoldOutRun>& judged, const SelectOptions& options);
 
@@ -41,9 +49,9 @@ bool is_confirmed(const Selection& selection, const SelectRound& round,
 /// less than a twentieth of the causes' delta chi2, the sum of `gains`.
 bool is_near_minimum(const FitResult& calibration, const std::vector<double>& gains);
 
-/// Delta chi2 of the last round that counts as residual, where it is large: of the best candidate,
-/// too small beside the first cause to be one itself, or of a fit whose values are not such as its
-/// effect has. 0 where there is none.
+/// Delta chi2 of the last round that counts as residual: of a candidate that was refused; where it
+/// is large, of one that is too small beside the first cause to be one itself,
+/// or of a fit whose values are not such as its effect has. 0 where there is none.
 double calc_rejected_gain(const Selection& selection, const SelectRound& last);
 
 }  // namespace strut

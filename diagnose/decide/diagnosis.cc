@@ -35,6 +35,7 @@ std::optional<UnknownForce> find_force(const CampaignData& data, const DiagnoseO
   }
   selection.extended = std::move(found->fit);
   selection.hold_out_after = std::move(found->judged);
+  selection.undetected.clear();  // the map takes their place
   const std::string place = found->states.place;
   const ForceMaps maps = list_force_maps_on(data, selection.extended.shared());
   UnknownForce force{
@@ -93,7 +94,7 @@ Where find_where(const CampaignData& data, const Diagnosis& diagnosis) {
   }
   const VerdictKind kind = diagnosis.verdict.kind;
   const bool remains = kind == VerdictKind::kUnknown || kind == VerdictKind::kFormIncomplete;
-  if (remains && selection.left.band.to > 0.0) where.band = describe(selection.left.band);
+  if (remains && is_significant(selection.left)) where.band = describe(selection.left.band);
   return where;
 }
 
@@ -143,10 +144,11 @@ void withdraw(const CampaignData& data, const DiagnoseOptions& options, Diagnosi
   s.extended = s.base;
   s.hold_out_after = s.hold_out_before;
   s.undetected = s.rounds.front().undetected;
+  s.refused.clear();
   diagnosis.force.reset();
   TestBench bench(data, s.base, options.threads);
   s.left = measure_leftover(data, bench);
-  s.is_left = s.left.significance >= LeftoverOptions{}.significant;
+  s.is_left = is_significant(s.left);
 }
 
 /// Fits the force map, claims what is more probable than a cause outside of the catalogue, and
@@ -246,7 +248,7 @@ Diagnosis diagnose_campaign(const CampaignData& data, const DiagnoseOptions& opt
   check_results(diagnosis);
   add_noise_notes(data, diagnosis);
   const Selection& selection = diagnosis.selection;
-  diagnosis.parameters = list_parameter_changes(data, selection, diagnosis.verdict.positions);
+  diagnosis.parameters = list_parameter_changes(data, diagnosis);
   if (diagnosis.is_extended()) {
     diagnosis.secants = list_secants(data, selection, diagnosis.verdict.positions);
   }

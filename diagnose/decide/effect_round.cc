@@ -280,6 +280,19 @@ std::vector<Fitted> fit_ranked(const Round& round, const std::vector<RankedTrial
   return fitted;
 }
 
+std::vector<Hypothesis> list_hypotheses_on(const CampaignData& data, const WhitenedFit& now) {
+  const SharedValues shared = now.shared();
+  return list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns);
+}
+
+std::vector<bool> list_one_sided(const CampaignData& data,
+                                 const std::vector<Hypothesis>& hypotheses) {
+  std::vector<bool> one_sided;
+  one_sided.reserve(hypotheses.size());
+  for (const Hypothesis& h : hypotheses) one_sided.push_back(is_one_sided(data, h));
+  return one_sided;
+}
+
 }  // namespace
 
 double calc_threshold(const NullScores& nulls, const SelectOptions& options, double negligible) {
@@ -307,12 +320,8 @@ double calc_negligible(bool has_inputs, const SelectOptions& options, const Whit
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round_options) {
   TestBench bench(data, now, options.threads);
-  const SharedValues shared = now.shared();
-  const std::vector<Hypothesis> hypotheses =
-      list_hypotheses(data, shared, list_effects_on(data, shared), shared.unknowns);
-  std::vector<bool> one_sided;
-  one_sided.reserve(hypotheses.size());
-  for (const Hypothesis& h : hypotheses) one_sided.push_back(is_one_sided(data, h));
+  const std::vector<Hypothesis> hypotheses = list_hypotheses_on(data, now);
+  const std::vector<bool> one_sided = list_one_sided(data, hypotheses);
   const Evidence evidence = bench.gather(hypotheses);
   const Score score = calc_score(evidence, std::vector<double>(evidence.run_count(), 1.0));
   SelectRound result;
@@ -347,11 +356,17 @@ SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
   result.misfit = calc_misfit(now.fit, most);
   if (round_options.is_final) {
     result.p_value = nulls.calc_p_value(result.best_score / result.misfit);
-    result.undetected =
-        list_undetected(evidence, score, one_sided, now.fit.unknowns, result.misfit);
+    result.undetected = list_undetected(evidence, one_sided, now.fit.unknowns, result.misfit);
   }
   result.simulations += bench.simulation_count();
   return result;
+}
+
+std::vector<Undetected> find_undetected(const CampaignData& data, const WhitenedFit& now,
+                                        TestBench& bench) {
+  const std::vector<Hypothesis> hypotheses = list_hypotheses_on(data, now);
+  return list_undetected(bench.gather(hypotheses), list_one_sided(data, hypotheses),
+                         now.fit.unknowns, calc_misfit(now.fit, 0.0));
 }
 
 WhitenedFit adopt(const CampaignData& data, const WhitenedFit& now, const Candidate& candidate) {

@@ -24,6 +24,10 @@ double calc_negligible(bool has_inputs, const SelectOptions& options, const Whit
 SelectRound test_effects(const CampaignData& data, const WhitenedFit& now,
                          const SelectOptions& options, const RoundOptions& round);
 
+/// Scores every effect beside the fit `now`, with its bench, without fitting any.
+std::vector<Undetected> find_undetected(const CampaignData& data, const WhitenedFit& now,
+                                        TestBench& bench);
+
 /// The fit `now` with a candidate, at the values that the candidate's own fit found.
 WhitenedFit adopt(const CampaignData& data, const WhitenedFit& now, const Candidate& candidate);
 

@@ -10,13 +10,12 @@
 namespace strut {
 
 std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
-                                                    const Selection& selection,
-                                                    const std::vector<CausePosition>& positions) {
+                                                    const Diagnosis& diagnosis) {
   std::vector<ParameterChange> changes;
-  const std::vector<GroupValue> group = list_group_values(selection, positions);
+  const Selection& selection = diagnosis.selection;
+  const std::vector<GroupValue> group = list_group_values(selection, diagnosis.verdict.positions);
   const WhitenedFit &before = selection.base, &after = selection.extended;
-  const bool is_extended =
-      !selection.causes.empty() || after.fit.unknowns.size() > before.fit.unknowns.size();
+  // A force map shows the residual's form, but not which part of the force looks like a parameter.
   const std::vector<double> form = calc_form_errors(
       after.fit, before.shared_count, selection.is_left ? selection.left.energy : 0.0);
   for (std::size_t i = 0; i < before.shared_count; ++i) {
@@ -38,11 +37,13 @@ std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
     // Half as wide again: the members differ by more than each is uncertain.
     c.differs = group[i].high - group[i].low > 1.5 * (c.after_high - c.after_low);
     const double sigma = after.fit.widened.sigma[i];
-    const Interval open =
+    const Interval averaged =
         calc_averaged_interval(c.after, std::hypot(sigma, form[i]), i, selection.undetected);
-    c.after_low = group[i].low - (c.after_low - open.low);
-    c.after_high = group[i].high + (open.high - c.after_high);
-    if (!is_extended) {
+    if (std::isfinite(sigma)) {
+      c.after_low = group[i].low - (c.after_low - averaged.low);
+      c.after_high = group[i].high + (averaged.high - c.after_high);
+    }
+    if (!diagnosis.is_extended()) {
       c.before_low = c.after_low;
       c.before_high = c.after_high;
     }

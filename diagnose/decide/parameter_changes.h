@@ -7,12 +7,11 @@
 
 namespace strut {
 
-/// The parameters that all runs share but for errors of sensors, in the order of their unknowns,
-/// with 95 % intervals that are widened by the misfit. Those of the final model, the extended or
-/// else the calibrated one, contain those of all close candidates, and allow for effects that were
-/// not detected and for what remains unknown (undetected.h).
+/// Returns the parameters that all runs share but for errors of sensors, in the order of their
+/// unknowns, with 95 % intervals that are widened by the misfit. Those of the final model, the
+/// extended or else the calibrated one, contain those of all close candidates, and allow for
+/// undetected effects and for a residual of unknown form (undetected.h).
 std::vector<ParameterChange> list_parameter_changes(const CampaignData& data,
-                                                    const Selection& selection,
-                                                    const std::vector<CausePosition>& positions);
+                                                    const Diagnosis& diagnosis);
 
 }  // namespace strut

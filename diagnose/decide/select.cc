@@ -14,6 +14,15 @@
 namespace strut {
 namespace {
 
+/// "bump_stop fits the runs for fitting, but ..."; empty where the best candidate was not refused.
+std::string describe_refusal(const SelectRound& round) {
+  if (round.refusal == Refusal::kNone) return "";
+  return round.candidates.front().hypothesis.describe() + " fits the runs for fitting, but " +
+         (round.refusal == Refusal::kContradicted
+              ? "the held-out runs contradict it"
+              : "less well than others where single runs are left out");
+}
+
 class Selector {
  public:
   Selector(const CampaignData& data, const SelectOptions& options)
@@ -43,9 +52,10 @@ class Selector {
       while (static_cast<int>(selection_.causes.size()) < most && add(most)) {
       }
       last_ = selection_.rounds.back();
-      if (!reconsider()) break;
+      is_last_current_ = !reconsider();
+      if (is_last_current_) break;
     }
-    if (!last_.accepted) selection_.undetected = last_.undetected;
+    selection_.refused = describe_refusal(last_);
     measure_left();
     return std::move(selection_);
   }
@@ -102,8 +112,10 @@ class Selector {
     const WhitenedFit& now = selection_.extended;
     TestBench bench(data_, now, options_.threads);
     selection_.left = measure_leftover(data_, bench, options_.leftover);
+    selection_.undetected =
+        is_last_current_ && !last_.accepted ? last_.undetected : find_undetected(data_, now, bench);
     selection_.simulations += bench.simulation_count();
-    selection_.is_left = selection_.left.significance >= options_.leftover.significant;
+    selection_.is_left = is_significant(selection_.left, options_.leftover);
     const double rejected = calc_rejected_gain(selection_, last_);
     if (rejected > 0.0) selection_.is_left = true;
     selection_.left.energy = std::max(selection_.left.energy, rejected);
@@ -325,16 +337,26 @@ class Selector {
   /// Makes the best of the last round a cause if it is large and the held-out runs confirm it.
   bool accept(Confirmation confirmation) {
     SelectRound& round = selection_.rounds.back();
-    if (!is_large(selection_, round, options_)) return false;
+    if (!is_large(selection_, round, options_)) {
+      const bool is_first = selection_.causes.empty() && !round.candidates.empty();
+      if (is_first && !selection_.extended.is_dominated && is_unstable(round, options_)) {
+        round.refusal = Refusal::kUnstable;
+      }
+      return false;
+    }
     const Candidate& best = round.candidates.front();
     const ExtendedUnknowns e =
         extend(data_, selection_.extended, best.hypothesis, best.base_values, best.values);
     tell("fitting with " + best.hypothesis.describe());
     WhitenedFit fit = fit_extended(e);
-    if (ends_at_limit(fit, best.hypothesis)) return false;
+    if (ends_at_limit(fit, best.hypothesis)) {
+      round.refused_gain = std::max(round.refused_gain, best.gain);
+      return false;
+    }
     std::vector<HoldOutRun> judged = judge(fit);
     if (confirmation == Confirmation::kAlone &&
         !is_confirmed(selection_, round, judged, options_)) {
+      if (is_contradicted(selection_, judged)) round.refusal = Refusal::kContradicted;
       return false;
     }
     round.accepted = true;
@@ -349,7 +371,8 @@ class Selector {
   const CampaignData& data_;
   const SelectOptions& options_;
   Selection selection_;
-  SelectRound last_;  // the last that looked for a further cause
+  SelectRound last_;             // the last that looked for a further cause
+  bool is_last_current_ = true;  // no cause has changed since
 };
 
 }  // namespace

@@ -39,13 +39,11 @@ struct SelectOptions {
   /// beside each.
   std::size_t paired = 6, paired_later = 3, paired_fits = 3, partners = 2;
   LeftoverOptions leftover;
-  /// Minimum ratio of a cause's delta chi2 per reading of the held-out runs to that of the fitted
-  /// runs; and minimum fraction of the runs without each of which it remains among the best.
-  double hold_out_share = 0.3, stability = 0.5;
-  /// A cause with this many times the threshold is exempt from both, and the held-out runs only
-  /// must not contradict it (HoldOutFall): its first-order score may be lower than its fit's delta
-  /// chi2, and the held-out runs may have smaller amplitudes. Beside a first cause it has to
-  /// explain `certain_share` of what that one does, in place of second_share.
+  /// Minimum fraction of the runs without each of which a cause remains among the best.
+  double stability = 0.5;
+  /// A cause with `certain` times the threshold is exempt from that, since its first-order score
+  /// may be lower than its fit's delta chi2. Beside a first cause it has to explain `certain_share`
+  /// of what that one does, in place of second_share.
   double certain = 3.0, certain_share = 0.035;
   /// Where the model's error dominates the noise: minimum fraction of the residual that a cause
   /// removes; half as much of that of the held-out runs.
@@ -71,12 +69,20 @@ struct Candidate {
   long simulations = 0;
 };
 
+/// Why the best candidate of a round is not a cause though it exceeds the threshold.
+enum class Refusal {
+  kNone,
+  kContradicted,  // by the held-out runs
+  kUnstable,      // not among the best without single runs
+};
+
 /// One round of the selection.
 struct SelectRound {
   std::vector<Candidate> candidates;  // best first
   double threshold = 0.0;             // of Candidate::gain
   bool accepted = false;              // the best candidate became a cause
-  double misfit = 1.0;                // chi2 over its expectation, by which gains are divided
+  Refusal refusal = Refusal::kNone;
+  double misfit = 1.0;  // chi2 over its expectation, by which gains are divided
   /// Delta chi2 of the first candidate and another effect together, where pairs were looked for.
   double pair_gain = 0.0;
   double best_score = 0.0;  // delta chi2 to first order of the best hypothesis
@@ -84,18 +90,19 @@ struct SelectRound {
   /// Largest delta chi2 of a fit whose values are not such as its effect has: something is there,
   /// but not what the name says.
   double refused_gain = 0.0;
-  std::vector<Undetected> undetected;  // all that was tested, if it is no cause
+  std::vector<Undetected> undetected;  // all effects tested, for the intervals if none is a cause
   long simulations = 0;
 };
 
 struct Selection {
-  WhitenedFit base, extended;          // without and with the causes
-  std::vector<Hypothesis> causes;      // in the order in which they were found
-  std::vector<std::size_t> round_of;   // index of each cause's round
-  std::vector<double> gains;           // delta chi2 of each cause in its round
-  Leftover left;                       // residual of the extended model
-  bool is_left = false;                // the residual exceeds noise
-  std::vector<Undetected> undetected;  // beside the causes; empty where none was looked for
+  WhitenedFit base, extended;         // without and with the causes
+  std::vector<Hypothesis> causes;     // in the order in which they were found
+  std::vector<std::size_t> round_of;  // index of each cause's round
+  std::vector<double> gains;          // delta chi2 of each cause in its round
+  Leftover left;                      // residual of the extended model
+  bool is_left = false;               // the residual exceeds noise
+  std::string refused;                // words on what was refused beside the causes; empty: nothing
+  std::vector<Undetected> undetected;  // effects beside the causes
   std::vector<SelectRound> rounds;     // in the order in which they were made
   std::vector<HoldOutRun> hold_out_before, hold_out_after;
   std::shared_ptr<const HoldOutJudge> judge;

@@ -71,8 +71,8 @@ std::string describe_improvement(const Diagnosis& diagnosis) {
   // The readings of all channels together show what no channel shows alone.
   if (log_odds < 0.0) {
     return fmt::format(
-        "{} lowers the log-likelihood of the held-out runs by {:.2g}, as noise may: they hardly "
-        "respond to it and do not decide.",
+        "{} lowers the log-likelihood of the held-out runs by {:.2g}, within three standard "
+        "deviations of noise.",
         change, -log_odds);
   }
   if (!improvement.explained || *improvement.explained < kVisible) {
@@ -92,7 +92,7 @@ std::string describe_residual(const Diagnosis& diagnosis) {
                        place.empty() ? "strut" : place + " struts", diagnosis.force->depends.words);
   }
   const Where& where = diagnosis.where;
-  if (where.band.empty()) return "";
+  if (where.band.empty() || !is_significant(diagnosis.selection.left)) return "";
   return where.place.empty() ? "at " + where.band
                              : fmt::format("acting at {}, at {}", where.place, where.band);
 }
@@ -104,6 +104,8 @@ std::string describe_remainder(const CampaignData& data, const Diagnosis& diagno
   const std::string residual = describe_residual(diagnosis);
   if (!residual.empty()) text += residual;
   if (worst != nullptr) text += (text.empty() ? "" : "; ") + describe_misfit(data, *worst);
+  const std::string& refused = diagnosis.selection.refused;
+  if (!refused.empty()) text += (text.empty() ? "" : "; ") + refused;
   const std::vector<std::string> worsened = list_worsened(data, diagnosis.runs);
   if (!worsened.empty()) text += "; it worsens " + join(worsened, ", ");
   return text;

@@ -9,71 +9,99 @@
 namespace strut {
 namespace {
 
-/// A share of the probability, where the unknown is `shift` from its value.
-struct Part {
-  double weight, shift;
+/// Normal distribution about value + shift, with this log weight.
+struct Component {
+  double log_weight, shift;
 };
 
-/// Sizes of an effect, in standard deviations: below, it moves nothing, above, it is detected.
-constexpr double kSmallest = 0.3, kLargest = 12.0, kRatio = 1.25;
-
-void add_parts(const Undetected& u, std::size_t i, std::vector<Part>& parts) {
-  constexpr double kNegligible = 1e-7;
-  const double range = std::log(1e4);
-  for (double s = kSmallest; s < kLargest; s *= kRatio) {
-    const double prior = u.weight * std::log(kRatio) / range;
-    const auto add = [&](double size, double share) {
-      const double weight = share * prior * std::exp(size * u.score - 0.5 * size * size);
-      if (weight > kNegligible) parts.push_back({weight, size * u.shift[i]});
+void add_components(const Undetected& u, std::size_t i, std::vector<Component>& components) {
+  // Sizes below the first hardly change a score, those above the last disagree with it.
+  constexpr double kMin = 0.3, kRatio = 1.25, kBeyondScore = 4.0, kMax = 12.0;
+  const double max = std::max(kMax, std::abs(u.score) + kBeyondScore);
+  const double prior = u.prior * std::log(kRatio) / std::log(1e4) * (u.one_sided ? 1.0 : 0.5);
+  for (double s = kMin; s < max; s *= kRatio) {
+    const auto add = [&](double size) {
+      components.push_back(
+          {std::log(prior) + size * u.score - 0.5 * size * size, size * u.shift[i]});
     };
-    add(s, u.one_sided ? 1.0 : 0.5);
-    if (!u.one_sided) add(-s, 0.5);
+    add(s);
+    if (!u.one_sided) add(-s);
   }
 }
 
-/// Where the mean of normal distributions about the parts has the probability `p`.
-double find_quantile(const std::vector<Part>& parts, double sigma, double p) {
-  double low = -kNormal95 * sigma, high = -low, sum = 0.0;
-  for (const Part& part : parts) {
-    low = std::min(low, part.shift - 10.0 * sigma);
-    high = std::max(high, part.shift + 10.0 * sigma);
-    sum += part.weight;
-  }
-  constexpr int kHalvings = 40;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    double below = 0.0;
-    for (const Part& part : parts) {
-      below += part.weight * calc_normal_probability((middle - part.shift) / sigma);
+/// Weighted normal distributions of the same standard deviation.
+class Mixture {
+ public:
+  Mixture(const std::vector<Component>& components, double sigma) : sigma_(sigma) {
+    constexpr double kNegligible = 1e-8;
+    double max = components.front().log_weight;
+    for (const Component& c : components) max = std::max(max, c.log_weight);
+    for (const Component& c : components) {
+      const double weight = std::exp(c.log_weight - max);
+      if (weight < kNegligible) continue;
+      parts_.push_back({weight, c.shift});
+      sum_ += weight;
+      low_ = std::min(low_, c.shift);
+      high_ = std::max(high_, c.shift);
     }
-    (below < p * sum ? low : high) = middle;
   }
-  return 0.5 * (low + high);
+
+  double find_quantile(double p) const {
+    constexpr int kHalvings = 40;
+    constexpr double kReach = 6.0;  // standard deviations
+    double low = low_ - kReach * sigma_, high = high_ + kReach * sigma_;
+    for (int k = 0; k < kHalvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      double below = 0.0;
+      for (const Part& part : parts_) {
+        below += part.weight * calc_normal_probability((middle - part.shift) / sigma_);
+      }
+      (below < p * sum_ ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  struct Part {
+    double weight, shift;
+  };
+  double sigma_, sum_ = 0.0, low_ = 0.0, high_ = 0.0;
+  std::vector<Part> parts_;
+};
+
+/// J'J from (J'J)^-1, which has zero rows for unknowns without information. By the correlations:
+/// the variances differ by many orders of magnitude.
+Eigen::MatrixXd invert(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd unit = covariance.diagonal().unaryExpr(
+      [](double variance) { return variance > 0.0 ? 1.0 / std::sqrt(variance) : 0.0; });
+  const Eigen::MatrixXd correlation = unit.asDiagonal() * covariance * unit.asDiagonal();
+  return unit.asDiagonal() * correlation.completeOrthogonalDecomposition().pseudoInverse() *
+         unit.asDiagonal();
 }
 
 }  // namespace
 
-std::vector<Undetected> list_undetected(const Evidence& evidence, const Score& score,
+std::vector<Undetected> list_undetected(const Evidence& evidence,
                                         const std::vector<bool>& one_sided,
                                         const std::vector<Unknown>& unknowns, double misfit) {
-  std::vector<Undetected> list;
-  std::vector<double> starts(one_sided.size(), 0.0);  // columns of each hypothesis
+  const Score score = calc_score(evidence, std::vector<double>(evidence.run_count(), 1.0 / misfit));
+  std::vector<double> count(one_sided.size(), 0.0);  // columns, by hypothesis
   for (const HypothesisTrial& trial : evidence.trials) {
-    starts[trial.hypothesis] += static_cast<double>(trial.columns.size());
+    count[trial.hypothesis] += static_cast<double>(trial.columns.size());
   }
-  const double noise = std::sqrt(misfit);
+  std::vector<Undetected> list;
   for (const HypothesisTrial& trial : evidence.trials) {
     for (const std::size_t column : trial.columns) {
       const auto at = static_cast<Eigen::Index>(column);
       if (!is_seen(score, at)) continue;
       const double root = std::sqrt(score.covariance(at, at));
       Undetected u;
-      u.weight = 1.0 / (static_cast<double>(one_sided.size()) * starts[trial.hypothesis]);
-      u.score = score.gradient(at) / (root * noise);
+      u.prior = 1.0 / (static_cast<double>(one_sided.size()) * count[trial.hypothesis]);
+      u.score = score.gradient(at) / root;
       u.one_sided = one_sided[trial.hypothesis] && trial.columns.size() == 1;
       for (std::size_t i = 0; i < evidence.shared; ++i) {
-        u.shift.push_back(score.shift(static_cast<Eigen::Index>(i), at) * unknowns[i].scale *
-                          noise / root);
+        const double correction = score.correction(static_cast<Eigen::Index>(i), at);
+        u.shift.push_back(correction * unknowns[i].scale / root);
       }
       list.push_back(std::move(u));
     }
@@ -83,29 +111,30 @@ std::vector<Undetected> list_undetected(const Evidence& evidence, const Score& s
 
 Interval calc_averaged_interval(double value, double sigma, std::size_t i,
                                 const std::vector<Undetected>& undetected) {
+  constexpr double kTail = 0.025;
   const double half = kNormal95 * sigma;
   Interval interval{value - half, value + half};
   if (!(sigma > 0.0) || !std::isfinite(sigma)) return interval;
-  std::vector<Part> parts = {{1.0, 0.0}};
-  for (const Undetected& u : undetected) add_parts(u, i, parts);
-  constexpr double kTail = 0.025;
-  interval.low = std::min(interval.low, value + find_quantile(parts, sigma, kTail));
-  interval.high = std::max(interval.high, value + find_quantile(parts, sigma, 1.0 - kTail));
+  std::vector<Component> components = {{0.0, 0.0}};
+  for (const Undetected& u : undetected) add_components(u, i, components);
+  const Mixture mixture(components, sigma);
+  interval.low = std::min(interval.low, value + mixture.find_quantile(kTail));
+  interval.high = std::max(interval.high, value + mixture.find_quantile(1.0 - kTail));
   return interval;
 }
 
 std::vector<double> calc_form_errors(const FitResult& fit, std::size_t count, double energy) {
-  constexpr double kKappa = 8.0, kMost = 0.05;
+  constexpr double kKappa = 8.0, kMaxFraction = 0.05;
   std::vector<double> errors(count, 0.0);
   if (!(energy > 0.0)) return errors;
-  const Eigen::MatrixXd information =
-      fit.uncertainty.covariance.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd information = invert(fit.uncertainty.covariance);
   for (std::size_t i = 0; i < count; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const double prior = fit.unknowns[i].prior.sigma;
-    const double readings = information(row, row) - 1.0 / (prior * prior);
+    const double all = information(row, row), prior = fit.unknowns[i].prior.sigma;
+    const double readings = all - 1.0 / (prior * prior);
     if (!(readings > 0.0)) continue;
-    errors[i] = std::min(kKappa * std::sqrt(energy / readings), kMost * std::abs(fit.values[i]));
+    errors[i] = std::min(kKappa * std::sqrt(energy * readings) / all,
+                         kMaxFraction * std::abs(fit.values[i]));
   }
   return errors;
 }

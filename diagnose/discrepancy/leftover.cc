@@ -215,6 +215,10 @@ const LeftoverPlace* find_clear_place(const Leftover& left) {
   return found == left.places.end() ? nullptr : &*found;
 }
 
+bool is_significant(const Leftover& left, const LeftoverOptions& options) {
+  return left.significance >= options.significant;
+}
+
 double calc_chi2_significance(double chi2, double allowed, double count) {
   if (count < 1.0) return 0.0;
   const double variance = 2.0 / (9.0 * count);
@@ -261,7 +265,7 @@ Leftover measure_leftover(const CampaignData& data, TestBench& bench,
   for (const std::vector<Cell>& run : cells) {
     for (std::size_t b = 0; b < run.size(); ++b) judge(run[b], bands[b]);
   }
-  if (left.significance < options.significant) return left;
+  if (!is_significant(left, options)) return left;
   const auto stands_out = [&](const ReadingPlace& place) {
     const double frequency = whitener.get_frequency(place);
     if (frequency >= left.band.from && frequency < left.band.to) return true;

@@ -50,6 +50,9 @@ double calc_chi2_significance(double chi2, double allowed, double count);
 /// channels.
 double calc_road_ratio(const NoiseSpectrum& spectrum, std::size_t band);
 
+/// Whether the residual exceeds noise.
+bool is_significant(const Leftover& left, const LeftoverOptions& options = {});
+
 /// Measures the residual of the bench's model. Lists locations only if a cell is significant.
 Leftover measure_leftover(const CampaignData& data, TestBench& bench,
                           const LeftoverOptions& options = {});

@@ -23,7 +23,7 @@ Score calc_score(const Evidence& evidence, const std::vector<double>& weights) {
     const Eigen::MatrixXd mixed = sum.topRightCorner(shared, count + 1);
     const Eigen::MatrixXd solved = own.ldlt().solve(mixed);
     sum.bottomRightCorner(count + 1, count + 1) -= mixed.transpose() * solved;
-    score.shift = -solved.leftCols(count);
+    score.correction = -solved.leftCols(count);
   }
   score.covariance = sum.block(shared, shared, count, count);
   score.gradient = -sum.block(shared, shared + count, count, 1);

@@ -44,7 +44,8 @@ struct Score {
   Eigen::VectorXd gradient;    // z
   double chi2 = 0.0;           // of the residual
   Eigen::VectorXd norm;        // diagonal of K without any elimination, of a run's own unknowns too
-  Eigen::MatrixXd shift;       // of the shared unknowns, in their scale, by column: undoes it
+  /// By column, the change of the shared unknowns, in their scale, that compensates for it.
+  Eigen::MatrixXd correction;
 };
 
 /// The score over the runs, run i weighted by `weights[i]`.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error/check.h"
 #include "base/error/input_error.h"
 #include "base/parallel/team.h"
 #include "diagnose/campaign/campaign_unknowns.h"
@@ -38,7 +39,7 @@ std::vector<double> make_start(const std::vector<Unknown>& unknowns, const Share
 
 bool HoldOutFall::is_possible() const {
   constexpr double kSigmas = 3.0;
-  return fall > std::min(0.0, expected - kSigmas * 2.0 * std::sqrt(expected));
+  return fall >= std::min(0.0, expected - kSigmas * 2.0 * std::sqrt(expected));
 }
 
 HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<HoldOutRun>& after) {
@@ -47,9 +48,8 @@ HoldOutFall calc_fall(const std::vector<HoldOutRun>& before, const std::vector<H
     const HoldOutRun &b = before[i], &a = after[i];
     if (!b.failure.empty() || !a.failure.empty()) continue;
     sum.fall += b.chi2 - a.chi2;
-    if (b.residual.size() == a.residual.size()) {
-      sum.expected += (b.residual - a.residual).squaredNorm();
-    }
+    STRUT_CHECK(b.residual.size() == a.residual.size(), "two models of different readings");
+    sum.expected += (b.residual - a.residual).squaredNorm();
   }
   return sum;
 }
@@ -102,8 +102,8 @@ HoldOutRun HoldOutJudge::judge_run(std::size_t i, const SharedValues& shared) co
   HoldOutRun run;
   run.run = runs_[i];
   run.chi2 = fit.chi2;
-  run.residual = std::move(whitened.evaluate(fit.values).residual);
   run.count = whitener.whitened_count();
+  run.residual = whitened.evaluate(fit.values).residual.head(static_cast<Eigen::Index>(run.count));
   run.expected = static_cast<double>(run.count) * whitener.get_share(0);
   // Priors weigh what is unknown about the run.
   run.log_likelihood = -0.5 * fit.chi2 - whitener.get_log_determinant(0);

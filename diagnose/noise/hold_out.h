@@ -17,18 +17,18 @@ struct HoldOutRun {
   double log_likelihood = 0.0;
   std::size_t count = 0;       // of whitened readings
   double expected = 0.0;       // chi2 of a perfect model
-  Eigen::VectorXd residual{};  // whitened, of readings and priors: chi2 is its squared norm
+  Eigen::VectorXd residual{};  // of the whitened readings
 };
 
-/// From one model to another, the fall of the held-out runs' chi2, and its expectation if the other
-/// is true: s = |w - w'|^2 over the residuals w of both. Runs that either cannot simulate do not
-/// count.
+/// Fall of the held-out runs' chi2 from one model to another, and its expectation if the other is
+/// true: s = |w - w'|^2 over their whitened residuals w. Runs that one of them cannot simulate do
+/// not count.
 struct HoldOutFall {
   double fall = 0.0, expected = 0.0;
 
-  /// Whether chi2 falls, or rises only as noise makes it rise where the model is true: then the
-  /// fall's standard deviation is 2 sqrt(s), and three of them are allowed. Runs that hardly
-  /// respond to a cause neither confirm it nor speak against it.
+  /// Whether chi2 does not rise, or only as noise makes it rise where the other model is true: the
+  /// fall's standard deviation is then 2 sqrt(s), and three of them are allowed. Runs that hardly
+  /// respond neither confirm a cause nor contradict it.
   bool is_possible() const;
 };
 

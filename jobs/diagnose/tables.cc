@@ -238,8 +238,8 @@ std::vector<ReportTable> make_parameter_tables(const Diagnosis& diagnosis) {
   }
   if (diagnosis.selection.is_left) {
     table.notes.emplace_back(
-        "The intervals allow for a part of the unknown force that looks like one of these "
-        "parameters.");
+        "The final model's intervals allow for a part of the unknown force that looks like one of "
+        "these parameters.");
   }
   std::vector<ReportTable> tables = {std::move(table)};
   if (!diagnosis.secants.empty()) tables.push_back(make_secant_table(diagnosis.secants));

@@ -58,9 +58,12 @@ TEST_CASE("A candidate has to be among the best without each of half of the runs
           "[unit]") {
   const Selection s = make_selection();
   CHECK_FALSE(is_large(s, make_round(60.0, 0.49)));
+  CHECK(is_unstable(make_round(60.0, 0.49), SelectOptions{}));
   CHECK(is_large(s, make_round(60.0, 0.51)));
+  CHECK_FALSE(is_unstable(make_round(60.0, 0.51), SelectOptions{}));
   CHECK_FALSE(is_large(s, make_round(89.9, 0.0)));
   CHECK(is_large(s, make_round(90.1, 0.0)));
+  CHECK_FALSE(is_unstable(make_round(29.9, 0.0), SelectOptions{}));
 }
 
 TEST_CASE("A second cause explains a tenth of the first, or 3.5 % of it with certainty", "[unit]") {
@@ -84,72 +87,50 @@ TEST_CASE("Where the model's error dominates, a cause removes 15 % of it, a pair
   CHECK(is_large(s, pair));
 }
 
-/// Whether a candidate is confirmed by a fall of the held-out runs' chi2.
-bool is_confirmed_by(double fall, const Selection& selection, const SelectRound& round) {
-  const double before = sum_chi2(selection.hold_out_after);
-  return is_confirmed(selection, round, {make_held_out(before - fall)}, SelectOptions{});
-}
-
-TEST_CASE("Held-out runs confirm a cause by 0.3 of its delta chi2 per reading", "[unit]") {
-  const Selection s = make_selection();
-  // 0.3 * 60 * 500 / 1000
-  CHECK_FALSE(is_confirmed_by(8.9, s, make_round(60.0)));
-  CHECK(is_confirmed_by(9.1, s, make_round(60.0)));
-  CHECK_FALSE(is_confirmed_by(-100.0, s, make_round(60.0)));
-}
-
-TEST_CASE("Held-out runs veto even a certain cause that makes them worse", "[unit]") {
-  const Selection s = make_selection();
-  CHECK(is_confirmed_by(0.1, s, make_round(91.0)));
-  CHECK_FALSE(is_confirmed_by(0.0, s, make_round(91.0)));
-  CHECK_FALSE(is_confirmed_by(-0.1, s, make_round(1e6)));
-}
-
-/// A held-out run with these whitened residuals.
-HoldOutRun make_residuals(const Eigen::VectorXd& residual) {
-  HoldOutRun run = make_held_out(residual.squaredNorm());
-  run.residual = residual;
-  return run;
-}
-
-TEST_CASE("A certain cause to which held-out runs hardly respond may make them worse by chance",
-          "[unit]") {
-  // s = 4: true, it lowers chi2 by 4 +- 4, and by more than -8 with 3 sigma.
-  const double s = 4.0;
-  const auto confirms = [&](double fall, double gain) {
-    Selection selection = make_selection();
-    Eigen::VectorXd before = Eigen::VectorXd::Constant(500, 1.0), after = before;
-    // after = before + d with |d|^2 = s and |before|^2 - |after|^2 = fall
-    const double along = -0.5 * (fall + s);  // before . d
-    before(0) = 5.0;
-    before(1) = 0.0;
-    after = before;
-    after(0) += along / before(0);
-    after(1) += std::sqrt(s - std::pow(along / before(0), 2));
-    selection.hold_out_after = {make_residuals(before)};
-    return is_confirmed(selection, make_round(gain), {make_residuals(after)}, SelectOptions{});
+/// The held-out run of make_selection() with residuals that lower its chi2 by `fall` and differ
+/// from it by the sum of squares `expected`.
+std::vector<HoldOutRun> make_judged(Selection& selection, double fall, double expected) {
+  Eigen::Vector2d before(25.0, 0.0), change(-0.5 * (fall + expected) / 25.0, 0.0);
+  change(1) = std::sqrt(expected - change(0) * change(0));
+  const auto make = [](const Eigen::Vector2d& residual) {
+    HoldOutRun run = make_held_out(residual.squaredNorm());
+    run.residual = residual;
+    return run;
   };
-  CHECK(confirms(-7.9, 91.0));
-  CHECK_FALSE(confirms(-8.1, 91.0));
-  CHECK_FALSE(confirms(-1.0, 60.0));  // not certain
+  selection.hold_out_after = {make(before)};
+  return {make(before + change)};
 }
 
-TEST_CASE("Held-out runs that respond contradict a cause by any rise of chi2", "[unit]") {
-  CHECK(HoldOutFall{0.1, 1e4}.is_possible());
-  CHECK_FALSE(HoldOutFall{-0.1, 36.1}.is_possible());
-  CHECK_FALSE(HoldOutFall{0.0, 0.0}.is_possible());
-  CHECK_FALSE(HoldOutFall{-9.1, 9.0}.is_possible());  // the most that noise explains
-  CHECK(HoldOutFall{-8.9, 9.0}.is_possible());
+bool is_confirmed_by(double fall, double expected, double gain = 1e3, bool is_dominated = false) {
+  Selection s = make_selection();
+  s.extended.is_dominated = is_dominated;
+  const std::vector<HoldOutRun> judged = make_judged(s, fall, expected);
+  return is_confirmed(s, make_round(gain), judged, SelectOptions{});
+}
+
+TEST_CASE("Held-out runs contradict a cause that makes them worse by more than noise", "[unit]") {
+  // True, a cause lowers chi2 by s with the standard deviation 2 sqrt(s): -8 is three of them off.
+  CHECK(is_confirmed_by(-7.9, 4.0));
+  CHECK_FALSE(is_confirmed_by(-8.1, 4.0));
+  // The largest rise that noise explains is 9, and runs that respond must not become worse.
+  CHECK(is_confirmed_by(-8.9, 9.0));
+  CHECK_FALSE(is_confirmed_by(-9.1, 9.0));
+  CHECK(is_confirmed_by(0.1, 60.0));
+  CHECK_FALSE(is_confirmed_by(-0.1, 60.0));
+  // Without any response they do not decide.
+  CHECK(HoldOutFall{0.0, 0.0}.is_possible());
 }
 
 TEST_CASE("Where the model's error dominates, half of its fraction has to leave the held-out runs",
           "[unit]") {
-  Selection s = make_selection();
-  s.extended.is_dominated = true;
-  s.hold_out_after = {make_held_out(2e4)};
-  // 0.5 * 0.15 * 20000
-  CHECK_FALSE(is_confirmed_by(1490.0, s, make_round(1e6)));
-  CHECK(is_confirmed_by(1510.0, s, make_round(1e6)));
+  // 0.5 * 0.15 * 625
+  CHECK_FALSE(is_confirmed_by(46.0, 60.0, 1e3, true));
+  CHECK(is_confirmed_by(47.0, 60.0, 1e3, true));
+}
+
+TEST_CASE("A cause exceeds the threshold over all runs, held-out ones included", "[unit]") {
+  CHECK(is_confirmed_by(-3.9, 4.0, 34.0));
+  CHECK_FALSE(is_confirmed_by(-4.1, 4.0, 34.0));
 }
 
 TEST_CASE("A held-out run that cannot be simulated confirms nothing", "[unit]") {
@@ -158,6 +139,7 @@ TEST_CASE("A held-out run that cannot be simulated confirms nothing", "[unit]") 
   failed.failure = "lost contact";
   CHECK(sum_chi2({make_held_out(3.0), make_held_out(4.0)}) == 7.0);
   CHECK(sum_chi2({make_held_out(3.0), failed}) > 1e200);
+  CHECK(is_contradicted(s, {failed}));
   CHECK_FALSE(is_confirmed(s, make_round(1e6), {failed}, SelectOptions{}));
 }
 
@@ -170,6 +152,14 @@ TEST_CASE("A rejected candidate of twice the threshold is residual of the causes
   SelectRound accepted = make_round(60.1);
   accepted.accepted = true;
   CHECK(calc_rejected_gain(s, accepted) == 0.0);
+}
+
+TEST_CASE("A candidate that was refused leaves a residual, whatever its size", "[unit]") {
+  SelectRound round = make_round(30.1);
+  CHECK(calc_rejected_gain(make_selection(), round) == 0.0);
+  round.refusal = Refusal::kContradicted;
+  CHECK(calc_rejected_gain(make_selection(), round) == 30.1);
+  CHECK(calc_rejected_gain(make_selection_with_cause(1e5), round) == 30.1);
 }
 
 TEST_CASE("A fit with values that its effect cannot have shows that something is there", "[unit]") {

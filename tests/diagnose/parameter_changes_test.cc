@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "tests/support/strut_stand.h"
 #include "tests/support/tolerance.h"
@@ -33,8 +34,8 @@ Candidate make_candidate(const std::string& effect, double damping) {
 
 struct Changed {
   CampaignData data = test::make_stand({{0.01, 1.0}});
-  Selection selection;
-  CausePosition position;
+  Diagnosis diagnosis;
+  Selection& selection = diagnosis.selection;
 
   /// Two members of a group that differ in the damping by `shift`.
   explicit Changed(double shift) {
@@ -44,14 +45,13 @@ struct Changed {
     selection.rounds.resize(1);
     selection.rounds[0].candidates = {make_candidate("a", 1040.0),
                                       make_candidate("b", 1040.0 + shift)};
-    selection.causes.resize(1);
     selection.round_of = {0};
+    CausePosition position;
     position.candidates = {{"a", "", 0.5, 9.0, {}}, {"b", "", 0.5, 9.0, {}}};
     position.close = 2;
+    diagnosis.verdict.positions = {position};
   }
-  ParameterChange get() const {
-    return list_parameter_changes(data, selection, {position}).front();
-  }
+  ParameterChange get() const { return list_parameter_changes(data, diagnosis).front(); }
 };
 
 TEST_CASE(
@@ -95,10 +95,10 @@ TEST_CASE("The final model's interval allows for undetected effects, beside the 
 
 TEST_CASE("Without an extension the calibrated model is the final one", "[unit]") {
   Changed changed(0.0);
-  changed.selection.causes.clear();
+  changed.diagnosis.verdict.positions.clear();
   changed.selection.extended = changed.selection.base;
   changed.selection.undetected = {{1.0, 3.0, true, {40.0}}};
-  const ParameterChange c = list_parameter_changes(changed.data, changed.selection, {}).front();
+  const ParameterChange c = changed.get();
   CHECK(c.after_high > 1100.0 + 60.0);
   CHECK(c.before_high == c.after_high);
   CHECK(c.before_low == c.after_low);
@@ -116,6 +116,15 @@ TEST_CASE("A residual of unknown form widens the interval by its energy", "[unit
   CHECK(before == Approx(1050.0 + 19.5996).margin(tolerance(1e-3)));
   CHECK(c.after_high == Approx(1050.0 + 1.95996 * std::hypot(10.0, 40.0)).margin(tolerance(1e-3)));
   CHECK(c.after_low == Approx(1050.0 - 1.95996 * std::hypot(10.0, 40.0)).margin(tolerance(1e-3)));
+}
+
+TEST_CASE("A parameter of which the readings say nothing has an infinite interval", "[unit]") {
+  Changed changed(0.0);
+  changed.selection.extended.fit.widened.sigma = {std::numeric_limits<double>::infinity()};
+  changed.selection.undetected = {{1.0, 3.0, true, {20.0}}};
+  const ParameterChange c = changed.get();
+  CHECK(c.after_low == -std::numeric_limits<double>::infinity());
+  CHECK(c.after_high == std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

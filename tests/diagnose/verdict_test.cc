@@ -392,6 +392,32 @@ TEST_CASE("The stated improvement is the measured one", "[unit]") {
   CHECK_THAT(write_sentence(get_campaign(), d), Contains("removes " + percent + " %"));
 }
 
+TEST_CASE("An extension that lowers the likelihood within noise is said to", "[unit]") {
+  Diagnosis d;
+  d.verdict.kind = VerdictKind::kNamed;
+  CausePosition position;
+  position.candidates = {{"bump_stop", "", 0.98, 9.0, {}}};
+  d.verdict.positions = {position};
+  d.improvement.explained = 0.75;
+  d.improvement.hold_out = {-1.1, 4.0};
+  CHECK_THAT(write_sentence(get_campaign(), d),
+             Contains("lowers the log-likelihood of the held-out runs by 0.55, within three"));
+}
+
+TEST_CASE("An unknown cause is described by what was refused and by a residual that stands out",
+          "[unit]") {
+  Diagnosis d;
+  d.verdict.kind = VerdictKind::kUnknown;
+  d.selection.is_left = true;
+  d.selection.refused = "bump_stop fits the runs for fitting, but the held-out runs contradict it";
+  d.where.band = "9 to 10 Hz";  // of the residual's largest part, which is noise
+  CHECK(write_sentence(get_campaign(), d) ==
+        "Cause: none of the catalogue; bump_stop fits the runs for fitting, but the held-out runs "
+        "contradict it.");
+  d.selection.left.significance = 6.1;
+  CHECK_THAT(write_sentence(get_campaign(), d), Contains("catalogue; at 9 to 10 Hz; bump_stop"));
+}
+
 TEST_CASE("A channel that an extension worsens is told", "[unit]") {
   CHECK(list_worsened(get_campaign(), {make_run(3.0, 1.0)}).empty());
   CHECK(list_worsened(get_campaign(), {make_run(0.8, 1.0)}).empty());    // within its noise
